@@ -1,0 +1,270 @@
+#pragma once
+/// The Lie groupoid interface.
+///
+/// A Lie groupoid G => Q ([G] Def. 2.1, 2.4) has arrows g in G and objects q in Q, a source alpha and a target beta, a
+/// unit at every object, an inverse of every arrow, and a product g h of two arrows with beta(g) = alpha(h).
+/// The fibre of its Lie algebroid AG at q is the tangent space of alpha^{-1}(q) at the unit; a *retraction*
+/// tau_q : A_qG -> alpha^{-1}(q), tau_q(0) = unit(q), parametrises the arrows near the unit by `dimension` numbers, and
+/// its derivative at 0 fixes the basis in which vectors of AG and momenta of A*G are written throughout.
+
+#include <lagroid/core/dual.hpp>
+#include <lagroid/core/mixed.hpp>
+#include <lagroid/core/types.hpp>
+
+#include <concepts>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace lagroid {
+
+/// Thrown by `compose` in checked builds (LAGROID_CHECKED) when beta(g) differs from alpha(h).
+class NotComposable : public std::domain_error {
+  using std::domain_error::domain_error;
+};
+
+#ifdef LAGROID_CHECKED
+inline constexpr bool checked_build = true;
+#else
+inline constexpr bool checked_build = false;
+#endif
+
+/// Which end of an arrow an infinitesimal displaces.
+enum class End { source, target };
+
+namespace detail {
+
+/// Objects and arrows that are Eigen matrices need no coordinates of their own: theirs are the entries.
+template <class X>
+concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
+
+}  // namespace detail
+
+/// Base of every Lie groupoid: what is deduced from what the derived class writes.
+///
+/// The derived class **must** supply, for every scalar S:
+///
+///     template <class S> using Arrow = ...;    template <class S> using Object = ...;
+///     Object<S> source(const Arrow<S>&)         Object<S> target(const Arrow<S>&)
+///     Arrow<S>  unit(const Object<S>&)          Arrow<S>  inverse(const Arrow<S>&)
+///     Arrow<S>  multiply(const Arrow<S>&, const Arrow<S>&)       product of composable arrows, unchecked
+///     Arrow<S>  tau(const Object<S>& q, const Vector<S, dimension>& v)        the retraction, source(tau(q, v)) = q
+///     Vector<S, dimension> tau_inverse(const Arrow<S>& g)        v with tau(source(g), v) = g, near the unit
+///     static std::string name()
+///
+/// and, only when arrows (objects) are not Eigen matrices, `arrow_size`, `coordinates(g)`, `arrow<S>(coordinates)`
+/// (`object_size`, `object_coordinates(q)`, `object<S>(coordinates)`).
+/// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and
+/// `seed` (the translations in closed form, see below). Everything else is deduced.
+///
+/// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
+template <class Derived, int Dimension>
+class LieGroupoid {
+ public:
+  static constexpr int dimension = Dimension;
+
+  /// The product g h. Requires beta(g) = alpha(h); checked builds throw NotComposable otherwise.
+  template <class A>
+  A compose(const A& g, const A& h) const {
+    if constexpr (checked_build) require_composable(g, h);
+    return self().multiply(g, h);
+  }
+
+  /// tau(a)^{-1} g tau(b): the arrow g with its source displaced by a in A_{alpha(g)}G and its target by b in
+  /// A_{beta(g)}G.
+  template <class A, class V>
+  A translate(const V& a, const A& g, const V& b) const {
+    const A moved = self().multiply(self().inverse(self().tau(self().source(g), a)), g);
+    return self().multiply(moved, self().tau(self().target(g), b));
+  }
+
+  /// The arrow g as an arrow over the scalar S, a constant if S carries derivatives.
+  template <class S, class A>
+  auto cast(const A& g) const {
+    return arrow_at<S>(coordinates_of_arrow(g).template cast<S>().eval());
+  }
+  /// The object q as an object over the scalar S.
+  template <class S, class Q>
+  auto cast_object(const Q& q) const {
+    return object_at<S>(coordinates_of_object(q).template cast<S>().eval());
+  }
+
+  /// The arrow tau(a)^{-1} g tau(b) with first- and second-order infinitesimals: the `left` infinitesimals of the scalar
+  /// M = Mixed<T, n, n>, numbers offset ... offset + dimension - 1, displace the end `first`; its `right` ones the end
+  /// `second`. Derived by composition; a groupoid that knows its translations in closed form supplies its own `seed`
+  /// with this signature (the law suites compare the two).
+  template <class M, class A>
+  auto seed_by_composition(const A& g, End first, End second, int offset) const {
+    Vector<M, Dimension> a = Vector<M, Dimension>::Constant(M(0));
+    Vector<M, Dimension> b = a;
+    for (int i = 0; i < Dimension; ++i) {
+      (first == End::source ? a : b)(i).left(offset + i) += 1;
+      (second == End::source ? a : b)(i).right(offset + i) += 1;
+    }
+    return translate(a, cast<M>(g), b);
+  }
+  template <class M, class A>
+  auto seed(const A& g, End first, End second, int offset = 0) const {
+    return seed_by_composition<M>(g, first, second, offset);
+  }
+
+  /// The left-invariant field X<-(g) = d/dt|0 g tau(t X) of X in A_{beta(g)}G, in arrow coordinates. [G] (1)
+  template <class A, class V>
+  auto left_invariant(const A& g, const V& x) const {
+    using D = Dual<typename V::Scalar>;
+    const auto gd = cast<D>(g);
+    return derivative_of(coordinates_of_arrow(self().multiply(gd, self().tau(self().target(gd), infinitesimal(x)))));
+  }
+
+  /// The right-invariant field X->(g) = -d/dt|0 tau(t X)^{-1} g of X in A_{alpha(g)}G, in arrow coordinates. [G] (2)
+  template <class A, class V>
+  auto right_invariant(const A& g, const V& x) const {
+    using D = Dual<typename V::Scalar>;
+    const auto gd = cast<D>(g);
+    const auto moved = self().multiply(self().inverse(self().tau(self().source(gd), infinitesimal(x))), gd);
+    return (-derivative_of(coordinates_of_arrow(moved))).eval();
+  }
+
+  /// The anchor rho(X) = T beta(X) of X in A_qG, in object coordinates. [G] Def. 2.9
+  template <class Q, class V>
+  auto anchor(const Q& q, const V& x) const {
+    using D = Dual<typename V::Scalar>;
+    return derivative_of(
+        coordinates_of_object(self().target(self().tau(cast_object<D>(q), infinitesimal(x)))));
+  }
+
+  /// The arrow g with a tangent vector in arrow coordinates, as an arrow over dual numbers.
+  template <class A, class V>
+  auto with_tangent(const A& g, const V& tangent) const {
+    const auto x = coordinates_of_arrow(g);
+    Vector<Dual<typename V::Scalar>, V::SizeAtCompileTime> xd;
+    for (int i = 0; i < xd.size(); ++i) xd(i) = {x(i), tangent(i)};
+    return arrow_at<Dual<typename V::Scalar>>(xd);
+  }
+
+  /// The arrow nearest to g that satisfies the groupoid's defining equations to round-off.
+  template <class A>
+  A project(const A& g) const {
+    return g;
+  }
+
+  template <class A>
+  auto coordinates_of_arrow(const A& g) const {
+    if constexpr (detail::EigenValued<A>) {
+      return Vector<typename A::Scalar, A::SizeAtCompileTime>(g.reshaped());
+    } else {
+      return self().coordinates(g);
+    }
+  }
+  template <class Q>
+  auto coordinates_of_object(const Q& q) const {
+    if constexpr (detail::EigenValued<Q>) {
+      return Vector<typename Q::Scalar, Q::SizeAtCompileTime>(q.reshaped());
+    } else {
+      return self().object_coordinates(q);
+    }
+  }
+  template <class S, class V>
+  auto arrow_at(const V& x) const {
+    using A = typename Derived::template Arrow<S>;
+    if constexpr (detail::EigenValued<A>) {
+      return A(x.reshaped(Eigen::fix<A::RowsAtCompileTime>, Eigen::fix<A::ColsAtCompileTime>));
+    } else {
+      return self().template arrow<S>(x);
+    }
+  }
+  template <class S, class V>
+  auto object_at(const V& x) const {
+    using Q = typename Derived::template Object<S>;
+    if constexpr (detail::EigenValued<Q>) {
+      return Q(x.reshaped(Eigen::fix<Q::RowsAtCompileTime>, Eigen::fix<Q::ColsAtCompileTime>));
+    } else {
+      return self().template object<S>(x);
+    }
+  }
+
+  /// For each direction of the alpha-fibre, the size of the coordinates that move along it: round-off in the arrow is
+  /// this times the unit round-off. The largest coordinate by default; products answer factor by factor.
+  template <class A>
+  Vector<double, Dimension> coordinate_scale(const A& g) const {
+    return Vector<double, Dimension>::Constant(coordinates_of_arrow(g).cwiseAbs().maxCoeff());
+  }
+
+  /// Number of coordinates of an arrow (ambient: nine for a rotation matrix) and of an object.
+  static constexpr int arrow_coordinate_count() {
+    using A = typename Derived::template Arrow<double>;
+    if constexpr (detail::EigenValued<A>) {
+      return A::SizeAtCompileTime;
+    } else {
+      return Derived::arrow_size;
+    }
+  }
+  static constexpr int object_coordinate_count() {
+    using Q = typename Derived::template Object<double>;
+    if constexpr (detail::EigenValued<Q>) {
+      return Q::SizeAtCompileTime;
+    } else {
+      return Derived::object_size;
+    }
+  }
+
+  /// Throws NotComposable unless beta(g) = alpha(h) up to 1e-9, relative to the size of the objects.
+  template <class A>
+  void require_composable(const A& g, const A& h) const {
+    const auto end = coordinates_of_object(self().target(g));
+    const auto start = coordinates_of_object(self().source(h));
+    double gap = 0;
+    double size = 1;
+    for (Eigen::Index i = 0; i < end.size(); ++i) {
+      gap = std::max(gap, std::abs(double(value_of(end(i)) - value_of(start(i)))));
+      size = std::max(size, std::abs(double(value_of(end(i)))));
+    }
+    if (gap <= 1e-9 * size) return;
+    std::ostringstream message;
+    message << Derived::name() << ": arrows do not compose: the first ends at (" << end.transpose()
+            << "), the second starts at (" << start.transpose() << "), " << gap << " apart";
+    throw NotComposable(message.str());
+  }
+
+ private:
+  const Derived& self() const { return static_cast<const Derived&>(*this); }
+
+  template <class V>
+  static auto infinitesimal(const V& x) {
+    using T = typename V::Scalar;
+    Vector<Dual<T>, Dimension> e;
+    for (int i = 0; i < Dimension; ++i) e(i) = Dual<T>(T(0.0), x(i));
+    return e;
+  }
+  template <class V>
+  static auto derivative_of(const V& coordinates) {
+    return coordinates.unaryExpr([](const auto& c) { return c.derivative; }).eval();
+  }
+};
+
+template <class G>
+using ArrowOf = typename G::template Arrow<double>;
+template <class G>
+using ObjectOf = typename G::template Object<double>;
+template <class G>
+using AlgebroidVector = Vector<double, G::dimension>;
+
+/// What every algorithm of Lagroid requires of a groupoid.
+///
+/// Invariants (checked by `core/testing/groupoid_laws.hpp`, not by the compiler): the groupoid axioms of [G] Def. 2.1;
+/// tau(q, 0) = unit(q), source(tau(q, v)) = q, tau_inverse(tau(q, v)) = v for small v; all maps smooth there.
+template <class G>
+concept Groupoid = requires(const G& groupoid, const ArrowOf<G>& g, const ObjectOf<G>& q, const AlgebroidVector<G>& v) {
+  { groupoid.source(g) } -> std::convertible_to<ObjectOf<G>>;
+  { groupoid.target(g) } -> std::convertible_to<ObjectOf<G>>;
+  { groupoid.unit(q) } -> std::convertible_to<ArrowOf<G>>;
+  { groupoid.inverse(g) } -> std::convertible_to<ArrowOf<G>>;
+  { groupoid.multiply(g, g) } -> std::convertible_to<ArrowOf<G>>;
+  { groupoid.tau(q, v) } -> std::convertible_to<ArrowOf<G>>;
+  { groupoid.tau_inverse(g) } -> std::convertible_to<AlgebroidVector<G>>;
+  { groupoid.coordinates_of_arrow(g) } -> std::convertible_to<Vector<double, G::arrow_coordinate_count()>>;
+  { groupoid.coordinates_of_object(q) } -> std::convertible_to<Vector<double, G::object_coordinate_count()>>;
+  { G::name() } -> std::convertible_to<std::string>;
+};
+
+}  // namespace lagroid

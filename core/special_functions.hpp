@@ -1,0 +1,95 @@
+#pragma once
+/// Analytic functions that the group maps are made of, free of cancellation near zero.
+///
+/// Both families take an argument in which they are analytic (a squared angle, a cosine), so that they can be
+/// differentiated at the identity, where the angle itself can not.
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+namespace lagroid {
+
+namespace detail {
+
+template <int K>
+constexpr double factorial = K * factorial<K - 1>;
+template <>
+inline constexpr double factorial<0> = 1.0;
+
+}  // namespace detail
+
+/// Stumpff function c_K(x) = sum_i (-x)^i / (2i + K)!.
+///
+/// With x = a^2: c_0 = cos a, c_1 = sin a / a, c_2 = (1 - cos a)/a^2, c_3 = (a - sin a)/a^3.
+/// Requires x >= 0. Relative error a few round-offs for K <= 3 at every x.
+template <int K, std::floating_point T>
+T stumpff(T x) {
+  static_assert(K >= 0);
+  constexpr T series_limit = 4;
+  if (x < series_limit) {
+    constexpr int terms = std::numeric_limits<T>::digits > 60 ? 18 : 15;
+    T term = T(1) / T(detail::factorial<K>);
+    T sum = term;
+    for (int i = 1; i < terms; ++i) {
+      term *= -x / (T(2 * i + K) * T(2 * i + K - 1));
+      sum += term;
+    }
+    return sum;
+  }
+  if constexpr (K == 0) {
+    return std::cos(std::sqrt(x));
+  } else if constexpr (K == 1) {
+    const T a = std::sqrt(x);
+    return std::sin(a) / a;
+  } else if constexpr (K == 2) {
+    const T s = std::sin(std::sqrt(x) / 2);
+    return 2 * s * s / x;
+  } else {
+    return (T(1) / T(detail::factorial<K - 2>) - stumpff<K - 2>(x)) / x;
+  }
+}
+
+/// d c_K / dx = -(c_{K+1} - K c_{K+2}) / 2, for any scalar on which stumpff is defined.
+template <int K, class S>
+S stumpff_derivative(const S& x) {
+  return (stumpff<K + 1>(x) - S(double(K)) * stumpff<K + 2>(x)) * S(-0.5);
+}
+
+/// The n-th derivative (n = 0, 1, 2, 3) of f(w) = 2 acos(w) / sqrt(1 - w^2), the ratio of a rotation angle to the norm
+/// of the vector part of its unit quaternion with scalar part w. Requires -1 < w <= 1 (up to round-off above 1).
+template <int Order, std::floating_point T>
+T angle_ratio(T w) {
+  static_assert(0 <= Order && Order <= 3);
+  const T u = 1 - w;
+  if (u < T(0.1)) {
+    // f = 2 sum_k b_k u^k with b_{k+1} / b_k = (k + 1) / (2k + 3).
+    constexpr int terms = 22;
+    T b = 2;
+    T power = 1;
+    T sum = 0;
+    for (int k = 0; k < terms; ++k) {
+      if (k >= Order) {
+        T falling = 1;
+        for (int j = 0; j < Order; ++j) falling *= T(k - j);
+        sum += falling * b * power;
+        power *= u;
+      }
+      b *= T(k + 1) / T(2 * k + 3);
+    }
+    return Order % 2 == 0 ? sum : -sum;
+  }
+  const T s2 = (1 - w) * (1 + w);
+  if constexpr (Order == 0) {
+    return 2 * std::acos(w) / std::sqrt(s2);
+  } else if constexpr (Order == 1) {
+    return (w * angle_ratio<0>(w) - 2) / s2;
+  } else if constexpr (Order == 2) {
+    return (angle_ratio<0>(w) + 3 * w * angle_ratio<1>(w)) / s2;
+  } else {
+    return (4 * angle_ratio<1>(w) + 5 * w * angle_ratio<2>(w)) / s2;
+  }
+}
+
+}  // namespace lagroid

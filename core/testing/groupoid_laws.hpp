@@ -1,0 +1,169 @@
+#pragma once
+/// The groupoid axioms as a test suite that any groupoid runs by naming itself.
+///
+///     EXPECT_TRUE(lagroid::testing::groupoid_laws<MyGroupoid>().holds());
+///
+/// Arrows are drawn as products of retractions of random algebroid vectors (zero, tiny, moderate, large) over random
+/// objects. A groupoid whose objects are not vectors of R^n passes `draw_object`.
+
+#include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/testing/property.hpp>
+
+namespace lagroid::testing {
+
+/// How large the samples are and how exact the laws must be.
+struct GroupoidLawOptions {
+  double large = 3.0;         ///< entries of the largest algebroid vectors; reduce where tau is only local
+  double local = 1.0;         ///< bound on |v| below which tau_inverse(tau(v)) = v is required
+  double tolerance = 1e-12;   ///< on relative defects of algebraic laws
+  double derivative = 1e-11;  ///< on relative defects of laws between derivatives
+};
+
+namespace detail {
+
+template <class X, class Y>
+double relative_defect(const X& x, const Y& y) {
+  if (x.size() == 0) return 0;
+  return (x - y).cwiseAbs().maxCoeff() / (1 + y.cwiseAbs().maxCoeff());
+}
+
+}  // namespace detail
+
+/// The laws of [G] Def. 2.1 (unit, inverse, associativity, source and target of products), of the retraction, and of
+/// the invariant fields: [G] (1), (2), their invariance under translation, (3), and the closed-form translations.
+template <Groupoid G, class DrawObject>
+LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const GroupoidLawOptions& options = {}) {
+  constexpr int n = G::dimension;
+  using A = ArrowOf<G>;
+  using V = Vector<double, n>;
+  using detail::relative_defect;
+
+  const auto vector = [&] { return V(draw_vector<n>(options.large)); };
+  const auto arrow_from = [&](const ObjectOf<G>& q) {
+    const A g = groupoid.tau(q, vector());
+    return groupoid.project(groupoid.multiply(g, groupoid.tau(groupoid.target(g), vector())));
+  };
+  const auto arrow = [&] { return arrow_from(draw_object()); };
+  const auto arrows = [&](const A& x, const A& y) {
+    return relative_defect(groupoid.coordinates_of_arrow(x), groupoid.coordinates_of_arrow(y));
+  };
+  const auto objects = [&](const ObjectOf<G>& x, const ObjectOf<G>& y) {
+    return relative_defect(groupoid.coordinates_of_object(x), groupoid.coordinates_of_object(y));
+  };
+
+  LawReport report{G::name(), {}};
+  const auto law = [&](const char* name, double tolerance, const auto& defect) {
+    report.laws.push_back(check_law(name, tolerance, defect));
+  };
+
+  law("units", options.tolerance, [&] {
+    const A g = arrow();
+    const auto q = groupoid.source(g);
+    return std::max({arrows(groupoid.compose(groupoid.unit(q), g), g),
+                     arrows(groupoid.compose(g, groupoid.unit(groupoid.target(g))), g),
+                     objects(groupoid.source(groupoid.unit(q)), q), objects(groupoid.target(groupoid.unit(q)), q)});
+  });
+  law("inverses", options.tolerance, [&] {
+    const A g = arrow();
+    const A i = groupoid.inverse(g);
+    return std::max({objects(groupoid.source(i), groupoid.target(g)), objects(groupoid.target(i), groupoid.source(g)),
+                     arrows(groupoid.compose(g, i), groupoid.unit(groupoid.source(g))),
+                     arrows(groupoid.compose(i, g), groupoid.unit(groupoid.target(g)))});
+  });
+  law("source and target of products", options.tolerance, [&] {
+    const A g = arrow();
+    const A h = arrow_from(groupoid.target(g));
+    const A gh = groupoid.compose(g, h);
+    return std::max(objects(groupoid.source(gh), groupoid.source(g)), objects(groupoid.target(gh), groupoid.target(h)));
+  });
+  law("associativity", options.tolerance, [&] {
+    const A g = arrow();
+    const A h = arrow_from(groupoid.target(g));
+    const A k = arrow_from(groupoid.target(h));
+    return arrows(groupoid.compose(groupoid.compose(g, h), k), groupoid.compose(g, groupoid.compose(h, k)));
+  });
+  law("retraction", options.tolerance, [&] {
+    const auto q = draw_object();
+    V v = vector();
+    const double size = v.norm();
+    if (size > options.local) v *= options.local / size;
+    const A g = groupoid.tau(q, v);
+    return std::max({arrows(groupoid.tau(q, V(V::Zero())), groupoid.unit(q)), objects(groupoid.source(g), q),
+                     relative_defect(groupoid.tau_inverse(g), v)});
+  });
+  law("left-invariant fields are alpha-vertical", options.derivative, [&] {
+    const A g = arrow();
+    using D = Dual<double>;
+    const V x = vector();
+    Vector<D, n> e;
+    for (int i = 0; i < n; ++i) e(i) = D(0.0, x(i));
+    const auto moved = groupoid.multiply(groupoid.template cast<D>(g),
+                                         groupoid.tau(groupoid.target(groupoid.template cast<D>(g)), e));
+    double worst = 0;
+    const auto q = groupoid.coordinates_of_object(groupoid.source(moved));
+    for (int i = 0; i < q.size(); ++i) worst = std::max(worst, std::abs(q(i).derivative));
+    return worst;
+  });
+  law("left-invariant fields are invariant (1)", options.derivative, [&] {
+    const A g = arrow();
+    const A h = arrow_from(groupoid.target(g));
+    const V x = vector();
+    using D = Dual<double>;
+    // T l_g (X<-(h)): move h along the field, then translate.
+    const auto hd = groupoid.with_tangent(h, groupoid.left_invariant(h, x));
+    const auto gh = groupoid.coordinates_of_arrow(groupoid.multiply(groupoid.template cast<D>(g), hd));
+    return relative_defect(gh.unaryExpr([](const D& c) { return c.derivative; }).eval(),
+                           groupoid.left_invariant(groupoid.multiply(g, h), x));
+  });
+  law("right-invariant fields are invariant (2)", options.derivative, [&] {
+    const A h = arrow();
+    const A g = arrow_from(groupoid.target(h));
+    const V x = vector();
+    using D = Dual<double>;
+    const auto hd = groupoid.with_tangent(h, groupoid.right_invariant(h, x));
+    const auto hg = groupoid.coordinates_of_arrow(groupoid.multiply(hd, groupoid.template cast<D>(g)));
+    return relative_defect(hg.unaryExpr([](const D& c) { return c.derivative; }).eval(),
+                           groupoid.right_invariant(groupoid.multiply(h, g), x));
+  });
+  law("tangent of the inversion (3)", options.derivative, [&] {
+    // T i (v) = -v + T(epsilon o beta)(v) for v in A_qG.
+    const auto q = draw_object();
+    const V x = vector();
+    using D = Dual<double>;
+    const auto v = groupoid.left_invariant(groupoid.unit(q), x);
+    const auto curve = groupoid.with_tangent(groupoid.unit(q), v);
+    const auto derivative = [](const auto& c) { return c.unaryExpr([](const D& e) { return e.derivative; }).eval(); };
+    const auto inverted = derivative(groupoid.coordinates_of_arrow(groupoid.inverse(curve)));
+    const auto units = derivative(groupoid.coordinates_of_arrow(groupoid.unit(groupoid.target(curve))));
+    return relative_defect(inverted, (units - v).eval());
+  });
+  law("closed-form translations", options.derivative, [&] {
+    using M = Mixed<double, n, n>;
+    const A g = arrow();
+    double worst = 0;
+    for (const End first : {End::source, End::target})
+      for (const End second : {End::source, End::target}) {
+        const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M>(g, first, second, 0));
+        const auto slow =
+            groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
+        for (int i = 0; i < fast.size(); ++i) {
+          worst = std::max({worst, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
+                            relative_defect(fast(i).right, slow(i).right),
+                            relative_defect(fast(i).mixed, slow(i).mixed)});
+        }
+      }
+    return worst;
+  });
+  return report;
+}
+
+/// The same for groupoids whose objects are vectors of R^n (or tuples of such), drawn at random.
+template <Groupoid G>
+LawReport groupoid_laws(const G& groupoid = {}, const GroupoidLawOptions& options = {}) {
+  constexpr int size = G::object_coordinate_count();
+  return groupoid_laws(
+      groupoid, [&] { return ObjectOf<G>(groupoid.template object_at<double>(draw_vector<size>(options.large))); },
+      options);
+}
+
+}  // namespace lagroid::testing

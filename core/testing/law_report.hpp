@@ -1,0 +1,47 @@
+#pragma once
+/// What a law suite says of its subject.
+
+#include <algorithm>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace lagroid::testing {
+
+/// One law: the worst defect over all samples, against the tolerance it was held to.
+struct Law {
+  std::string name;
+  int samples = 0;
+  double worst = 0;
+  double tolerance = 0;
+  std::string first_failure;  ///< the exception or the sample that broke it, if any
+  bool holds() const { return samples > 0 && first_failure.empty() && worst <= tolerance; }
+};
+
+/// Every law of a suite on one subject.
+struct LawReport {
+  std::string subject;
+  std::vector<Law> laws;
+
+  bool holds() const {
+    return !laws.empty() && std::all_of(laws.begin(), laws.end(), [](const Law& l) { return l.holds(); });
+  }
+  /// The law of that name; throws std::out_of_range if the suite has none.
+  const Law& law(const std::string& name) const {
+    for (const Law& l : laws)
+      if (l.name == name) return l;
+    throw std::out_of_range("no law named " + name);
+  }
+  friend std::ostream& operator<<(std::ostream& out, const LawReport& report) {
+    out << report.subject << '\n';
+    for (const Law& l : report.laws) {
+      out << (l.holds() ? "  holds   " : "  BROKEN  ") << l.name << ": worst defect " << l.worst << " (tolerance "
+          << l.tolerance << ") over " << l.samples << " samples";
+      if (!l.first_failure.empty()) out << "; " << l.first_failure;
+      out << '\n';
+    }
+    return out;
+  }
+};
+
+}  // namespace lagroid::testing

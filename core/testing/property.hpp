@@ -1,0 +1,50 @@
+#pragma once
+/// The bridge to RapidCheck: random laws with a reproducible, printed seed.
+
+#include <lagroid/core/testing/law_report.hpp>
+#include <lagroid/core/types.hpp>
+
+#include <rapidcheck.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+namespace lagroid::testing {
+
+/// RapidCheck seeds itself from the clock. Unless the environment says otherwise (RC_PARAMS="seed=..."), the suites run
+/// from this seed; RapidCheck prints the seed of every run and, on a failure, the line that reproduces it.
+inline void fix_seed() { ::setenv("RC_PARAMS", "seed=20261120", /*overwrite=*/0); }
+
+/// A vector with entries in [-1, 1] times a size drawn from identity, tiny, moderate and large arguments.
+template <int N>
+Vector<double, N> draw_vector(double large) {
+  const double size = *rc::gen::element(0.0, 1e-12, 1e-8, 1e-3, 0.3, 1.0, large);
+  Vector<double, N> v;
+  for (int i = 0; i < N; ++i) v(i) = size * (*rc::gen::inRange(-1000000, 1000001)) * 1e-6;
+  return v;
+}
+
+/// Runs `defect` (which draws its sample with RapidCheck and returns a relative error) and records the worst value.
+template <class F>
+Law check_law(const std::string& name, double tolerance, const F& defect) {
+  fix_seed();
+  Law law{name, 0, 0, tolerance, {}};
+  const bool passed = rc::check(name, [&] {
+    double d = std::numeric_limits<double>::infinity();
+    try {
+      d = defect();
+    } catch (const std::exception& error) {
+      if (law.first_failure.empty()) law.first_failure = error.what();
+      throw;
+    }
+    ++law.samples;
+    if (!(d <= law.worst)) law.worst = std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
+    RC_ASSERT(d <= tolerance);
+  });
+  if (!passed && law.first_failure.empty() && law.worst <= tolerance) law.first_failure = "RapidCheck gave up";
+  return law;
+}
+
+}  // namespace lagroid::testing

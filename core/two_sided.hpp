@@ -1,0 +1,107 @@
+#pragma once
+/// The two-sided derivative: every first and second derivative the dynamics needs, in one evaluation.
+
+#include <lagroid/core/system.hpp>
+
+namespace lagroid {
+
+namespace detail {
+
+/// f = L + <lambda, phi> + <lambda, C o alpha> over any scalar.
+template <class S, class Sys, class A>
+S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multipliers& lambda) {
+  S f = system.lagrangian(g);
+  if constexpr (Sys::arrow_constraints > 0) {
+    const auto phi = system.constraint(g);
+    for (int a = 0; a < Sys::arrow_constraints; ++a) f += phi(a) * lambda(a);
+  }
+  if constexpr (Sys::object_constraints > 0) {
+    const auto at_source = system.object_constraint(system.groupoid.source(g));
+    for (int a = 0; a < Sys::object_constraints; ++a) f += at_source(a) * lambda(Sys::arrow_constraints + a);
+  }
+  return f;
+}
+
+}  // namespace detail
+
+template <class Sys>
+using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
+
+/// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
+template <DiscreteSystem Sys>
+TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                                    const typename Sys::Multipliers& lambda) {
+  using M = MixedOf<Sys>;
+  const auto gm = system.groupoid.template seed<M>(g, End::source, End::target);
+  TwoSidedOf<Sys> out;
+  M f = system.lagrangian(gm);
+  if constexpr (Sys::arrow_constraints > 0) {
+    const Vector<M, Sys::arrow_constraints> phi = system.constraint(gm);
+    for (int a = 0; a < Sys::arrow_constraints; ++a) {
+      f += phi(a) * lambda(a);
+      out.constraint(a) = phi(a).value;
+      out.constraint_source.col(a) = phi(a).left;
+      out.constraint_target.row(a) = phi(a).right.transpose();
+    }
+  }
+  if constexpr (Sys::object_constraints > 0) {
+    const auto at_source = system.object_constraint(system.groupoid.source(gm));
+    const auto at_target = system.object_constraint(system.groupoid.target(gm));
+    for (int a = 0; a < Sys::object_constraints; ++a) {
+      const int k = Sys::arrow_constraints + a;
+      f += at_source(a) * lambda(k);
+      out.constraint(k) = at_target(a).value;
+      out.constraint_source.col(k) = at_source(a).left;
+      out.constraint_target.row(k) = at_target(a).right.transpose();
+    }
+  }
+  out.value = f.value;
+  out.source_gradient = f.left;
+  out.target_gradient = f.right;
+  out.mixed = f.mixed;
+  return out;
+}
+
+/// The two-sided derivative: the system's analytic one if it has one, else the automatic one.
+template <DiscreteSystem Sys>
+TwoSidedOf<Sys> two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                          const typename Sys::Multipliers& lambda) {
+  if constexpr (HasAnalyticDerivatives<Sys>) {
+    return system.two_sided(g, lambda);
+  } else {
+    return automatic_two_sided(system, g, lambda);
+  }
+}
+
+/// The symmetric second derivative of w -> f(g tau(w)) (end = target) or v -> f(tau(v)^{-1} g) (end = source) at 0.
+template <DiscreteSystem Sys>
+Matrix<double, Sys::dimension, Sys::dimension> one_sided_hessian(const Sys& system,
+                                                                 const ArrowOf<typename Sys::GroupoidType>& g,
+                                                                 const typename Sys::Multipliers& lambda, End end) {
+  using M = MixedOf<Sys>;
+  return detail::augmented_lagrangian<M>(system, system.groupoid.template seed<M>(g, end, end), lambda).mixed;
+}
+
+/// The constraint values (phi(g), C(beta(g))).
+template <DiscreteSystem Sys>
+Vector<double, Sys::constraints> constraint_values(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  Vector<double, Sys::constraints> c;
+  if constexpr (Sys::arrow_constraints > 0) c.template head<Sys::arrow_constraints>() = system.constraint(g);
+  if constexpr (Sys::object_constraints > 0)
+    c.template tail<Sys::object_constraints>() = system.object_constraint(system.groupoid.target(g));
+  return c;
+}
+
+/// The discrete Legendre transform F-: the state at the source of g. [G] Def. 3.3
+template <DiscreteSystem Sys>
+State<typename Sys::GroupoidType> legendre_minus(const Sys& system, const Step<Sys>& step) {
+  return {system.groupoid.source(step.arrow), -two_sided(system, step.arrow, step.multipliers).source_gradient};
+}
+
+/// The discrete Legendre transform F+: the state at the target of g. [G] Def. 3.3
+template <DiscreteSystem Sys>
+State<typename Sys::GroupoidType> legendre_plus(const Sys& system, const Step<Sys>& step) {
+  return {system.groupoid.target(step.arrow), two_sided(system, step.arrow, step.multipliers).target_gradient};
+}
+
+}  // namespace lagroid

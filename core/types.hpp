@@ -1,0 +1,19 @@
+#pragma once
+/// Fixed-size linear algebra in an arbitrary scalar S.
+
+#include <Eigen/Core>
+
+namespace lagroid {
+
+template <class S, int N>
+using Vector = Eigen::Matrix<S, N, 1>;
+
+template <class S, int Rows, int Columns>
+using Matrix = Eigen::Matrix<S, Rows, Columns>;
+
+/// The underlying real number of a scalar: itself for a real, the value part for a derivative-carrying scalar.
+constexpr double value_of(double x) { return x; }
+constexpr float value_of(float x) { return x; }
+constexpr long double value_of(long double x) { return x; }
+
+}  // namespace lagroid

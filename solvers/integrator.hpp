@@ -1,0 +1,161 @@
+#pragma once
+/// The one-step map on A*G: (q, mu) -> g -> (q', mu').
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/solvers/step_solver.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace lagroid {
+
+/// mu with the part removed that leaves C^{-1}(0) (RATTLE's second stage): mu + nu . dC o rho with nu such that
+/// dC o rho W mu = 0, where W = (-d2L/dv dw)^{-1} at the unit arrow is the inverse mass matrix up to a factor.
+/// The identity for systems without object constraints. The dynamics is the same with and without it; the projected
+/// momentum is the one in which the map is symplectic on T*C^{-1}(0).
+template <DiscreteSystem Sys>
+AlgebroidVector<typename Sys::GroupoidType> tangent_momentum(const Sys& system,
+                                                             const State<typename Sys::GroupoidType>& state) {
+  if constexpr (Sys::object_constraints == 0) {
+    return state.momentum;
+  } else {
+    constexpr int k = Sys::object_constraints;
+    const auto d = two_sided(system, system.groupoid.unit(state.object), Sys::Multipliers::Zero().eval());
+    const Matrix<double, Sys::dimension, k> normal = -d.constraint_source.template rightCols<k>();
+    const Eigen::PartialPivLU<Matrix<double, Sys::dimension, Sys::dimension>> mass(-d.mixed);
+    const Matrix<double, Sys::dimension, k> w_normal = mass.solve(normal);
+    const Vector<double, k> nu = (normal.transpose() * w_normal)
+                                     .partialPivLu()
+                                     .solve(w_normal.transpose() * state.momentum);
+    return state.momentum - normal * nu;
+  }
+}
+
+/// Marches a discrete constrained Lagrangian system. A step that does not converge leaves everything as it was.
+///
+/// The momentum is updated by its increment, mu' = mu + (F+ - F-)(g, lambda): equal to F+ at a solution, and free of the
+/// solve's residual. Momenta on which the Lagrangian does not depend are then kept to the last bit.
+template <DiscreteSystem Sys>
+class Integrator {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint).
+  Integrator(Sys system, State<G> initial, ArrowOf<G> configuration, std::unique_ptr<StepSolver<Sys>> solver)
+      : system_(std::move(system)), solver_(std::move(solver)) {
+    point_.state = std::move(initial);
+    point_.configuration = std::move(configuration);
+    point_.step = {system_.groupoid.unit(point_.state.object), Sys::Multipliers::Zero()};
+  }
+
+  const TrajectoryPoint<Sys>& point() const { return point_; }
+  const Sys& system() const { return system_; }
+
+  StepReport advance() {
+    StepSolution<Sys> solution;
+    StepReport report;
+    if (point_.index == 0) {
+      report = first_step(solution);
+    } else {
+      solution.step = {system_.groupoid.tau(point_.state.object, system_.groupoid.tau_inverse(point_.step.arrow)),
+                       point_.step.multipliers};
+      report = solver_->solve(system_, point_.state, solution);
+      if (!report.converged()) {
+        const int spent = report.iterations;
+        StepSolution<Sys> restart;
+        StepReport restarted = first_step(restart);
+        if (restarted.converged()) {
+          report = restarted;
+          solution = restart;
+        }
+        report.iterations += restarted.converged() ? spent : restarted.iterations;
+      }
+    }
+    if (report.converged()) accept(solution);
+    return report;
+  }
+
+ private:
+  /// A guess with no predecessor: the system's own, else the unit arrow.
+  Step<Sys> guess(const Sys& system) const {
+    if constexpr (HasFirstGuess<Sys>) {
+      return system.first_guess(point_.state);
+    } else {
+      return {system.groupoid.unit(point_.state.object), Sys::Multipliers::Zero()};
+    }
+  }
+
+  /// The solution that is continuous in the step size: from a small h, where the guess is near it, up to h by
+  /// continuation. (At a large h an implicit step has several solutions, and the nearest to the guess may be another.)
+  StepReport first_step(StepSolution<Sys>& solution) {
+    if constexpr (!HasTimeStep<Sys>) {
+      solution.step = guess(system_);
+      return solver_->solve(system_, point_.state, solution);
+    } else {
+      const double h = system_.h;
+      const double start = 1.0 / 64;
+      const double smallest_factor = 1.01;
+      Sys scaled = system_;
+      double fraction = start;
+      scaled.h = fraction * h;
+      solution.step = guess(scaled);
+      StepReport report = solver_->solve(scaled, point_.state, solution);
+      int iterations = report.iterations;
+      double factor = 2;
+      while (report.converged() && fraction < 1) {
+        const double next = std::min(1.0, fraction * factor);
+        scaled.h = next == 1 ? h : next * h;
+        const auto& groupoid = system_.groupoid;
+        const AlgebroidVector<G> v = groupoid.tau_inverse(solution.step.arrow) * (next / fraction);
+        StepSolution<Sys> trial;
+        trial.step = {groupoid.tau(point_.state.object, v), solution.step.multipliers};
+        StepReport attempt = solver_->solve(scaled, point_.state, trial);
+        iterations += attempt.iterations;
+        if (attempt.converged() && near(trial.step, v)) {
+          report = attempt;
+          solution = trial;
+          fraction = next;
+          factor = std::min(2.0, factor * factor);
+        } else if (factor > smallest_factor) {
+          factor = std::sqrt(factor);
+        } else {
+          report = attempt;
+          if (attempt.converged()) report.status = SolveStatus::left_domain;
+        }
+      }
+      report.iterations = iterations;
+      return report;
+    }
+  }
+
+  /// Whether a solve stayed on the branch it was continued along: the arrow within half its own size of its prediction.
+  bool near(const Step<Sys>& solved, const AlgebroidVector<G>& predicted) const {
+    const AlgebroidVector<G> v = system_.groupoid.tau_inverse(solved.arrow);
+    return (v - predicted).norm() <= 0.5 * std::max(v.norm(), predicted.norm());
+  }
+
+  void accept(const StepSolution<Sys>& solution) {
+    const auto& groupoid = system_.groupoid;
+    const auto& arrow = solution.step.arrow;
+    point_.step = solution.step;
+    point_.state.momentum += solution.derivative.source_gradient + solution.derivative.target_gradient;
+
+    // Compensated accumulation: what rounding took from the objects so far is given back as soon as it can be stored.
+    carry_ += solution.remainder;
+    const auto target = groupoid.target(arrow);
+    const ArrowOf<G> nudge = groupoid.tau(target, carry_);
+    point_.state.object = groupoid.target(nudge);
+    carry_ -= groupoid.tau_inverse(nudge);
+    point_.configuration = groupoid.project(
+        groupoid.multiply(groupoid.multiply(point_.configuration, arrow), nudge));
+    ++point_.index;
+    if constexpr (HasTimeStep<Sys>) point_.time = double(point_.index) * system_.h;
+  }
+
+  Sys system_;
+  std::unique_ptr<StepSolver<Sys>> solver_;
+  TrajectoryPoint<Sys> point_;
+  AlgebroidVector<G> carry_ = AlgebroidVector<G>::Zero();
+};
+
+}  // namespace lagroid

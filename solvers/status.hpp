@@ -1,0 +1,36 @@
+#pragma once
+/// How an iterative solve ended.
+
+#include <string_view>
+
+namespace lagroid {
+
+/// Only `converged` lets a caller use the result; every other outcome leaves the caller's state as it was.
+enum class SolveStatus {
+  converged,      ///< residual at its round-off floor
+  stagnated,      ///< the residual stopped falling above that floor
+  singular,       ///< the matrix of the step is singular: the system is not regular here ([G] Def. 3.5)
+  left_domain,    ///< converged, but on another branch of the discretisation or outside the retraction's domain
+  not_finite,     ///< a NaN or an infinity appeared
+  not_converged,  ///< the iteration limit was reached
+};
+
+constexpr std::string_view to_string(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::converged:
+      return "converged";
+    case SolveStatus::stagnated:
+      return "stagnated";
+    case SolveStatus::singular:
+      return "singular";
+    case SolveStatus::left_domain:
+      return "left_domain";
+    case SolveStatus::not_finite:
+      return "not_finite";
+    case SolveStatus::not_converged:
+      return "not_converged";
+  }
+  return "unknown";
+}
+
+}  // namespace lagroid

@@ -1,0 +1,71 @@
+#pragma once
+/// The interface of everything that solves one implicit step.
+
+#include <lagroid/core/step_equations.hpp>
+#include <lagroid/solvers/status.hpp>
+
+#include <limits>
+
+namespace lagroid {
+
+/// What a step solve reports. `residual` is the largest component of the scaled residual; `excess` the largest ratio of
+/// a component to what round-off alone would give it (at most one: nothing more can be gained).
+struct StepReport {
+  SolveStatus status = SolveStatus::not_converged;
+  int iterations = 0;
+  double residual = 0;
+  double excess = 0;
+  bool converged() const { return status == SolveStatus::converged; }
+};
+
+/// A step with what the solver knows about it.
+template <DiscreteSystem Sys>
+struct StepSolution {
+  Step<Sys> step;
+  TwoSidedOf<Sys> derivative;
+  /// The correction w in A_{beta(g)}G, g tau(w), that the next iteration would make: below the spacing of the numbers
+  /// the arrow is stored in, but a bias when it is lost step after step.
+  AlgebroidVector<typename Sys::GroupoidType> remainder = AlgebroidVector<typename Sys::GroupoidType>::Zero();
+};
+
+/// Solves F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0 for the arrow g with source q and its multipliers.
+template <DiscreteSystem Sys>
+class StepSolver {
+ public:
+  virtual ~StepSolver() = default;
+
+  /// On entry `solution.step` is the starting guess (its arrow must have source `state.object`); on convergence it is
+  /// the solution, and otherwise the last iterate.
+  virtual StepReport solve(const Sys& system, const State<typename Sys::GroupoidType>& state,
+                           StepSolution<Sys>& solution) = 0;
+};
+
+/// The scaled step equations at one point, with an estimate of how far round-off lets them be solved.
+template <DiscreteSystem Sys>
+struct ScaledResidual {
+  using E = StepEquations<Sys>;
+  typename E::Residual residual;
+  typename E::Jacobian jacobian;
+  double norm;    ///< max_i row_i |r_i|
+  double excess;  ///< max_i |r_i| / f_i, f the round-off in mu, in the products J_ij lambda_j and in the arrow
+
+  ScaledResidual(const Sys& system, const State<typename Sys::GroupoidType>& state, const Step<Sys>& step,
+                 const TwoSidedOf<Sys>& d, Scaling<E::size>& scaling, bool rescale) {
+    constexpr int n = Sys::dimension;
+    residual = E::residual(d, state.momentum);
+    jacobian = E::jacobian(d);
+    if (rescale) scaling = Scaling<E::size>::equilibrate(jacobian);
+    norm = residual.cwiseProduct(scaling.row).cwiseAbs().maxCoeff();
+    if (!residual.allFinite() || !jacobian.allFinite()) norm = std::numeric_limits<double>::quiet_NaN();
+
+    Vector<double, E::size> size =
+        jacobian.template leftCols<n>().cwiseAbs() * system.groupoid.coordinate_scale(step.arrow);
+    size.template head<n>() += state.momentum.cwiseAbs();
+    if constexpr (Sys::constraints > 0)
+      size += jacobian.template rightCols<Sys::constraints>().cwiseAbs() * step.multipliers.cwiseAbs();
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    excess = residual.cwiseAbs().cwiseQuotient((epsilon * size).cwiseMax(1e-300)).maxCoeff();
+  }
+};
+
+}  // namespace lagroid

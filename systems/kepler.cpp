@@ -1,0 +1,4 @@
+#include <lagroid/systems/kepler.hpp>
+
+template lagroid::TwoSidedOf<lagroid::Kepler> lagroid::automatic_two_sided(const Kepler&, const ArrowOf<Pair<2>>&,
+                                                                           const Kepler::Multipliers&);

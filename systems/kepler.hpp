@@ -1,0 +1,34 @@
+#pragma once
+/// The planar Kepler problem.
+
+#include <lagroid/core/two_sided.hpp>
+#include <lagroid/systems/mechanical.hpp>
+
+#include <cmath>
+
+namespace lagroid {
+
+/// A unit mass in the plane around a fixed centre: U = -k / |q|. Momentum p = q'.
+struct Kepler : MechanicalSystem<Kepler, 2> {
+  double strength = 1;  ///< k, m^3/s^2
+
+  static double mass() { return 1; }
+  template <class S>
+  S potential(const Vector<S, 2>& q) const {
+    using std::sqrt;
+    return S(-strength) / sqrt(q.squaredNorm());
+  }
+
+  static double angular_momentum(const State<Pair<2>>& s) {
+    return s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0);
+  }
+  std::vector<Quantity<Kepler>> quantities() const {
+    return {energy_quantity(), {"angular momentum", {"L"}, Promise::conserved, false,
+                                [](const TrajectoryPoint<Kepler>& p, double* out) { *out = angular_momentum(p.state); }}};
+  }
+};
+
+extern template TwoSidedOf<Kepler> automatic_two_sided(const Kepler&, const ArrowOf<Pair<2>>&,
+                                                       const Kepler::Multipliers&);
+
+}  // namespace lagroid

@@ -1,0 +1,49 @@
+#pragma once
+/// Point-mass mechanics on R^n: what pendulum, Kepler and spherical pendulum have in common.
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/core/system.hpp>
+#include <lagroid/groupoids/pair.hpp>
+
+namespace lagroid {
+
+/// Where the potential is evaluated on an arrow (q0, q1). Both are symmetric, symplectic and of order 2; the trapezoid
+/// is the Stormer-Verlet method.
+enum class Quadrature { midpoint, trapezoid };
+
+/// L(q0, q1) = m |q1 - q0|^2 / (2 h) - h U, with U the potential by the chosen quadrature. Discretises
+/// L = m |q'|^2 / 2 - U(q).
+///
+/// The derived class writes `double mass() const` and `S potential(const Vector<S, N>& q) const`.
+template <class Derived, int N, int ObjectConstraints = 0>
+struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
+  double h = 0.01;
+  Quadrature quadrature = Quadrature::midpoint;
+
+  template <class S>
+  S lagrangian(const PairArrow<S, N>& g) const {
+    const Vector<S, N> dq = g.target - g.source;
+    const S kinetic = dq.squaredNorm() * (0.5 * self().mass() / h);
+    if (quadrature == Quadrature::midpoint) {
+      return kinetic - self().potential(Vector<S, N>((g.source + g.target) * S(0.5))) * h;
+    }
+    return kinetic - (self().potential(g.source) + self().potential(g.target)) * (0.5 * h);
+  }
+
+  /// H = |p|^2 / (2 m) + U(q).
+  double energy(const State<Pair<N>>& s) const {
+    return s.momentum.squaredNorm() / (2 * self().mass()) + self().potential(s.object);
+  }
+
+ protected:
+  Quantity<Derived> energy_quantity() const {
+    return {"energy", {"H"}, Promise::bounded, false, [system = self()](const TrajectoryPoint<Derived>& p, double* out) {
+              *out = system.energy(p.state);
+            }};
+  }
+
+ private:
+  const Derived& self() const { return static_cast<const Derived&>(*this); }
+};
+
+}  // namespace lagroid

@@ -1,0 +1,4 @@
+#include <lagroid/systems/pendulum.hpp>
+
+template lagroid::TwoSidedOf<lagroid::Pendulum> lagroid::automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
+                                                                             const Pendulum::Multipliers&);

@@ -1,0 +1,32 @@
+#pragma once
+/// The planar pendulum.
+
+#include <lagroid/core/two_sided.hpp>
+#include <lagroid/systems/mechanical.hpp>
+
+#include <cmath>
+
+namespace lagroid {
+
+/// A mass m on a massless rod of length l: q the angle from the downward vertical, in radians; U = -m g l cos q.
+/// Momentum p = m l^2 q'.
+struct Pendulum : MechanicalSystem<Pendulum, 1> {
+  double bob_mass = 1;  ///< m, kg
+  double length = 1;    ///< l, m
+  double gravity = 1;   ///< g, m/s^2
+
+  /// The inertia m l^2.
+  double mass() const { return bob_mass * length * length; }
+  template <class S>
+  S potential(const Vector<S, 1>& q) const {
+    using std::cos;
+    return cos(q(0)) * (-bob_mass * gravity * length);
+  }
+
+  std::vector<Quantity<Pendulum>> quantities() const { return {energy_quantity()}; }
+};
+
+extern template TwoSidedOf<Pendulum> automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
+                                                         const Pendulum::Multipliers&);
+
+}  // namespace lagroid

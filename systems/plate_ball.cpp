@@ -1,0 +1,117 @@
+#include <lagroid/systems/plate_ball.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace lagroid {
+
+template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
+                                                   const PlateBall::Multipliers&);
+template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
+                                                const PlateBall::Multipliers&, End);
+
+Matrix<double, 3, 3> PlateBall::rotation_of(const Vector<double, 3>& w) const {
+  switch (rotation) {
+    case RotationForm::exponential:
+      return SO3::exp(w);
+    case RotationForm::cayley:
+      return SO3::cayley(w);
+    default: {
+      const double sine = std::min(w.norm(), 0.99);
+      return sine > 0 ? SO3::exp(Vector<double, 3>(w * (std::asin(sine) / w.norm()))) : SO3::exp(w);
+    }
+  }
+}
+
+Step<PlateBall> PlateBall::first_guess(const State<GroupoidType>& s) const {
+  const Vector<double, 2>& q = std::get<0>(s.object);
+  const auto& mu = s.momentum;
+  const double l1 = mu(2) / radius;
+  const double l2 = -mu(3) / radius;
+  const double l3 = -mu(4);
+  const Vector<double, 2> velocity(mu(0) - l2 - 0.5 * h * plate_rate * l1, mu(1) - l1 + 0.5 * h * plate_rate * l2);
+  const Vector<double, 2> middle = q + 0.5 * h * velocity;
+  const Vector<double, 3> omega((plate_rate * middle(0) - velocity(1)) / radius,
+                                (velocity(0) + plate_rate * middle(1)) / radius, spin);
+  return {{PairArrow<double, 2>{q, q + h * velocity}, rotation_of(h * omega)}, {l1, l2, l3}};
+}
+
+std::optional<std::string> PlateBall::infeasible() const {
+  const double turn = std::abs(h * spin);
+  if (rotation == RotationForm::trace && turn >= 1)
+    return fmt::format("the trace form needs |spin * step| < 1, got {:.6g}; use a smaller step or rotation = \"exp\"",
+                       turn);
+  if (rotation == RotationForm::exponential && turn >= std::numbers::pi)
+    return fmt::format("the exp form needs |spin * step| < pi, got {:.6g}; use a smaller step", turn);
+  return std::nullopt;
+}
+
+PlateBall::Arrows PlateBall::path(const ArrowOf<GroupoidType>& boundary, long steps,
+                                  const Eigen::Matrix2Xd& modes) const {
+  const auto& [move, turn] = boundary;
+  const auto point = [&](double s) {
+    Vector<double, 2> q = (1 - s) * move.source + s * move.target;
+    for (Eigen::Index j = 0; j < modes.cols(); ++j)
+      q += modes.col(j) * std::sin(double(j + 1) * std::numbers::pi * s);
+    return q;
+  };
+  std::vector<Vector<double, 2>> nodes(steps + 1);
+  std::vector<Matrix<double, 3, 3>> attitude(steps + 1, Matrix<double, 3, 3>::Identity());
+  for (long k = 0; k <= steps; ++k) nodes[k] = point(double(k) / double(steps));
+  for (long k = 0; k < steps; ++k) {
+    const Vector<double, 2> d = nodes[k + 1] - nodes[k];
+    const Vector<double, 2> middle = 0.5 * (nodes[k + 1] + nodes[k]);
+    Vector<double, 3> w((h * plate_rate * middle(0) - d(1)) / radius, (d(0) + h * plate_rate * middle(1)) / radius,
+                        h * spin);
+    if (const double angle = w.norm(); angle > 1.5) w *= 1.5 / angle;
+    attitude[k + 1] = attitude[k] * SO3::exp(w);
+  }
+  const Vector<double, 3> bend = SO3::log(Matrix<double, 3, 3>(attitude[steps].transpose() * turn));
+  for (long k = 1; k <= steps; ++k)
+    attitude[k] = attitude[k] * SO3::exp(Vector<double, 3>(bend * (double(k) / double(steps))));
+  Arrows arrows;
+  arrows.reserve(steps);
+  for (long k = 0; k < steps; ++k)
+    arrows.push_back({PairArrow<double, 2>{nodes[k], nodes[k + 1]},
+                      SO3::project(Matrix<double, 3, 3>(attitude[k].transpose() * attitude[k + 1]))});
+  return arrows;
+}
+
+double PlateBall::energy(const Step<PlateBall>& step) const {
+  const auto& [move, turn] = step.arrow;
+  const Vector<double, 2> velocity = (move.target - move.source) / h;
+  const Vector<double, 2> middle = 0.5 * (move.source + move.target);
+  const auto& l = step.multipliers;
+  return 0.5 * velocity.squaredNorm() + plate_rate * (l(0) * middle(0) - l(1) * middle(1)) - spin * l(2);
+}
+
+std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
+  using Point = TrajectoryPoint<PlateBall>;
+  std::vector<Quantity<PlateBall>> all;
+  all.push_back({"spatial momentum A M",
+                 {"(AM)1", "(AM)2", "(AM)3"},
+                 Promise::conserved,
+                 false,
+                 [](const Point& p, double* out) {
+                   Eigen::Map<Vector<double, 3>>(out).noalias() =
+                       std::get<1>(p.configuration) * p.state.momentum.tail<3>();
+                 }});
+  all.push_back({"J = x py - y px - M3", {"J"}, Promise::conserved, false, [](const Point& p, double* out) {
+                   const auto& q = std::get<0>(p.state.object);
+                   const auto& mu = p.state.momentum;
+                   *out = q(0) * mu(1) - q(1) * mu(0) - mu(4);
+                 }});
+  if (plate_rate == 0)
+    all.push_back({"translational momentum", {"px", "py"}, Promise::conserved, false, [](const Point& p, double* out) {
+                     out[0] = p.state.momentum(0);
+                     out[1] = p.state.momentum(1);
+                   }});
+  const bool exact_energy = rotation == RotationForm::cayley && plate_rate == 0 && spin == 0;
+  all.push_back({"energy", {"E"}, exact_energy ? Promise::conserved : Promise::bounded, true,
+                 [system = *this](const Point& p, double* out) { *out = system.energy(p.step); }});
+  return all;
+}
+
+}  // namespace lagroid

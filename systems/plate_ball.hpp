@@ -1,0 +1,102 @@
+#pragma once
+/// Optimal control of a ball that rolls on a rotating plate. [G] 6.2
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/core/two_sided.hpp>
+#include <lagroid/groupoids/pair.hpp>
+#include <lagroid/groupoids/product.hpp>
+#include <lagroid/groupoids/so3.hpp>
+
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// How the rotation g of one step becomes w = h omega: the paper's trace form w = vee(g) (rotation angle below pi/2),
+/// w = log g, or w = cay^{-1}(g).
+enum class RotationForm { trace, exponential, cayley };
+
+/// The plate-ball system on the groupoid R^2 x R^2 x SO(3) => R^2.
+///
+/// Arrow: the contact point moves from (x0, y0) to (x1, y1) while the attitude turns by g, A_k = A_{k-1} g_k.
+/// Cost  L = h (u^2 + v^2)/2 with (u, v) the velocity of the contact point; constraints ([G] (8)), with w = h omega(g):
+///
+///     phi1 = (y1 - y0) + r w1 - h Omega (x0 + x1)/2      phi2 = (x1 - x0) - r w2 + h Omega (y0 + y1)/2
+///     phi3 = h c - w3
+///
+/// Momentum mu = (px, py, M1, M2, M3), M the body momentum. Composition from the right makes omega a body velocity of A;
+/// the ball one sees has attitude A^T with (r, c) -> (-r, -c).
+struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*/ 3> {
+  using GroupoidType = Product<Pair<2>, SO3>;
+  using Arrows = std::vector<ArrowOf<GroupoidType>>;
+
+  double h = 0.05;          ///< time step, s
+  double radius = 1;        ///< r, m
+  double plate_rate = 0;    ///< Omega, rad/s
+  double spin = 0;          ///< c, the prescribed rate about the vertical, rad/s
+  RotationForm rotation = RotationForm::trace;
+
+  template <class S>
+  S lagrangian(const Arrow<S>& g) const {
+    const auto& [move, turn] = g;
+    return Vector<S, 2>(move.target - move.source).squaredNorm() * (0.5 / h);
+  }
+
+  template <class S>
+  Vector<S, 3> constraint(const Arrow<S>& g) const {
+    const auto& [move, turn] = g;
+    const Vector<S, 2> d = move.target - move.source;
+    const Vector<S, 2> middle = (move.source + move.target) * S(0.5);
+    const Vector<S, 3> w = rotation_vector(turn);
+    return {d(1) + w(0) * radius - middle(0) * (h * plate_rate), d(0) - w(1) * radius + middle(1) * (h * plate_rate),
+            S(h * spin) - w(2)};
+  }
+
+  /// w(g) in the chosen form.
+  template <class S>
+  Vector<S, 3> rotation_vector(const Matrix<S, 3, 3>& turn) const {
+    switch (rotation) {
+      case RotationForm::exponential:
+        return SO3::log(turn);
+      case RotationForm::cayley:
+        return SO3::cayley_inverse(turn);
+      default:
+        return SO3::vee(turn);
+    }
+  }
+  /// The rotation g with rotation_vector(g) = w. In the trace form |w| is cut at one.
+  Matrix<double, 3, 3> rotation_of(const Vector<double, 3>& w) const;
+
+  /// In the trace form the rotation angle of a step stays below pi/2: tr g = 1 + 2 cos(angle) > 1. Of the form's four
+  /// roots this leaves the one that is continuous in h.
+  bool admissible(const ArrowOf<GroupoidType>& g) const {
+    return rotation != RotationForm::trace || std::get<1>(g).trace() > 1;
+  }
+
+  /// lambda = (M1/r, -M2/r, -M3), u = px - l2 - h Omega l1/2, v = py - l1 + h Omega l2/2: exact as h -> 0.
+  Step<PlateBall> first_guess(const State<GroupoidType>& s) const;
+
+  /// Why no trajectory of this system exists, or nothing: |c h| at or beyond the range of w3 in the chosen form, or
+  /// parameters that make no sense.
+  std::optional<std::string> infeasible() const;
+
+  /// A composable path of `steps` arrows whose product is `boundary`: the contact point moves along the straight line
+  /// plus sum_j modes.col(j) sin((j + 1) pi s), the attitude follows the rolling constraint and is then bent, in
+  /// proportion to time, to end where it must. A starting guess, not a solution.
+  Arrows path(const ArrowOf<GroupoidType>& boundary, long steps, const Eigen::Matrix2Xd& modes) const;
+
+  /// E = (u^2 + v^2)/2 + Omega (l1 x - l2 y) - c l3 on a step, (x, y) its midpoint: the integral of the continuous
+  /// problem (Pontryagin).
+  double energy(const Step<PlateBall>& step) const;
+
+  std::vector<Quantity<PlateBall>> quantities() const;
+};
+
+extern template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
+                                                          const PlateBall::Multipliers&);
+extern template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
+                                                       const PlateBall::Multipliers&, End);
+
+}  // namespace lagroid

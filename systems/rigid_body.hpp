@@ -1,0 +1,47 @@
+#pragma once
+/// The free rigid body.
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/core/two_sided.hpp>
+#include <lagroid/groupoids/so3.hpp>
+
+namespace lagroid {
+
+/// How a rotation g of one step becomes an angular velocity w = tau^{-1}(g) / h.
+enum class RotationMap { exponential, cayley };
+
+/// Free motion about a fixed point with principal moments of inertia I: L(g) = h l(tau^{-1}(g) / h), l(w) = w.I w / 2,
+/// on SO(3) ([G] 6.1). The momentum mu is the body angular momentum M; A_k = A_{k-1} g_k carries body to space.
+struct RigidBody : System<RigidBody, SO3> {
+  double h = 0.01;
+  Vector<double, 3> inertia{1, 2, 3};  ///< principal moments, kg m^2
+  RotationMap rotation = RotationMap::exponential;
+
+  template <class S>
+  S lagrangian(const Matrix<S, 3, 3>& g) const {
+    const Vector<S, 3> w = rotation == RotationMap::exponential ? SO3::log(g) : SO3::cayley_inverse(g);
+    return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * (0.5 / h);
+  }
+
+  /// M.I^{-1} M / 2.
+  double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
+
+  /// The rotation by h I^{-1} M, exact to second order in h.
+  Step<RigidBody> first_guess(const State<SO3>& s) const {
+    return {SO3::exp(Vector<double, 3>(h * s.momentum.cwiseQuotient(inertia))), {}};
+  }
+
+  std::vector<Quantity<RigidBody>> quantities() const {
+    return {{"energy", {"H"}, Promise::bounded, false,
+             [system = *this](const TrajectoryPoint<RigidBody>& p, double* out) { *out = system.energy(p.state); }},
+            {"spatial momentum A M", {"Jx", "Jy", "Jz"}, Promise::conserved, false,
+             [](const TrajectoryPoint<RigidBody>& p, double* out) {
+               Eigen::Map<Vector<double, 3>>(out).noalias() = p.configuration * p.state.momentum;
+             }}};
+  }
+};
+
+extern template TwoSidedOf<RigidBody> automatic_two_sided(const RigidBody&, const ArrowOf<SO3>&,
+                                                          const RigidBody::Multipliers&);
+
+}  // namespace lagroid

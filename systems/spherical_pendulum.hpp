@@ -1,0 +1,42 @@
+#pragma once
+/// The spherical pendulum, as R^3 with an object constraint.
+
+#include <lagroid/core/two_sided.hpp>
+#include <lagroid/systems/mechanical.hpp>
+
+namespace lagroid {
+
+/// A mass m on a rod of length l, q in R^3 with C(q) = (|q|^2 - l^2) / 2 = 0, U = m g q3 (e3 points up).
+/// Momentum p = m q'. With the trapezoid this is SHAKE, with projected momenta RATTLE.
+struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object constraints*/ 1> {
+  double bob_mass = 1;  ///< m, kg
+  double length = 1;    ///< l, m
+  double gravity = 1;   ///< g, m/s^2
+
+  SphericalPendulum() { quadrature = Quadrature::trapezoid; }
+
+  double mass() const { return bob_mass; }
+  template <class S>
+  S potential(const Vector<S, 3>& q) const {
+    return q(2) * (bob_mass * gravity);
+  }
+  template <class S>
+  Vector<S, 1> object_constraint(const Vector<S, 3>& q) const {
+    return Vector<S, 1>((q.squaredNorm() - S(length * length)) * S(0.5));
+  }
+
+  static double vertical_angular_momentum(const State<Pair<3>>& s) {
+    return s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0);
+  }
+  std::vector<Quantity<SphericalPendulum>> quantities() const {
+    return {energy_quantity(), {"vertical angular momentum", {"Jz"}, Promise::conserved, false,
+                                [](const TrajectoryPoint<SphericalPendulum>& p, double* out) {
+                                  *out = vertical_angular_momentum(p.state);
+                                }}};
+  }
+};
+
+extern template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
+                                                                  const SphericalPendulum::Multipliers&);
+
+}  // namespace lagroid
