@@ -4,6 +4,8 @@
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -85,47 +87,54 @@ class Integrator {
     }
   }
 
-  /// The solution that is continuous in the step size: from a small h, where the guess is near it, up to h by
-  /// continuation. (At a large h an implicit step has several solutions, and the nearest to the guess may be another.)
   StepReport first_step(StepSolution<Sys>& solution) {
-    if constexpr (!HasTimeStep<Sys>) {
-      solution.step = guess(system_);
-      return solver_->solve(system_, point_.state, solution);
-    } else {
-      const double h = system_.h;
-      const double start = 1.0 / 64;
-      const double smallest_factor = 1.01;
-      Sys scaled = system_;
-      double fraction = start;
-      scaled.h = fraction * h;
-      solution.step = guess(scaled);
-      StepReport report = solver_->solve(scaled, point_.state, solution);
-      int iterations = report.iterations;
-      double factor = 2;
-      while (report.converged() && fraction < 1) {
-        const double next = std::min(1.0, fraction * factor);
-        scaled.h = next == 1 ? h : next * h;
-        const auto& groupoid = system_.groupoid;
-        const AlgebroidVector<G> v = groupoid.tau_inverse(solution.step.arrow) * (next / fraction);
-        StepSolution<Sys> trial;
-        trial.step = {groupoid.tau(point_.state.object, v), solution.step.multipliers};
-        StepReport attempt = solver_->solve(scaled, point_.state, trial);
-        iterations += attempt.iterations;
-        if (attempt.converged() && near(trial.step, v)) {
-          report = attempt;
-          solution = trial;
-          fraction = next;
-          factor = std::min(2.0, factor * factor);
-        } else if (factor > smallest_factor) {
-          factor = std::sqrt(factor);
-        } else {
-          report = attempt;
-          if (attempt.converged()) report.status = SolveStatus::left_domain;
-        }
-      }
-      report.iterations = iterations;
-      return report;
+    int iterations = 0;
+    if constexpr (HasTimeStep<Sys>) {
+      const StepReport continued = continue_in_step_size(solution);
+      if (continued.converged()) return continued;
+      iterations = continued.iterations;
     }
+    solution.step = guess(system_);
+    StepReport direct = solver_->solve(system_, point_.state, solution);
+    direct.iterations += iterations;
+    return direct;
+  }
+
+  /// The solution that is continuous in the step size: from a small h, where the guess is near it, up to h. (At a large h
+  /// an implicit step has several solutions, and the nearest to the guess may be another.)
+  StepReport continue_in_step_size(StepSolution<Sys>& solution) {
+    constexpr double start = 1.0 / 64;
+    constexpr double smallest_factor = 1.01;
+    const auto& groupoid = system_.groupoid;
+    Sys scaled = system_;
+    double fraction = start;
+    scaled.h = fraction * system_.h;
+    solution.step = guess(scaled);
+    StepReport report = solver_->solve(scaled, point_.state, solution);
+    int iterations = report.iterations;
+    double factor = 2;
+    while (report.converged() && fraction < 1) {
+      const double next = std::min(1.0, fraction * factor);
+      scaled.h = next == 1 ? system_.h : next * system_.h;
+      const AlgebroidVector<G> v = groupoid.tau_inverse(solution.step.arrow) * (next / fraction);
+      StepSolution<Sys> trial;
+      trial.step = {groupoid.tau(point_.state.object, v), solution.step.multipliers};
+      StepReport attempt = solver_->solve(scaled, point_.state, trial);
+      iterations += attempt.iterations;
+      if (attempt.converged() && near(trial.step, v)) {
+        report = attempt;
+        solution = trial;
+        fraction = next;
+        factor = std::min(2.0, factor * factor);
+      } else if (factor > smallest_factor) {
+        factor = std::sqrt(factor);
+      } else {
+        report = attempt;
+        if (attempt.converged()) report.status = SolveStatus::left_domain;
+      }
+    }
+    report.iterations = iterations;
+    return report;
   }
 
   /// Whether a solve stayed on the branch it was continued along: the arrow within half its own size of its prediction.

@@ -1,0 +1,121 @@
+#pragma once
+/// Boundary-value problems: critical points of the action over trajectories with a fixed product.
+
+#include <lagroid/core/two_sided.hpp>
+#include <lagroid/solvers/status.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace lagroid {
+
+/// Given an arrow g of G and N, find g_1, ..., g_N in the constraint set with g_1 g_2 ... g_N = g that make
+/// sum_k L(g_k) stationary ([G] section 5). Fixing the product fixes both end objects and, where G has isotropy, the
+/// displacement along it: for plate-ball g = (q_0, q_N, A_0^T A_N).
+template <DiscreteSystem Sys>
+struct BoundaryProblem {
+  Sys system;
+  ArrowOf<typename Sys::GroupoidType> boundary;
+};
+
+/// A candidate: N composable arrows whose product is the boundary arrow, with a multiplier each.
+template <DiscreteSystem Sys>
+using Path = std::vector<Step<Sys>>;
+
+/// sum_k L(g_k).
+template <DiscreteSystem Sys>
+double action(const Sys& system, const Path<Sys>& path) {
+  double sum = 0;
+  for (const auto& step : path) sum += system.lagrangian(step.arrow);
+  return sum;
+}
+
+/// The path with node k (the target of g_k, k = 1 ... N-1) displaced by v_k in A_{q_k}G:
+/// g_k -> tau(v_{k-1})^{-1} g_k tau(v_k), v_0 = v_N = 0, which leaves the product as it is; and multipliers
+/// lambda + dlambda. The last arrow is recomputed from the product, so that round-off does not add up.
+template <DiscreteSystem Sys>
+Path<Sys> displaced(const BoundaryProblem<Sys>& problem, const Path<Sys>& path,
+                    const std::vector<Vector<double, Sys::dimension>>& nodes,
+                    const std::vector<typename Sys::Multipliers>& multipliers, double fraction) {
+  using G = typename Sys::GroupoidType;
+  const G& groupoid = problem.system.groupoid;
+  const std::size_t count = path.size();
+  Path<Sys> out(count);
+  ArrowOf<G> product = groupoid.unit(groupoid.source(problem.boundary));
+  for (std::size_t k = 0; k < count; ++k) {
+    out[k].multipliers = path[k].multipliers + fraction * multipliers[k];
+    if (k + 1 == count) {
+      out[k].arrow = groupoid.project(groupoid.multiply(groupoid.inverse(product), problem.boundary));
+      break;
+    }
+    const AlgebroidVector<G> before = k == 0 ? AlgebroidVector<G>::Zero().eval() : (fraction * nodes[k - 1]).eval();
+    const AlgebroidVector<G> after = fraction * nodes[k];
+    out[k].arrow = groupoid.project(groupoid.translate(before, path[k].arrow, after));
+    product = groupoid.project(groupoid.multiply(product, out[k].arrow));
+  }
+  return out;
+}
+
+/// The same path with another number of arrows: nodes interpolated along tau, multipliers linearly between the
+/// midpoints of the arrows. A starting guess for continuation in N.
+template <DiscreteSystem Sys>
+Path<Sys> resampled(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, std::size_t count) {
+  using G = typename Sys::GroupoidType;
+  const G& groupoid = problem.system.groupoid;
+  const std::size_t old_count = path.size();
+  std::vector<ArrowOf<G>> reach(old_count + 1, groupoid.unit(groupoid.source(problem.boundary)));
+  for (std::size_t k = 0; k < old_count; ++k)
+    reach[k + 1] = groupoid.project(groupoid.multiply(reach[k], path[k].arrow));
+  const auto node = [&](std::size_t k) {
+    const double at = double(k) * double(old_count) / double(count);
+    const std::size_t i = std::min(std::size_t(at), old_count - 1);
+    const AlgebroidVector<G> v = (at - double(i)) * groupoid.tau_inverse(path[i].arrow);
+    return ArrowOf<G>(groupoid.project(groupoid.multiply(reach[i], groupoid.tau(groupoid.target(reach[i]), v))));
+  };
+  Path<Sys> out(count);
+  ArrowOf<G> before = reach[0];
+  for (std::size_t k = 0; k < count; ++k) {
+    const ArrowOf<G> after = k + 1 == count ? problem.boundary : node(k + 1);
+    out[k].arrow = groupoid.project(groupoid.multiply(groupoid.inverse(before), after));
+    before = after;
+    const double at =
+        std::clamp((double(k) + 0.5) * double(old_count) / double(count) - 0.5, 0.0, double(old_count - 1));
+    const std::size_t i = std::min(std::size_t(at), old_count - 1);
+    const double t = at - double(i);
+    out[k].multipliers = (1 - t) * path[i].multipliers + t * path[std::min(i + 1, old_count - 1)].multipliers;
+  }
+  return out;
+}
+
+/// How a stationary point sits among its neighbours.
+struct Classification {
+  bool is_minimum = false;  ///< the Hessian on the tangent of the constraints is positive (semi-definite if not isolated)
+  bool isolated = true;     ///< false: a continuous family of solutions passes through it
+  bool normal = true;       ///< false: abnormal, the constraints lose rank and the multipliers are not unique
+  long negative_directions = 0;  ///< negative eigenvalues of that Hessian
+};
+
+/// A solution of a boundary-value problem, or the best iterate of a solve that failed.
+template <DiscreteSystem Sys>
+struct BoundarySolution {
+  SolveStatus status = SolveStatus::not_converged;
+  int iterations = 0;
+  double residual = 0;  ///< largest scaled component of the stationarity and constraint equations
+  double cost = 0;      ///< sum_k L(g_k)
+  Classification kind;
+  Path<Sys> path;
+  bool converged() const { return status == SolveStatus::converged; }
+};
+
+/// F- of the first arrow: the momentum at the start.
+template <DiscreteSystem Sys>
+AlgebroidVector<typename Sys::GroupoidType> initial_momentum(const Sys& system, const Path<Sys>& path) {
+  return legendre_minus(system, path.front()).momentum;
+}
+/// F+ of the last arrow: the momentum at the end.
+template <DiscreteSystem Sys>
+AlgebroidVector<typename Sys::GroupoidType> final_momentum(const Sys& system, const Path<Sys>& path) {
+  return legendre_plus(system, path.back()).momentum;
+}
+
+}  // namespace lagroid
