@@ -189,29 +189,46 @@ class BoundaryKkt {
   long nodes() const { return long(diagonal_.size()) - 1; }
   long constraint_count() const { return long(diagonal_.size()) * m; }
 
-  /// Second-order type of a stationary point: inertia, and a search for null vectors by inverse iteration.
-  Classification classify() {
-    constexpr double shift = 1e-9;
-    constexpr double null_threshold = 1e-7;
+  /// The second-order type of a stationary point: the inertia of the matrix with null directions counted as positive,
+  /// and a search for null vectors by inverse iteration. `*this` must be evaluated at the point, with exact Hessians; it
+  /// is afterwards evaluated there without.
+  Classification classify(const Sys& system, const Path<Sys>& path) {
+    // Genuine eigenvalues of a well-posed problem shrink like N^-2 in scaled unknowns.
+    const double count = double(path.size());
+    const double null = std::max(1e-4 / (count * count), 1e-12);
     Classification kind;
-    const Inertia inertia = factor(shift, shift);
-    kind.negative_directions = inertia.negative - constraint_count();
+    // A null vector has parts in both unknowns: shift the Hessian block by far the more, so that it counts as positive.
+    kind.negative_directions = factor(null, 1e-3 * null).negative - constraint_count();
     kind.is_minimum = kind.negative_directions == 0;
-    std::mt19937_64 generator(1);
-    std::uniform_real_distribution<double> uniform(-1, 1);
-    std::vector<Columns> found;
+    for (const Columns& z : null_vectors(null, 6)) {
+      double primal = 0;
+      for (const Column& c : z) primal += c.template tail<n>().squaredNorm();
+      if (primal > 1e-3) kind.isolated = false;
+    }
+    // With the identity for a Hessian the null vectors are the multipliers that annihilate the constraint gradients.
+    evaluate(system, path, Hessian::identity);
+    factor(0, null);
+    kind.normal = null_vectors(null, 1).empty();
+    return kind;
+  }
+
+ private:
+  /// Up to `most` orthonormal vectors that the matrix sends below `threshold`, by inverse iteration with its factors.
+  std::vector<Columns> null_vectors(double threshold, int most) const {
     const auto dot = [](const Columns& a, const Columns& b) {
       double sum = 0;
       for (std::size_t k = 0; k < a.size(); ++k) sum += a[k].dot(b[k]);
       return sum;
     };
-    // At most a handful of null vectors: each inverse iteration is kept orthogonal to those found before.
-    for (int attempt = 0; attempt < 6; ++attempt) {
+    std::mt19937_64 generator(1);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<Columns> found;
+    while (int(found.size()) < most) {
       Columns z(diagonal_.size());
       for (Column& c : z)
         for (int i = 0; i < size; ++i) c(i) = uniform(generator);
       z.back().template tail<n>().setZero();
-      for (int iteration = 0; iteration < 4; ++iteration) {
+      for (int iteration = 0; iteration < 5; ++iteration) {
         z = solve(z);
         for (const Columns& f : found) {
           const double overlap = dot(z, f);
@@ -221,17 +238,12 @@ class BoundaryKkt {
         for (Column& c : z) c /= norm;
       }
       const Columns image = multiply(z);
-      if (!(std::sqrt(dot(image, image)) < null_threshold)) break;
-      double primal = 0;
-      for (const Column& c : z) primal += c.template tail<n>().squaredNorm();
-      if (primal > 0.25) kind.isolated = false;
-      if (primal < 0.75) kind.normal = false;
+      if (!(std::sqrt(dot(image, image)) < threshold)) break;
       found.push_back(std::move(z));
     }
-    return kind;
+    return found;
   }
 
- private:
   std::vector<Block> diagonal_;     // k: rows and columns z_k
   std::vector<Coupling> coupling_;  // k: rows z_k, columns v_{k-1}
   Columns residual_;

@@ -49,7 +49,7 @@ class BoundaryNewton {
           kkt.evaluate(system, path);
         }
         if (!descend(problem, kkt, path, shift, out)) {
-          polish(problem, kkt, path, out);
+          settle(problem, kkt, path, out);
           break;
         }
       }
@@ -62,7 +62,18 @@ class BoundaryNewton {
     out.cost = action(system, path);
     kkt.evaluate(system, path);
     kkt.choose_scale();
-    out.kind = kkt.classify();
+    out.kind = kkt.classify(system, path);
+    out.path = std::move(path);
+    return out;
+  }
+
+  /// The path brought onto the constraints, with its least-squares multipliers; `converged` if that succeeded.
+  BoundarySolution<Sys> prepare(const BoundaryProblem<Sys>& problem, Path<Sys> path) const {
+    Kkt kkt;
+    BoundarySolution<Sys> out;
+    if (!restore(problem, kkt, path, out)) return out;
+    if (!least_squares_multipliers(problem, kkt, path)) return fail(out, SolveStatus::not_finite, path);
+    out.status = SolveStatus::converged;
     out.path = std::move(path);
     return out;
   }
@@ -242,6 +253,38 @@ class BoundaryNewton {
     out.residual = norm;
     out.status = SolveStatus::converged;
     return true;
+  }
+
+  /// Where the constraints lose rank (an abnormal extremal), paths cannot be pulled back to them: Newton on the KKT system
+  /// with both blocks regularised in proportion to the residual, then plainly.
+  void settle(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path, BoundarySolution<Sys>& out) const {
+    const Sys& system = problem.system;
+    kkt.evaluate(system, path);
+    kkt.choose_scale();
+    double norm = kkt.residual_norm();
+    for (int failures = 0; failures < 8 && out.iterations < options_.max_iterations && norm > 1e-6;) {
+      ++out.iterations;
+      const double regularisation = std::pow(4.0, failures) * 0.1 * norm;
+      double primal = regularisation;
+      while (kkt.factor(primal, regularisation).negative != kkt.constraint_count() && primal < 1e6) primal *= 4;
+      const Direction d = unscaled(kkt, kkt.solve(negated(kkt.scaled_residual())));
+      Path<Sys> trial = displaced(problem, path, d.nodes, d.multipliers,
+                                  std::min(1.0, options_.largest_turn / std::max(1e-300, reach(d))));
+      Kkt there = kkt;
+      there.evaluate(system, trial);
+      const double next = there.residual_norm();
+      if (next < norm && admissible(system, trial)) {
+        path = std::move(trial);
+        kkt = std::move(there);
+        norm = next;
+        failures = 0;
+      } else {
+        ++failures;
+      }
+    }
+    out.residual = norm;
+    out.status = SolveStatus::stagnated;
+    polish(problem, kkt, path, out);
   }
 
   /// Solves with the factored matrix and refines once.

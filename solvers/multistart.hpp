@@ -1,0 +1,124 @@
+#pragma once
+/// Many starts, then continuation: how local minima of a boundary-value problem are found.
+
+#include <lagroid/solvers/boundary_problem.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// A boundary-value problem together with its number of arrows.
+template <DiscreteSystem Sys>
+struct BoundaryStage {
+  BoundaryProblem<Sys> problem;
+  std::size_t steps = 0;
+};
+
+/// What a multistart found.
+template <DiscreteSystem Sys>
+struct MultistartResult {
+  std::vector<BoundarySolution<Sys>> solutions;  ///< distinct stationary points, cheapest first
+  std::map<SolveStatus, int> outcomes;           ///< of the starts, at the first stage
+  int lost = 0;                                  ///< solutions of the first stage that could not be continued
+  int iterations = 0;
+  BoundarySolution<Sys> best_failure;            ///< smallest residual among failures
+};
+
+namespace detail {
+
+/// Whether two converged solutions are the same; members of a continuous family are compared by cost alone.
+template <DiscreteSystem Sys>
+bool same_solution(const Sys& system, const BoundarySolution<Sys>& a, const BoundarySolution<Sys>& b) {
+  if (std::abs(a.cost - b.cost) > 1e-7 * (1e-6 + std::abs(a.cost) + std::abs(b.cost))) return false;
+  if (!a.kind.isolated || !b.kind.isolated || !a.kind.normal || !b.kind.normal) return true;
+  const auto p = initial_momentum(system, a.path);
+  const auto q = initial_momentum(system, b.path);
+  return (p - q).norm() <= 1e-5 * (1 + p.norm());
+}
+
+/// The path with its nodes displaced by random multiples of the first sine modes, the larger the later the attempt.
+template <DiscreteSystem Sys>
+Path<Sys> bent(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int attempt) {
+  std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
+  std::normal_distribution<double> normal(0, 0.01 * std::exp2(attempt));
+  std::vector<Vector<double, Sys::dimension>> nodes(path.size(), Vector<double, Sys::dimension>::Zero());
+  for (int mode = 1; mode <= 3; ++mode) {
+    Vector<double, Sys::dimension> amplitude;
+    for (int i = 0; i < Sys::dimension; ++i) amplitude(i) = normal(generator) / mode;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k)
+      nodes[k] += amplitude * std::sin(mode * std::numbers::pi * double(k + 1) / double(path.size()));
+  }
+  const std::vector<typename Sys::Multipliers> same(path.size(), Sys::Multipliers::Zero());
+  return displaced(problem, path, nodes, same, 1.0);
+}
+
+template <DiscreteSystem Sys>
+void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
+  const double best = result.best_failure.residual;
+  if (result.best_failure.path.empty() || !std::isfinite(best) || failure.residual < best)
+    result.best_failure = std::move(failure);
+}
+
+template <DiscreteSystem Sys>
+void keep_if_new(std::vector<BoundarySolution<Sys>>& found, const Sys& system, BoundarySolution<Sys>&& solution) {
+  const bool known =
+      std::any_of(found.begin(), found.end(), [&](const auto& f) { return same_solution(system, f, solution); });
+  if (!known) found.push_back(std::move(solution));
+}
+
+}  // namespace detail
+
+/// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
+/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve; `guess(i)` is the
+/// i-th starting path of the first stage; `report(i)` is called after each start.
+template <DiscreteSystem Sys, class Solver, class Guess, class Report>
+MultistartResult<Sys> multistart(const Solver& solver, const std::vector<BoundaryStage<Sys>>& stages, int starts,
+                                 const Guess& guess, const Report& report) {
+  MultistartResult<Sys> result;
+  std::vector<BoundarySolution<Sys>> found;
+  for (int i = 0; i < starts; ++i) {
+    auto solution = solver.solve(stages.front().problem, guess(i), /*keep_multipliers=*/false);
+    result.iterations += solution.iterations;
+    ++result.outcomes[solution.status];
+    if (solution.converged()) {
+      detail::keep_if_new(found, stages.front().problem.system, std::move(solution));
+    } else {
+      detail::note_failure(result, std::move(solution));
+    }
+    report(i + 1);
+  }
+  for (std::size_t s = 1; s < stages.size(); ++s) {
+    const auto& [problem, steps] = stages[s];
+    std::vector<BoundarySolution<Sys>> carried;
+    for (const auto& solution : found) {
+      const Path<Sys> path = solution.path.size() == steps ? solution.path : resampled(problem, solution.path, steps);
+      auto next = solver.solve(problem, path, /*keep_multipliers=*/true);
+      result.iterations += next.iterations;
+      // At an abnormal extremal the path may have to bend to reach its ends at all: try a few bent ones.
+      for (int bend = 1; bend <= 6 && !next.converged() && !solution.kind.normal; ++bend) {
+        next = solver.solve(problem, detail::bent(problem, path, bend), /*keep_multipliers=*/false);
+        result.iterations += next.iterations;
+      }
+      if (next.converged()) {
+        detail::keep_if_new(carried, problem.system, std::move(next));
+      } else {
+        ++result.lost;
+        detail::note_failure(result, std::move(next));
+      }
+    }
+    found = std::move(carried);
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  result.solutions = std::move(found);
+  return result;
+}
+
+}  // namespace lagroid

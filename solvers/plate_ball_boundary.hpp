@@ -1,0 +1,30 @@
+#pragma once
+/// The plate-ball boundary-value problem, from guesses to minima.
+
+#include <lagroid/solvers/multistart.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+
+#include <cstdint>
+#include <functional>
+
+namespace lagroid {
+
+struct PlateBallBoundaryOptions {
+  long steps = 0;           ///< N, at least 3
+  int starts = 40;          ///< the straight line, then straight lines with random sine modes
+  std::uint64_t seed = 1;   ///< of the random modes
+  bool ceres = false;       ///< Ceres in place of Newton
+  double tolerance = 1e-10;
+  int max_iterations = 200;
+  std::function<void(int)> report = [](int) {};  ///< called with the number of starts done
+};
+
+/// Why no trajectory of N arrows can exist, or nothing (decidable cases only).
+std::optional<std::string> unreachable(const PlateBall& system, long steps);
+
+/// Minima of the cost between the ends of `boundary`: multistart in the exp form with at most 20 arrows, then
+/// continuation in the number of arrows and in the form of the rotation. `system.h` must be horizon / steps.
+MultistartResult<PlateBall> solve_plate_ball(const PlateBall& system, const ArrowOf<PlateBall::GroupoidType>& boundary,
+                                             const PlateBallBoundaryOptions& options);
+
+}  // namespace lagroid
