@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -32,11 +33,24 @@ struct TrajectoryPoint {
 /// A (vector-valued) function of trajectory points with a promise attached.
 template <class Sys>
 struct Quantity {
+  using Evaluate = std::function<void(const TrajectoryPoint<Sys>&, double*)>;
+  using Size = std::function<double(const TrajectoryPoint<Sys>&)>;
+
+  Quantity(std::string name_, std::vector<std::string> components_, Promise promise_, bool needs_step_,
+           Evaluate evaluate_, Size size_ = nullptr)
+      : name(std::move(name_)),
+        components(std::move(components_)),
+        promise(promise_),
+        needs_step(needs_step_),
+        evaluate(std::move(evaluate_)),
+        size(std::move(size_)) {}
+
   std::string name;
   std::vector<std::string> components;  ///< one label per component
-  Promise promise = Promise::conserved;
-  bool needs_step = false;  ///< evaluated on the arrow that led to the point, hence from k = 1 on
-  std::function<void(const TrajectoryPoint<Sys>&, double*)> evaluate;
+  Promise promise;
+  bool needs_step;  ///< evaluated on the arrow that led to the point, hence from k = 1 on
+  Evaluate evaluate;
+  Size size;  ///< size of the terms it is made of, to which its round-off is relative; its own size where null
 };
 
 }  // namespace lagroid

@@ -103,13 +103,15 @@ class CeresStep final : public StepSolver<Sys> {
       const typename E::Jacobian j = scaling.row.asDiagonal() * E::jacobian(d);
       if (jacobians[0] != nullptr) {
         using J = Eigen::Matrix<double, E::size, AlphaFibreManifold<G>::ambient, Eigen::RowMajor>;
-        Eigen::Map<J>(jacobians[0]) = j.template leftCols<Sys::dimension>() * manifold.coframe(g);
+        Eigen::Map<J> out(jacobians[0]);
+        out = j.template leftCols<Sys::dimension>() * manifold.coframe(g);
       }
       if constexpr (Sys::constraints > 0) {
         if (jacobians[1] != nullptr) {
           constexpr int layout = Sys::constraints == 1 ? Eigen::ColMajor : Eigen::RowMajor;
           using J = Eigen::Matrix<double, E::size, Sys::constraints, layout>;
-          Eigen::Map<J>(jacobians[1]) = j.template rightCols<Sys::constraints>();
+          Eigen::Map<J> out(jacobians[1]);
+          out = j.template rightCols<Sys::constraints>();
         }
       }
       return true;

@@ -29,6 +29,7 @@ struct MultistartResult {
   std::map<SolveStatus, int> outcomes;           ///< of the starts, at the first stage
   int lost = 0;                                  ///< solutions of the first stage that could not be continued
   int iterations = 0;
+  int most_iterations = 0;                       ///< of one start
   BoundarySolution<Sys> best_failure;            ///< smallest residual among failures
 };
 
@@ -87,6 +88,7 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
   for (int i = 0; i < starts; ++i) {
     auto solution = solver.solve(stages.front().problem, guess(i), /*keep_multipliers=*/false);
     result.iterations += solution.iterations;
+    result.most_iterations = std::max(result.most_iterations, solution.iterations);
     ++result.outcomes[solution.status];
     if (solution.converged()) {
       detail::keep_if_new(found, stages.front().problem.system, std::move(solution));

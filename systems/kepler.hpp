@@ -24,7 +24,8 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   }
   std::vector<Quantity<Kepler>> quantities() const {
     return {energy_quantity(), {"angular momentum", {"L"}, Promise::conserved, false,
-                                [](const TrajectoryPoint<Kepler>& p, double* out) { *out = angular_momentum(p.state); }}};
+                                [](const TrajectoryPoint<Kepler>& p, double* out) { *out = angular_momentum(p.state); },
+                                [](const TrajectoryPoint<Kepler>& p) { return p.state.object.norm() * p.state.momentum.norm(); }}};
   }
 };
 

@@ -102,6 +102,10 @@ std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
                    const auto& q = std::get<0>(p.state.object);
                    const auto& mu = p.state.momentum;
                    *out = q(0) * mu(1) - q(1) * mu(0) - mu(4);
+                 },
+                 [](const Point& p) {
+                   return std::get<0>(p.state.object).norm() * p.state.momentum.head<2>().norm() +
+                          std::abs(p.state.momentum(4));
                  }});
   if (plate_rate == 0)
     all.push_back({"translational momentum", {"px", "py"}, Promise::conserved, false, [](const Point& p, double* out) {

@@ -1,0 +1,64 @@
+#include "ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+constexpr double round_off = std::numeric_limits<double>::epsilon();
+}
+
+QuantityWatch::QuantityWatch(std::string name, Promise promise, std::size_t width, long expected_samples)
+    : name_(std::move(name)), promise_(promise), expected_(expected_samples), first_(width), last_(width) {}
+
+void QuantityWatch::observe(const double* values, double size) {
+  if (samples_ == 0) std::copy_n(values, first_.size(), first_.begin());
+  std::copy_n(values, last_.size(), last_.begin());
+  double square = 0;
+  for (std::size_t i = 0; i < first_.size(); ++i) square += (values[i] - first_[i]) * (values[i] - first_[i]);
+  double& worst = 2 * samples_ < expected_ ? first_half_ : second_half_;
+  worst = std::max(worst, std::sqrt(square));
+  size_ = std::max(size_, size);
+  ++samples_;
+}
+
+LedgerEntry QuantityWatch::entry() const {
+  LedgerEntry e;
+  e.name = name_;
+  e.initial = first_;
+  e.final = last_;
+  e.drift = std::max(first_half_, second_half_);
+  double norm = 0;
+  for (const double x : first_) norm += x * x;
+  norm = std::sqrt(norm);
+  e.relative_drift = e.drift / (norm > 0 ? norm : 1.0);
+  // A random walk of round-off errors, each a few units in the last place of the largest term.
+  const double noise = round_off * size_ * (200 + 20 * std::sqrt(double(samples_)));
+  if (promise_ == Promise::conserved) {
+    e.promise = "conserved";
+    e.bound = noise;
+    e.verdict = e.drift <= noise ? "kept" : "BROKEN";
+  } else {
+    e.promise = "bounded";
+    constexpr long enough = 1000;
+    const bool settled = second_half_ <= 1.5 * first_half_ + noise;
+    e.verdict = samples_ < enough ? "unjudged" : settled ? "bounded" : "growing";
+  }
+  return e;
+}
+
+LedgerEntry constraint_entry(double largest, double coordinate_size) {
+  LedgerEntry e;
+  e.name = "constraint residual";
+  e.promise = "round-off";
+  e.drift = largest;
+  e.relative_drift = largest;
+  e.bound = 100 * round_off * std::max(1.0, coordinate_size);
+  e.verdict = largest <= e.bound ? "kept" : "BROKEN";
+  return e;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,36 @@
+#pragma once
+/// Watching promises while a trajectory is made.
+
+#include "run_result.hpp"
+
+#include <lagroid/core/quantity.hpp>
+
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// Follows one quantity: its first and last values, its largest deviation, and whether that still grows.
+class QuantityWatch {
+ public:
+  QuantityWatch(std::string name, Promise promise, std::size_t width, long expected_samples);
+  /// `size` is the size of the terms the quantity is made of; round-off is relative to it.
+  void observe(const double* values, double size);
+  LedgerEntry entry() const;
+
+ private:
+  std::string name_;
+  Promise promise_;
+  long expected_;
+  long samples_ = 0;
+  std::vector<double> first_;
+  std::vector<double> last_;
+  double first_half_ = 0;   // largest deviation among the first half of the expected samples
+  double second_half_ = 0;  // and among the rest
+  double size_ = 0;
+};
+
+/// The entry for a constraint residual: the largest |phi| met, against round-off in coordinates of the given size.
+LedgerEntry constraint_entry(double largest, double coordinate_size);
+
+}  // namespace lagroid::app

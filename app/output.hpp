@@ -1,0 +1,27 @@
+#pragma once
+/// The files of a run: trajectory (HDF5, CSV), summaries, plots.
+
+#include "run_result.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// The output folder cannot be written.
+class OutputError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws OutputError, with the remedy, unless `folder` can be created and written to. Writes nothing.
+void require_writable(const std::filesystem::path& folder);
+
+/// Writes trajectory.h5, trajectory.csv, summary.json, summary.txt, plot.gp, plot.svg and plot.png into `folder`. Every
+/// file is completed under another name and then renamed, so that each is there whole or not at all. Returns the files
+/// written; a missing or failing gnuplot costs the pictures only and is said in `notes`.
+std::vector<std::filesystem::path> write_outputs(const RunResult& result, const std::filesystem::path& folder,
+                                                 std::vector<std::string>& notes);
+
+}  // namespace lagroid::app

@@ -1,0 +1,200 @@
+#pragma once
+/// From trajectory points to ledger, series and endpoints.
+
+#include "ledger.hpp"
+#include "run_result.hpp"
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/core/two_sided.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+/// A recorded function of trajectory points beyond those every system has.
+template <class Sys>
+struct ExtraSeries {
+  Series series;  ///< without values
+  std::function<void(const TrajectoryPoint<Sys>&, double*)> evaluate;
+};
+
+/// How reports speak of a system: the mathematics is in systems/, the words and units are here.
+template <class Sys>
+struct Presentation {
+  std::string name;
+  std::vector<std::string> position;  ///< labels; may be empty (a group has one object)
+  std::string position_unit;
+  bool has_attitude = false;
+  bool body_is_transposed = false;  ///< reports show the attitude A^T too
+  std::vector<std::string> momentum;
+  std::string momentum_unit;
+  std::vector<std::string> multipliers;
+  std::function<std::vector<double>(const TrajectoryPoint<Sys>&)> position_of;
+  std::function<std::array<double, 4>(const TrajectoryPoint<Sys>&)> attitude_of;
+  std::vector<ExtraSeries<Sys>> extras;
+  std::vector<Panel> panels;
+  std::map<std::string, std::string> conventions;
+};
+
+/// Observes the points of one trajectory in order.
+template <DiscreteSystem Sys>
+class Recorder {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `every` = 0 records nothing but the ledger and the endpoints.
+  Recorder(const Sys& system, const Presentation<Sys>& presentation, long steps, long every)
+      : system_(system), presentation_(presentation), quantities_(system.quantities()), steps_(steps), every_(every) {
+    for (const auto& q : quantities_) {
+      watches_.emplace_back(q.name, q.promise, q.components.size(), q.needs_step ? steps : steps + 1);
+      first_.emplace_back(q.components.size());
+      now_.emplace_back(q.components.size());
+    }
+    if (every_ > 0) declare_series();
+  }
+
+  void observe(const TrajectoryPoint<Sys>& point) {
+    const bool has_step = point.index > 0;
+    for (std::size_t i = 0; i < quantities_.size(); ++i) {
+      const auto& q = quantities_[i];
+      if (q.needs_step && !has_step) continue;
+      q.evaluate(point, now_[i].data());
+      if (point.index == (q.needs_step ? 1 : 0)) first_[i] = now_[i];
+      watches_[i].observe(now_[i].data(), q.size ? q.size(point) : norm(now_[i]));
+    }
+    double residual = 0;
+    if (has_step) {
+      if constexpr (Sys::constraints > 0) {
+        residual = constraint_values(system_, point.step.arrow).cwiseAbs().maxCoeff();
+        largest_residual_ = std::max(largest_residual_, residual);
+        coordinate_size_ = std::max(
+            coordinate_size_, system_.groupoid.coordinates_of_arrow(point.step.arrow).cwiseAbs().maxCoeff());
+      }
+      last_multipliers_ = list(point.step.multipliers);
+      if (point.index == 1) first_multipliers_ = last_multipliers_;
+    }
+    last_ = endpoint(point);
+    if (point.index == 0) initial_ = last_;
+    if (every_ > 0 && (point.index % every_ == 0 || point.index == steps_)) record(point, residual);
+  }
+
+  /// Moves what was observed into the result.
+  void finish(RunResult& result) {
+    result.system = presentation_.name;
+    result.initial = initial_;
+    result.final = last_;
+    result.first_multipliers = first_multipliers_;
+    result.last_multipliers = last_multipliers_;
+    if constexpr (Sys::constraints > 0)
+      result.ledger.entries.push_back(constraint_entry(largest_residual_, coordinate_size_));
+    for (const auto& watch : watches_) result.ledger.entries.push_back(watch.entry());
+    result.trajectory = std::move(trajectory_);
+    result.trajectory.conventions = presentation_.conventions;
+    result.panels = presentation_.panels;
+  }
+
+ private:
+  template <class V>
+  static std::vector<double> list(const V& v) {
+    return {v.data(), v.data() + v.size()};
+  }
+  static double norm(const std::vector<double>& v) {
+    double square = 0;
+    for (const double x : v) square += x * x;
+    return std::sqrt(square);
+  }
+
+  Endpoint endpoint(const TrajectoryPoint<Sys>& point) const {
+    Endpoint e;
+    e.position = presentation_.position_of(point);
+    e.momentum = list(point.state.momentum);
+    if (presentation_.has_attitude) {
+      e.attitude = presentation_.attitude_of(point);
+      if (presentation_.body_is_transposed) {
+        e.body_attitude = e.attitude;
+        for (int i = 1; i < 4; ++i) (*e.body_attitude)[i] = -(*e.attitude)[i];
+      }
+    }
+    return e;
+  }
+
+  void declare_series() {
+    auto& s = trajectory_.series;
+    const auto& p = presentation_;
+    if (!p.position.empty()) s.push_back({"position", p.position, p.position_unit, "object q", false, {}});
+    if (p.has_attitude)
+      s.push_back({"attitude", {"A_w", "A_x", "A_y", "A_z"}, "1", "attitude A, unit quaternion w, x, y, z", false, {}});
+    s.push_back({"momentum", p.momentum, p.momentum_unit, "momentum mu in A*G, basis of the retraction", false, {}});
+    if constexpr (Sys::constraints > 0) {
+      s.push_back({"multipliers", p.multipliers, "", "multipliers lambda of L + <lambda, phi>", true, {}});
+      s.push_back({"constraint_residual", {"residual"}, "", "largest |phi| on the arrow", true, {}});
+    }
+    for (const auto& extra : p.extras) s.push_back(extra.series);
+    for (const auto& q : quantities_)
+      s.push_back({"drift of " + q.name, {"drift " + q.name}, "", "norm of the deviation from the first value",
+                   q.needs_step, {}});
+  }
+
+  void record(const TrajectoryPoint<Sys>& point, double residual) {
+    trajectory_.time.push_back(point.time);
+    std::size_t at = 0;
+    const auto put = [&](const auto& values) {
+      auto& target = trajectory_.series[at++].values;
+      target.insert(target.end(), values.begin(), values.end());
+    };
+    const bool has_step = point.index > 0;
+    if (!presentation_.position.empty()) put(last_.position);
+    if (presentation_.has_attitude) put(*last_.attitude);
+    put(last_.momentum);
+    if constexpr (Sys::constraints > 0) {
+      if (has_step) {
+        put(last_multipliers_);
+        put(std::vector{residual});
+      } else {
+        at += 2;
+      }
+    }
+    for (const auto& extra : presentation_.extras) {
+      if (extra.series.on_arrows && !has_step) {
+        ++at;
+        continue;
+      }
+      std::vector<double> values(extra.series.width());
+      extra.evaluate(point, values.data());
+      put(values);
+    }
+    for (std::size_t i = 0; i < quantities_.size(); ++i) {
+      if (quantities_[i].needs_step && !has_step) {
+        ++at;
+        continue;
+      }
+      double square = 0;
+      for (std::size_t j = 0; j < now_[i].size(); ++j)
+        square += (now_[i][j] - first_[i][j]) * (now_[i][j] - first_[i][j]);
+      put(std::vector{std::sqrt(square)});
+    }
+  }
+
+  const Sys& system_;
+  const Presentation<Sys>& presentation_;
+  std::vector<Quantity<Sys>> quantities_;
+  std::vector<QuantityWatch> watches_;
+  std::vector<std::vector<double>> first_;
+  std::vector<std::vector<double>> now_;
+  long steps_;
+  long every_;
+  double largest_residual_ = 0;
+  double coordinate_size_ = 0;
+  Endpoint initial_;
+  Endpoint last_;
+  std::vector<double> first_multipliers_;
+  std::vector<double> last_multipliers_;
+  Trajectory trajectory_;
+};
+
+}  // namespace lagroid::app

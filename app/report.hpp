@@ -1,0 +1,19 @@
+#pragma once
+/// A run in words and as JSON.
+
+#include "run_result.hpp"
+
+#include <string>
+
+namespace lagroid::app {
+
+/// The summary a person reads: what was run, how it ended, the ledger.
+std::string text_report(const RunResult& result);
+
+/// One JSON object; numbers read back to the same doubles. Keys: docs/scenes.md.
+std::string json_report(const RunResult& result);
+
+/// The JSON object for a run that never began: status "invalid_scene" and the message.
+std::string json_error(const std::string& status, const std::string& message);
+
+}  // namespace lagroid::app

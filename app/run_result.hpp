@@ -1,0 +1,98 @@
+#pragma once
+/// What a run produces, whatever the system: the common currency of reports, files and plots.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// One sampled quantity along a trajectory: `width` numbers a row.
+struct Series {
+  std::string name;                     ///< dataset name in HDF5
+  std::vector<std::string> components;  ///< column labels in CSV
+  std::string unit;
+  std::string meaning;
+  bool on_arrows = false;      ///< one row per arrow, beginning with the first, instead of one per node
+  std::vector<double> values;  ///< row after row
+  std::size_t width() const { return components.size(); }
+};
+
+struct Trajectory {
+  std::vector<double> time;  ///< of the nodes, s
+  std::vector<Series> series;
+  std::map<std::string, std::string> conventions;  ///< attributes of the file
+};
+
+/// A state as users see it.
+struct Endpoint {
+  std::vector<double> position;
+  std::optional<std::array<double, 4>> attitude;       ///< A, unit quaternion w, x, y, z
+  std::optional<std::array<double, 4>> body_attitude;  ///< A^T where the physical body is the transpose
+  std::vector<double> momentum;
+};
+
+struct Minimum {
+  double cost = 0;
+  std::vector<double> momentum;
+  bool is_minimum = false;
+  bool isolated = true;
+  bool normal = true;
+  long negative_directions = 0;
+};
+
+/// One line of the ledger: what was promised, what was found.
+struct LedgerEntry {
+  std::string name;
+  std::string promise;         ///< "round-off", "conserved", "bounded"
+  std::vector<double> initial;
+  std::vector<double> final;
+  double drift = 0;            ///< largest deviation from the initial value
+  double relative_drift = 0;   ///< the same over the size of the initial value (over one if that vanishes)
+  double bound = 0;            ///< on `drift`; zero where none is promised
+  std::string verdict;         ///< "kept", "BROKEN", "bounded", "growing", "unjudged"
+  bool broken() const { return verdict == "BROKEN"; }
+};
+
+struct Ledger {
+  std::vector<LedgerEntry> entries;
+  double mean_iterations = 0;
+  int most_iterations = 0;
+};
+
+/// A plot panel: curves by CSV column label.
+struct Panel {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  std::string x;                    ///< column on the x axis
+  std::vector<std::string> curves;  ///< columns
+  bool equal_axes = false;
+};
+
+struct RunResult {
+  std::string system;
+  std::string status = "converged";  ///< or a typed failure
+  std::string message;               ///< why, at which step, what to do
+  long steps = 0;                    ///< arrows computed
+  long steps_asked = 0;
+  double seconds = 0;
+  long iterations = 0;
+  std::optional<double> cost;
+  Endpoint initial;
+  Endpoint final;
+  std::vector<double> first_multipliers;
+  std::vector<double> last_multipliers;
+  std::vector<Minimum> minima;
+  std::vector<std::string> notes;
+  Ledger ledger;
+  Trajectory trajectory;
+  std::vector<Panel> panels;
+
+  bool converged() const { return status == "converged"; }
+};
+
+}  // namespace lagroid::app

@@ -1,0 +1,246 @@
+#include "scene_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace lagroid::app {
+
+namespace {
+
+/// Edit distance, for suggestions.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+template <class Words>
+std::string nearest(std::string_view word, const Words& words) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const auto& candidate : words)
+    if (const auto d = distance(word, candidate); d < least) {
+      least = d;
+      best = candidate;
+    }
+  return best;
+}
+
+std::string type_name(const toml::node& node) {
+  if (node.is_string()) return "a string";
+  if (node.is_boolean()) return "a boolean";
+  if (node.is_number()) return "a number";
+  if (node.is_array()) return "an array";
+  if (node.is_table()) return "a table";
+  return "a date or time";
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+std::string Section::full(std::string_view key) const {
+  if (path_.empty()) return std::string(key);
+  return key.empty() ? path_ : fmt::format("{}.{}", path_, key);
+}
+
+void Section::fail(std::string_view key, const std::string& problem) const {
+  const std::string name = full(key);
+  if (source_->overridden.contains(name)) throw SceneError(fmt::format("--set {}: {}", name, problem));
+  const toml::node* node = table_ && !key.empty() ? table_->get(key) : nullptr;
+  const int line = node ? int(node->source().begin.line) : line_;
+  const std::string where = line > 0 ? fmt::format("{}:{}", source_->file, line) : source_->file;
+  throw SceneError(name.empty() ? fmt::format("{}: {}", where, problem)
+                                : fmt::format("{}: {}: {}", where, name, problem));
+}
+
+const toml::node* Section::find(std::string_view key) const {
+  source_->known.insert(full(key));
+  return table_ ? table_->get(key) : nullptr;
+}
+
+const toml::node& Section::require(std::string_view key, std::string_view what) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) fail("", fmt::format("missing key \"{}\": give {}", key, what));
+  return *node;
+}
+
+bool Section::has(std::string_view key) const { return find(key) != nullptr; }
+
+double Section::checked(std::string_view key, const toml::node& node, const NumberRule& rule) const {
+  const auto value = node.value<double>();
+  if (!node.is_number() || !value) fail(key, fmt::format("expected a number, got {}", type_name(node)));
+  if (!std::isfinite(*value)) fail(key, fmt::format("must be finite, got {}", *value));
+  if (!rule.holds(*value)) fail(key, fmt::format("must be {}, got {}", rule.words, *value));
+  return *value;
+}
+
+double Section::number(std::string_view key, const NumberRule& rule) const {
+  return checked(key, require(key, fmt::format("a number ({})", rule.words)), rule);
+}
+
+double Section::number_or(std::string_view key, double fallback, const NumberRule& rule) const {
+  const toml::node* node = find(key);
+  return node ? checked(key, *node, rule) : fallback;
+}
+
+long Section::integer(std::string_view key, long least, long most) const {
+  const toml::node& node = require(key, fmt::format("a whole number from {} to {}", least, most));
+  if (!node.is_integer()) fail(key, fmt::format("expected a whole number, got {}",
+                                                node.is_number() ? "one with a fraction" : type_name(node)));
+  const long value = long(*node.value<std::int64_t>());
+  if (value < least || value > most) fail(key, fmt::format("must be from {} to {}, got {}", least, most, value));
+  return value;
+}
+
+long Section::integer_or(std::string_view key, long fallback, long least, long most) const {
+  return find(key) ? integer(key, least, most) : fallback;
+}
+
+std::string Section::choice(std::string_view key, const std::vector<std::string>& words) const {
+  const toml::node& node = require(key, fmt::format("one of {}", fmt::join(words, ", ")));
+  const auto value = node.value<std::string>();
+  if (!node.is_string()) fail(key, fmt::format("expected one of {}, got {}", fmt::join(words, ", "), type_name(node)));
+  if (std::find(words.begin(), words.end(), *value) == words.end()) {
+    const std::string guess = nearest(*value, words);
+    fail(key, fmt::format("\"{}\" is none of {}{}", *value, fmt::join(words, ", "),
+                          guess.empty() ? "" : fmt::format("; did you mean \"{}\"?", guess)));
+  }
+  return *value;
+}
+
+std::string Section::choice_or(std::string_view key, const std::string& fallback,
+                               const std::vector<std::string>& words) const {
+  return find(key) ? choice(key, words) : fallback;
+}
+
+std::vector<double> Section::numbers(std::string_view key, std::size_t size, std::string_view meaning) const {
+  const toml::node& node = require(key, fmt::format("{} numbers: {}", size, meaning));
+  const toml::array* array = node.as_array();
+  if (array == nullptr)
+    fail(key, fmt::format("expected an array of {} numbers ({}), got {}", size, meaning, type_name(node)));
+  if (array->size() != size)
+    fail(key, fmt::format("expected {} numbers ({}), got {}", size, meaning, array->size()));
+  std::vector<double> out;
+  for (const auto& entry : *array) out.push_back(checked(key, entry, any_number));
+  return out;
+}
+
+std::array<double, 4> Section::attitude(std::string_view key) const {
+  constexpr std::string_view meaning = "a unit quaternion w, x, y, z or a rotation vector";
+  const toml::node& node = require(key, meaning);
+  const toml::array* array = node.as_array();
+  if (array == nullptr || (array->size() != 4 && array->size() != 3))
+    fail(key, fmt::format("expected {} (four or three numbers), got {}", meaning,
+                          array ? fmt::format("{} numbers", array->size()) : type_name(node)));
+  const auto v = numbers(key, array->size(), meaning);
+  if (v.size() == 3) {
+    const double angle = std::hypot(v[0], v[1], v[2]);
+    const double scale = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
+    return {std::cos(angle / 2), scale * v[0], scale * v[1], scale * v[2]};
+  }
+  const double norm = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
+  if (std::abs(norm - 1) > 1e-6)
+    fail(key, norm > 0 ? fmt::format("not a unit quaternion (norm {:.8g}); divide by its norm: [{:.10g}, {:.10g}, {:.10g}, "
+                                     "{:.10g}], or give a rotation vector of three numbers",
+                                     norm, v[0] / norm, v[1] / norm, v[2] / norm, v[3] / norm)
+                       : std::string("not a unit quaternion (norm 0); the identity is [1, 0, 0, 0]"));
+  return {v[0] / norm, v[1] / norm, v[2] / norm, v[3] / norm};
+}
+
+Section Section::section(std::string_view key, std::string_view purpose) const {
+  if (find(key) == nullptr) fail("", fmt::format("missing table [{}]: {}", full(key), purpose));
+  return section_or_empty(key);
+}
+
+Section Section::section_or_empty(std::string_view key) const {
+  Section out;
+  out.source_ = source_;
+  out.path_ = full(key);
+  if (const toml::node* node = find(key)) {
+    out.table_ = node->as_table();
+    out.line_ = int(node->source().begin.line);
+    if (out.table_ == nullptr) fail(key, fmt::format("expected a table, got {}", type_name(*node)));
+  }
+  return out;
+}
+
+void Section::finish() const {
+  if (table_ == nullptr) return;
+  for (const auto& [key, node] : *table_) {
+    const std::string name = full(key.str());
+    if (!source_->known.contains(name)) {
+      std::vector<std::string> siblings;
+      for (const std::string& k : source_->known) {
+        const std::string prefix = path_.empty() ? "" : path_ + ".";
+        if (k.starts_with(prefix) && k.find('.', prefix.size()) == std::string::npos)
+          siblings.push_back(k.substr(prefix.size()));
+      }
+      const std::string guess = nearest(key.str(), siblings);
+      fail(key.str(), guess.empty() ? fmt::format("unknown key; known here: {}", fmt::join(siblings, ", "))
+                                    : fmt::format("unknown key; did you mean \"{}\"?", guess));
+    }
+    if (node.is_table()) section_or_empty(key.str()).finish();
+  }
+}
+
+Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Section scene;
+  scene.source_ = std::make_shared<Section::Source>();
+  scene.source_->file = file.string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw SceneError(fmt::format("{}: no such scene file; examples are in examples/", file.string()));
+  try {
+    scene.source_->root = toml::parse_file(file.string());
+  } catch (const toml::parse_error& e) {
+    throw SceneError(fmt::format("{}:{}: not valid TOML: {}", file.string(), e.source().begin.line,
+                                 one_line(std::string(e.description()))));
+  }
+  for (const std::string& text : overrides) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw SceneError(fmt::format("--set {}: expected key=value, as in --set time.steps=100", text));
+    const std::string key = text.substr(0, equals);
+    toml::table parsed;
+    try {
+      parsed = toml::parse("value = " + text.substr(equals + 1));
+    } catch (const toml::parse_error&) {
+      // A bare word is taken as a string, so that quotes need not survive the shell.
+      parsed.insert("value", text.substr(equals + 1));
+    }
+    if (parsed.size() != 1) throw SceneError(fmt::format("--set {}: expected one value", key));
+    toml::table* table = &scene.source_->root;
+    std::istringstream parts(key);
+    std::vector<std::string> names;
+    for (std::string part; std::getline(parts, part, '.');) names.push_back(part);
+    for (std::size_t i = 0; i + 1 < names.size(); ++i) {
+      table->insert(names[i], toml::table{});
+      toml::table* next = (*table)[names[i]].as_table();
+      if (next == nullptr) throw SceneError(fmt::format("--set {}: \"{}\" is not a table", key, names[i]));
+      table = next;
+    }
+    table->insert_or_assign(names.back(), *parsed.get("value"));
+    scene.source_->overridden.insert(key);
+  }
+  scene.table_ = &scene.source_->root;
+  return scene;
+}
+
+}  // namespace lagroid::app

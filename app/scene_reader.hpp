@@ -1,0 +1,84 @@
+#pragma once
+/// Reading scenes: TOML with every mistake reported by file, line and key.
+
+#include <toml++/toml.h>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::app {
+
+/// A mistake in a scene. The message is one line: where, which key, what is wrong, what to do.
+class SceneError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What a number must satisfy, with the words to say so.
+struct NumberRule {
+  std::string_view words;
+  bool (*holds)(double);
+};
+inline constexpr NumberRule any_number{"a finite number", [](double) { return true; }};
+inline constexpr NumberRule positive{"positive", [](double x) { return x > 0; }};
+inline constexpr NumberRule nonnegative{"zero or positive", [](double x) { return x >= 0; }};
+
+/// One table of a scene. Every key that is read is remembered; `finish` refuses those that were not.
+class Section {
+ public:
+  bool has(std::string_view key) const;
+
+  double number(std::string_view key, const NumberRule& rule = any_number) const;
+  double number_or(std::string_view key, double fallback, const NumberRule& rule = any_number) const;
+  long integer(std::string_view key, long least, long most) const;
+  long integer_or(std::string_view key, long fallback, long least, long most) const;
+  /// One of the given words.
+  std::string choice(std::string_view key, const std::vector<std::string>& words) const;
+  std::string choice_or(std::string_view key, const std::string& fallback, const std::vector<std::string>& words) const;
+  /// An array of exactly `size` finite numbers; `meaning` names its entries in messages.
+  std::vector<double> numbers(std::string_view key, std::size_t size, std::string_view meaning) const;
+  /// A rotation as a unit quaternion (w, x, y, z) or a rotation vector: four or three numbers. Returns a unit quaternion.
+  std::array<double, 4> attitude(std::string_view key) const;
+
+  /// A table that must be there (`purpose` says what for), or may be missing (then empty).
+  Section section(std::string_view key, std::string_view purpose) const;
+  Section section_or_empty(std::string_view key) const;
+
+  /// Refuses every key that nobody asked for, in this table and the tables below it.
+  void finish() const;
+
+  /// A SceneError at a key of this table (or at the table itself when key is empty).
+  [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
+
+ private:
+  friend Section read_scene(const std::filesystem::path&, const std::vector<std::string>&);
+
+  struct Source {
+    std::string file;
+    std::set<std::string, std::less<>> overridden;  ///< keys given by --set
+    toml::table root;
+    std::set<std::string, std::less<>> known;  ///< every key asked for
+  };
+
+  const toml::node* find(std::string_view key) const;
+  const toml::node& require(std::string_view key, std::string_view what) const;
+  double checked(std::string_view key, const toml::node& node, const NumberRule& rule) const;
+  std::string full(std::string_view key) const;
+
+  std::shared_ptr<Source> source_;
+  std::string path_;
+  const toml::table* table_ = nullptr;
+  int line_ = 0;
+};
+
+/// Reads a scene file and applies overrides "key.subkey=value". Throws SceneError.
+Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+}  // namespace lagroid::app

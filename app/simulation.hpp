@@ -1,0 +1,95 @@
+#pragma once
+/// Initial-value runs of any system.
+
+#include "progress.hpp"
+#include "recorder.hpp"
+#include "scene_reader.hpp"
+
+#include <lagroid/solvers/ceres_step.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+namespace lagroid::app {
+
+/// What the command line asks of a run.
+struct RunContext {
+  bool record = false;    ///< keep the trajectory
+  bool progress = false;  ///< show a bar
+};
+
+/// [time]: two of step, steps, duration.
+struct TimeGrid {
+  double step = 0;
+  long steps = 0;
+};
+TimeGrid read_time(const Section& scene);
+
+/// [solver] of an initial-value run.
+struct StepperChoice {
+  bool ceres = false;
+  int max_iterations = 60;
+};
+StepperChoice read_stepper(const Section& solver);
+
+/// [output]: every n-th node is recorded (and the last); 0 when nothing is.
+long read_every(const Section& scene, const RunContext& context);
+
+/// What to say of a step that failed.
+std::string step_failure(const StepReport& report, long step, double time);
+
+/// The point with its momentum made tangent to the object constraints, as it is reported.
+template <DiscreteSystem Sys>
+TrajectoryPoint<Sys> reported(const Sys& system, TrajectoryPoint<Sys> point) {
+  point.state.momentum = tangent_momentum(system, point.state);
+  return point;
+}
+
+/// Runs the system; a step that fails ends the run with what was computed so far.
+template <DiscreteSystem Sys>
+RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
+                   const State<typename Sys::GroupoidType>& initial,
+                   const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const StepperChoice& choice,
+                   long every, const RunContext& context) {
+  const auto start = std::chrono::steady_clock::now();
+  std::unique_ptr<StepSolver<Sys>> solver;
+  if (choice.ceres) {
+    solver = std::make_unique<CeresStep<Sys>>(choice.max_iterations);
+  } else {
+    NewtonOptions options;
+    options.max_iterations = choice.max_iterations;
+    solver = std::make_unique<NewtonStep<Sys>>(options);
+  }
+  RunResult result;
+  result.steps_asked = steps;
+  Recorder<Sys> recorder(system, presentation, steps, every);
+  Integrator<Sys> integrator(system, initial, configuration, std::move(solver));
+  recorder.observe(reported(system, integrator.point()));
+  {
+    Progress progress(presentation.name, steps, context.progress);
+    for (long k = 1; k <= steps; ++k) {
+      const StepReport report = integrator.advance();
+      result.iterations += report.iterations;
+      result.ledger.most_iterations = std::max(result.ledger.most_iterations, report.iterations);
+      if (!report.converged()) {
+        result.status = std::string(to_string(report.status));
+        result.message = step_failure(report, k, integrator.point().time);
+        break;
+      }
+      result.steps = k;
+      recorder.observe(reported(system, integrator.point()));
+      progress.update(k);
+    }
+  }
+  recorder.finish(result);
+  result.ledger.mean_iterations = result.steps > 0 ? double(result.iterations) / double(result.steps) : 0;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace lagroid::app
