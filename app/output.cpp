@@ -112,13 +112,14 @@ std::string gnuplot_script(const RunResult& result) {
   const std::size_t columns = panels > 1 ? 2 : 1;
   const std::size_t rows = (panels + columns - 1) / columns;
   std::string out = "# Draws trajectory.csv; run by lagroid, or by hand: gnuplot plot.gp\n";
-  out += "set datafile separator ','\nset key noenhanced\nset grid\n";
+  out += "set datafile separator ','\nset grid\n";
   const std::pair<const char*, std::string> terminals[] = {
       {"plot.svg", fmt::format("svg size {},{} background 'white' noenhanced", 520 * columns, 400 * rows)},
       {"plot.png", fmt::format("pngcairo size {},{} noenhanced", 520 * columns, 400 * rows)}};
   for (const auto& [file, terminal] : terminals) {
     out += fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout {},{}\n", terminal, file, rows, columns);
     for (const auto& panel : result.panels) {
+      out += panel.curves.size() > 1 ? "set key below\n" : "unset key\n";
       out += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n{}\nplot ", quoted(panel.title),
                          quoted(panel.x_label), quoted(panel.y_label),
                          panel.equal_axes ? "set size ratio -1" : "set size noratio");

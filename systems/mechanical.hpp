@@ -4,6 +4,7 @@
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/pair.hpp>
+#include <lagroid/systems/reference.hpp>
 
 namespace lagroid {
 
@@ -30,12 +31,39 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
     return kinetic - (self().potential(g.source) + self().potential(g.target)) * (0.5 * h);
   }
 
+  /// The continuous solution after time t: m q' = p, p' = -dU/dq (+ constraint force in the derived class).
+  State<Pair<N>> reference(const State<Pair<N>>& start, double t) const
+    requires(ObjectConstraints == 0)
+  {
+    Eigen::VectorXd y(2 * N);
+    y << start.object, start.momentum;
+    y = integrate_reference(
+        [this](const Eigen::VectorXd& at, Eigen::VectorXd& out) {
+          out.head(N) = at.tail(N) / self().mass();
+          out.tail(N) = force(Vector<double, N>(at.head(N)));
+        },
+        y, t);
+    return {y.head(N), y.tail(N)};
+  }
+
   /// H = |p|^2 / (2 m) + U(q).
   double energy(const State<Pair<N>>& s) const {
     return s.momentum.squaredNorm() / (2 * self().mass()) + self().potential(s.object);
   }
 
  protected:
+  /// -dU/dq.
+  Vector<double, N> force(const Vector<double, N>& q) const {
+    Vector<double, N> f;
+    Vector<Dual<double>, N> x = q.template cast<Dual<double>>();
+    for (int i = 0; i < N; ++i) {
+      x(i).derivative = 1;
+      f(i) = -self().potential(x).derivative;
+      x(i).derivative = 0;
+    }
+    return f;
+  }
+
   Quantity<Derived> energy_quantity() const {
     return {"energy", {"H"}, Promise::bounded, false, [system = self()](const TrajectoryPoint<Derived>& p, double* out) {
               *out = system.energy(p.state);

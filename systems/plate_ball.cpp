@@ -1,4 +1,5 @@
 #include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/reference.hpp>
 
 #include <fmt/format.h>
 
@@ -85,6 +86,32 @@ double PlateBall::energy(const Step<PlateBall>& step) const {
   const Vector<double, 2> middle = 0.5 * (move.source + move.target);
   const auto& l = step.multipliers;
   return 0.5 * velocity.squaredNorm() + plate_rate * (l(0) * middle(0) - l(1) * middle(1)) - spin * l(2);
+}
+
+State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude,
+                                                     double t) const {
+  Eigen::VectorXd y(16);
+  y << std::get<0>(start.object), start.momentum, attitude.reshaped();
+  y = integrate_reference(
+      [this](const Eigen::VectorXd& at, Eigen::VectorXd& out) {
+        const Vector<double, 3> m = at.segment<3>(4);
+        const double l1 = m(0) / radius;
+        const double l2 = -m(1) / radius;
+        const Vector<double, 2> velocity(at(2) - l2, at(3) - l1);
+        const Vector<double, 3> w((plate_rate * at(0) - velocity(1)) / radius, (velocity(0) + plate_rate * at(1)) / radius,
+                                  spin);
+        out.head<2>() = velocity;
+        out(2) = -plate_rate * l1;
+        out(3) = plate_rate * l2;
+        out.segment<3>(4) = m.cross(w);
+        out.tail<9>() = (at.tail<9>().reshaped(3, 3) * SO3::hat(w)).reshaped();
+      },
+      y, t);
+  attitude = SO3::project(Matrix<double, 3, 3>(y.tail<9>().reshaped(3, 3)));
+  State<GroupoidType> out;
+  std::get<0>(out.object) = y.head<2>();
+  out.momentum = y.segment<5>(2);
+  return out;
 }
 
 std::vector<Quantity<PlateBall>> PlateBall::quantities() const {

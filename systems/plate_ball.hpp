@@ -91,6 +91,11 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// problem (Pontryagin).
   double energy(const Step<PlateBall>& step) const;
 
+  /// The continuous extremal (Pontryagin) after time t: with l1 = M1/r, l2 = -M2/r,
+  ///     x' = px - l2, y' = py - l1, px' = -Omega l1, py' = Omega l2, M' = M x omega, A' = A hat(omega).
+  /// Returns the state and updates `attitude`.
+  State<GroupoidType> reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude, double t) const;
+
   std::vector<Quantity<PlateBall>> quantities() const;
 };
 

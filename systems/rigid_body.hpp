@@ -26,6 +26,9 @@ struct RigidBody : System<RigidBody, SO3> {
   /// M.I^{-1} M / 2.
   double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
 
+  /// The continuous solution after time t: M' = M x I^{-1} M, A' = A hat(I^{-1} M). Returns M and updates `attitude`.
+  State<SO3> reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const;
+
   /// The rotation by h I^{-1} M, exact to second order in h.
   Step<RigidBody> first_guess(const State<SO3>& s) const {
     return {SO3::exp(Vector<double, 3>(h * s.momentum.cwiseQuotient(inertia))), {}};

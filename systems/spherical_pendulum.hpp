@@ -25,6 +25,9 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
     return Vector<S, 1>((q.squaredNorm() - S(length * length)) * S(0.5));
   }
 
+  /// The continuous solution after time t: p' = -m g e3 + s q with s such that the rod keeps its length.
+  State<Pair<3>> reference(const State<Pair<3>>& start, double t) const;
+
   static double vertical_angular_momentum(const State<Pair<3>>& s) {
     return s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0);
   }

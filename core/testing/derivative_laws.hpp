@@ -1,0 +1,83 @@
+#pragma once
+/// The two-sided derivative against two independent ways of computing it.
+
+#include <lagroid/core/testing/property.hpp>
+#include <lagroid/core/two_sided.hpp>
+
+namespace lagroid::testing {
+
+/// The two-sided derivative from nested first-order dual numbers and the groupoid's own product and retraction,
+/// direction by direction: slow, and sharing neither `Mixed` nor closed-form translations with the fast one.
+template <DiscreteSystem Sys>
+TwoSidedOf<Sys> nested_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                                 const typename Sys::Multipliers& lambda) {
+  using D = Dual<Dual<double>>;
+  constexpr int n = Sys::dimension;
+  TwoSidedOf<Sys> out;
+  const auto gd = system.groupoid.template cast<D>(g);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      Vector<D, n> v = Vector<D, n>::Constant(D(0.0));
+      Vector<D, n> w = v;
+      v(i).derivative = Dual<double>(1.0);  // outer infinitesimal: the source
+      w(j).value.derivative = 1.0;          // inner infinitesimal: the target
+      const auto moved = system.groupoid.translate(v, gd, w);
+      const D f = lagroid::detail::augmented_lagrangian<D>(system, moved, lambda);
+      out.value = f.value.value;
+      out.source_gradient(i) = f.derivative.value;
+      out.target_gradient(j) = f.value.derivative;
+      out.mixed(i, j) = f.derivative.derivative;
+      const auto record = [&](int k, const D& at_source, const D& at_target) {
+        out.constraint(k) = at_target.value.value;
+        out.constraint_source(i, k) = at_source.derivative.value;
+        out.constraint_target(k, j) = at_target.value.derivative;
+      };
+      if constexpr (Sys::arrow_constraints > 0) {
+        const auto phi = system.constraint(moved);
+        for (int a = 0; a < Sys::arrow_constraints; ++a) record(a, phi(a), phi(a));
+      }
+      if constexpr (Sys::object_constraints > 0) {
+        const auto at_source = system.object_constraint(system.groupoid.source(moved));
+        const auto at_target = system.object_constraint(system.groupoid.target(moved));
+        for (int a = 0; a < Sys::object_constraints; ++a)
+          record(Sys::arrow_constraints + a, at_source(a), at_target(a));
+      }
+    }
+  return out;
+}
+
+/// The largest difference between two derivatives, relative to the largest entry of each part.
+template <int N, int M>
+double derivative_defect(const TwoSided<N, M>& a, const TwoSided<N, M>& b) {
+  const auto part = [](const auto& x, const auto& y) {
+    if constexpr (std::decay_t<decltype(x)>::SizeAtCompileTime == 0) {
+      return 0.0;
+    } else {
+      return (x - y).cwiseAbs().maxCoeff() / (1 + y.cwiseAbs().maxCoeff());
+    }
+  };
+  return std::max({std::abs(a.value - b.value) / (1 + std::abs(b.value)), part(a.source_gradient, b.source_gradient),
+                   part(a.target_gradient, b.target_gradient), part(a.mixed, b.mixed), part(a.constraint, b.constraint),
+                   part(a.constraint_source, b.constraint_source), part(a.constraint_target, b.constraint_target)});
+}
+
+/// `draw()` returns a random Step of the system. The laws: the derivatives the solvers use (analytic where the system has
+/// them) and the automatic ones both agree with nested dual numbers.
+template <DiscreteSystem Sys, class Draw>
+LawReport derivative_laws(const Sys& system, const Draw& draw, double tolerance = 1e-9) {
+  LawReport report{"derivatives", {}};
+  report.laws.push_back(check_law("automatic derivatives", tolerance, [&] {
+    const Step<Sys> s = draw();
+    return derivative_defect(automatic_two_sided(system, s.arrow, s.multipliers),
+                             nested_two_sided(system, s.arrow, s.multipliers));
+  }));
+  if constexpr (HasAnalyticDerivatives<Sys>)
+    report.laws.push_back(check_law("analytic derivatives", tolerance, [&] {
+      const Step<Sys> s = draw();
+      return derivative_defect(two_sided(system, s.arrow, s.multipliers),
+                               nested_two_sided(system, s.arrow, s.multipliers));
+    }));
+  return report;
+}
+
+}  // namespace lagroid::testing

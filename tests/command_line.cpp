@@ -1,0 +1,165 @@
+// The program as a user runs it: exit codes, JSON, files.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Run {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+
+class CommandLine : public ::testing::Test {
+ protected:
+  fs::path folder_ = fs::temp_directory_path() / ("lagroid_cli_" + std::to_string(::getpid()));
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Run run(const std::string& arguments) const {
+    const fs::path errors = folder_ / "stderr";
+    const std::string command = std::string(LAGROID_PROGRAM) + " " + arguments + " 2>" + errors.string();
+    Run r;
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 4096> buffer{};
+    while (const auto n = std::fread(buffer.data(), 1, buffer.size(), pipe)) r.out.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    r.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    std::ifstream file(errors);
+    r.err.assign(std::istreambuf_iterator<char>(file), {});
+    return r;
+  }
+  static std::string example(const std::string& name) { return std::string(LAGROID_EXAMPLES) + "/" + name + ".toml"; }
+  std::size_t entries() const {
+    return std::size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+};
+
+TEST_F(CommandLine, EveryExampleRuns) {
+  for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
+    if (entry.path().extension() != ".toml") continue;
+    const Run r = run("run " + entry.path().string() + " --json");
+    EXPECT_EQ(r.code, 0) << entry.path() << r.err;
+    const auto json = nlohmann::json::parse(r.out);
+    EXPECT_EQ(json.at("status"), "converged");
+    for (const char* key : {"steps", "seconds", "iterations", "initial", "final", "multipliers", "minima", "ledger"})
+      EXPECT_TRUE(json.contains(key)) << key;
+    for (const auto& e : json.at("ledger").at("entries")) EXPECT_NE(e.at("verdict"), "BROKEN") << entry.path() << e;
+  }
+}
+
+TEST_F(CommandLine, BoundaryValueJson) {
+  const Run r = run("run " + example("plate_ball") + " --json");
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_NEAR(json.at("cost").get<double>(), 7.2978550783250329880, 1e-11);
+  EXPECT_EQ(json.at("minima").at(0).at("is_minimum"), true);
+  EXPECT_EQ(json.at("minima").at(0).at("momentum").size(), 5U);
+  EXPECT_EQ(json.at("final").at("attitude").size(), 4U);
+  EXPECT_EQ(json.at("multipliers").at("first").size(), 3U);
+  EXPECT_NEAR(json.at("final").at("position").at(0).get<double>(), 1.0, 1e-14);
+}
+
+TEST_F(CommandLine, CeresGivesTheSameTrajectory) {
+  const std::string scene = example("plate_ball_initial_value");
+  const auto newton = nlohmann::json::parse(run("run " + scene + " --json").out);
+  const auto ceres = nlohmann::json::parse(run("run " + scene + " --json --set solver.method=ceres").out);
+  EXPECT_NEAR(newton.at("final").at("position").at(0).get<double>(), ceres.at("final").at("position").at(0).get<double>(),
+              1e-11);
+}
+
+TEST_F(CommandLine, WritesEveryFileWhole) {
+  const fs::path out = folder_ / "a" / "b";
+  const Run r = run("run " + example("plate_ball_initial_value") + " --out " + out.string());
+  EXPECT_EQ(r.code, 0) << r.err;
+  for (const char* name : {"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt", "plot.gp", "plot.svg", "plot.png"})
+    EXPECT_GT(fs::file_size(out / name), 100U) << name;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "a"), fs::directory_iterator()), 1) << "staging left behind";
+  std::ifstream csv(out / "trajectory.csv");
+  std::string line;
+  long lines = 0;
+  while (std::getline(csv, line)) ++lines;
+  EXPECT_EQ(lines, 202);
+}
+
+TEST_F(CommandLine, OutputEvery) {
+  const fs::path out = folder_ / "thin";
+  EXPECT_EQ(run("run " + example("pendulum") + " --set output.every=300 --out " + out.string()).code, 0);
+  std::ifstream csv(out / "trajectory.csv");
+  std::string line;
+  long lines = 0;
+  while (std::getline(csv, line)) ++lines;
+  EXPECT_EQ(lines, 1 + 5) << "header, nodes 0, 300, 600, 900 and 1000";
+}
+
+TEST_F(CommandLine, BadScenesExitTwoAndWriteNothing) {
+  const fs::path out = folder_ / "none";
+  for (const std::string& arguments :
+       {"run /no/such/scene.toml", "run " + example("plate_ball") + " --set time.steps=2",
+        "run " + example("plate_ball") + " --set parameters.radius=-1",
+        "run " + example("plate_ball") + " --set boundary.end.attitude=[1,1,0,0]",
+        "run " + example("plate_ball") + " --set parameters.rotation=trace --set parameters.spin=60"}) {
+    const Run r = run(arguments + " --out " + out.string() + " --json");
+    EXPECT_EQ(r.code, 2) << arguments << r.err;
+    EXPECT_FALSE(fs::exists(out));
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_EQ(nlohmann::json::parse(r.out).at("status"), "invalid_scene");
+  }
+  EXPECT_EQ(run("run").code, 2);
+  EXPECT_EQ(run("").code, 2);
+  EXPECT_EQ(run("run " + example("plate_ball") + " --frobnicate").code, 2);
+  EXPECT_EQ(entries(), 1U) << "only the captured stderr";
+}
+
+TEST_F(CommandLine, UnwritableFolderIsRefusedBeforeRunning) {
+  const fs::path file = folder_ / "file";
+  std::ofstream(file) << "x";
+  const Run r = run("run " + example("pendulum") + " --out " + (file / "below").string());
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("not a folder"), std::string::npos) << r.err;
+}
+
+TEST_F(CommandLine, AFailingStepKeepsWhatWasComputed) {
+  const fs::path out = folder_ / "partial";
+  const Run r = run("run " + example("plate_ball_initial_value") + " --set time.steps=20000 --set parameters.rotation=exp --out " +
+                    out.string() + " --json");
+  EXPECT_EQ(r.code, 3) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_NE(json.at("status"), "converged");
+  const long done = json.at("steps");
+  EXPECT_GT(done, 1000);
+  EXPECT_LT(done, 20000);
+  EXPECT_NE(json.at("message").get<std::string>().find("step " + std::to_string(done + 1)), std::string::npos);
+  std::ifstream csv(out / "trajectory.csv");
+  std::string line;
+  long lines = 0;
+  while (std::getline(csv, line)) ++lines;
+  EXPECT_EQ(lines, done + 2);
+}
+
+TEST_F(CommandLine, AFailingBoundaryValueIsTyped) {
+  const Run r = run("run " + example("plate_ball") +
+                    " --set parameters.rotation=trace --set time.steps=3 --set boundary.end.position=[100,0] --json");
+  EXPECT_EQ(r.code, 3) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_NE(json.at("status"), "converged");
+  EXPECT_NE(json.at("message").get<std::string>().find("best residual"), std::string::npos);
+}
+
+TEST_F(CommandLine, ListAndVersion) {
+  EXPECT_NE(run("list").out.find("plate_ball"), std::string::npos);
+  EXPECT_EQ(run("--version").code, 0);
+  EXPECT_EQ(run("--help").code, 0);
+}
+
+}  // namespace

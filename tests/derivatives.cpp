@@ -1,0 +1,131 @@
+// The two-sided derivative of every system, against nested dual numbers; a wrong analytic one is caught.
+#include "draws.hpp"
+
+#include <lagroid/core/noether.hpp>
+#include <lagroid/core/testing/derivative_laws.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulum.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace lagroid;
+
+namespace {
+
+template <class Sys>
+void expect_laws(const Sys& system) {
+  const auto report = testing::derivative_laws(system, [&] { return draw_step(system, 0.4); });
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+TEST(Derivatives, PlateBallInEveryForm) {
+  PlateBall system;
+  system.h = 0.1;
+  system.radius = 0.7;
+  system.plate_rate = 1.3;
+  system.spin = -0.4;
+  for (const auto form : {RotationForm::trace, RotationForm::exponential, RotationForm::cayley}) {
+    system.rotation = form;
+    expect_laws(system);
+  }
+}
+
+TEST(Derivatives, RigidBodyInBothForms) {
+  RigidBody system;
+  expect_laws(system);
+  system.rotation = RotationMap::cayley;
+  expect_laws(system);
+}
+
+TEST(Derivatives, PointMasses) {
+  for (const auto quadrature : {Quadrature::midpoint, Quadrature::trapezoid}) {
+    Pendulum pendulum;
+    pendulum.quadrature = quadrature;
+    expect_laws(pendulum);
+    Kepler kepler;
+    kepler.quadrature = quadrature;
+    expect_laws(kepler);
+    SphericalPendulum spherical;
+    spherical.quadrature = quadrature;
+    expect_laws(spherical);
+  }
+}
+
+TEST(Derivatives, RigidBodyAtTheUnitArrow) {
+  const RigidBody system;
+  const Matrix<double, 3, 3> unit = Matrix<double, 3, 3>::Identity();
+  const auto fast = automatic_two_sided(system, unit, {});
+  EXPECT_LT(testing::derivative_defect(fast, testing::nested_two_sided(system, unit, {})), 1e-13);
+  EXPECT_LT((fast.mixed + Matrix<double, 3, 3>(system.inertia.asDiagonal()) / system.h).norm(), 1e-10);
+}
+
+/// A pendulum with hand-written derivatives, right or wrong.
+template <bool Right>
+struct HandWritten : System<HandWritten<Right>, Pair<1>> {
+  double h = 0.1;
+  template <class S>
+  S lagrangian(const PairArrow<S, 1>& g) const {
+    using std::cos;
+    const S d = g.target(0) - g.source(0);
+    return d * d * (0.5 / h) + cos((g.source(0) + g.target(0)) * S(0.5)) * h;
+  }
+  TwoSided<1, 0> two_sided(const PairArrow<double, 1>& g, const Vector<double, 0>&) const {
+    const double d = g.target(0) - g.source(0);
+    const double middle = 0.5 * (g.source(0) + g.target(0));
+    TwoSided<1, 0> out;
+    out.value = lagrangian(g);
+    out.source_gradient(0) = -d / h - 0.5 * h * std::sin(middle);
+    out.target_gradient(0) = d / h - 0.5 * h * std::sin(middle);
+    out.mixed(0, 0) = -1 / h - (Right ? 0.25 : -0.25) * h * std::cos(middle);
+    return out;
+  }
+};
+
+TEST(Derivatives, AnalyticOverrideIsUsedAndChecked) {
+  const HandWritten<true> right;
+  static_assert(HasAnalyticDerivatives<HandWritten<true>>);
+  EXPECT_TRUE(testing::derivative_laws(right, [&] { return draw_step(right, 0.4); }).holds());
+  const HandWritten<false> wrong;
+  const auto report = testing::derivative_laws(wrong, [&] { return draw_step(wrong, 0.4); });
+  EXPECT_FALSE(report.law("analytic derivatives").holds());
+  EXPECT_TRUE(report.law("automatic derivatives").holds());
+}
+
+TEST(Derivatives, OneSidedHessiansAreSecondDerivativesOfTheRetraction) {
+  PlateBall system;
+  system.plate_rate = 0.8;
+  system.rotation = RotationForm::exponential;
+  const Step<PlateBall> step{{PairArrow<double, 2>{{0.1, 0.2}, {0.3, 0.1}}, SO3::exp(Vector<double, 3>(0.2, -0.1, 0.3))},
+                             {0.5, -0.7, 0.3}};
+  using D = Dual<Dual<double>>;
+  for (const End end : {End::source, End::target}) {
+    const auto hessian = one_sided_hessian(system, step.arrow, step.multipliers, end);
+    for (int i = 0; i < 5; ++i)
+      for (int j = 0; j < 5; ++j) {
+        Vector<D, 5> v = Vector<D, 5>::Constant(D(0.0));
+        v(i).derivative += Dual<double>(1.0);
+        v(j).value.derivative += 1.0;
+        const Vector<D, 5> zero = Vector<D, 5>::Constant(D(0.0));
+        const auto g = system.groupoid.cast<D>(step.arrow);
+        const auto moved =
+            end == End::source ? system.groupoid.translate(v, g, zero) : system.groupoid.translate(zero, g, v);
+        const D f = lagroid::detail::augmented_lagrangian<D>(system, moved, step.multipliers);
+        EXPECT_NEAR(hessian(i, j), f.derivative.derivative, 1e-11);
+      }
+    EXPECT_LT((hessian - hessian.transpose()).norm(), 1e-12);
+  }
+}
+
+TEST(Noether, DefectVanishesForSymmetriesAndOnlyForThem) {
+  Kepler system;
+  const auto rotation = [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); };
+  const auto translation = [](const Vector<double, 2>&) { return Vector<double, 2>(1, 0); };
+  const Step<Kepler> step{{{0.7, 0.4}, {0.72, 0.45}}, {}};
+  EXPECT_LT(std::abs(noether_defect(system, step, rotation)), 1e-14);
+  EXPECT_GT(std::abs(noether_defect(system, step, translation)), 1e-4);
+}
+
+}  // namespace

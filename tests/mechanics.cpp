@@ -1,0 +1,201 @@
+// The other systems: order against references, closed forms, conserved quantities, hidden constraints.
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/solvers/testing/momentum_laws.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulum.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace lagroid;
+
+namespace {
+
+template <class Sys>
+Integrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  return Integrator<Sys>(system, state, system.groupoid.unit(state.object), std::make_unique<NewtonStep<Sys>>());
+}
+
+template <class Sys>
+State<typename Sys::GroupoidType> march(const Sys& system, const State<typename Sys::GroupoidType>& start, int steps) {
+  auto integrator = make(system, start);
+  for (int k = 0; k < steps; ++k) EXPECT_TRUE(integrator.advance().converged()) << k;
+  auto state = integrator.point().state;
+  state.momentum = tangent_momentum(system, state);
+  return state;
+}
+
+// The slope of the error at time `horizon` over halved steps.
+template <class Sys>
+void expect_order_two(Sys system, const State<typename Sys::GroupoidType>& start, double horizon, int coarse) {
+  const auto exact = system.reference(start, horizon);
+  std::vector<double> errors;
+  for (const int steps : {coarse, 2 * coarse, 4 * coarse}) {
+    system.h = horizon / steps;
+    const auto end = march(system, start, steps);
+    errors.push_back((end.object - exact.object).norm() + (end.momentum - exact.momentum).norm());
+  }
+  for (int i = 0; i + 1 < int(errors.size()); ++i) EXPECT_NEAR(std::log2(errors[i] / errors[i + 1]), 2.0, 0.05);
+}
+
+TEST(Pendulum, OrderTwo) {
+  Pendulum system;
+  for (const auto quadrature : {Quadrature::midpoint, Quadrature::trapezoid}) {
+    system.quadrature = quadrature;
+    expect_order_two(system, {Vector<double, 1>(1.2), Vector<double, 1>(0.3)}, 5.0, 200);
+  }
+}
+
+TEST(Pendulum, PeriodIsTheEllipticIntegral) {
+  Pendulum system;
+  const double amplitude = 2.0;
+  const double period = 4 * std::comp_ellint_1(std::sin(amplitude / 2));
+  const auto back = system.reference({Vector<double, 1>(amplitude), Vector<double, 1>(0.0)}, period);
+  EXPECT_NEAR(back.object(0), amplitude, 1e-12);
+  EXPECT_NEAR(back.momentum(0), 0, 1e-11);
+}
+
+TEST(Kepler, OrderTwo) {
+  Kepler system;
+  for (const auto quadrature : {Quadrature::midpoint, Quadrature::trapezoid}) {
+    system.quadrature = quadrature;
+    expect_order_two(system, {{0.7, 0}, {0, std::sqrt(1.3 / 0.7)}}, 3.0, 600);
+  }
+}
+
+TEST(Kepler, ReferenceSolvesKeplersEquation) {
+  const Kepler system;
+  const double e = 0.6;
+  const double t = 2.0;
+  double anomaly = t;
+  for (int i = 0; i < 100; ++i) anomaly -= (anomaly - e * std::sin(anomaly) - t) / (1 - e * std::cos(anomaly));
+  const auto end = system.reference({{1 - e, 0}, {0, std::sqrt((1 + e) / (1 - e))}}, t);
+  EXPECT_NEAR(end.object(0), std::cos(anomaly) - e, 1e-12);
+  EXPECT_NEAR(end.object(1), std::sqrt(1 - e * e) * std::sin(anomaly), 1e-12);
+}
+
+TEST(Kepler, MomentaAreConserved) {
+  Kepler system;
+  const auto report = testing::momentum_laws(system, [] {
+    const auto wobble = testing::draw_vector<4>(0.2);
+    return State<Pair<2>>{{1 + wobble(0), wobble(1)}, {wobble(2), 1 + wobble(3)}};
+  });
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+TEST(SphericalPendulum, OrderTwoInProjectedMomentum) {
+  SphericalPendulum system;
+  system.gravity = 2;
+  expect_order_two(system, {{0.6, 0, -0.8}, {0, 0.9, 0}}, 2.0, 100);
+}
+
+TEST(SphericalPendulum, StaysOnTheSphereWithTangentMomentum) {
+  SphericalPendulum system;
+  system.h = 0.02;
+  system.length = 1.5;
+  auto integrator = make(system, {{0.9, 0, -1.2}, {0.2, 0.7, 0.15}});
+  for (int k = 0; k < 1000; ++k) {
+    ASSERT_TRUE(integrator.advance().converged());
+    const auto& s = integrator.point().state;
+    EXPECT_NEAR(s.object.norm(), 1.5, 1e-14);
+    EXPECT_NEAR(s.object.dot(tangent_momentum(system, s)), 0, 1e-14);
+  }
+}
+
+TEST(SphericalPendulum, ProjectionDoesNotChangeTheDynamics) {
+  // Projecting mu after every step (RATTLE) or never (SHAKE) gives the same positions.
+  SphericalPendulum system;
+  system.h = 0.02;
+  auto shake = make(system, {{0.6, 0, -0.8}, {0, 0.9, 0}});
+  State<Pair<3>> rattle{{0.6, 0, -0.8}, {0, 0.9, 0}};
+  for (int k = 0; k < 50; ++k) {
+    ASSERT_TRUE(shake.advance().converged());
+    auto one = make(system, rattle);
+    ASSERT_TRUE(one.advance().converged());
+    rattle = one.point().state;
+    rattle.momentum = tangent_momentum(system, rattle);
+    EXPECT_LT((rattle.object - shake.point().state.object).norm(), 1e-13);
+  }
+}
+
+TEST(SphericalPendulum, MomentaAreConserved) {
+  SphericalPendulum system;
+  const auto report = testing::momentum_laws(system, [] {
+    const Vector<double, 3> q = Vector<double, 3>(0.6, 0.1, -0.7).normalized();
+    Vector<double, 3> p = testing::draw_vector<3>(1.0);
+    p -= q * q.dot(p);
+    return State<Pair<3>>{q, p};
+  });
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+TEST(RigidBody, OrderTwoInMomentumAndAttitude) {
+  for (const auto map : {RotationMap::exponential, RotationMap::cayley}) {
+    RigidBody system;
+    system.rotation = map;
+    State<SO3> start;
+    start.momentum << 0.3, 1.5, 0.4;
+    constexpr double horizon = 3;
+    Matrix<double, 3, 3> attitude = Matrix<double, 3, 3>::Identity();
+    const auto exact = system.reference(start, attitude, horizon);
+    std::vector<double> errors;
+    for (const int steps : {100, 200, 400}) {
+      system.h = horizon / steps;
+      auto integrator = make(system, start);
+      for (int k = 0; k < steps; ++k) ASSERT_TRUE(integrator.advance().converged());
+      errors.push_back((integrator.point().state.momentum - exact.momentum).norm() +
+                       (integrator.point().configuration - attitude).norm());
+    }
+    for (int i = 0; i + 1 < int(errors.size()); ++i) EXPECT_NEAR(std::log2(errors[i] / errors[i + 1]), 2.0, 0.05);
+  }
+}
+
+TEST(RigidBody, SteadyRotationIsExactWithTheExponential) {
+  RigidBody system;
+  system.h = 0.1;
+  State<SO3> start;
+  start.momentum << 0, 0, 1.5;
+  auto integrator = make(system, start);
+  for (int k = 0; k < 50; ++k) ASSERT_TRUE(integrator.advance().converged());
+  EXPECT_LT((integrator.point().configuration - SO3::exp(Vector<double, 3>(0, 0, 0.5 * 5))).norm(), 1e-13);
+}
+
+TEST(RigidBody, MomentaAreConserved) {
+  for (const auto map : {RotationMap::exponential, RotationMap::cayley}) {
+    RigidBody system;
+    system.h = 0.05;
+    system.rotation = map;
+    const auto report = testing::momentum_laws(system, [] {
+      State<SO3> s;
+      s.momentum = testing::draw_vector<3>(3.0);
+      return s;
+    });
+    EXPECT_TRUE(report.holds()) << report;
+  }
+}
+
+/// An oscillator without rotational symmetry that promises angular momentum.
+struct Wrong : MechanicalSystem<Wrong, 2> {
+  static double mass() { return 1; }
+  template <class S>
+  S potential(const Vector<S, 2>& q) const {
+    return q(0) * q(0) + q(1) * q(1) * 0.25;
+  }
+  std::vector<Quantity<Wrong>> quantities() const {
+    return {{"angular momentum", {"L"}, Promise::conserved, false, [](const TrajectoryPoint<Wrong>& p, double* out) {
+               *out = p.state.object(0) * p.state.momentum(1) - p.state.object(1) * p.state.momentum(0);
+             }}};
+  }
+};
+
+TEST(MomentumLaw, CatchesAWrongPromise) {
+  const auto report = testing::momentum_laws(Wrong{}, [] { return State<Pair<2>>{{1, 0.5}, testing::draw_vector<2>(1.0)}; });
+  EXPECT_FALSE(report.holds()) << report;
+}
+
+}  // namespace

@@ -1,0 +1,263 @@
+// Plate-ball boundary-value problems: reference minima, degenerate cases, Ceres, typed failures.
+#include <lagroid/solvers/boundary_ceres.hpp>
+#include <lagroid/solvers/boundary_newton.hpp>
+#include <lagroid/solvers/plate_ball_boundary.hpp>
+
+#include "plate_ball_cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+using namespace lagroid;
+
+namespace {
+
+using G = PlateBall::GroupoidType;
+
+ArrowOf<G> boundary(const Vector<double, 2>& from, const Vector<double, 2>& to, const Vector<double, 3>& turn) {
+  return {PairArrow<double, 2>{from, to}, SO3::exp(turn)};
+}
+ArrowOf<G> boundary(const cases::json& c) {
+  return boundary({c.at("x0"), c.at("y0")}, {c.at("xT"), c.at("yT")}, cases::vector<3>(c.at("AT_rotation_vector")));
+}
+
+MultistartResult<PlateBall> solve(const PlateBall& system, const ArrowOf<G>& ends, long steps, bool ceres = false,
+                                  std::uint64_t seed = 1) {
+  PlateBallBoundaryOptions options;
+  options.steps = steps;
+  options.ceres = ceres;
+  options.seed = seed;
+  return solve_plate_ball(system, ends, options);
+}
+
+double end_defect(const PlateBall& system, const ArrowOf<G>& ends, const Path<PlateBall>& path) {
+  ArrowOf<G> product = system.groupoid.unit(system.groupoid.source(ends));
+  double gap = 0;
+  for (const auto& step : path) {
+    gap = std::max(gap, (std::get<0>(step.arrow).source - std::get<0>(product).target).norm());
+    product = system.groupoid.multiply(product, step.arrow);
+  }
+  return gap + (system.groupoid.coordinates_of_arrow(product) - system.groupoid.coordinates_of_arrow(ends)).norm();
+}
+
+class BoundaryCase : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(BoundaryCase, BestMinimumIsTheReference) {
+  const auto [id, form] = GetParam();
+  const auto c = cases::find(id);
+  const auto expected = c.at("results").at(form);
+  const PlateBall system = cases::system(c, form);
+  const auto ends = boundary(c);
+  const auto found = solve(system, ends, c.at("N"));
+  ASSERT_FALSE(found.solutions.empty());
+  const auto& best = found.solutions.front();
+  EXPECT_TRUE(best.kind.is_minimum);
+  EXPECT_TRUE(best.kind.isolated);
+  EXPECT_TRUE(best.kind.normal);
+  EXPECT_NEAR(best.cost, cases::number(expected.at("cost")), 1e-11 * best.cost);
+  const auto momentum = initial_momentum(system, best.path);
+  EXPECT_LT((momentum.head<2>() - cases::vector<2>(expected.at("initial_momenta_px_py"))).norm(), 1e-9);
+  EXPECT_LT((momentum.tail<3>() - cases::vector<3>(expected.at("initial_body_momentum_M0"))).norm(), 1e-9);
+  EXPECT_LT((best.path.back().multipliers - cases::vector<3>(expected.at("last_step_lambda123"))).norm(), 1e-9);
+  EXPECT_LT((final_momentum(system, best.path).tail<3>() - cases::vector<3>(expected.at("M_N"))).norm(), 1e-9);
+  EXPECT_LT(end_defect(system, ends, best.path), 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, BoundaryCase,
+                         ::testing::Combine(::testing::Values("P2-bvp-elastica", "P3-bvp-rotating"),
+                                            ::testing::Values("trace", "exp", "cay")),
+                         [](const auto& info) {
+                           return std::get<0>(info.param).substr(0, 2) + "_" + std::get<1>(info.param);
+                         });
+
+class LocalMinima : public ::testing::TestWithParam<std::tuple<std::string, int>> {};
+
+TEST_P(LocalMinima, AllListedOnesAreFound) {
+  const auto [id, seed] = GetParam();
+  const auto c = cases::find(id);
+  PlateBall system = cases::system(c, "exp");
+  system.h = c.at("T").get<double>() / 20;
+  const auto found = solve(system, boundary(c), 20, false, std::uint64_t(seed));
+  for (const auto& listed : c.at("local_minima_found_exp_N20")) {
+    const double cost = listed.at("cost");
+    const bool met = std::any_of(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
+      return std::abs(s.cost - cost) < 1e-9 * cost && s.kind.is_minimum &&
+             (initial_momentum(system, s.path).template tail<3>() - cases::vector<3>(listed.at("M0"))).norm() < 1e-5;
+    });
+    EXPECT_TRUE(met) << cost;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, LocalMinima,
+                         ::testing::Combine(::testing::Values("P2-bvp-elastica", "P3-bvp-rotating"),
+                                            ::testing::Values(1, 2, 3)));
+
+TEST(Multistart, IsReproducible) {
+  PlateBall system;
+  system.rotation = RotationForm::exponential;
+  system.h = 0.1;
+  const auto ends = boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9});
+  const auto a = solve(system, ends, 10, false, 7);
+  const auto b = solve(system, ends, 10, false, 7);
+  ASSERT_EQ(a.solutions.size(), b.solutions.size());
+  for (std::size_t i = 0; i < a.solutions.size(); ++i) EXPECT_EQ(a.solutions[i].cost, b.solutions[i].cost);
+}
+
+TEST(Boundary, AngleNearPiFewStepsFastPlateSmallBall) {
+  struct Case {
+    double radius, rate, spin;
+    long steps;
+    double angle;
+  };
+  for (const Case c : {Case{1, 0, 0, 20, std::numbers::pi - 1e-6}, Case{1, 0, 0, 4, 1.1}, Case{1, 5, -1, 40, 1.1},
+                       Case{0.02, 0, 0, 40, 1.1}, Case{1, 0.5, 0.3, 3, 0.5}}) {
+    PlateBall system;
+    system.radius = c.radius;
+    system.plate_rate = c.rate;
+    system.spin = c.spin;
+    system.rotation = RotationForm::exponential;
+    system.h = 1.0 / double(c.steps);
+    const auto ends = boundary({0.2 * c.radius, -0.1 * c.radius}, {c.radius, 0.5 * c.radius},
+                               Vector<double, 3>(0.6, -0.3, 0.9).normalized() * c.angle);
+    const auto found = solve(system, ends, c.steps);
+    ASSERT_FALSE(found.solutions.empty()) << c.steps;
+    EXPECT_TRUE(found.solutions.front().kind.is_minimum);
+    EXPECT_LT(end_defect(system, ends, found.solutions.front().path), 1e-12);
+    EXPECT_LT(found.solutions.front().residual, 1e-12);
+  }
+}
+
+TEST(Boundary, StraightRollingIsAbnormal) {
+  PlateBall system;
+  system.rotation = RotationForm::exponential;
+  system.h = 0.05;
+  const auto found = solve(system, boundary({0, 0}, {1, 0}, {0, 1, 0}), 20);
+  ASSERT_FALSE(found.solutions.empty());
+  const auto& best = found.solutions.front();
+  EXPECT_NEAR(best.cost, 0.5, 1e-10);
+  EXPECT_TRUE(best.kind.is_minimum);
+  EXPECT_FALSE(best.kind.normal);
+}
+
+TEST(Boundary, TurningInPlaceIsAFamily) {
+  PlateBall system;
+  system.h = 0.05;
+  for (const auto form : {RotationForm::trace, RotationForm::exponential, RotationForm::cayley}) {
+    system.rotation = form;
+    const auto found = solve(system, boundary({0, 0}, {0, 0}, {0, 0, 1}), 20);
+    ASSERT_FALSE(found.solutions.empty());
+    EXPECT_TRUE(found.solutions.front().kind.is_minimum);
+    EXPECT_FALSE(found.solutions.front().kind.isolated);
+    EXPECT_TRUE(found.solutions.front().kind.normal);
+  }
+}
+
+TEST(Boundary, ContinuationInNReachesThousands) {
+  PlateBall system;
+  system.rotation = RotationForm::exponential;
+  system.h = 1.0 / 1000;
+  const auto found = solve(system, boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9}), 1000);
+  ASSERT_FALSE(found.solutions.empty());
+  // Second order in 1/N towards the continuous minimum of the case file.
+  const double continuous = cases::find("P2-bvp-elastica").at("continuous").at("cost");
+  EXPECT_NEAR(found.solutions.front().cost, continuous, 1e-4);
+  EXPECT_EQ(found.solutions.front().path.size(), 1000U);
+}
+
+TEST(Boundary, MinimaSurviveTheirInitialValueProblem) {
+  // The momentum of the boundary solution, integrated forward, arrives at the end.
+  const auto c = cases::find("P3-bvp-rotating");
+  const PlateBall system = cases::system(c, "cay");
+  const auto found = solve(system, boundary(c), c.at("N"));
+  const auto& path = found.solutions.front().path;
+  EXPECT_LT((legendre_plus(system, path[10]).momentum - legendre_minus(system, path[11]).momentum).norm(), 1e-11);
+}
+
+TEST(Ceres, FindsTheSameBestMinimum) {
+  const auto c = cases::find("P2-bvp-elastica");
+  PlateBall system = cases::system(c, "exp");
+  system.h = 1.0 / 20;
+  const auto found = solve(system, boundary(c), 20, /*ceres=*/true);
+  ASSERT_FALSE(found.solutions.empty());
+  EXPECT_NEAR(found.solutions.front().cost, 13.131553378463718, 1e-10);
+  EXPECT_TRUE(found.solutions.front().kind.is_minimum);
+}
+
+TEST(Boundary, DecidableImpossibilitiesAreRefused) {
+  PlateBall system;
+  system.h = 0.5;
+  EXPECT_TRUE(unreachable(system, 2).has_value());
+  EXPECT_FALSE(unreachable(system, 3).has_value());
+  system.spin = 2;
+  EXPECT_TRUE(unreachable(system, 10).has_value());
+  system.rotation = RotationForm::exponential;
+  EXPECT_FALSE(unreachable(system, 10).has_value());
+  system.spin = 6.3;
+  EXPECT_TRUE(unreachable(system, 10).has_value());
+  system.rotation = RotationForm::cayley;
+  EXPECT_FALSE(unreachable(system, 10).has_value());
+}
+
+TEST(Boundary, TheUnreachableIsATypedOutcomeWithAResidual) {
+  // Three steps of the trace form turn by less than pi/2 each: 100 radii in three steps is out of reach.
+  PlateBall system;
+  system.h = 1.0 / 3;
+  const auto found = solve(system, boundary({0, 0}, {100, 0}, {0, 0, 0}), 3);
+  EXPECT_TRUE(found.solutions.empty());
+  EXPECT_NE(found.best_failure.status, SolveStatus::converged);
+  EXPECT_GT(found.best_failure.residual, 1e-3);
+}
+
+TEST(Kkt, MatrixIsTheDerivativeOfTheEquationsAtASolution) {
+  const auto c = cases::find("P2-bvp-elastica");
+  PlateBall system = cases::system(c, "exp");
+  system.h = 1.0 / 8;
+  const auto ends = boundary(c);
+  const auto found = solve(system, ends, 8);
+  ASSERT_FALSE(found.solutions.empty());
+  const BoundaryProblem<PlateBall> problem{system, ends};
+  const auto& path = found.solutions.front().path;
+  BoundaryKkt<PlateBall> kkt;
+  kkt.evaluate(system, path);
+  BoundaryKkt<PlateBall>::Columns z(8, Vector<double, 8>::Zero());
+  std::vector<Vector<double, 5>> nodes(8, Vector<double, 5>::Zero());
+  std::vector<Vector<double, 3>> multipliers(8, Vector<double, 3>::Zero());
+  std::srand(1);
+  for (int k = 0; k < 8; ++k) {
+    multipliers[k].setRandom();
+    if (k < 7) nodes[k].setRandom();
+    z[k] << multipliers[k], nodes[k];
+  }
+  const auto product = kkt.multiply(z);
+  const double e = 1e-6;
+  BoundaryKkt<PlateBall> plus;
+  plus.evaluate(system, displaced(problem, path, nodes, multipliers, e));
+  BoundaryKkt<PlateBall> minus;
+  minus.evaluate(system, displaced(problem, path, nodes, multipliers, -e));
+  for (int k = 0; k < 8; ++k) {
+    const auto difference = ((plus.residual()[k] - minus.residual()[k]) / (2 * e)).eval();
+    EXPECT_LT((difference - product[k]).norm(), 1e-6 * (1 + product[k].norm())) << k;
+  }
+}
+
+TEST(Kkt, SolveInvertsMultiply) {
+  PlateBall system;
+  system.h = 0.1;
+  system.rotation = RotationForm::exponential;
+  const auto ends = boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9});
+  Path<PlateBall> path;
+  for (auto& arrow : system.path(ends, 10, Eigen::Matrix2Xd::Constant(2, 2, 0.5))) path.push_back({arrow, {1, -2, 0.5}});
+  BoundaryKkt<PlateBall> kkt;
+  kkt.evaluate(system, path);
+  kkt.choose_scale();
+  kkt.factor(0, 0);
+  BoundaryKkt<PlateBall>::Columns z(10);
+  std::srand(2);
+  for (auto& c : z) c.setRandom();
+  z.back().tail<5>().setZero();
+  const auto back = kkt.solve(kkt.multiply(z));
+  for (int k = 0; k < 10; ++k) EXPECT_LT((back[k] - z[k]).norm(), 1e-9);
+}
+
+}  // namespace

@@ -1,0 +1,55 @@
+#pragma once
+/// Long runs: the largest drift of every conserved quantity, and the slope of a bounded one.
+
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+struct Watched {
+  double drift = 0;          ///< largest deviation over the norm of the first value
+  double first_quarter = 0;  ///< largest deviation in the first and the last quarter
+  double last_quarter = 0;
+};
+
+/// Runs `steps` steps and watches every quantity of the system; empty when a step fails.
+template <DiscreteSystem Sys>
+std::map<std::string, Watched> watch(const Sys& system, const State<typename Sys::GroupoidType>& start, long steps) {
+  const auto quantities = system.quantities();
+  std::map<std::string, Watched> out;
+  std::vector<std::vector<double>> first(quantities.size());
+  std::vector<double> now;
+  Integrator<Sys> integrator(system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>());
+  for (long k = 0; k <= steps; ++k) {
+    if (k > 0 && !integrator.advance().converged()) return {};
+    auto point = integrator.point();
+    point.state.momentum = tangent_momentum(system, point.state);
+    for (std::size_t i = 0; i < quantities.size(); ++i) {
+      if (quantities[i].needs_step && k == 0) continue;
+      now.resize(quantities[i].components.size());
+      quantities[i].evaluate(point, now.data());
+      if (first[i].empty()) first[i] = now;
+      double deviation = 0;
+      double norm = 0;
+      for (std::size_t j = 0; j < now.size(); ++j) {
+        deviation += (now[j] - first[i][j]) * (now[j] - first[i][j]);
+        norm += first[i][j] * first[i][j];
+      }
+      auto& w = out[quantities[i].name];
+      deviation = std::sqrt(deviation / norm);
+      w.drift = std::max(w.drift, deviation);
+      if (4 * k < steps) w.first_quarter = std::max(w.first_quarter, deviation);
+      if (4 * k > 3 * steps) w.last_quarter = std::max(w.last_quarter, deviation);
+    }
+  }
+  return out;
+}
+
+}  // namespace lagroid

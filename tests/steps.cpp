@@ -1,0 +1,228 @@
+// One implicit step: Newton's status in every outcome, no allocation, agreement with Ceres, scaling.
+#include <lagroid/solvers/ceres_step.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <random>
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const std::size_t a = std::size_t(alignment);
+  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+using namespace lagroid;
+
+namespace {
+
+using G = PlateBall::GroupoidType;
+
+State<G> plate_state() {
+  State<G> s;
+  std::get<0>(s.object) << 0.3, -0.2;
+  s.momentum << 0.9, 0.2, 0.6, -0.4, 0.8;
+  return s;
+}
+
+template <class Solver, class Sys>
+Integrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  return Integrator<Sys>(system, state, system.groupoid.unit(state.object), std::make_unique<Solver>());
+}
+
+template <class Sys>
+void expect_no_allocation(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  auto integrator = make<NewtonStep<Sys>>(system, state);
+  for (int k = 0; k < 3; ++k) ASSERT_TRUE(integrator.advance().converged());
+  const long before = allocations;
+  for (int k = 0; k < 100; ++k) ASSERT_TRUE(integrator.advance().converged());
+  EXPECT_EQ(allocations - before, 0);
+}
+
+TEST(NewtonStep, AllocatesNothing) {
+  expect_no_allocation(PlateBall{}, plate_state());
+  State<SO3> body;
+  body.momentum << 0.3, 1.5, 0.4;
+  expect_no_allocation(RigidBody{}, body);
+  expect_no_allocation(Kepler{}, State<Pair<2>>{{0.5, 0}, {0, 1.7}});
+  expect_no_allocation(SphericalPendulum{}, State<Pair<3>>{{0.6, 0, -0.8}, {0, 0.5, 0}});
+}
+
+TEST(NewtonStep, TheAllocationCounterCounts) {
+  const long before = allocations;
+  auto p = std::make_unique<double>(1);
+  EXPECT_EQ(allocations - before, 1);
+}
+
+template <class Sys>
+void expect_agreement(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  auto newton = make<NewtonStep<Sys>>(system, state);
+  auto ceres = make<CeresStep<Sys>>(system, state);
+  for (int k = 0; k < 20; ++k) {
+    ASSERT_TRUE(newton.advance().converged());
+    const auto report = ceres.advance();
+    ASSERT_TRUE(report.converged()) << to_string(report.status) << ' ' << report.residual << ' ' << report.excess;
+  }
+  const auto& groupoid = system.groupoid;
+  const auto& a = newton.point();
+  const auto& b = ceres.point();
+  EXPECT_LT((groupoid.coordinates_of_arrow(a.configuration) - groupoid.coordinates_of_arrow(b.configuration)).norm(),
+            1e-12);
+  EXPECT_LT((a.state.momentum - b.state.momentum).norm(), 1e-12);
+  if constexpr (Sys::constraints > 0) EXPECT_LT((a.step.multipliers - b.step.multipliers).norm(), 1e-11);
+}
+
+TEST(CeresStep, AgreesWithNewton) {
+  for (const auto form : {RotationForm::trace, RotationForm::exponential, RotationForm::cayley}) {
+    PlateBall system;
+    system.plate_rate = 0.7;
+    system.spin = 0.4;
+    system.rotation = form;
+    expect_agreement(system, plate_state());
+  }
+  State<SO3> body;
+  body.momentum << 0.3, 1.5, 0.4;
+  expect_agreement(RigidBody{}, body);
+  expect_agreement(Kepler{}, State<Pair<2>>{{0.5, 0}, {0, 1.7}});
+  expect_agreement(SphericalPendulum{}, State<Pair<3>>{{0.6, 0, -0.8}, {0, 0.5, 0}});
+}
+
+TEST(NewtonStep, ReportsNotFinite) {
+  State<G> state = plate_state();
+  state.momentum(2) = std::numeric_limits<double>::quiet_NaN();
+  auto integrator = make<NewtonStep<PlateBall>>(PlateBall{}, state);
+  EXPECT_EQ(integrator.advance().status, SolveStatus::not_finite);
+  EXPECT_EQ(integrator.point().index, 0);
+  auto ceres = make<CeresStep<PlateBall>>(PlateBall{}, state);
+  EXPECT_EQ(ceres.advance().status, SolveStatus::not_finite);
+}
+
+/// L does not depend on the second coordinate: not regular.
+struct Degenerate : System<Degenerate, Pair<2>> {
+  template <class S>
+  S lagrangian(const PairArrow<S, 2>& g) const {
+    const S d = g.target(0) - g.source(0);
+    return d * d * 0.5;
+  }
+};
+
+TEST(NewtonStep, ReportsSingular) {
+  const Degenerate system;
+  auto integrator = make<NewtonStep<Degenerate>>(system, {{0, 0}, {1, 1}});
+  EXPECT_EQ(integrator.advance().status, SolveStatus::singular);
+  const double condition = regularity_condition(system, {{{0, 0}, {1, 0}}, {}});
+  EXPECT_FALSE(condition < 1e15);
+}
+
+TEST(NewtonStep, ReportsStagnationWhereThereIsNoSolution) {
+  // The trace form reaches |w| < 1 only: a momentum that asks for more has no step.
+  PlateBall system;
+  system.h = 1;
+  State<G> state = plate_state();
+  state.momentum << 40, 30, 0.1, 0.1, 0.1;
+  auto integrator = make<NewtonStep<PlateBall>>(system, state);
+  const auto report = integrator.advance();
+  EXPECT_FALSE(report.converged());
+  EXPECT_EQ(integrator.point().index, 0);
+  EXPECT_EQ(integrator.point().state.momentum, state.momentum);
+}
+
+TEST(NewtonStep, RejectsTheOtherRootsOfTheTraceForm) {
+  // The trace form has several roots a step; from a guess near another one the solve says so instead of returning it.
+  PlateBall system;
+  system.h = 0.05;
+  const auto state = plate_state();
+  NewtonStep<PlateBall> newton;
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  int wrong_branch = 0;
+  StepSolution<PlateBall> right;
+  right.step = system.first_guess(state);
+  ASSERT_TRUE(newton.solve(system, state, right).converged());
+  for (int k = 0; k < 300; ++k) {
+    StepSolution<PlateBall> solution;
+    const Vector<double, 3> w(2 * normal(generator), 2 * normal(generator), 2 * normal(generator));
+    const auto& q = std::get<0>(state.object);
+    solution.step = {{PairArrow<double, 2>{q, q}, SO3::exp(w)}, {3 * normal(generator), normal(generator), normal(generator)}};
+    const auto report = newton.solve(system, state, solution);
+    if (report.status == SolveStatus::left_domain) {
+      ++wrong_branch;
+      EXPECT_LE(std::get<1>(solution.step.arrow).trace(), 1);
+    }
+    if (report.converged())
+      EXPECT_LT((solution.step.multipliers - right.step.multipliers).norm(), 1e-9) << "a second admissible root";
+  }
+  EXPECT_GT(wrong_branch, 10);
+}
+
+TEST(Regularity, ConditionIsTheSameForEveryStep) {
+  for (const double h : {1e-1, 1e-3, 1e-5}) {
+    PlateBall system;
+    system.h = h;
+    auto integrator = make<NewtonStep<PlateBall>>(system, plate_state());
+    ASSERT_TRUE(integrator.advance().converged());
+    EXPECT_LT(regularity_condition(system, integrator.point().step), 10) << h;
+  }
+}
+
+TEST(Integrator, LegendreTransformsMeetAtTheObjects) {
+  PlateBall system;
+  system.plate_rate = 0.7;
+  auto integrator = make<NewtonStep<PlateBall>>(system, plate_state());
+  ASSERT_TRUE(integrator.advance().converged());
+  const auto first = integrator.point().step;
+  EXPECT_LT((legendre_minus(system, first).momentum - plate_state().momentum).norm(), 1e-13);
+  ASSERT_TRUE(integrator.advance().converged());
+  const auto second = integrator.point().step;
+  EXPECT_LT((legendre_plus(system, first).momentum - legendre_minus(system, second).momentum).norm(), 1e-12);
+}
+
+TEST(Integrator, LargeTurnsAndSmallBalls) {
+  struct Case {
+    double radius, rate, spin, h;
+    RotationForm form;
+  };
+  for (const Case c : {Case{1, 0.7, 29, 0.1, RotationForm::exponential}, Case{1, 0.7, 29, 0.1, RotationForm::cayley},
+                       Case{1, 0.2, 14.5, 0.2, RotationForm::cayley}, Case{0.02, 0.7, 0.4, 0.002, RotationForm::trace},
+                       Case{1, 5, 0.4, 0.05, RotationForm::trace}, Case{1, 0, 0.97, 1, RotationForm::trace}}) {
+    PlateBall system;
+    system.radius = c.radius;
+    system.plate_rate = c.rate;
+    system.spin = c.spin;
+    system.h = c.h;
+    system.rotation = c.form;
+    State<G> state = plate_state();
+    state.momentum.tail<3>() *= std::min(1.0, c.radius);
+    if (c.h == 1) state.momentum << 0.01, 0.02, 0.01, 0.02, 0.3;
+    auto integrator = make<NewtonStep<PlateBall>>(system, state);
+    for (int k = 0; k < 20; ++k) {
+      const auto report = integrator.advance();
+      ASSERT_TRUE(report.converged()) << c.spin << ' ' << k << ' ' << to_string(report.status);
+      EXPECT_LT(constraint_values(system, integrator.point().step.arrow).norm(), 1e-13);
+    }
+  }
+}
+
+}  // namespace
