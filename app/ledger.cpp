@@ -9,7 +9,11 @@ namespace lagroid::app {
 
 namespace {
 constexpr double round_off = std::numeric_limits<double>::epsilon();
-}
+
+/// The larger of the two; a NaN wins, so that it is never overlooked.
+double worse(double a, double b) { return a <= b || std::isnan(b) ? b : a; }
+
+}  // namespace
 
 QuantityWatch::QuantityWatch(std::string name, Promise promise, std::size_t width, long expected_samples)
     : name_(std::move(name)), promise_(promise), expected_(expected_samples), first_(width), last_(width) {}
@@ -20,7 +24,7 @@ void QuantityWatch::observe(const double* values, double size) {
   double square = 0;
   for (std::size_t i = 0; i < first_.size(); ++i) square += (values[i] - first_[i]) * (values[i] - first_[i]);
   double& worst = 2 * samples_ < expected_ ? first_half_ : second_half_;
-  worst = std::max(worst, std::sqrt(square));
+  worst = worse(worst, std::sqrt(square));
   size_ = std::max(size_, size);
   ++samples_;
 }
@@ -30,7 +34,7 @@ LedgerEntry QuantityWatch::entry() const {
   e.name = name_;
   e.initial = first_;
   e.final = last_;
-  e.drift = std::max(first_half_, second_half_);
+  e.drift = worse(first_half_, second_half_);
   double norm = 0;
   for (const double x : first_) norm += x * x;
   norm = std::sqrt(norm);

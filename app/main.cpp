@@ -4,8 +4,8 @@
 #include "registry.hpp"
 #include "report.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <exception>
 #include <optional>

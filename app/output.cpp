@@ -117,7 +117,8 @@ std::string gnuplot_script(const RunResult& result) {
       {"plot.svg", fmt::format("svg size {},{} background 'white' noenhanced", 520 * columns, 400 * rows)},
       {"plot.png", fmt::format("pngcairo size {},{} noenhanced", 520 * columns, 400 * rows)}};
   for (const auto& [file, terminal] : terminals) {
-    out += fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout {},{}\n", terminal, file, rows, columns);
+    out +=
+        fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout {},{}\n", terminal, file, rows, columns);
     for (const auto& panel : result.panels) {
       out += panel.curves.size() > 1 ? "set key below\n" : "unset key\n";
       out += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n{}\nplot ", quoted(panel.title),
@@ -142,7 +143,8 @@ bool run_gnuplot(const fs::path& folder, std::string& reason) {
   }
   if (child == 0) {
     if (chdir(folder.c_str()) != 0) _exit(126);
-    if (std::freopen("plot.log", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
+    if (std::freopen("plot.log", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
+      _exit(126);
     execlp("gnuplot", "gnuplot", "plot.gp", static_cast<char*>(nullptr));
     _exit(127);
   }
@@ -153,9 +155,10 @@ bool run_gnuplot(const fs::path& folder, std::string& reason) {
   std::string first;
   for (std::string line; std::getline(log, line);)
     if (line.find("line") != std::string::npos && first.empty()) first = line;
-  reason = WIFEXITED(status) && WEXITSTATUS(status) == 127
-               ? "gnuplot is not installed (Debian package gnuplot-nox); run `gnuplot plot.gp` in the output folder later"
-               : fmt::format("gnuplot failed{}", first.empty() ? "" : ": " + first);
+  reason =
+      WIFEXITED(status) && WEXITSTATUS(status) == 127
+          ? "gnuplot is not installed (Debian package gnuplot-nox); run `gnuplot plot.gp` in the output folder later"
+          : fmt::format("gnuplot failed{}", first.empty() ? "" : ": " + first);
   return false;
 }
 
@@ -167,7 +170,8 @@ void require_writable(const fs::path& folder) {
   while (!fs::exists(existing, error) && existing.has_parent_path() && existing != existing.parent_path())
     existing = existing.parent_path();
   if (!fs::is_directory(existing, error))
-    throw OutputError(fmt::format("--out {}: {} is not a folder; choose another place", folder.string(), existing.string()));
+    throw OutputError(
+        fmt::format("--out {}: {} is not a folder; choose another place", folder.string(), existing.string()));
   if (access(existing.c_str(), W_OK | X_OK) != 0)
     throw OutputError(fmt::format("--out {}: no permission to write in {}; choose another place", folder.string(),
                                   existing.string()));

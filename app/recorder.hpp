@@ -17,15 +17,13 @@
 namespace lagroid::app {
 
 /// A recorded function of trajectory points beyond those every system has.
-template <class Sys>
-struct ExtraSeries {
+template <class Sys> struct ExtraSeries {
   Series series;  ///< without values
   std::function<void(const TrajectoryPoint<Sys>&, double*)> evaluate;
 };
 
 /// How reports speak of a system: the mathematics is in systems/, the words and units are here.
-template <class Sys>
-struct Presentation {
+template <class Sys> struct Presentation {
   std::string name;
   std::vector<std::string> position;  ///< labels; may be empty (a group has one object)
   std::string position_unit;
@@ -42,8 +40,7 @@ struct Presentation {
 };
 
 /// Observes the points of one trajectory in order.
-template <DiscreteSystem Sys>
-class Recorder {
+template <DiscreteSystem Sys> class Recorder {
  public:
   using G = typename Sys::GroupoidType;
 
@@ -72,8 +69,8 @@ class Recorder {
       if constexpr (Sys::constraints > 0) {
         residual = constraint_values(system_, point.step.arrow).cwiseAbs().maxCoeff();
         largest_residual_ = std::max(largest_residual_, residual);
-        coordinate_size_ = std::max(
-            coordinate_size_, system_.groupoid.coordinates_of_arrow(point.step.arrow).cwiseAbs().maxCoeff());
+        coordinate_size_ =
+            std::max(coordinate_size_, system_.groupoid.coordinates_of_arrow(point.step.arrow).cwiseAbs().maxCoeff());
       }
       last_multipliers_ = list(point.step.multipliers);
       if (point.index == 1) first_multipliers_ = last_multipliers_;
@@ -99,10 +96,7 @@ class Recorder {
   }
 
  private:
-  template <class V>
-  static std::vector<double> list(const V& v) {
-    return {v.data(), v.data() + v.size()};
-  }
+  template <class V> static std::vector<double> list(const V& v) { return {v.data(), v.data() + v.size()}; }
   static double norm(const std::vector<double>& v) {
     double square = 0;
     for (const double x : v) square += x * x;
@@ -136,8 +130,12 @@ class Recorder {
     }
     for (const auto& extra : p.extras) s.push_back(extra.series);
     for (const auto& q : quantities_)
-      s.push_back({"drift of " + q.name, {"drift " + q.name}, "", "norm of the deviation from the first value",
-                   q.needs_step, {}});
+      s.push_back({"drift of " + q.name,
+                   {"drift " + q.name},
+                   "",
+                   "norm of the deviation from the first value",
+                   q.needs_step,
+                   {}});
   }
 
   void record(const TrajectoryPoint<Sys>& point, double residual) {

@@ -27,8 +27,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-template <class Words>
-std::string nearest(std::string_view word, const Words& words) {
+template <class Words> std::string nearest(std::string_view word, const Words& words) {
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const auto& candidate : words)
@@ -102,8 +101,9 @@ double Section::number_or(std::string_view key, double fallback, const NumberRul
 
 long Section::integer(std::string_view key, long least, long most) const {
   const toml::node& node = require(key, fmt::format("a whole number from {} to {}", least, most));
-  if (!node.is_integer()) fail(key, fmt::format("expected a whole number, got {}",
-                                                node.is_number() ? "one with a fraction" : type_name(node)));
+  if (!node.is_integer())
+    fail(key,
+         fmt::format("expected a whole number, got {}", node.is_number() ? "one with a fraction" : type_name(node)));
   const long value = long(*node.value<std::int64_t>());
   if (value < least || value > most) fail(key, fmt::format("must be from {} to {}, got {}", least, most, value));
   return value;
@@ -135,8 +135,7 @@ std::vector<double> Section::numbers(std::string_view key, std::size_t size, std
   const toml::array* array = node.as_array();
   if (array == nullptr)
     fail(key, fmt::format("expected an array of {} numbers ({}), got {}", size, meaning, type_name(node)));
-  if (array->size() != size)
-    fail(key, fmt::format("expected {} numbers ({}), got {}", size, meaning, array->size()));
+  if (array->size() != size) fail(key, fmt::format("expected {} numbers ({}), got {}", size, meaning, array->size()));
   std::vector<double> out;
   for (const auto& entry : *array) out.push_back(checked(key, entry, any_number));
   return out;
@@ -157,10 +156,11 @@ std::array<double, 4> Section::attitude(std::string_view key) const {
   }
   const double norm = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
   if (std::abs(norm - 1) > 1e-6)
-    fail(key, norm > 0 ? fmt::format("not a unit quaternion (norm {:.8g}); divide by its norm: [{:.10g}, {:.10g}, {:.10g}, "
-                                     "{:.10g}], or give a rotation vector of three numbers",
-                                     norm, v[0] / norm, v[1] / norm, v[2] / norm, v[3] / norm)
-                       : std::string("not a unit quaternion (norm 0); the identity is [1, 0, 0, 0]"));
+    fail(key, norm > 0
+                  ? fmt::format("not a unit quaternion (norm {:.8g}); divide by its norm: [{:.10g}, {:.10g}, {:.10g}, "
+                                "{:.10g}], or give a rotation vector of three numbers",
+                                norm, v[0] / norm, v[1] / norm, v[2] / norm, v[3] / norm)
+                  : std::string("not a unit quaternion (norm 0); the identity is [1, 0, 0, 0]"));
   return {v[0] / norm, v[1] / norm, v[2] / norm, v[3] / norm};
 }
 

@@ -44,7 +44,8 @@ class Section {
   std::string choice_or(std::string_view key, const std::string& fallback, const std::vector<std::string>& words) const;
   /// An array of exactly `size` finite numbers; `meaning` names its entries in messages.
   std::vector<double> numbers(std::string_view key, std::size_t size, std::string_view meaning) const;
-  /// A rotation as a unit quaternion (w, x, y, z) or a rotation vector: four or three numbers. Returns a unit quaternion.
+  /// A rotation as a unit quaternion (w, x, y, z) or a rotation vector: four or three numbers. Returns a unit
+  /// quaternion.
   std::array<double, 4> attitude(std::string_view key) const;
 
   /// A table that must be there (`purpose` says what for), or may be missing (then empty).

@@ -44,8 +44,7 @@ long read_every(const Section& scene, const RunContext& context);
 std::string step_failure(const StepReport& report, long step, double time);
 
 /// The point with its momentum made tangent to the object constraints, as it is reported.
-template <DiscreteSystem Sys>
-TrajectoryPoint<Sys> reported(const Sys& system, TrajectoryPoint<Sys> point) {
+template <DiscreteSystem Sys> TrajectoryPoint<Sys> reported(const Sys& system, TrajectoryPoint<Sys> point) {
   point.state.momentum = tangent_momentum(system, point.state);
   return point;
 }

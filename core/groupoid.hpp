@@ -58,43 +58,37 @@ concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
 /// `seed` (the translations in closed form, see below). Everything else is deduced.
 ///
 /// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
-template <class Derived, int Dimension>
-class LieGroupoid {
+template <class Derived, int Dimension> class LieGroupoid {
  public:
   static constexpr int dimension = Dimension;
 
   /// The product g h. Requires beta(g) = alpha(h); checked builds throw NotComposable otherwise.
-  template <class A>
-  A compose(const A& g, const A& h) const {
+  template <class A> A compose(const A& g, const A& h) const {
     if constexpr (checked_build) require_composable(g, h);
     return self().multiply(g, h);
   }
 
   /// tau(a)^{-1} g tau(b): the arrow g with its source displaced by a in A_{alpha(g)}G and its target by b in
   /// A_{beta(g)}G.
-  template <class A, class V>
-  A translate(const V& a, const A& g, const V& b) const {
+  template <class A, class V> A translate(const V& a, const A& g, const V& b) const {
     const A moved = self().multiply(self().inverse(self().tau(self().source(g), a)), g);
     return self().multiply(moved, self().tau(self().target(g), b));
   }
 
   /// The arrow g as an arrow over the scalar S, a constant if S carries derivatives.
-  template <class S, class A>
-  auto cast(const A& g) const {
+  template <class S, class A> auto cast(const A& g) const {
     return arrow_at<S>(coordinates_of_arrow(g).template cast<S>().eval());
   }
   /// The object q as an object over the scalar S.
-  template <class S, class Q>
-  auto cast_object(const Q& q) const {
+  template <class S, class Q> auto cast_object(const Q& q) const {
     return object_at<S>(coordinates_of_object(q).template cast<S>().eval());
   }
 
-  /// The arrow tau(a)^{-1} g tau(b) with first- and second-order infinitesimals: the `left` infinitesimals of the scalar
-  /// M = Mixed<T, n, n>, numbers offset ... offset + dimension - 1, displace the end `first`; its `right` ones the end
-  /// `second`. Derived by composition; a groupoid that knows its translations in closed form supplies its own `seed`
-  /// with this signature (the law suites compare the two).
-  template <class M, class A>
-  auto seed_by_composition(const A& g, End first, End second, int offset) const {
+  /// The arrow tau(a)^{-1} g tau(b) with first- and second-order infinitesimals: the `left` infinitesimals of the
+  /// scalar M = Mixed<T, n, n>, numbers offset ... offset + dimension - 1, displace the end `first`; its `right` ones
+  /// the end `second`. Derived by composition; a groupoid that knows its translations in closed form supplies its own
+  /// `seed` with this signature (the law suites compare the two).
+  template <class M, class A> auto seed_by_composition(const A& g, End first, End second, int offset) const {
     Vector<M, Dimension> a = Vector<M, Dimension>::Constant(M(0));
     Vector<M, Dimension> b = a;
     for (int i = 0; i < Dimension; ++i) {
@@ -103,22 +97,19 @@ class LieGroupoid {
     }
     return translate(a, cast<M>(g), b);
   }
-  template <class M, class A>
-  auto seed(const A& g, End first, End second, int offset = 0) const {
+  template <class M, class A> auto seed(const A& g, End first, End second, int offset = 0) const {
     return seed_by_composition<M>(g, first, second, offset);
   }
 
   /// The left-invariant field X<-(g) = d/dt|0 g tau(t X) of X in A_{beta(g)}G, in arrow coordinates. [G] (1)
-  template <class A, class V>
-  auto left_invariant(const A& g, const V& x) const {
+  template <class A, class V> auto left_invariant(const A& g, const V& x) const {
     using D = Dual<typename V::Scalar>;
     const auto gd = cast<D>(g);
     return derivative_of(coordinates_of_arrow(self().multiply(gd, self().tau(self().target(gd), infinitesimal(x)))));
   }
 
   /// The right-invariant field X->(g) = -d/dt|0 tau(t X)^{-1} g of X in A_{alpha(g)}G, in arrow coordinates. [G] (2)
-  template <class A, class V>
-  auto right_invariant(const A& g, const V& x) const {
+  template <class A, class V> auto right_invariant(const A& g, const V& x) const {
     using D = Dual<typename V::Scalar>;
     const auto gd = cast<D>(g);
     const auto moved = self().multiply(self().inverse(self().tau(self().source(gd), infinitesimal(x))), gd);
@@ -126,16 +117,13 @@ class LieGroupoid {
   }
 
   /// The anchor rho(X) = T beta(X) of X in A_qG, in object coordinates. [G] Def. 2.9
-  template <class Q, class V>
-  auto anchor(const Q& q, const V& x) const {
+  template <class Q, class V> auto anchor(const Q& q, const V& x) const {
     using D = Dual<typename V::Scalar>;
-    return derivative_of(
-        coordinates_of_object(self().target(self().tau(cast_object<D>(q), infinitesimal(x)))));
+    return derivative_of(coordinates_of_object(self().target(self().tau(cast_object<D>(q), infinitesimal(x)))));
   }
 
   /// The arrow g with a tangent vector in arrow coordinates, as an arrow over dual numbers.
-  template <class A, class V>
-  auto with_tangent(const A& g, const V& tangent) const {
+  template <class A, class V> auto with_tangent(const A& g, const V& tangent) const {
     const auto x = coordinates_of_arrow(g);
     Vector<Dual<typename V::Scalar>, V::SizeAtCompileTime> xd;
     for (int i = 0; i < xd.size(); ++i) xd(i) = {x(i), tangent(i)};
@@ -143,29 +131,23 @@ class LieGroupoid {
   }
 
   /// The arrow nearest to g that satisfies the groupoid's defining equations to round-off.
-  template <class A>
-  A project(const A& g) const {
-    return g;
-  }
+  template <class A> A project(const A& g) const { return g; }
 
-  template <class A>
-  auto coordinates_of_arrow(const A& g) const {
+  template <class A> auto coordinates_of_arrow(const A& g) const {
     if constexpr (detail::EigenValued<A>) {
       return Vector<typename A::Scalar, A::SizeAtCompileTime>(g.reshaped());
     } else {
       return self().coordinates(g);
     }
   }
-  template <class Q>
-  auto coordinates_of_object(const Q& q) const {
+  template <class Q> auto coordinates_of_object(const Q& q) const {
     if constexpr (detail::EigenValued<Q>) {
       return Vector<typename Q::Scalar, Q::SizeAtCompileTime>(q.reshaped());
     } else {
       return self().object_coordinates(q);
     }
   }
-  template <class S, class V>
-  auto arrow_at(const V& x) const {
+  template <class S, class V> auto arrow_at(const V& x) const {
     using A = typename Derived::template Arrow<S>;
     if constexpr (detail::EigenValued<A>) {
       return A(x.reshaped(Eigen::fix<A::RowsAtCompileTime>, Eigen::fix<A::ColsAtCompileTime>));
@@ -173,8 +155,7 @@ class LieGroupoid {
       return self().template arrow<S>(x);
     }
   }
-  template <class S, class V>
-  auto object_at(const V& x) const {
+  template <class S, class V> auto object_at(const V& x) const {
     using Q = typename Derived::template Object<S>;
     if constexpr (detail::EigenValued<Q>) {
       return Q(x.reshaped(Eigen::fix<Q::RowsAtCompileTime>, Eigen::fix<Q::ColsAtCompileTime>));
@@ -185,8 +166,7 @@ class LieGroupoid {
 
   /// For each direction of the alpha-fibre, the size of the coordinates that move along it: round-off in the arrow is
   /// this times the unit round-off. The largest coordinate by default; products answer factor by factor.
-  template <class A>
-  Vector<double, Dimension> coordinate_scale(const A& g) const {
+  template <class A> Vector<double, Dimension> coordinate_scale(const A& g) const {
     return Vector<double, Dimension>::Constant(coordinates_of_arrow(g).cwiseAbs().maxCoeff());
   }
 
@@ -209,8 +189,7 @@ class LieGroupoid {
   }
 
   /// Throws NotComposable unless beta(g) = alpha(h) up to 1e-9, relative to the size of the objects.
-  template <class A>
-  void require_composable(const A& g, const A& h) const {
+  template <class A> void require_composable(const A& g, const A& h) const {
     const auto end = coordinates_of_object(self().target(g));
     const auto start = coordinates_of_object(self().source(h));
     double gap = 0;
@@ -229,25 +208,20 @@ class LieGroupoid {
  private:
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 
-  template <class V>
-  static auto infinitesimal(const V& x) {
+  template <class V> static auto infinitesimal(const V& x) {
     using T = typename V::Scalar;
     Vector<Dual<T>, Dimension> e;
     for (int i = 0; i < Dimension; ++i) e(i) = Dual<T>(T(0.0), x(i));
     return e;
   }
-  template <class V>
-  static auto derivative_of(const V& coordinates) {
+  template <class V> static auto derivative_of(const V& coordinates) {
     return coordinates.unaryExpr([](const auto& c) { return c.derivative; }).eval();
   }
 };
 
-template <class G>
-using ArrowOf = typename G::template Arrow<double>;
-template <class G>
-using ObjectOf = typename G::template Object<double>;
-template <class G>
-using AlgebroidVector = Vector<double, G::dimension>;
+template <class G> using ArrowOf = typename G::template Arrow<double>;
+template <class G> using ObjectOf = typename G::template Object<double>;
+template <class G> using AlgebroidVector = Vector<double, G::dimension>;
 
 /// What every algorithm of Lagroid requires of a groupoid.
 ///

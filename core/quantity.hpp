@@ -21,8 +21,7 @@ enum class Promise {
 /// `configuration` is the arrow g_0 g_1 ... g_k whose target is the current object, g_0 being the initial
 /// configuration (for SO(3) the attitude A_k = A_0 g_1 ... g_k, for a pair groupoid (q_0, q_k)).
 /// `step` is the arrow that led here, meaningless at k = 0.
-template <class Sys>
-struct TrajectoryPoint {
+template <class Sys> struct TrajectoryPoint {
   long index = 0;
   double time = 0;
   State<typename Sys::GroupoidType> state;
@@ -31,8 +30,7 @@ struct TrajectoryPoint {
 };
 
 /// A (vector-valued) function of trajectory points with a promise attached.
-template <class Sys>
-struct Quantity {
+template <class Sys> struct Quantity {
   using Evaluate = std::function<void(const TrajectoryPoint<Sys>&, double*)>;
   using Size = std::function<double(const TrajectoryPoint<Sys>&)>;
 

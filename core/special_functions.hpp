@@ -13,10 +13,8 @@ namespace lagroid {
 
 namespace detail {
 
-template <int K>
-constexpr double factorial = K * factorial<K - 1>;
-template <>
-inline constexpr double factorial<0> = 1.0;
+template <int K> constexpr double factorial = K* factorial<K - 1>;
+template <> inline constexpr double factorial<0> = 1.0;
 
 }  // namespace detail
 
@@ -24,8 +22,7 @@ inline constexpr double factorial<0> = 1.0;
 ///
 /// With x = a^2: c_0 = cos a, c_1 = sin a / a, c_2 = (1 - cos a)/a^2, c_3 = (a - sin a)/a^3.
 /// Requires x >= 0. Relative error a few round-offs for K <= 3 at every x.
-template <int K, std::floating_point T>
-T stumpff(T x) {
+template <int K, std::floating_point T> T stumpff(T x) {
   static_assert(K >= 0);
   constexpr T series_limit = 4;
   if (x < series_limit) {
@@ -52,15 +49,13 @@ T stumpff(T x) {
 }
 
 /// d c_K / dx = -(c_{K+1} - K c_{K+2}) / 2, for any scalar on which stumpff is defined.
-template <int K, class S>
-S stumpff_derivative(const S& x) {
+template <int K, class S> S stumpff_derivative(const S& x) {
   return (stumpff<K + 1>(x) - S(double(K)) * stumpff<K + 2>(x)) * S(-0.5);
 }
 
 /// The n-th derivative (n = 0, 1, 2, 3) of f(w) = 2 acos(w) / sqrt(1 - w^2), the ratio of a rotation angle to the norm
 /// of the vector part of its unit quaternion with scalar part w. Requires -1 < w <= 1 (up to round-off above 1).
-template <int Order, std::floating_point T>
-T angle_ratio(T w) {
+template <int Order, std::floating_point T> T angle_ratio(T w) {
   static_assert(0 <= Order && Order <= 3);
   const T u = 1 - w;
   if (u < T(0.1)) {

@@ -12,8 +12,7 @@ namespace lagroid {
 /// The step equations F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0, in the unknowns (w, lambda), g <- g tau(w).
 ///
 /// For object constraints F- contains lambda . dC o rho at the source, the impulse between two arrows.
-template <class Sys>
-struct StepEquations {
+template <class Sys> struct StepEquations {
   static constexpr int size = Sys::dimension + Sys::constraints;
   using Residual = Vector<double, size>;
   using Jacobian = Matrix<double, size, size>;
@@ -37,8 +36,7 @@ struct StepEquations {
 };
 
 /// Row and column scales, powers of two, with which a matrix has rows and columns of largest entry near one.
-template <int Size>
-struct Scaling {
+template <int Size> struct Scaling {
   Vector<double, Size> row = Vector<double, Size>::Ones();
   Vector<double, Size> column = Vector<double, Size>::Ones();
 
@@ -67,8 +65,7 @@ struct Scaling {
 /// The condition number of the equilibrated matrix of T F- at a point of Sigma_L; infinite where the system is not
 /// regular ([G] Def. 3.5). The matrix of T F+ is its transpose up to signs, so that one number serves both, which is
 /// Corollary 3.4 of [G].
-template <DiscreteSystem Sys>
-double regularity_condition(const Sys& system, const Step<Sys>& step) {
+template <DiscreteSystem Sys> double regularity_condition(const Sys& system, const Step<Sys>& step) {
   using E = StepEquations<Sys>;
   const auto j = E::jacobian(two_sided(system, step.arrow, step.multipliers));
   const typename E::Jacobian scaled = Scaling<E::size>::equilibrate(j).apply(j);

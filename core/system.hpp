@@ -19,18 +19,15 @@ namespace lagroid {
 /// on the objects between arrows. Multipliers enter as L + <lambda, phi> + <lambda, C> ([G]'s sign).
 ///
 /// Optional members, used where present:
-///     bool admissible(const ArrowOf<G>& g) const      g lies on the branch on which the discretisation is meant to live
-///     Step<System> first_guess(const State<G>&) const  where the solve of a step that has no predecessor starts
+///     bool admissible(const ArrowOf<G>& g) const      g lies on the branch on which the discretisation is meant to
+///     live Step<System> first_guess(const State<G>&) const  where the solve of a step that has no predecessor starts
 ///     TwoSided<...> two_sided(g, lambda) const         analytic derivatives, in place of the automatic ones
 ///     double h                                         the time step, if there is one
-template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraints = 0>
-class System {
+template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraints = 0> class System {
  public:
   using GroupoidType = G;
-  template <class S>
-  using Arrow = typename G::template Arrow<S>;
-  template <class S>
-  using Object = typename G::template Object<S>;
+  template <class S> using Arrow = typename G::template Arrow<S>;
+  template <class S> using Object = typename G::template Object<S>;
 
   static constexpr int dimension = G::dimension;
   static constexpr int arrow_constraints = ArrowConstraints;
@@ -42,17 +39,16 @@ class System {
   [[no_unique_address]] G groupoid;
 };
 
-/// A point (q, mu) of A*G: an object and a momentum in the dual of the fibre A_qG, in the basis fixed by the retraction.
-template <class G>
-struct State {
+/// A point (q, mu) of A*G: an object and a momentum in the dual of the fibre A_qG, in the basis fixed by the
+/// retraction.
+template <class G> struct State {
   ObjectOf<G> object;
   AlgebroidVector<G> momentum;
 };
 
 /// An arrow and its multipliers: first those of the arrow constraints, then those of the object constraints at the
 /// arrow's source. For arrow constraints alone, a point of Sigma_L ([G] 3.3).
-template <class System>
-struct Step {
+template <class System> struct Step {
   ArrowOf<typename System::GroupoidType> arrow;
   typename System::Multipliers multipliers;
 };
@@ -60,10 +56,9 @@ struct Step {
 /// Gradients of the augmented function f = L + <lambda, phi> + <lambda, C o alpha> in the two-sided displacement
 /// (v, w) -> f(tau(v)^{-1} g tau(w)), all at v = w = 0, with its mixed second derivative.
 ///
-/// The discrete Legendre transforms are F- = -source_gradient and F+ = target_gradient ([G] Def. 3.3); the derivative of
-/// F- along the alpha-fibre is -mixed.
-template <int N, int M>
-struct TwoSided {
+/// The discrete Legendre transforms are F- = -source_gradient and F+ = target_gradient ([G] Def. 3.3); the derivative
+/// of F- along the alpha-fibre is -mixed.
+template <int N, int M> struct TwoSided {
   double value;                            ///< f(g), which is L(g) where the constraints hold
   Vector<double, N> source_gradient;       ///< df/dv
   Vector<double, N> target_gradient;       ///< df/dw
@@ -73,27 +68,26 @@ struct TwoSided {
   Matrix<double, M, N> constraint_target;  ///< d(phi, C o beta)/dw, row by row
 };
 
-template <class Sys>
-using TwoSidedOf = TwoSided<Sys::dimension, Sys::constraints>;
+template <class Sys> using TwoSidedOf = TwoSided<Sys::dimension, Sys::constraints>;
 
 /// What the solvers require of a system. Build one by deriving from `System`.
 template <class Sys>
-concept DiscreteSystem =
-    Groupoid<typename Sys::GroupoidType> &&
+concept DiscreteSystem = Groupoid<typename Sys::GroupoidType> &&
     requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
              const ObjectOf<typename Sys::GroupoidType>& q) {
-      { system.lagrangian(g) } -> std::convertible_to<double>;
-      requires Sys::arrow_constraints == 0 || requires {
-        { system.constraint(g) } -> std::convertible_to<Vector<double, Sys::arrow_constraints>>;
-      };
-      requires Sys::object_constraints == 0 || requires {
-        { system.object_constraint(q) } -> std::convertible_to<Vector<double, Sys::object_constraints>>;
-      };
-    };
+  { system.lagrangian(g) } -> std::convertible_to<double>;
+  requires Sys::arrow_constraints == 0 || requires {
+    { system.constraint(g) } -> std::convertible_to<Vector<double, Sys::arrow_constraints>>;
+  };
+  requires Sys::object_constraints == 0 || requires {
+    { system.object_constraint(q) } -> std::convertible_to<Vector<double, Sys::object_constraints>>;
+  };
+};
 
 template <class Sys>
-concept HasAnalyticDerivatives =
-    requires(const Sys& system, const Step<Sys>& step) { system.two_sided(step.arrow, step.multipliers); };
+concept HasAnalyticDerivatives = requires(const Sys& system, const Step<Sys>& step) {
+  system.two_sided(step.arrow, step.multipliers);
+};
 
 template <class Sys>
 concept HasBranch = requires(const Sys& system, const Step<Sys>& step) {

@@ -24,8 +24,7 @@ S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multip
 
 }  // namespace detail
 
-template <class Sys>
-using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
+template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
 
 /// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
 template <DiscreteSystem Sys>

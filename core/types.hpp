@@ -5,11 +5,9 @@
 
 namespace lagroid {
 
-template <class S, int N>
-using Vector = Eigen::Matrix<S, N, 1>;
+template <class S, int N> using Vector = Eigen::Matrix<S, N, 1>;
 
-template <class S, int Rows, int Columns>
-using Matrix = Eigen::Matrix<S, Rows, Columns>;
+template <class S, int Rows, int Columns> using Matrix = Eigen::Matrix<S, Rows, Columns>;
 
 /// The underlying real number of a scalar: itself for a real, the value part for a derivative-carrying scalar.
 constexpr double value_of(double x) { return x; }

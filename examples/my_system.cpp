@@ -11,7 +11,8 @@
 
 using namespace lagroid;
 
-// R^3 with (a, b, c)(a', b', c') = (a + a', b + b', c + c' + (a b' - b a')/2). In these coordinates exp is the identity.
+// R^3 with (a, b, c)(a', b', c') = (a + a', b + b', c + c' + (a b' - b a')/2). In these coordinates exp is the
+// identity.
 struct Heisenberg : LieGroupoid<Heisenberg, 3> {
   template <class S> using Arrow = Vector<S, 3>;
   template <class S> using Object = Vector<S, 0>;
@@ -35,7 +36,10 @@ struct Dido : System<Dido, Heisenberg, /*arrow constraints*/ 1> {
 
   // The momentum seen from the start, Ad*: conserved, because L and the constraint depend on the arrow alone.
   std::vector<Quantity<Dido>> quantities() const {
-    return {{"spatial momentum", {"P1", "P2", "P3"}, Promise::conserved, false,
+    return {{"spatial momentum",
+             {"P1", "P2", "P3"},
+             Promise::conserved,
+             false,
              [](const TrajectoryPoint<Dido>& p, double* out) {
                const auto& [g, mu] = std::pair(p.configuration, p.state.momentum);
                out[0] = mu(0) + g(1) * mu(2);
@@ -46,13 +50,13 @@ struct Dido : System<Dido, Heisenberg, /*arrow constraints*/ 1> {
 };
 
 int main() {
-  const auto laws = testing::groupoid_laws<Heisenberg>();
-  const auto momenta = testing::momentum_laws(Dido{}, [] {
+  const auto axioms = laws::groupoid_laws<Heisenberg>();
+  const auto momenta = laws::momentum_laws(Dido{}, [] {
     State<Heisenberg> s;
-    s.momentum = testing::draw_vector<3>(2.0);
+    s.momentum = laws::draw_vector<3>(2.0);
     return s;
   });
-  std::cout << laws << momenta;
+  std::cout << axioms << momenta;
 
   // One turn: with momentum (1, 0, 1) the shadow is a circle of radius about one.
   const Dido system;
@@ -68,5 +72,5 @@ int main() {
   }
   fmt::print("after one turn at ({:.3f}, {:.3f}), area enclosed {:.3f} (pi is 3.142)\n", walk.point().configuration(0),
              walk.point().configuration(1), walk.point().configuration(2));
-  return laws.holds() && momenta.holds() ? 0 : 1;
+  return axioms.holds() && momenta.holds() ? 0 : 1;
 }

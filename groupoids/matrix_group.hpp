@@ -21,41 +21,26 @@ enum class Retraction { exponential, cayley };
 template <class Derived, int N, int Dimension, Retraction Tau>
 class MatrixGroup : public LieGroupoid<Derived, Dimension> {
  public:
-  template <class S>
-  using Arrow = Matrix<S, N, N>;
-  template <class S>
-  using Object = Vector<S, 0>;
-  template <class S>
-  using Algebra = Vector<S, Dimension>;
+  template <class S> using Arrow = Matrix<S, N, N>;
+  template <class S> using Object = Vector<S, 0>;
+  template <class S> using Algebra = Vector<S, Dimension>;
   static constexpr int matrix_size = N;
   static constexpr Retraction retraction = Tau;
 
-  template <class S>
-  static Object<S> source(const Matrix<S, N, N>&) {
-    return {};
-  }
-  template <class S>
-  static Object<S> target(const Matrix<S, N, N>&) {
-    return {};
-  }
-  template <class S>
-  static Matrix<S, N, N> unit(const Vector<S, 0>&) {
-    return Matrix<S, N, N>::Identity();
-  }
-  template <class S>
-  static Matrix<S, N, N> multiply(const Matrix<S, N, N>& g, const Matrix<S, N, N>& h) {
+  template <class S> static Object<S> source(const Matrix<S, N, N>&) { return {}; }
+  template <class S> static Object<S> target(const Matrix<S, N, N>&) { return {}; }
+  template <class S> static Matrix<S, N, N> unit(const Vector<S, 0>&) { return Matrix<S, N, N>::Identity(); }
+  template <class S> static Matrix<S, N, N> multiply(const Matrix<S, N, N>& g, const Matrix<S, N, N>& h) {
     return g * h;
   }
-  template <class S>
-  static Matrix<S, N, N> tau(const Vector<S, 0>&, const Algebra<S>& xi) {
+  template <class S> static Matrix<S, N, N> tau(const Vector<S, 0>&, const Algebra<S>& xi) {
     if constexpr (Tau == Retraction::exponential) {
       return Derived::exp(xi);
     } else {
       return Derived::cayley(xi);
     }
   }
-  template <class S>
-  static Algebra<S> tau_inverse(const Matrix<S, N, N>& g) {
+  template <class S> static Algebra<S> tau_inverse(const Matrix<S, N, N>& g) {
     if constexpr (Tau == Retraction::exponential) {
       return Derived::log(g);
     } else {
@@ -64,21 +49,19 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
   /// cay(xi) = (I - hat(xi)/2)^{-1} (I + hat(xi)/2).
-  template <class S>
-  static Matrix<S, N, N> cayley(const Algebra<S>& xi) {
+  template <class S> static Matrix<S, N, N> cayley(const Algebra<S>& xi) {
     const Matrix<S, N, N> half = Derived::hat(xi) * S(0.5);
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
     return (one - half).eval().inverse() * (one + half);
   }
-  /// xi with cay(xi) = g: hat(xi) = 2 (g - I)(g + I)^{-1}. Requires that g has no eigenvalue -1 (rotation angle below pi).
-  template <class S>
-  static Algebra<S> cayley_inverse(const Matrix<S, N, N>& g) {
+  /// xi with cay(xi) = g: hat(xi) = 2 (g - I)(g + I)^{-1}. Requires that g has no eigenvalue -1 (rotation angle below
+  /// pi).
+  template <class S> static Algebra<S> cayley_inverse(const Matrix<S, N, N>& g) {
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
     return Derived::vee(((g - one) * (g + one).eval().inverse() * S(2)).eval());
   }
   /// The matrix of dcay_xi: hat(dcay_xi eta) = (I + hat(xi)/2)^{-1} hat(eta) (I - hat(xi)/2)^{-1}.
-  template <class S>
-  static Matrix<S, Dimension, Dimension> dcayley(const Algebra<S>& xi) {
+  template <class S> static Matrix<S, Dimension, Dimension> dcayley(const Algebra<S>& xi) {
     const Matrix<S, N, N> half = Derived::hat(xi) * S(0.5);
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
     const Matrix<S, N, N> plus = (one + half).eval().inverse();
@@ -86,8 +69,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return columns<S>([&](const Matrix<S, N, N>& e) -> Matrix<S, N, N> { return plus * e * minus; });
   }
   /// The inverse of the matrix dcayley(xi).
-  template <class S>
-  static Matrix<S, Dimension, Dimension> dcayley_inverse(const Algebra<S>& xi) {
+  template <class S> static Matrix<S, Dimension, Dimension> dcayley_inverse(const Algebra<S>& xi) {
     const Matrix<S, N, N> half = Derived::hat(xi) * S(0.5);
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
     return columns<S>([&](const Matrix<S, N, N>& e) -> Matrix<S, N, N> { return (one + half) * e * (one - half); });
@@ -130,25 +112,21 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
  private:
-  template <class S, class F>
-  static Matrix<S, Dimension, Dimension> columns(const F& conjugate) {
+  template <class S, class F> static Matrix<S, Dimension, Dimension> columns(const F& conjugate) {
     Matrix<S, Dimension, Dimension> d;
-    for (int i = 0; i < Dimension; ++i)
-      d.col(i) = Derived::vee(conjugate(generator(i).template cast<S>().eval()));
+    for (int i = 0; i < Dimension; ++i) d.col(i) = Derived::vee(conjugate(generator(i).template cast<S>().eval()));
     return d;
   }
 };
 
 /// dexp_xi = sum_k (-ad_xi)^k / (k+1)! where ad^3 = -x ad, x the squared rotation angle (so(3), se(2)).
-template <class S, int N>
-Matrix<S, N, N> dexp_from_ad(const Matrix<S, N, N>& ad, const S& x) {
+template <class S, int N> Matrix<S, N, N> dexp_from_ad(const Matrix<S, N, N>& ad, const S& x) {
   return Matrix<S, N, N>::Identity() - stumpff<2>(x) * ad + stumpff<3>(x) * (ad * ad).eval();
 }
 
 /// The inverse of dexp_from_ad: I + ad/2 + d ad^2 with d = (1 - (a/2) cot(a/2))/a^2, x = a^2, written without
 /// cancellation. Requires a rotation angle below 2 pi.
-template <class S, int N>
-Matrix<S, N, N> dexp_inverse_from_ad(const Matrix<S, N, N>& ad, const S& x) {
+template <class S, int N> Matrix<S, N, N> dexp_inverse_from_ad(const Matrix<S, N, N>& ad, const S& x) {
   const S d = (stumpff<3>(x) - S(2) * stumpff<4>(x)) / (S(2) * stumpff<2>(x));
   return Matrix<S, N, N>::Identity() + S(0.5) * ad + d * (ad * ad).eval();
 }

@@ -8,8 +8,7 @@
 namespace lagroid {
 
 /// An arrow of Pair<n>: from `source` to `target`.
-template <class S, int N>
-struct PairArrow {
+template <class S, int N> struct PairArrow {
   Vector<S, N> source;
   Vector<S, N> target;
 };
@@ -17,56 +16,27 @@ struct PairArrow {
 /// Arrows: pairs (q0, q1) of points of R^n; (q0, q1)(q1, q2) = (q0, q2). Source q0, target q1.
 /// Algebroid: T R^n with the coordinate basis; anchor the identity. Retraction tau_q(v) = (q, q + v).
 /// Memory: q0 then q1.
-template <int N>
-struct Pair : LieGroupoid<Pair<N>, N> {
-  template <class S>
-  using Arrow = PairArrow<S, N>;
-  template <class S>
-  using Object = Vector<S, N>;
+template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
+  template <class S> using Arrow = PairArrow<S, N>;
+  template <class S> using Object = Vector<S, N>;
   static constexpr int arrow_size = 2 * N;
 
-  template <class S>
-  static Object<S> source(const Arrow<S>& g) {
-    return g.source;
-  }
-  template <class S>
-  static Object<S> target(const Arrow<S>& g) {
-    return g.target;
-  }
-  template <class S>
-  static Arrow<S> unit(const Vector<S, N>& q) {
-    return {q, q};
-  }
-  template <class S>
-  static Arrow<S> inverse(const Arrow<S>& g) {
-    return {g.target, g.source};
-  }
-  template <class S>
-  static Arrow<S> multiply(const Arrow<S>& g, const Arrow<S>& h) {
-    return {g.source, h.target};
-  }
-  template <class S>
-  static Arrow<S> tau(const Vector<S, N>& q, const Vector<S, N>& v) {
-    return {q, q + v};
-  }
-  template <class S>
-  static Vector<S, N> tau_inverse(const Arrow<S>& g) {
-    return g.target - g.source;
-  }
+  template <class S> static Object<S> source(const Arrow<S>& g) { return g.source; }
+  template <class S> static Object<S> target(const Arrow<S>& g) { return g.target; }
+  template <class S> static Arrow<S> unit(const Vector<S, N>& q) { return {q, q}; }
+  template <class S> static Arrow<S> inverse(const Arrow<S>& g) { return {g.target, g.source}; }
+  template <class S> static Arrow<S> multiply(const Arrow<S>& g, const Arrow<S>& h) { return {g.source, h.target}; }
+  template <class S> static Arrow<S> tau(const Vector<S, N>& q, const Vector<S, N>& v) { return {q, q + v}; }
+  template <class S> static Vector<S, N> tau_inverse(const Arrow<S>& g) { return g.target - g.source; }
 
-  template <class S>
-  static Vector<S, arrow_size> coordinates(const Arrow<S>& g) {
+  template <class S> static Vector<S, arrow_size> coordinates(const Arrow<S>& g) {
     Vector<S, arrow_size> x;
     x << g.source, g.target;
     return x;
   }
-  template <class S, class V>
-  static Arrow<S> arrow(const V& x) {
-    return {x.template head<N>(), x.template tail<N>()};
-  }
+  template <class S, class V> static Arrow<S> arrow(const V& x) { return {x.template head<N>(), x.template tail<N>()}; }
 
-  template <class M, class T>
-  static Arrow<M> seed(const PairArrow<T, N>& g, End first, End second, int offset = 0) {
+  template <class M, class T> static Arrow<M> seed(const PairArrow<T, N>& g, End first, End second, int offset = 0) {
     Arrow<M> out;
     for (int i = 0; i < N; ++i) {
       out.source(i) = M(g.source(i));

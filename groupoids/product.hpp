@@ -12,13 +12,10 @@ namespace lagroid {
 
 /// Arrows: tuples of arrows, with source, target, product, ... factor by factor; unpack them with
 /// `const auto& [g1, g2] = g;`. Algebroid: the direct sum, in the order of the factors. Memory: the factors in order.
-template <class... Gs>
-struct Product : LieGroupoid<Product<Gs...>, (Gs::dimension + ...)> {
+template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimension + ...)> {
   static_assert(sizeof...(Gs) >= 2);
-  template <class S>
-  using Arrow = std::tuple<typename Gs::template Arrow<S>...>;
-  template <class S>
-  using Object = std::tuple<typename Gs::template Object<S>...>;
+  template <class S> using Arrow = std::tuple<typename Gs::template Arrow<S>...>;
+  template <class S> using Object = std::tuple<typename Gs::template Object<S>...>;
   static constexpr int arrow_size = (Gs::arrow_coordinate_count() + ...);
   static constexpr int object_size = (Gs::object_coordinate_count() + ...);
   static constexpr std::size_t factors = sizeof...(Gs);
@@ -26,65 +23,48 @@ struct Product : LieGroupoid<Product<Gs...>, (Gs::dimension + ...)> {
 
   [[no_unique_address]] std::tuple<Gs...> factor;
 
-  template <class... As>
-  auto source(const std::tuple<As...>& g) const {
+  template <class... As> auto source(const std::tuple<As...>& g) const {
     return map([](const auto& f, const auto& gi) { return f.source(gi); }, g);
   }
-  template <class... As>
-  auto target(const std::tuple<As...>& g) const {
+  template <class... As> auto target(const std::tuple<As...>& g) const {
     return map([](const auto& f, const auto& gi) { return f.target(gi); }, g);
   }
-  template <class... Qs>
-  auto unit(const std::tuple<Qs...>& q) const {
+  template <class... Qs> auto unit(const std::tuple<Qs...>& q) const {
     return map([](const auto& f, const auto& qi) { return f.unit(qi); }, q);
   }
-  template <class... As>
-  auto inverse(const std::tuple<As...>& g) const {
+  template <class... As> auto inverse(const std::tuple<As...>& g) const {
     return map([](const auto& f, const auto& gi) { return f.inverse(gi); }, g);
   }
-  template <class... As>
-  auto multiply(const std::tuple<As...>& g, const std::tuple<As...>& h) const {
+  template <class... As> auto multiply(const std::tuple<As...>& g, const std::tuple<As...>& h) const {
     return map([](const auto& f, const auto& gi, const auto& hi) { return f.multiply(gi, hi); }, g, h);
   }
-  template <class S, class... Qs>
-  auto tau(const std::tuple<Qs...>& q, const Vector<S, rank>& v) const {
-    return indexed([&]<std::size_t I>() {
-      return std::get<I>(factor).tau(std::get<I>(q), segment<dimensions, I>(v));
-    });
+  template <class S, class... Qs> auto tau(const std::tuple<Qs...>& q, const Vector<S, rank>& v) const {
+    return indexed([&]<std::size_t I>() { return std::get<I>(factor).tau(std::get<I>(q), segment<dimensions, I>(v)); });
   }
-  template <class... As>
-  auto tau_inverse(const std::tuple<As...>& g) const {
+  template <class... As> auto tau_inverse(const std::tuple<As...>& g) const {
     return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.tau_inverse(gi); }, g));
   }
-  template <class... As>
-  auto project(const std::tuple<As...>& g) const {
+  template <class... As> auto project(const std::tuple<As...>& g) const {
     return map([](const auto& f, const auto& gi) { return f.project(gi); }, g);
   }
 
-  template <class... As>
-  Vector<double, rank> coordinate_scale(const std::tuple<As...>& g) const {
+  template <class... As> Vector<double, rank> coordinate_scale(const std::tuple<As...>& g) const {
     return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.coordinate_scale(gi); }, g));
   }
 
-  template <class... As>
-  auto coordinates(const std::tuple<As...>& g) const {
+  template <class... As> auto coordinates(const std::tuple<As...>& g) const {
     return concatenate<arrow_size>(map([](const auto& f, const auto& gi) { return f.coordinates_of_arrow(gi); }, g));
   }
-  template <class S, class V>
-  Arrow<S> arrow(const V& x) const {
-    return indexed([&]<std::size_t I>() {
-      return std::get<I>(factor).template arrow_at<S>(segment<arrow_sizes, I>(x));
-    });
+  template <class S, class V> Arrow<S> arrow(const V& x) const {
+    return indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).template arrow_at<S>(segment<arrow_sizes, I>(x)); });
   }
-  template <class... Qs>
-  auto object_coordinates(const std::tuple<Qs...>& q) const {
+  template <class... Qs> auto object_coordinates(const std::tuple<Qs...>& q) const {
     return concatenate<object_size>(map([](const auto& f, const auto& qi) { return f.coordinates_of_object(qi); }, q));
   }
-  template <class S, class V>
-  Object<S> object(const V& x) const {
-    return indexed([&]<std::size_t I>() {
-      return std::get<I>(factor).template object_at<S>(segment<object_sizes, I>(x));
-    });
+  template <class S, class V> Object<S> object(const V& x) const {
+    return indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).template object_at<S>(segment<object_sizes, I>(x)); });
   }
 
   template <class M, class... As>
@@ -110,23 +90,18 @@ struct Product : LieGroupoid<Product<Gs...>, (Gs::dimension + ...)> {
     for (std::size_t i = 0; i < index; ++i) sum += sizes[i];
     return sum;
   }
-  template <const std::array<int, factors>& Sizes, std::size_t I, class V>
-  static auto segment(const V& x) {
+  template <const std::array<int, factors>& Sizes, std::size_t I, class V> static auto segment(const V& x) {
     return Vector<typename V::Scalar, Sizes[I]>(x.template segment<Sizes[I]>(start(Sizes, I)));
   }
 
-  template <class F>
-  static auto indexed(const F& f) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return std::make_tuple(f.template operator()<I>()...);
-    }(std::make_index_sequence<factors>{});
+  template <class F> static auto indexed(const F& f) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) { return std::make_tuple(f.template operator()<I>()...); }
+    (std::make_index_sequence<factors>{});
   }
-  template <class F, class... Tuples>
-  auto map(const F& f, const Tuples&... tuples) const {
+  template <class F, class... Tuples> auto map(const F& f, const Tuples&... tuples) const {
     return indexed([&]<std::size_t I>() { return f(std::get<I>(factor), std::get<I>(tuples)...); });
   }
-  template <int Size, class Tuple>
-  static auto concatenate(const Tuple& parts) {
+  template <int Size, class Tuple> static auto concatenate(const Tuple& parts) {
     using S = typename std::tuple_element_t<0, Tuple>::Scalar;
     Vector<S, Size> out;
     int at = 0;

@@ -8,45 +8,36 @@ namespace lagroid {
 /// Arrows: 3 x 3 homogeneous matrices [R p; 0 1]. Algebra: xi = (w, v1, v2), hat(xi) = [hat(w) v; 0 0].
 template <Retraction Tau = Retraction::exponential>
 struct SpecialEuclidean2 : MatrixGroup<SpecialEuclidean2<Tau>, 3, 3, Tau> {
-  template <class S>
-  static Matrix<S, 3, 3> hat(const Vector<S, 3>& xi) {
+  template <class S> static Matrix<S, 3, 3> hat(const Vector<S, 3>& xi) {
     Matrix<S, 3, 3> x;
     x << S(0), -xi(0), xi(1), xi(0), S(0), xi(2), S(0), S(0), S(0);
     return x;
   }
-  template <class S>
-  static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
+  template <class S> static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
     return Vector<S, 3>(x(1, 0), x(0, 2), x(1, 2));
   }
-  template <class S>
-  static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) {
+  template <class S> static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) {
     const Matrix<S, 2, 2> transposed = g.template topLeftCorner<2, 2>().transpose();
     return homogeneous<S>(transposed, -(transposed * g.template topRightCorner<2, 1>()));
   }
-  template <class S>
-  static Matrix<S, 3, 3> exp(const Vector<S, 3>& xi) {
+  template <class S> static Matrix<S, 3, 3> exp(const Vector<S, 3>& xi) {
     return homogeneous<S>(SO2::exp(Vector<S, 1>(xi(0))), screw(xi(0)) * xi.template tail<2>());
   }
-  template <class S>
-  static Vector<S, 3> log(const Matrix<S, 3, 3>& g) {
+  template <class S> static Vector<S, 3> log(const Matrix<S, 3, 3>& g) {
     const S w = SO2::log(Matrix<S, 2, 2>(g.template topLeftCorner<2, 2>()))(0);
     // screw(w) = a I + b J has inverse (a I - b J) / (a^2 + b^2), and a^2 + b^2 = 2 c_2(w^2).
-    const Vector<S, 2> v =
-        screw(w).transpose() * g.template topRightCorner<2, 1>() / (S(2) * stumpff<2>(S(w * w)));
+    const Vector<S, 2> v = screw(w).transpose() * g.template topRightCorner<2, 1>() / (S(2) * stumpff<2>(S(w * w)));
     return Vector<S, 3>(w, v(0), v(1));
   }
-  template <class S>
-  static Matrix<S, 3, 3> ad(const Vector<S, 3>& xi) {
+  template <class S> static Matrix<S, 3, 3> ad(const Vector<S, 3>& xi) {
     Matrix<S, 3, 3> a;
     a << S(0), S(0), S(0), xi(2), S(0), -xi(0), -xi(1), xi(0), S(0);
     return a;
   }
-  template <class S>
-  static Matrix<S, 3, 3> dexp(const Vector<S, 3>& xi) {
+  template <class S> static Matrix<S, 3, 3> dexp(const Vector<S, 3>& xi) {
     return dexp_from_ad<S, 3>(ad(xi), S(xi(0) * xi(0)));
   }
-  template <class S>
-  static Matrix<S, 3, 3> dexp_inverse(const Vector<S, 3>& xi) {
+  template <class S> static Matrix<S, 3, 3> dexp_inverse(const Vector<S, 3>& xi) {
     return dexp_inverse_from_ad<S, 3>(ad(xi), S(xi(0) * xi(0)));
   }
   static Matrix<double, 3, 3> project(const Matrix<double, 3, 3>& g) {
@@ -65,8 +56,7 @@ struct SpecialEuclidean2 : MatrixGroup<SpecialEuclidean2<Tau>, 3, 3, Tau> {
 
  private:
   /// The matrix that carries v to the translation part of exp(w, v): c_1 I + w c_2 J, J = hat(1).
-  template <class S>
-  static Matrix<S, 2, 2> screw(const S& w) {
+  template <class S> static Matrix<S, 2, 2> screw(const S& w) {
     const S x = w * w;
     const S a = stumpff<1>(x);
     const S b = w * stumpff<2>(x);

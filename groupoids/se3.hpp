@@ -11,47 +11,39 @@ namespace lagroid {
 /// numbers: dexp_(w, v) = [J(w) 0; J'(w; v) J(w)].
 template <Retraction Tau = Retraction::exponential>
 struct SpecialEuclidean3 : MatrixGroup<SpecialEuclidean3<Tau>, 4, 6, Tau> {
-  template <class S>
-  static Matrix<S, 4, 4> hat(const Vector<S, 6>& xi) {
+  template <class S> static Matrix<S, 4, 4> hat(const Vector<S, 6>& xi) {
     Matrix<S, 4, 4> x = Matrix<S, 4, 4>::Zero();
     x.template topLeftCorner<3, 3>() = SO3::hat(Vector<S, 3>(xi.template head<3>()));
     x.template topRightCorner<3, 1>() = xi.template tail<3>();
     return x;
   }
-  template <class S>
-  static Vector<S, 6> vee(const Matrix<S, 4, 4>& x) {
+  template <class S> static Vector<S, 6> vee(const Matrix<S, 4, 4>& x) {
     Vector<S, 6> xi;
     xi << SO3::vee(Matrix<S, 3, 3>(x.template topLeftCorner<3, 3>())), x.template topRightCorner<3, 1>();
     return xi;
   }
-  template <class S>
-  static Matrix<S, 4, 4> inverse(const Matrix<S, 4, 4>& g) {
+  template <class S> static Matrix<S, 4, 4> inverse(const Matrix<S, 4, 4>& g) {
     const Matrix<S, 3, 3> transposed = g.template topLeftCorner<3, 3>().transpose();
     return homogeneous<S>(transposed, -(transposed * g.template topRightCorner<3, 1>()));
   }
   /// R = exp(w), p = dexp_{-w} v.
-  template <class S>
-  static Matrix<S, 4, 4> exp(const Vector<S, 6>& xi) {
+  template <class S> static Matrix<S, 4, 4> exp(const Vector<S, 6>& xi) {
     const Vector<S, 3> w = xi.template head<3>();
     return homogeneous<S>(SO3::exp(w), SO3::dexp(Vector<S, 3>(-w)) * xi.template tail<3>());
   }
-  template <class S>
-  static Vector<S, 6> log(const Matrix<S, 4, 4>& g) {
+  template <class S> static Vector<S, 6> log(const Matrix<S, 4, 4>& g) {
     const Vector<S, 3> w = SO3::log(Matrix<S, 3, 3>(g.template topLeftCorner<3, 3>()));
     Vector<S, 6> xi;
     xi << w, SO3::dexp_inverse(Vector<S, 3>(-w)) * g.template topRightCorner<3, 1>();
     return xi;
   }
-  template <class S>
-  static Matrix<S, 6, 6> ad(const Vector<S, 6>& xi) {
+  template <class S> static Matrix<S, 6, 6> ad(const Vector<S, 6>& xi) {
     return over_dual_numbers(xi, [](const auto& w) { return SO3::ad(w); });
   }
-  template <class S>
-  static Matrix<S, 6, 6> dexp(const Vector<S, 6>& xi) {
+  template <class S> static Matrix<S, 6, 6> dexp(const Vector<S, 6>& xi) {
     return over_dual_numbers(xi, [](const auto& w) { return SO3::dexp(w); });
   }
-  template <class S>
-  static Matrix<S, 6, 6> dexp_inverse(const Vector<S, 6>& xi) {
+  template <class S> static Matrix<S, 6, 6> dexp_inverse(const Vector<S, 6>& xi) {
     return over_dual_numbers(xi, [](const auto& w) { return SO3::dexp_inverse(w); });
   }
   static Matrix<double, 4, 4> project(const Matrix<double, 4, 4>& g) {
@@ -69,8 +61,7 @@ struct SpecialEuclidean3 : MatrixGroup<SpecialEuclidean3<Tau>, 4, 6, Tau> {
   }
 
  private:
-  template <class S, class F>
-  static Matrix<S, 6, 6> over_dual_numbers(const Vector<S, 6>& xi, const F& f) {
+  template <class S, class F> static Matrix<S, 6, 6> over_dual_numbers(const Vector<S, 6>& xi, const F& f) {
     Vector<Dual<S>, 3> w;
     for (int i = 0; i < 3; ++i) w(i) = Dual<S>(xi(i), xi(3 + i));
     const Matrix<Dual<S>, 3, 3> m = f(w);

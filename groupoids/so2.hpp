@@ -10,22 +10,14 @@ namespace lagroid {
 /// Arrows: 2 x 2 rotation matrices. Algebra: the angle rate xi = (w), hat(w) = [[0, -w], [w, 0]]; Abelian.
 template <Retraction Tau = Retraction::exponential>
 struct SpecialOrthogonal2 : MatrixGroup<SpecialOrthogonal2<Tau>, 2, 1, Tau> {
-  template <class S>
-  static Matrix<S, 2, 2> hat(const Vector<S, 1>& xi) {
+  template <class S> static Matrix<S, 2, 2> hat(const Vector<S, 1>& xi) {
     Matrix<S, 2, 2> x;
     x << S(0), -xi(0), xi(0), S(0);
     return x;
   }
-  template <class S>
-  static Vector<S, 1> vee(const Matrix<S, 2, 2>& x) {
-    return Vector<S, 1>(x(1, 0));
-  }
-  template <class S>
-  static Matrix<S, 2, 2> inverse(const Matrix<S, 2, 2>& g) {
-    return g.transpose();
-  }
-  template <class S>
-  static Matrix<S, 2, 2> exp(const Vector<S, 1>& xi) {
+  template <class S> static Vector<S, 1> vee(const Matrix<S, 2, 2>& x) { return Vector<S, 1>(x(1, 0)); }
+  template <class S> static Matrix<S, 2, 2> inverse(const Matrix<S, 2, 2>& g) { return g.transpose(); }
+  template <class S> static Matrix<S, 2, 2> exp(const Vector<S, 1>& xi) {
     using std::cos, std::sin;
     const S c = cos(xi(0));
     const S s = sin(xi(0));
@@ -34,23 +26,13 @@ struct SpecialOrthogonal2 : MatrixGroup<SpecialOrthogonal2<Tau>, 2, 1, Tau> {
     return g;
   }
   /// The angle in (-pi, pi].
-  template <class S>
-  static Vector<S, 1> log(const Matrix<S, 2, 2>& g) {
+  template <class S> static Vector<S, 1> log(const Matrix<S, 2, 2>& g) {
     using std::atan2;
     return Vector<S, 1>(atan2(g(1, 0), g(0, 0)));
   }
-  template <class S>
-  static Matrix<S, 1, 1> ad(const Vector<S, 1>&) {
-    return Matrix<S, 1, 1>(S(0));
-  }
-  template <class S>
-  static Matrix<S, 1, 1> dexp(const Vector<S, 1>&) {
-    return Matrix<S, 1, 1>(S(1));
-  }
-  template <class S>
-  static Matrix<S, 1, 1> dexp_inverse(const Vector<S, 1>&) {
-    return Matrix<S, 1, 1>(S(1));
-  }
+  template <class S> static Matrix<S, 1, 1> ad(const Vector<S, 1>&) { return Matrix<S, 1, 1>(S(0)); }
+  template <class S> static Matrix<S, 1, 1> dexp(const Vector<S, 1>&) { return Matrix<S, 1, 1>(S(1)); }
+  template <class S> static Matrix<S, 1, 1> dexp_inverse(const Vector<S, 1>&) { return Matrix<S, 1, 1>(S(1)); }
   /// The first column renormalised, the second its quarter turn.
   static Matrix<double, 2, 2> project(const Matrix<double, 2, 2>& g) {
     const Vector<double, 2> e = g.col(0).normalized();

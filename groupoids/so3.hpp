@@ -14,24 +14,18 @@ namespace lagroid {
 /// Memory: column-major matrix.
 template <Retraction Tau = Retraction::exponential>
 struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
-  template <class S>
-  static Matrix<S, 3, 3> hat(const Vector<S, 3>& w) {
+  template <class S> static Matrix<S, 3, 3> hat(const Vector<S, 3>& w) {
     Matrix<S, 3, 3> x;
     x << S(0), -w(2), w(1), w(2), S(0), -w(0), -w(1), w(0), S(0);
     return x;
   }
   /// The axial vector of the antisymmetric part.
-  template <class S>
-  static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
+  template <class S> static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
     return Vector<S, 3>(x(2, 1) - x(1, 2), x(0, 2) - x(2, 0), x(1, 0) - x(0, 1)) * S(0.5);
   }
-  template <class S>
-  static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) {
-    return g.transpose();
-  }
+  template <class S> static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) { return g.transpose(); }
   /// Rodrigues: I + c_1(|w|^2) hat(w) + c_2(|w|^2) hat(w)^2.
-  template <class S>
-  static Matrix<S, 3, 3> exp(const Vector<S, 3>& w) {
+  template <class S> static Matrix<S, 3, 3> exp(const Vector<S, 3>& w) {
     const S x = w.squaredNorm();
     const Matrix<S, 3, 3> h = hat(w);
     return Matrix<S, 3, 3>::Identity() + stumpff<1>(x) * h + stumpff<2>(x) * (h * h).eval();
@@ -39,8 +33,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
 
   /// The unit quaternion (w, x, y, z) with w >= 0 of a rotation matrix, from its largest component (stable at every
   /// angle; at angle pi one of the two is chosen).
-  template <class S>
-  static Vector<S, 4> quaternion(const Matrix<S, 3, 3>& g) {
+  template <class S> static Vector<S, 4> quaternion(const Matrix<S, 3, 3>& g) {
     using std::sqrt;
     const double d0 = double(value_of(g(0, 0)));
     const double d1 = double(value_of(g(1, 1)));
@@ -68,35 +61,27 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   }
 
   /// The rotation vector, of norm at most pi; from the quaternion, hence accurate near 0 and near pi.
-  template <class S>
-  static Vector<S, 3> log(const Matrix<S, 3, 3>& g) {
+  template <class S> static Vector<S, 3> log(const Matrix<S, 3, 3>& g) {
     const Vector<S, 4> q = quaternion(g);
     return q.template tail<3>() * angle_ratio<0>(q(0));
   }
 
   /// cay(w) = I + (hat(w) + hat(w)^2 / 2) / (1 + |w|^2 / 4): the rotation by 2 atan(|w|/2) about w.
-  template <class S>
-  static Matrix<S, 3, 3> cayley(const Vector<S, 3>& w) {
+  template <class S> static Matrix<S, 3, 3> cayley(const Vector<S, 3>& w) {
     const Matrix<S, 3, 3> h = hat(w);
     const S scale = S(1) / (S(1) + w.squaredNorm() * S(0.25));
     return Matrix<S, 3, 3>::Identity() + scale * h + (scale * S(0.5)) * (h * h).eval();
   }
   /// w = 2 tan(angle/2) axis = 4 vee(g) / (1 + tr g). Requires an angle below pi.
-  template <class S>
-  static Vector<S, 3> cayley_inverse(const Matrix<S, 3, 3>& g) {
+  template <class S> static Vector<S, 3> cayley_inverse(const Matrix<S, 3, 3>& g) {
     return vee(g) * (S(4) / (S(1) + g(0, 0) + g(1, 1) + g(2, 2)));
   }
 
-  template <class S>
-  static Matrix<S, 3, 3> ad(const Vector<S, 3>& w) {
-    return hat(w);
-  }
-  template <class S>
-  static Matrix<S, 3, 3> dexp(const Vector<S, 3>& w) {
+  template <class S> static Matrix<S, 3, 3> ad(const Vector<S, 3>& w) { return hat(w); }
+  template <class S> static Matrix<S, 3, 3> dexp(const Vector<S, 3>& w) {
     return dexp_from_ad<S, 3>(hat(w), w.squaredNorm());
   }
-  template <class S>
-  static Matrix<S, 3, 3> dexp_inverse(const Vector<S, 3>& w) {
+  template <class S> static Matrix<S, 3, 3> dexp_inverse(const Vector<S, 3>& w) {
     return dexp_inverse_from_ad<S, 3>(hat(w), w.squaredNorm());
   }
 

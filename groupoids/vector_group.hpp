@@ -9,43 +9,18 @@ namespace lagroid {
 
 /// Arrows: vectors of R^n under addition, over a single object. Algebroid: R^n, zero anchor, zero bracket. Retraction:
 /// the identity (it is the exponential map). Memory: the vector.
-template <int N>
-struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
-  template <class S>
-  using Arrow = Vector<S, N>;
-  template <class S>
-  using Object = Vector<S, 0>;
+template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
+  template <class S> using Arrow = Vector<S, N>;
+  template <class S> using Object = Vector<S, 0>;
 
-  template <class S>
-  static Object<S> source(const Vector<S, N>&) {
-    return {};
-  }
-  template <class S>
-  static Object<S> target(const Vector<S, N>&) {
-    return {};
-  }
-  template <class S>
-  static Vector<S, N> unit(const Vector<S, 0>&) {
-    return Vector<S, N>::Constant(S(0));
-  }
-  template <class S>
-  static Vector<S, N> inverse(const Vector<S, N>& g) {
-    return -g;
-  }
-  template <class S>
-  static Vector<S, N> multiply(const Vector<S, N>& g, const Vector<S, N>& h) {
-    return g + h;
-  }
-  template <class S>
-  static Vector<S, N> tau(const Vector<S, 0>&, const Vector<S, N>& v) {
-    return v;
-  }
-  template <class S>
-  static Vector<S, N> tau_inverse(const Vector<S, N>& g) {
-    return g;
-  }
-  template <class M, class T>
-  static Vector<M, N> seed(const Vector<T, N>& g, End first, End second, int offset = 0) {
+  template <class S> static Object<S> source(const Vector<S, N>&) { return {}; }
+  template <class S> static Object<S> target(const Vector<S, N>&) { return {}; }
+  template <class S> static Vector<S, N> unit(const Vector<S, 0>&) { return Vector<S, N>::Constant(S(0)); }
+  template <class S> static Vector<S, N> inverse(const Vector<S, N>& g) { return -g; }
+  template <class S> static Vector<S, N> multiply(const Vector<S, N>& g, const Vector<S, N>& h) { return g + h; }
+  template <class S> static Vector<S, N> tau(const Vector<S, 0>&, const Vector<S, N>& v) { return v; }
+  template <class S> static Vector<S, N> tau_inverse(const Vector<S, N>& g) { return g; }
+  template <class M, class T> static Vector<M, N> seed(const Vector<T, N>& g, End first, End second, int offset = 0) {
     Vector<M, N> out;
     for (int i = 0; i < N; ++i) {
       out(i) = M(g(i));

@@ -11,11 +11,10 @@
 namespace lagroid {
 
 /// The KKT equations as a least-squares problem of zero residual: unknowns are the reaches X_k = g_1 ... g_k, points of
-/// the alpha-fibre over the first object (k = 1 ... N-1), and the multipliers. Levenberg-Marquardt on the squared residual
-/// knows nothing of minima: any stationary point attracts it. The normal equations square the condition number, so very
-/// long paths stagnate, and are then reported as such.
-template <DiscreteSystem Sys>
-class BoundaryCeres {
+/// the alpha-fibre over the first object (k = 1 ... N-1), and the multipliers. Levenberg-Marquardt on the squared
+/// residual knows nothing of minima: any stationary point attracts it. The normal equations square the condition
+/// number, so very long paths stagnate, and are then reported as such.
+template <DiscreteSystem Sys> class BoundaryCeres {
  public:
   using G = typename Sys::GroupoidType;
   static constexpr int n = Sys::dimension;

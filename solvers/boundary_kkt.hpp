@@ -15,8 +15,7 @@ namespace lagroid {
 /// node. Equations: phi(g_k) = 0 and F+(g_k) - F-(g_{k+1}) = 0, the discrete constrained Euler-Lagrange equations.
 ///
 /// Everything is kept in scaled unknowns, z = scale * z', so that regularisation and round-off mean the same in each.
-template <DiscreteSystem Sys>
-class BoundaryKkt {
+template <DiscreteSystem Sys> class BoundaryKkt {
   static_assert(Sys::object_constraints == 0, "boundary-value problems take arrow constraints only");
 
  public:
@@ -157,8 +156,7 @@ class BoundaryKkt {
     for (std::size_t k = 0; k < count; ++k) {
       Column sum = diagonal_[k] * scale_.cwiseProduct(z[k]);
       if (k > 0) sum += coupling_[k] * scale_.cwiseProduct(z[k - 1]).template tail<n>();
-      if (k + 1 < count)
-        sum.template tail<n>() += coupling_[k + 1].transpose() * scale_.cwiseProduct(z[k + 1]);
+      if (k + 1 < count) sum.template tail<n>() += coupling_[k + 1].transpose() * scale_.cwiseProduct(z[k + 1]);
       out[k] = scale_.cwiseProduct(sum);
     }
     out.back().template tail<n>() += z.back().template tail<n>();
@@ -190,8 +188,8 @@ class BoundaryKkt {
   long constraint_count() const { return long(diagonal_.size()) * m; }
 
   /// The second-order type of a stationary point: the inertia of the matrix with null directions counted as positive,
-  /// and a search for null vectors by inverse iteration. `*this` must be evaluated at the point, with exact Hessians; it
-  /// is afterwards evaluated there without.
+  /// and a search for null vectors by inverse iteration. `*this` must be evaluated at the point, with exact Hessians;
+  /// it is afterwards evaluated there without.
   Classification classify(const Sys& system, const Path<Sys>& path) {
     // Genuine eigenvalues of a well-posed problem shrink like N^-2 in scaled unknowns.
     const double count = double(path.size());

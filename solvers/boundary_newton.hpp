@@ -23,8 +23,7 @@ struct BoundaryOptions {
 /// minimum on the tangent space (section 5.1's space of variations), a step along its solution is pulled back to the
 /// manifold with the same matrix, and the action itself decides how far to go. Near a solution plain Newton on the full
 /// KKT system takes over and is iterated to round-off.
-template <DiscreteSystem Sys>
-class BoundaryNewton {
+template <DiscreteSystem Sys> class BoundaryNewton {
  public:
   static constexpr int n = Sys::dimension;
   static constexpr int m = Sys::constraints;
@@ -114,8 +113,7 @@ class BoundaryNewton {
     Columns b(path.size(), Kkt::Column::Zero());
     violation = 0;
     for (std::size_t k = 0; k < path.size(); ++k) {
-      b[k].template head<m>() =
-          -kkt.scale().template head<m>().cwiseProduct(constraint_values(system, path[k].arrow));
+      b[k].template head<m>() = -kkt.scale().template head<m>().cwiseProduct(constraint_values(system, path[k].arrow));
       const double largest = b[k].cwiseAbs().maxCoeff();
       violation = std::isfinite(largest) ? std::max(violation, largest) : largest;
       if (!std::isfinite(largest)) break;
@@ -179,9 +177,9 @@ class BoundaryNewton {
     return true;
   }
 
-  /// One step of descent of the action along the manifold, by the least shift (of the right inertia) whose step stays in
-  /// reach, comes back to the constraints and lowers the action. On entry `kkt` is evaluated at `path`; `shift` is the
-  /// one that served last.
+  /// One step of descent of the action along the manifold, by the least shift (of the right inertia) whose step stays
+  /// in reach, comes back to the constraints and lowers the action. On entry `kkt` is evaluated at `path`; `shift` is
+  /// the one that served last.
   bool descend(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path, double& shift,
                BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;
@@ -255,8 +253,8 @@ class BoundaryNewton {
     return true;
   }
 
-  /// Where the constraints lose rank (an abnormal extremal), paths cannot be pulled back to them: Newton on the KKT system
-  /// with both blocks regularised in proportion to the residual, then plainly.
+  /// Where the constraints lose rank (an abnormal extremal), paths cannot be pulled back to them: Newton on the KKT
+  /// system with both blocks regularised in proportion to the residual, then plainly.
   void settle(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path, BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;
     kkt.evaluate(system, path);

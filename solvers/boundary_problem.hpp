@@ -12,19 +12,16 @@ namespace lagroid {
 /// Given an arrow g of G and N, find g_1, ..., g_N in the constraint set with g_1 g_2 ... g_N = g that make
 /// sum_k L(g_k) stationary ([G] section 5). Fixing the product fixes both end objects and, where G has isotropy, the
 /// displacement along it: for plate-ball g = (q_0, q_N, A_0^T A_N).
-template <DiscreteSystem Sys>
-struct BoundaryProblem {
+template <DiscreteSystem Sys> struct BoundaryProblem {
   Sys system;
   ArrowOf<typename Sys::GroupoidType> boundary;
 };
 
 /// A candidate: N composable arrows whose product is the boundary arrow, with a multiplier each.
-template <DiscreteSystem Sys>
-using Path = std::vector<Step<Sys>>;
+template <DiscreteSystem Sys> using Path = std::vector<Step<Sys>>;
 
 /// sum_k L(g_k).
-template <DiscreteSystem Sys>
-double action(const Sys& system, const Path<Sys>& path) {
+template <DiscreteSystem Sys> double action(const Sys& system, const Path<Sys>& path) {
   double sum = 0;
   for (const auto& step : path) sum += system.lagrangian(step.arrow);
   return sum;
@@ -89,15 +86,15 @@ Path<Sys> resampled(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, 
 
 /// How a stationary point sits among its neighbours.
 struct Classification {
-  bool is_minimum = false;  ///< the Hessian on the tangent of the constraints is positive (semi-definite if not isolated)
-  bool isolated = true;     ///< false: a continuous family of solutions passes through it
-  bool normal = true;       ///< false: abnormal, the constraints lose rank and the multipliers are not unique
+  bool is_minimum =
+      false;             ///< the Hessian on the tangent of the constraints is positive (semi-definite if not isolated)
+  bool isolated = true;  ///< false: a continuous family of solutions passes through it
+  bool normal = true;    ///< false: abnormal, the constraints lose rank and the multipliers are not unique
   long negative_directions = 0;  ///< negative eigenvalues of that Hessian
 };
 
 /// A solution of a boundary-value problem, or the best iterate of a solve that failed.
-template <DiscreteSystem Sys>
-struct BoundarySolution {
+template <DiscreteSystem Sys> struct BoundarySolution {
   SolveStatus status = SolveStatus::not_converged;
   int iterations = 0;
   double residual = 0;  ///< largest scaled component of the stationarity and constraint equations

@@ -3,14 +3,13 @@
 
 #include <lagroid/core/groupoid.hpp>
 
-#include <Eigen/LU>
 #include <ceres/manifold.h>
+#include <Eigen/LU>
 
 namespace lagroid {
 
 /// Points: arrows with a fixed source, in arrow coordinates. Plus(g, w) = g tau(w), Minus(h, g) = tau^{-1}(g^{-1} h).
-template <Groupoid G>
-class AlphaFibreManifold final : public ceres::Manifold {
+template <Groupoid G> class AlphaFibreManifold final : public ceres::Manifold {
  public:
   static constexpr int ambient = G::arrow_coordinate_count();
   static constexpr int tangent = G::dimension;

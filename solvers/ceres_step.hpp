@@ -13,8 +13,7 @@ namespace lagroid {
 /// The same equations as `NewtonStep`, as a least-squares problem of zero residual on the alpha-fibre, with tolerances
 /// tight enough for momentum conservation. The Ceres problem is built once and reused. What Ceres says of its own
 /// success is not believed: the status follows from the residual, evaluated anew.
-template <DiscreteSystem Sys>
-class CeresStep final : public StepSolver<Sys> {
+template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
   using E = StepEquations<Sys>;

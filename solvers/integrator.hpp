@@ -26,19 +26,17 @@ AlgebroidVector<typename Sys::GroupoidType> tangent_momentum(const Sys& system,
     const Matrix<double, Sys::dimension, k> normal = -d.constraint_source.template rightCols<k>();
     const Eigen::PartialPivLU<Matrix<double, Sys::dimension, Sys::dimension>> mass(-d.mixed);
     const Matrix<double, Sys::dimension, k> w_normal = mass.solve(normal);
-    const Vector<double, k> nu = (normal.transpose() * w_normal)
-                                     .partialPivLu()
-                                     .solve(w_normal.transpose() * state.momentum);
+    const Vector<double, k> nu =
+        (normal.transpose() * w_normal).partialPivLu().solve(w_normal.transpose() * state.momentum);
     return state.momentum - normal * nu;
   }
 }
 
 /// Marches a discrete constrained Lagrangian system. A step that does not converge leaves everything as it was.
 ///
-/// The momentum is updated by its increment, mu' = mu + (F+ - F-)(g, lambda): equal to F+ at a solution, and free of the
-/// solve's residual. Momenta on which the Lagrangian does not depend are then kept to the last bit.
-template <DiscreteSystem Sys>
-class Integrator {
+/// The momentum is updated by its increment, mu' = mu + (F+ - F-)(g, lambda): equal to F+ at a solution, and free of
+/// the solve's residual. Momenta on which the Lagrangian does not depend are then kept to the last bit.
+template <DiscreteSystem Sys> class Integrator {
  public:
   using G = typename Sys::GroupoidType;
 
@@ -100,8 +98,8 @@ class Integrator {
     return direct;
   }
 
-  /// The solution that is continuous in the step size: from a small h, where the guess is near it, up to h. (At a large h
-  /// an implicit step has several solutions, and the nearest to the guess may be another.)
+  /// The solution that is continuous in the step size: from a small h, where the guess is near it, up to h. (At a large
+  /// h an implicit step has several solutions, and the nearest to the guess may be another.)
   StepReport continue_in_step_size(StepSolution<Sys>& solution) {
     constexpr double start = 1.0 / 64;
     constexpr double smallest_factor = 1.01;
@@ -155,8 +153,7 @@ class Integrator {
     const ArrowOf<G> nudge = groupoid.tau(target, carry_);
     point_.state.object = groupoid.target(nudge);
     carry_ -= groupoid.tau_inverse(nudge);
-    point_.configuration = groupoid.project(
-        groupoid.multiply(groupoid.multiply(point_.configuration, arrow), nudge));
+    point_.configuration = groupoid.project(groupoid.multiply(groupoid.multiply(point_.configuration, arrow), nudge));
     ++point_.index;
     if constexpr (HasTimeStep<Sys>) point_.time = double(point_.index) * system_.h;
   }

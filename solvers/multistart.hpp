@@ -16,21 +16,19 @@
 namespace lagroid {
 
 /// A boundary-value problem together with its number of arrows.
-template <DiscreteSystem Sys>
-struct BoundaryStage {
+template <DiscreteSystem Sys> struct BoundaryStage {
   BoundaryProblem<Sys> problem;
   std::size_t steps = 0;
 };
 
 /// What a multistart found.
-template <DiscreteSystem Sys>
-struct MultistartResult {
+template <DiscreteSystem Sys> struct MultistartResult {
   std::vector<BoundarySolution<Sys>> solutions;  ///< distinct stationary points, cheapest first
   std::map<SolveStatus, int> outcomes;           ///< of the starts, at the first stage
   int lost = 0;                                  ///< solutions of the first stage that could not be continued
   int iterations = 0;
-  int most_iterations = 0;                       ///< of one start
-  BoundarySolution<Sys> best_failure;            ///< smallest residual among failures
+  int most_iterations = 0;             ///< of one start
+  BoundarySolution<Sys> best_failure;  ///< smallest residual among failures
 };
 
 namespace detail {
@@ -46,8 +44,7 @@ bool same_solution(const Sys& system, const BoundarySolution<Sys>& a, const Boun
 }
 
 /// The path with its nodes displaced by random multiples of the first sine modes, the larger the later the attempt.
-template <DiscreteSystem Sys>
-Path<Sys> bent(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int attempt) {
+template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int attempt) {
   std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
   std::normal_distribution<double> normal(0, 0.01 * std::exp2(attempt));
   std::vector<Vector<double, Sys::dimension>> nodes(path.size(), Vector<double, Sys::dimension>::Zero());
@@ -61,8 +58,7 @@ Path<Sys> bent(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int a
   return displaced(problem, path, nodes, same, 1.0);
 }
 
-template <DiscreteSystem Sys>
-void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
+template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
   const double best = result.best_failure.residual;
   if (result.best_failure.path.empty() || !std::isfinite(best) || failure.residual < best)
     result.best_failure = std::move(failure);
@@ -78,8 +74,8 @@ void keep_if_new(std::vector<BoundarySolution<Sys>>& found, const Sys& system, B
 }  // namespace detail
 
 /// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
-/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve; `guess(i)` is the
-/// i-th starting path of the first stage; `report(i)` is called after each start.
+/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve; `guess(i)` is
+/// the i-th starting path of the first stage; `report(i)` is called after each start.
 template <DiscreteSystem Sys, class Solver, class Guess, class Report>
 MultistartResult<Sys> multistart(const Solver& solver, const std::vector<BoundaryStage<Sys>>& stages, int starts,
                                  const Guess& guess, const Report& report) {

@@ -19,8 +19,7 @@ struct NewtonOptions {
 /// Version 1 of the Newton iteration ([N] (3.5)), carried from Lie groups to alpha-fibres: g <- g tau(w), lambda <-
 /// lambda + dlambda, with (w, dlambda) from the matrix of `StepEquations` at the current arrow. Unknowns and equations
 /// are scaled to a matrix with entries near one. Iterates until the residual no longer falls. No allocation.
-template <DiscreteSystem Sys>
-class NewtonStep final : public StepSolver<Sys> {
+template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
 

@@ -10,8 +10,8 @@ namespace lagroid {
 
 std::optional<std::string> unreachable(const PlateBall& system, long steps) {
   if (steps < 3)
-    return fmt::format("a plate-ball boundary-value problem needs at least 3 steps (2 controls a step, 5 conditions), got {}",
-                       steps);
+    return fmt::format(
+        "a plate-ball boundary-value problem needs at least 3 steps (2 controls a step, 5 conditions), got {}", steps);
   return system.infeasible();
 }
 
@@ -39,8 +39,7 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
       std::normal_distribution<double> normal(0, 2 * system.radius);
       Eigen::Matrix2Xd amplitude = Eigen::Matrix2Xd::Zero(2, modes);
       if (index > 0)
-        for (int j = 0; j < modes; ++j)
-          amplitude.col(j) << normal(generator) / (j + 1), normal(generator) / (j + 1);
+        for (int j = 0; j < modes; ++j) amplitude.col(j) << normal(generator) / (j + 1), normal(generator) / (j + 1);
       Path<PlateBall> path;
       for (auto& arrow : s.path(boundary, steps, amplitude)) path.push_back({arrow, PlateBall::Multipliers::Zero()});
       return path;
@@ -49,9 +48,8 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
 
   std::vector<BoundaryStage<PlateBall>> stages;
   long steps = std::min(options.steps, coarse_steps);
-  const RotationForm first_form = stage(steps, RotationForm::exponential).problem.system.infeasible()
-                                      ? system.rotation
-                                      : RotationForm::exponential;
+  const RotationForm first_form =
+      stage(steps, RotationForm::exponential).problem.system.infeasible() ? system.rotation : RotationForm::exponential;
   stages.push_back(stage(steps, first_form));
   while (steps < options.steps) {
     steps = std::min(2 * steps, options.steps);
@@ -59,8 +57,8 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
   }
   if (first_form != system.rotation) stages.push_back(stage(steps, system.rotation));
 
-  auto result = multistart(solver, stages, options.starts, guess(long(stages.front().steps), stages.front().problem.system),
-                           options.report);
+  auto result = multistart(solver, stages, options.starts,
+                           guess(long(stages.front().steps), stages.front().problem.system), options.report);
   if (result.solutions.empty() && stages.size() > 1) {
     // The easier problem led nowhere that the one asked for could be reached from: start on that one itself.
     const auto direct = stage(options.steps, system.rotation);

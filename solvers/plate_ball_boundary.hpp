@@ -10,10 +10,10 @@
 namespace lagroid {
 
 struct PlateBallBoundaryOptions {
-  long steps = 0;           ///< N, at least 3
-  int starts = 40;          ///< the straight line, then straight lines with random sine modes
-  std::uint64_t seed = 1;   ///< of the random modes
-  bool ceres = false;       ///< Ceres in place of Newton
+  long steps = 0;          ///< N, at least 3
+  int starts = 40;         ///< the straight line, then straight lines with random sine modes
+  std::uint64_t seed = 1;  ///< of the random modes
+  bool ceres = false;      ///< Ceres in place of Newton
   double tolerance = 1e-10;
   int max_iterations = 200;
   std::function<void(int)> report = [](int) {};  ///< called with the number of starts done

@@ -19,8 +19,7 @@ struct StepReport {
 };
 
 /// A step with what the solver knows about it.
-template <DiscreteSystem Sys>
-struct StepSolution {
+template <DiscreteSystem Sys> struct StepSolution {
   Step<Sys> step;
   TwoSidedOf<Sys> derivative;
   /// The correction w in A_{beta(g)}G, g tau(w), that the next iteration would make: below the spacing of the numbers
@@ -29,8 +28,7 @@ struct StepSolution {
 };
 
 /// Solves F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0 for the arrow g with source q and its multipliers.
-template <DiscreteSystem Sys>
-class StepSolver {
+template <DiscreteSystem Sys> class StepSolver {
  public:
   virtual ~StepSolver() = default;
 
@@ -41,8 +39,7 @@ class StepSolver {
 };
 
 /// The scaled step equations at one point, with an estimate of how far round-off lets them be solved.
-template <DiscreteSystem Sys>
-struct ScaledResidual {
+template <DiscreteSystem Sys> struct ScaledResidual {
   using E = StepEquations<Sys>;
   typename E::Residual residual;
   typename E::Jacobian jacobian;

@@ -13,8 +13,7 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   double strength = 1;  ///< k, m^3/s^2
 
   static double mass() { return 1; }
-  template <class S>
-  S potential(const Vector<S, 2>& q) const {
+  template <class S> S potential(const Vector<S, 2>& q) const {
     using std::sqrt;
     return S(-strength) / sqrt(q.squaredNorm());
   }
@@ -23,9 +22,13 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
     return s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0);
   }
   std::vector<Quantity<Kepler>> quantities() const {
-    return {energy_quantity(), {"angular momentum", {"L"}, Promise::conserved, false,
-                                [](const TrajectoryPoint<Kepler>& p, double* out) { *out = angular_momentum(p.state); },
-                                [](const TrajectoryPoint<Kepler>& p) { return p.state.object.norm() * p.state.momentum.norm(); }}};
+    return {energy_quantity(),
+            {"angular momentum",
+             {"L"},
+             Promise::conserved,
+             false,
+             [](const TrajectoryPoint<Kepler>& p, double* out) { *out = angular_momentum(p.state); },
+             [](const TrajectoryPoint<Kepler>& p) { return p.state.object.norm() * p.state.momentum.norm(); }}};
   }
 };
 

@@ -21,8 +21,7 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   double h = 0.01;
   Quadrature quadrature = Quadrature::midpoint;
 
-  template <class S>
-  S lagrangian(const PairArrow<S, N>& g) const {
+  template <class S> S lagrangian(const PairArrow<S, N>& g) const {
     const Vector<S, N> dq = g.target - g.source;
     const S kinetic = dq.squaredNorm() * (0.5 * self().mass() / h);
     if (quadrature == Quadrature::midpoint) {
@@ -32,9 +31,7 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   }
 
   /// The continuous solution after time t: m q' = p, p' = -dU/dq (+ constraint force in the derived class).
-  State<Pair<N>> reference(const State<Pair<N>>& start, double t) const
-    requires(ObjectConstraints == 0)
-  {
+  State<Pair<N>> reference(const State<Pair<N>>& start, double t) const requires(ObjectConstraints == 0) {
     Eigen::VectorXd y(2 * N);
     y << start.object, start.momentum;
     y = integrate_reference(
@@ -65,9 +62,10 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   }
 
   Quantity<Derived> energy_quantity() const {
-    return {"energy", {"H"}, Promise::bounded, false, [system = self()](const TrajectoryPoint<Derived>& p, double* out) {
-              *out = system.energy(p.state);
-            }};
+    return {
+        "energy", {"H"}, Promise::bounded, false, [system = self()](const TrajectoryPoint<Derived>& p, double* out) {
+          *out = system.energy(p.state);
+        }};
   }
 
  private:

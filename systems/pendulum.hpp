@@ -17,8 +17,7 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
 
   /// The inertia m l^2.
   double mass() const { return bob_mass * length * length; }
-  template <class S>
-  S potential(const Vector<S, 1>& q) const {
+  template <class S> S potential(const Vector<S, 1>& q) const {
     using std::cos;
     return cos(q(0)) * (-bob_mass * gravity * length);
   }

@@ -54,8 +54,7 @@ PlateBall::Arrows PlateBall::path(const ArrowOf<GroupoidType>& boundary, long st
   const auto& [move, turn] = boundary;
   const auto point = [&](double s) {
     Vector<double, 2> q = (1 - s) * move.source + s * move.target;
-    for (Eigen::Index j = 0; j < modes.cols(); ++j)
-      q += modes.col(j) * std::sin(double(j + 1) * std::numbers::pi * s);
+    for (Eigen::Index j = 0; j < modes.cols(); ++j) q += modes.col(j) * std::sin(double(j + 1) * std::numbers::pi * s);
     return q;
   };
   std::vector<Vector<double, 2>> nodes(steps + 1);
@@ -89,7 +88,7 @@ double PlateBall::energy(const Step<PlateBall>& step) const {
 }
 
 State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude,
-                                                     double t) const {
+                                                    double t) const {
   Eigen::VectorXd y(16);
   y << std::get<0>(start.object), start.momentum, attitude.reshaped();
   y = integrate_reference(
@@ -98,8 +97,8 @@ State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& s
         const double l1 = m(0) / radius;
         const double l2 = -m(1) / radius;
         const Vector<double, 2> velocity(at(2) - l2, at(3) - l1);
-        const Vector<double, 3> w((plate_rate * at(0) - velocity(1)) / radius, (velocity(0) + plate_rate * at(1)) / radius,
-                                  spin);
+        const Vector<double, 3> w((plate_rate * at(0) - velocity(1)) / radius,
+                                  (velocity(0) + plate_rate * at(1)) / radius, spin);
         out.head<2>() = velocity;
         out(2) = -plate_rate * l1;
         out(3) = plate_rate * l2;
@@ -117,15 +116,15 @@ State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& s
 std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
   using Point = TrajectoryPoint<PlateBall>;
   std::vector<Quantity<PlateBall>> all;
-  all.push_back({"spatial momentum A M",
-                 {"(AM)1", "(AM)2", "(AM)3"},
+  all.push_back(
+      {"spatial momentum A M", {"(AM)1", "(AM)2", "(AM)3"}, Promise::conserved, false, [](const Point& p, double* out) {
+         Eigen::Map<Vector<double, 3>>(out).noalias() = std::get<1>(p.configuration) * p.state.momentum.tail<3>();
+       }});
+  all.push_back({"J = x py - y px - M3",
+                 {"J"},
                  Promise::conserved,
                  false,
                  [](const Point& p, double* out) {
-                   Eigen::Map<Vector<double, 3>>(out).noalias() =
-                       std::get<1>(p.configuration) * p.state.momentum.tail<3>();
-                 }});
-  all.push_back({"J = x py - y px - M3", {"J"}, Promise::conserved, false, [](const Point& p, double* out) {
                    const auto& q = std::get<0>(p.state.object);
                    const auto& mu = p.state.momentum;
                    *out = q(0) * mu(1) - q(1) * mu(0) - mu(4);
@@ -140,7 +139,10 @@ std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
                      out[1] = p.state.momentum(1);
                    }});
   const bool exact_energy = rotation == RotationForm::cayley && plate_rate == 0 && spin == 0;
-  all.push_back({"energy", {"E"}, exact_energy ? Promise::conserved : Promise::bounded, true,
+  all.push_back({"energy",
+                 {"E"},
+                 exact_energy ? Promise::conserved : Promise::bounded,
+                 true,
                  [system = *this](const Point& p, double* out) { *out = system.energy(p.step); }});
   return all;
 }

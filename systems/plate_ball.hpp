@@ -26,26 +26,24 @@ enum class RotationForm { trace, exponential, cayley };
 ///     phi1 = (y1 - y0) + r w1 - h Omega (x0 + x1)/2      phi2 = (x1 - x0) - r w2 + h Omega (y0 + y1)/2
 ///     phi3 = h c - w3
 ///
-/// Momentum mu = (px, py, M1, M2, M3), M the body momentum. Composition from the right makes omega a body velocity of A;
-/// the ball one sees has attitude A^T with (r, c) -> (-r, -c).
+/// Momentum mu = (px, py, M1, M2, M3), M the body momentum. Composition from the right makes omega a body velocity of
+/// A; the ball one sees has attitude A^T with (r, c) -> (-r, -c).
 struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*/ 3> {
   using GroupoidType = Product<Pair<2>, SO3>;
   using Arrows = std::vector<ArrowOf<GroupoidType>>;
 
-  double h = 0.05;          ///< time step, s
-  double radius = 1;        ///< r, m
-  double plate_rate = 0;    ///< Omega, rad/s
-  double spin = 0;          ///< c, the prescribed rate about the vertical, rad/s
+  double h = 0.05;        ///< time step, s
+  double radius = 1;      ///< r, m
+  double plate_rate = 0;  ///< Omega, rad/s
+  double spin = 0;        ///< c, the prescribed rate about the vertical, rad/s
   RotationForm rotation = RotationForm::trace;
 
-  template <class S>
-  S lagrangian(const Arrow<S>& g) const {
+  template <class S> S lagrangian(const Arrow<S>& g) const {
     const auto& [move, turn] = g;
     return Vector<S, 2>(move.target - move.source).squaredNorm() * (0.5 / h);
   }
 
-  template <class S>
-  Vector<S, 3> constraint(const Arrow<S>& g) const {
+  template <class S> Vector<S, 3> constraint(const Arrow<S>& g) const {
     const auto& [move, turn] = g;
     const Vector<S, 2> d = move.target - move.source;
     const Vector<S, 2> middle = (move.source + move.target) * S(0.5);
@@ -55,8 +53,7 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   }
 
   /// w(g) in the chosen form.
-  template <class S>
-  Vector<S, 3> rotation_vector(const Matrix<S, 3, 3>& turn) const {
+  template <class S> Vector<S, 3> rotation_vector(const Matrix<S, 3, 3>& turn) const {
     switch (rotation) {
       case RotationForm::exponential:
         return SO3::log(turn);

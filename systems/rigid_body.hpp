@@ -17,8 +17,7 @@ struct RigidBody : System<RigidBody, SO3> {
   Vector<double, 3> inertia{1, 2, 3};  ///< principal moments, kg m^2
   RotationMap rotation = RotationMap::exponential;
 
-  template <class S>
-  S lagrangian(const Matrix<S, 3, 3>& g) const {
+  template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const {
     const Vector<S, 3> w = rotation == RotationMap::exponential ? SO3::log(g) : SO3::cayley_inverse(g);
     return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * (0.5 / h);
   }
@@ -35,9 +34,15 @@ struct RigidBody : System<RigidBody, SO3> {
   }
 
   std::vector<Quantity<RigidBody>> quantities() const {
-    return {{"energy", {"H"}, Promise::bounded, false,
+    return {{"energy",
+             {"H"},
+             Promise::bounded,
+             false,
              [system = *this](const TrajectoryPoint<RigidBody>& p, double* out) { *out = system.energy(p.state); }},
-            {"spatial momentum A M", {"Jx", "Jy", "Jz"}, Promise::conserved, false,
+            {"spatial momentum A M",
+             {"Jx", "Jy", "Jz"},
+             Promise::conserved,
+             false,
              [](const TrajectoryPoint<RigidBody>& p, double* out) {
                Eigen::Map<Vector<double, 3>>(out).noalias() = p.configuration * p.state.momentum;
              }}};

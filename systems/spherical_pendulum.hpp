@@ -16,12 +16,8 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   SphericalPendulum() { quadrature = Quadrature::trapezoid; }
 
   double mass() const { return bob_mass; }
-  template <class S>
-  S potential(const Vector<S, 3>& q) const {
-    return q(2) * (bob_mass * gravity);
-  }
-  template <class S>
-  Vector<S, 1> object_constraint(const Vector<S, 3>& q) const {
+  template <class S> S potential(const Vector<S, 3>& q) const { return q(2) * (bob_mass * gravity); }
+  template <class S> Vector<S, 1> object_constraint(const Vector<S, 3>& q) const {
     return Vector<S, 1>((q.squaredNorm() - S(length * length)) * S(0.5));
   }
 
@@ -32,10 +28,13 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
     return s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0);
   }
   std::vector<Quantity<SphericalPendulum>> quantities() const {
-    return {energy_quantity(), {"vertical angular momentum", {"Jz"}, Promise::conserved, false,
-                                [](const TrajectoryPoint<SphericalPendulum>& p, double* out) {
-                                  *out = vertical_angular_momentum(p.state);
-                                }}};
+    return {
+        energy_quantity(),
+        {"vertical angular momentum",
+         {"Jz"},
+         Promise::conserved,
+         false,
+         [](const TrajectoryPoint<SphericalPendulum>& p, double* out) { *out = vertical_angular_momentum(p.state); }}};
   }
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Run {
+struct Outcome {
   int code = 0;
   std::string out;
   std::string err;
@@ -27,10 +28,10 @@ class CommandLine : public ::testing::Test {
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
 
-  Run run(const std::string& arguments) const {
+  Outcome run(const std::string& arguments) const {
     const fs::path errors = folder_ / "stderr";
     const std::string command = std::string(LAGROID_PROGRAM) + " " + arguments + " 2>" + errors.string();
-    Run r;
+    Outcome r;
     FILE* pipe = popen(command.c_str(), "r");
     std::array<char, 4096> buffer{};
     while (const auto n = std::fread(buffer.data(), 1, buffer.size(), pipe)) r.out.append(buffer.data(), n);
@@ -49,7 +50,7 @@ class CommandLine : public ::testing::Test {
 TEST_F(CommandLine, EveryExampleRuns) {
   for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
     if (entry.path().extension() != ".toml") continue;
-    const Run r = run("run " + entry.path().string() + " --json");
+    const Outcome r = run("run " + entry.path().string() + " --json");
     EXPECT_EQ(r.code, 0) << entry.path() << r.err;
     const auto json = nlohmann::json::parse(r.out);
     EXPECT_EQ(json.at("status"), "converged");
@@ -60,7 +61,7 @@ TEST_F(CommandLine, EveryExampleRuns) {
 }
 
 TEST_F(CommandLine, BoundaryValueJson) {
-  const Run r = run("run " + example("plate_ball") + " --json");
+  const Outcome r = run("run " + example("plate_ball") + " --json");
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_NEAR(json.at("cost").get<double>(), 7.2978550783250329880, 1e-11);
   EXPECT_EQ(json.at("minima").at(0).at("is_minimum"), true);
@@ -74,15 +75,16 @@ TEST_F(CommandLine, CeresGivesTheSameTrajectory) {
   const std::string scene = example("plate_ball_initial_value");
   const auto newton = nlohmann::json::parse(run("run " + scene + " --json").out);
   const auto ceres = nlohmann::json::parse(run("run " + scene + " --json --set solver.method=ceres").out);
-  EXPECT_NEAR(newton.at("final").at("position").at(0).get<double>(), ceres.at("final").at("position").at(0).get<double>(),
-              1e-11);
+  EXPECT_NEAR(newton.at("final").at("position").at(0).get<double>(),
+              ceres.at("final").at("position").at(0).get<double>(), 1e-11);
 }
 
 TEST_F(CommandLine, WritesEveryFileWhole) {
   const fs::path out = folder_ / "a" / "b";
-  const Run r = run("run " + example("plate_ball_initial_value") + " --out " + out.string());
+  const Outcome r = run("run " + example("plate_ball_initial_value") + " --out " + out.string());
   EXPECT_EQ(r.code, 0) << r.err;
-  for (const char* name : {"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt", "plot.gp", "plot.svg", "plot.png"})
+  for (const char* name :
+       {"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt", "plot.gp", "plot.svg", "plot.png"})
     EXPECT_GT(fs::file_size(out / name), 100U) << name;
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "a"), fs::directory_iterator()), 1) << "staging left behind";
   std::ifstream csv(out / "trajectory.csv");
@@ -104,12 +106,12 @@ TEST_F(CommandLine, OutputEvery) {
 
 TEST_F(CommandLine, BadScenesExitTwoAndWriteNothing) {
   const fs::path out = folder_ / "none";
-  for (const std::string& arguments :
-       {"run /no/such/scene.toml", "run " + example("plate_ball") + " --set time.steps=2",
-        "run " + example("plate_ball") + " --set parameters.radius=-1",
-        "run " + example("plate_ball") + " --set boundary.end.attitude=[1,1,0,0]",
-        "run " + example("plate_ball") + " --set parameters.rotation=trace --set parameters.spin=60"}) {
-    const Run r = run(arguments + " --out " + out.string() + " --json");
+  for (const std::string& arguments : std::vector<std::string>{
+           "run /no/such/scene.toml", "run " + example("plate_ball") + " --set time.steps=2",
+           "run " + example("plate_ball") + " --set parameters.radius=-1",
+           "run " + example("plate_ball") + " --set boundary.end.attitude=[1,1,0,0]",
+           "run " + example("plate_ball") + " --set parameters.rotation=trace --set parameters.spin=60"}) {
+    const Outcome r = run(arguments + " --out " + out.string() + " --json");
     EXPECT_EQ(r.code, 2) << arguments << r.err;
     EXPECT_FALSE(fs::exists(out));
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
@@ -124,15 +126,15 @@ TEST_F(CommandLine, BadScenesExitTwoAndWriteNothing) {
 TEST_F(CommandLine, UnwritableFolderIsRefusedBeforeRunning) {
   const fs::path file = folder_ / "file";
   std::ofstream(file) << "x";
-  const Run r = run("run " + example("pendulum") + " --out " + (file / "below").string());
+  const Outcome r = run("run " + example("pendulum") + " --out " + (file / "below").string());
   EXPECT_EQ(r.code, 2);
   EXPECT_NE(r.err.find("not a folder"), std::string::npos) << r.err;
 }
 
 TEST_F(CommandLine, AFailingStepKeepsWhatWasComputed) {
   const fs::path out = folder_ / "partial";
-  const Run r = run("run " + example("plate_ball_initial_value") + " --set time.steps=20000 --set parameters.rotation=exp --out " +
-                    out.string() + " --json");
+  const Outcome r = run("run " + example("plate_ball_initial_value") +
+                        " --set time.steps=20000 --set parameters.rotation=exp --out " + out.string() + " --json");
   EXPECT_EQ(r.code, 3) << r.err;
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_NE(json.at("status"), "converged");
@@ -148,8 +150,9 @@ TEST_F(CommandLine, AFailingStepKeepsWhatWasComputed) {
 }
 
 TEST_F(CommandLine, AFailingBoundaryValueIsTyped) {
-  const Run r = run("run " + example("plate_ball") +
-                    " --set parameters.rotation=trace --set time.steps=3 --set boundary.end.position=[100,0] --json");
+  const Outcome r =
+      run("run " + example("plate_ball") +
+          " --set parameters.rotation=trace --set time.steps=3 --set boundary.end.position=[100,0] --json");
   EXPECT_EQ(r.code, 3) << r.err;
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_NE(json.at("status"), "converged");

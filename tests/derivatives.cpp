@@ -15,9 +15,8 @@ using namespace lagroid;
 
 namespace {
 
-template <class Sys>
-void expect_laws(const Sys& system) {
-  const auto report = testing::derivative_laws(system, [&] { return draw_step(system, 0.4); });
+template <class Sys> void expect_laws(const Sys& system) {
+  const auto report = laws::derivative_laws(system, [&] { return draw_step(system, 0.4); });
   EXPECT_TRUE(report.holds()) << report;
 }
 
@@ -58,16 +57,14 @@ TEST(Derivatives, RigidBodyAtTheUnitArrow) {
   const RigidBody system;
   const Matrix<double, 3, 3> unit = Matrix<double, 3, 3>::Identity();
   const auto fast = automatic_two_sided(system, unit, {});
-  EXPECT_LT(testing::derivative_defect(fast, testing::nested_two_sided(system, unit, {})), 1e-13);
+  EXPECT_LT(laws::derivative_defect(fast, laws::nested_two_sided(system, unit, {})), 1e-13);
   EXPECT_LT((fast.mixed + Matrix<double, 3, 3>(system.inertia.asDiagonal()) / system.h).norm(), 1e-10);
 }
 
 /// A pendulum with hand-written derivatives, right or wrong.
-template <bool Right>
-struct HandWritten : System<HandWritten<Right>, Pair<1>> {
+template <bool Right> struct HandWritten : System<HandWritten<Right>, Pair<1>> {
   double h = 0.1;
-  template <class S>
-  S lagrangian(const PairArrow<S, 1>& g) const {
+  template <class S> S lagrangian(const PairArrow<S, 1>& g) const {
     using std::cos;
     const S d = g.target(0) - g.source(0);
     return d * d * (0.5 / h) + cos((g.source(0) + g.target(0)) * S(0.5)) * h;
@@ -87,9 +84,9 @@ struct HandWritten : System<HandWritten<Right>, Pair<1>> {
 TEST(Derivatives, AnalyticOverrideIsUsedAndChecked) {
   const HandWritten<true> right;
   static_assert(HasAnalyticDerivatives<HandWritten<true>>);
-  EXPECT_TRUE(testing::derivative_laws(right, [&] { return draw_step(right, 0.4); }).holds());
+  EXPECT_TRUE(laws::derivative_laws(right, [&] { return draw_step(right, 0.4); }).holds());
   const HandWritten<false> wrong;
-  const auto report = testing::derivative_laws(wrong, [&] { return draw_step(wrong, 0.4); });
+  const auto report = laws::derivative_laws(wrong, [&] { return draw_step(wrong, 0.4); });
   EXPECT_FALSE(report.law("analytic derivatives").holds());
   EXPECT_TRUE(report.law("automatic derivatives").holds());
 }
@@ -98,8 +95,8 @@ TEST(Derivatives, OneSidedHessiansAreSecondDerivativesOfTheRetraction) {
   PlateBall system;
   system.plate_rate = 0.8;
   system.rotation = RotationForm::exponential;
-  const Step<PlateBall> step{{PairArrow<double, 2>{{0.1, 0.2}, {0.3, 0.1}}, SO3::exp(Vector<double, 3>(0.2, -0.1, 0.3))},
-                             {0.5, -0.7, 0.3}};
+  const Step<PlateBall> step{
+      {PairArrow<double, 2>{{0.1, 0.2}, {0.3, 0.1}}, SO3::exp(Vector<double, 3>(0.2, -0.1, 0.3))}, {0.5, -0.7, 0.3}};
   using D = Dual<Dual<double>>;
   for (const End end : {End::source, End::target}) {
     const auto hessian = one_sided_hessian(system, step.arrow, step.multipliers, end);

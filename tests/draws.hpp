@@ -7,16 +7,14 @@
 namespace lagroid {
 
 /// A step near the unit arrow of a random object: displacement of size `reach`, multipliers of size one.
-template <class Sys>
-Step<Sys> draw_step(const Sys& system, double reach) {
+template <class Sys> Step<Sys> draw_step(const Sys& system, double reach) {
   using G = typename Sys::GroupoidType;
-  const auto uniform = [] { return (*rc::gen::inRange(-1000000, 1000001)) * 1e-6; };
   Vector<double, G::object_coordinate_count()> q;
-  for (int i = 0; i < q.size(); ++i) q(i) = 1 + uniform();
+  for (int i = 0; i < q.size(); ++i) q(i) = 2 + laws::draw_uniform();
   AlgebroidVector<G> v;
-  for (int i = 0; i < v.size(); ++i) v(i) = reach * uniform();
+  for (int i = 0; i < v.size(); ++i) v(i) = reach * laws::draw_uniform();
   typename Sys::Multipliers lambda;
-  for (int i = 0; i < lambda.size(); ++i) lambda(i) = uniform();
+  for (int i = 0; i < lambda.size(); ++i) lambda(i) = laws::draw_uniform();
   return {system.groupoid.tau(system.groupoid.template object_at<double>(q), v), lambda};
 }
 

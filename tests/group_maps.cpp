@@ -14,8 +14,7 @@ using namespace lagroid;
 
 namespace {
 
-template <class G>
-class GroupMaps : public ::testing::Test {
+template <class G> class GroupMaps : public ::testing::Test {
  protected:
   static constexpr int n = G::dimension;
   using Xi = Vector<double, n>;
@@ -29,8 +28,7 @@ class GroupMaps : public ::testing::Test {
   }
 
   // vee(tau(xi)^{-1} d/dt tau(xi + t eta)), by dual numbers.
-  template <class F>
-  static Matrix<double, n, n> trivialised(const F& tau, const Xi& xi) {
+  template <class F> static Matrix<double, n, n> trivialised(const F& tau, const Xi& xi) {
     Matrix<double, n, n> d;
     for (int i = 0; i < n; ++i) {
       Vector<Dual<double>, n> x = xi.template cast<Dual<double>>();

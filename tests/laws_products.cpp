@@ -11,15 +11,14 @@ using namespace lagroid;
 
 namespace {
 
-template <class G>
-class GroupoidLaws : public ::testing::Test {};
+template <class G> class GroupoidLaws : public ::testing::Test {};
 
 using Subjects = ::testing::Types<Product<Pair<2>, SO3>, Product<VectorGroup<1>, Pair<1>, SO2>, TimeExtended<SE2>,
                                   TimeExtended<Product<Pair<1>, SO2>>>;
 TYPED_TEST_SUITE(GroupoidLaws, Subjects);
 
 TYPED_TEST(GroupoidLaws, Hold) {
-  const auto report = testing::groupoid_laws<TypeParam>();
+  const auto report = laws::groupoid_laws<TypeParam>();
   EXPECT_TRUE(report.holds()) << report;
 }
 

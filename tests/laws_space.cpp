@@ -1,7 +1,7 @@
 // The groupoid laws on shipped groupoids.
 #include <lagroid/core/testing/groupoid_laws.hpp>
-#include <lagroid/groupoids/so3.hpp>
 #include <lagroid/groupoids/se3.hpp>
+#include <lagroid/groupoids/so3.hpp>
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@ using namespace lagroid;
 
 namespace {
 
-template <class G>
-class GroupoidLaws : public ::testing::Test {};
+template <class G> class GroupoidLaws : public ::testing::Test {};
 
-using Subjects = ::testing::Types<SO3, SpecialOrthogonal3<Retraction::cayley>, SE3, SpecialEuclidean3<Retraction::cayley>>;
+using Subjects =
+    ::testing::Types<SO3, SpecialOrthogonal3<Retraction::cayley>, SE3, SpecialEuclidean3<Retraction::cayley>>;
 TYPED_TEST_SUITE(GroupoidLaws, Subjects);
 
 TYPED_TEST(GroupoidLaws, Hold) {
-  const auto report = testing::groupoid_laws<TypeParam>();
+  const auto report = laws::groupoid_laws<TypeParam>();
   EXPECT_TRUE(report.holds()) << report;
 }
 

@@ -9,14 +9,13 @@ using namespace lagroid;
 
 namespace {
 
-template <class G>
-class GroupoidLaws : public ::testing::Test {};
+template <class G> class GroupoidLaws : public ::testing::Test {};
 
 using Subjects = ::testing::Types<Pair<1>, Pair<2>, Pair<3>, VectorGroup<2>, VectorGroup<3>>;
 TYPED_TEST_SUITE(GroupoidLaws, Subjects);
 
 TYPED_TEST(GroupoidLaws, Hold) {
-  const auto report = testing::groupoid_laws<TypeParam>();
+  const auto report = laws::groupoid_laws<TypeParam>();
   EXPECT_TRUE(report.holds()) << report;
 }
 

@@ -10,8 +10,7 @@ using namespace lagroid::app;
 
 namespace {
 
-template <class F>
-LedgerEntry judge(Promise promise, long samples, const F& value) {
+template <class F> LedgerEntry judge(Promise promise, long samples, const F& value) {
   QuantityWatch watch("q", promise, 1, samples);
   for (long k = 0; k < samples; ++k) {
     const double x = value(k);
@@ -33,7 +32,8 @@ TEST(Ledger, ADriftIsBroken) {
 }
 
 TEST(Ledger, OscillationIsBoundedAndGrowthIsNot) {
-  EXPECT_EQ(judge(Promise::bounded, 2000, [](long k) { return 1 + 0.1 * std::sin(0.1 * double(k)); }).verdict, "bounded");
+  EXPECT_EQ(judge(Promise::bounded, 2000, [](long k) { return 1 + 0.1 * std::sin(0.1 * double(k)); }).verdict,
+            "bounded");
   EXPECT_EQ(judge(Promise::bounded, 2000, [](long k) { return 1 + 1e-4 * double(k); }).verdict, "growing");
   EXPECT_EQ(judge(Promise::bounded, 50, [](long k) { return 1 + 1e-4 * double(k); }).verdict, "unjudged");
 }

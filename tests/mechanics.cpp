@@ -16,8 +16,7 @@ using namespace lagroid;
 
 namespace {
 
-template <class Sys>
-Integrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+template <class Sys> Integrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& state) {
   return Integrator<Sys>(system, state, system.groupoid.unit(state.object), std::make_unique<NewtonStep<Sys>>());
 }
 
@@ -81,8 +80,8 @@ TEST(Kepler, ReferenceSolvesKeplersEquation) {
 
 TEST(Kepler, MomentaAreConserved) {
   Kepler system;
-  const auto report = testing::momentum_laws(system, [] {
-    const auto wobble = testing::draw_vector<4>(0.2);
+  const auto report = laws::momentum_laws(system, [] {
+    const Vector<double, 4> wobble = 0.2 * laws::draw_vector<4>(1.0);
     return State<Pair<2>>{{1 + wobble(0), wobble(1)}, {wobble(2), 1 + wobble(3)}};
   });
   EXPECT_TRUE(report.holds()) << report;
@@ -125,9 +124,9 @@ TEST(SphericalPendulum, ProjectionDoesNotChangeTheDynamics) {
 
 TEST(SphericalPendulum, MomentaAreConserved) {
   SphericalPendulum system;
-  const auto report = testing::momentum_laws(system, [] {
+  const auto report = laws::momentum_laws(system, [] {
     const Vector<double, 3> q = Vector<double, 3>(0.6, 0.1, -0.7).normalized();
-    Vector<double, 3> p = testing::draw_vector<3>(1.0);
+    Vector<double, 3> p = laws::draw_vector<3>(1.0);
     p -= q * q.dot(p);
     return State<Pair<3>>{q, p};
   });
@@ -170,9 +169,9 @@ TEST(RigidBody, MomentaAreConserved) {
     RigidBody system;
     system.h = 0.05;
     system.rotation = map;
-    const auto report = testing::momentum_laws(system, [] {
+    const auto report = laws::momentum_laws(system, [] {
       State<SO3> s;
-      s.momentum = testing::draw_vector<3>(3.0);
+      s.momentum = laws::draw_vector<3>(3.0);
       return s;
     });
     EXPECT_TRUE(report.holds()) << report;
@@ -182,10 +181,7 @@ TEST(RigidBody, MomentaAreConserved) {
 /// An oscillator without rotational symmetry that promises angular momentum.
 struct Wrong : MechanicalSystem<Wrong, 2> {
   static double mass() { return 1; }
-  template <class S>
-  S potential(const Vector<S, 2>& q) const {
-    return q(0) * q(0) + q(1) * q(1) * 0.25;
-  }
+  template <class S> S potential(const Vector<S, 2>& q) const { return q(0) * q(0) + q(1) * q(1) * 0.25; }
   std::vector<Quantity<Wrong>> quantities() const {
     return {{"angular momentum", {"L"}, Promise::conserved, false, [](const TrajectoryPoint<Wrong>& p, double* out) {
                *out = p.state.object(0) * p.state.momentum(1) - p.state.object(1) * p.state.momentum(0);
@@ -194,7 +190,7 @@ struct Wrong : MechanicalSystem<Wrong, 2> {
 };
 
 TEST(MomentumLaw, CatchesAWrongPromise) {
-  const auto report = testing::momentum_laws(Wrong{}, [] { return State<Pair<2>>{{1, 0.5}, testing::draw_vector<2>(1.0)}; });
+  const auto report = laws::momentum_laws(Wrong{}, [] { return State<Pair<2>>{{1, 0.5}, laws::draw_vector<2>(1.0)}; });
   EXPECT_FALSE(report.holds()) << report;
 }
 

@@ -19,7 +19,9 @@ ArrowOf<G> boundary(const Vector<double, 2>& from, const Vector<double, 2>& to, 
   return {PairArrow<double, 2>{from, to}, SO3::exp(turn)};
 }
 ArrowOf<G> boundary(const cases::json& c) {
-  return boundary({c.at("x0"), c.at("y0")}, {c.at("xT"), c.at("yT")}, cases::vector<3>(c.at("AT_rotation_vector")));
+  const auto at = [&](const char* key) { return c.at(key).get<double>(); };
+  return boundary(Vector<double, 2>(at("x0"), at("y0")), Vector<double, 2>(at("xT"), at("yT")),
+                  cases::vector<3>(c.at("AT_rotation_vector")));
 }
 
 MultistartResult<PlateBall> solve(const PlateBall& system, const ArrowOf<G>& ends, long steps, bool ceres = false,
@@ -67,8 +69,8 @@ TEST_P(BoundaryCase, BestMinimumIsTheReference) {
 INSTANTIATE_TEST_SUITE_P(Cases, BoundaryCase,
                          ::testing::Combine(::testing::Values("P2-bvp-elastica", "P3-bvp-rotating"),
                                             ::testing::Values("trace", "exp", "cay")),
-                         [](const auto& info) {
-                           return std::get<0>(info.param).substr(0, 2) + "_" + std::get<1>(info.param);
+                         [](const auto& test) {
+                           return std::get<0>(test.param).substr(0, 2) + "_" + std::get<1>(test.param);
                          });
 
 class LocalMinima : public ::testing::TestWithParam<std::tuple<std::string, int>> {};
@@ -247,7 +249,8 @@ TEST(Kkt, SolveInvertsMultiply) {
   system.rotation = RotationForm::exponential;
   const auto ends = boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9});
   Path<PlateBall> path;
-  for (auto& arrow : system.path(ends, 10, Eigen::Matrix2Xd::Constant(2, 2, 0.5))) path.push_back({arrow, {1, -2, 0.5}});
+  for (auto& arrow : system.path(ends, 10, Eigen::Matrix2Xd::Constant(2, 2, 0.5)))
+    path.push_back({arrow, {1, -2, 0.5}});
   BoundaryKkt<PlateBall> kkt;
   kkt.evaluate(system, path);
   kkt.choose_scale();

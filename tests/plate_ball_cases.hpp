@@ -15,7 +15,8 @@ using nlohmann::json;
 
 inline json find(const std::string& id) {
   std::ifstream file(LAGROID_TEST_DATA "/plate-ball.json");
-  for (const auto& c : json::parse(file).at("cases"))
+  const json all = json::parse(file);
+  for (const auto& c : all.at("cases"))
     if (c.at("id") == id) return c;
   throw std::out_of_range("no case " + id);
 }
@@ -23,8 +24,7 @@ inline json find(const std::string& id) {
 /// Numbers are decimal strings of twenty digits, or plain numbers.
 inline double number(const json& x) { return x.is_string() ? std::stod(x.get<std::string>()) : x.get<double>(); }
 
-template <int N>
-Vector<double, N> vector(const json& x) {
+template <int N> Vector<double, N> vector(const json& x) {
   Vector<double, N> v;
   for (int i = 0; i < N; ++i) v(i) = number(x.at(i));
   return v;

@@ -39,8 +39,9 @@ TEST_P(InitialValue, EndsAtTheReference) {
       const auto& step = integrator.point().step;
       EXPECT_NEAR(std::get<0>(step.arrow).target(0), cases::number(expected.at("step1").at("x")), 1e-12);
       EXPECT_LT((step.multipliers - cases::vector<3>(expected.at("step1").at("lambda123"))).norm(), 1e-11);
-      EXPECT_LT((SO3::log(std::get<1>(step.arrow)) - cases::vector<3>(expected.at("step1").at("g1_rotation_vector"))).norm(),
-                1e-13);
+      EXPECT_LT(
+          (SO3::log(std::get<1>(step.arrow)) - cases::vector<3>(expected.at("step1").at("g1_rotation_vector"))).norm(),
+          1e-13);
       EXPECT_NEAR(system.energy(step), cases::number(expected.at("E_first")), 1e-11);
     }
   }
@@ -59,8 +60,8 @@ TEST_P(InitialValue, EndsAtTheReference) {
 INSTANTIATE_TEST_SUITE_P(Cases, InitialValue,
                          ::testing::Combine(::testing::Values("P1-ivp-generic", "P4-ivp-long-flat"),
                                             ::testing::Values("trace", "exp", "cay")),
-                         [](const auto& info) {
-                           return std::get<0>(info.param).substr(0, 2) + "_" + std::get<1>(info.param);
+                         [](const auto& test) {
+                           return std::get<0>(test.param).substr(0, 2) + "_" + std::get<1>(test.param);
                          });
 
 State<G> generic_state() {
@@ -112,10 +113,10 @@ TEST(Momenta, AreConservedFromRandomStates) {
       system.plate_rate = rate;
       system.spin = 0.4;
       system.rotation = form;
-      const auto report = testing::momentum_laws(system, [] {
+      const auto report = laws::momentum_laws(system, [] {
         State<G> state;
-        std::get<0>(state.object) = testing::draw_vector<2>(1.0);
-        state.momentum = testing::draw_vector<5>(1.0);
+        std::get<0>(state.object) = laws::draw_vector<2>(1.0);
+        state.momentum = laws::draw_vector<5>(1.0);
         return state;
       });
       EXPECT_TRUE(report.holds()) << report;
@@ -126,14 +127,10 @@ TEST(Momenta, AreConservedFromRandomStates) {
 struct Tilted : System<Tilted, PlateBall::GroupoidType, 3> {
   PlateBall base;
   double h = 0.05;
-  template <class S>
-  S lagrangian(const Arrow<S>& g) const {
+  template <class S> S lagrangian(const Arrow<S>& g) const {
     return base.lagrangian(g) - std::get<0>(g).source(0) * (0.5 * h) - std::get<0>(g).target(0) * (0.5 * h);
   }
-  template <class S>
-  Vector<S, 3> constraint(const Arrow<S>& g) const {
-    return base.constraint(g);
-  }
+  template <class S> Vector<S, 3> constraint(const Arrow<S>& g) const { return base.constraint(g); }
   std::vector<Quantity<Tilted>> quantities() const {
     return {{"J", {"J"}, Promise::conserved, false, [](const TrajectoryPoint<Tilted>& p, double* out) {
                const auto& q = std::get<0>(p.state.object);
@@ -143,10 +140,10 @@ struct Tilted : System<Tilted, PlateBall::GroupoidType, 3> {
 };
 
 TEST(Momenta, ABrokenSymmetryIsCaught) {
-  const auto report = testing::momentum_laws(Tilted{}, [] {
+  const auto report = laws::momentum_laws(Tilted{}, [] {
     State<G> state;
     std::get<0>(state.object) << 0.3, 0.4;
-    state.momentum = testing::draw_vector<5>(0.5);
+    state.momentum = laws::draw_vector<5>(0.5);
     return state;
   });
   EXPECT_FALSE(report.holds()) << report;

@@ -112,7 +112,8 @@ TEST_F(Scene, Overrides) {
 
 TEST_F(Scene, OtherSystems) {
   expect("system = \"rigid_body\"\n[parameters]\ninertia = [1, 2, -3]\n", {":3", "parameters.inertia", "positive"});
-  expect("system = \"kepler\"\n[initial]\nposition = [0, 0]\nmomentum = [0, 1]\n", {":3", "initial.position", "centre"});
+  expect("system = \"kepler\"\n[initial]\nposition = [0, 0]\nmomentum = [0, 1]\n",
+         {":3", "initial.position", "centre"});
   expect("system = \"spherical_pendulum\"\n[initial]\nposition = [1, 1, 0]\nmomentum = [0, 0, 1]\n",
          {":3", "initial.position", "0.7071067812"});
   expect("system = \"spherical_pendulum\"\n[initial]\nposition = [1, 0, 0]\nmomentum = [1, 0, 1]\n",

@@ -10,7 +10,7 @@ namespace lagroid::app {
 /// [parameters] quadrature, shared by all systems with a potential on R^n.
 inline Quadrature read_quadrature(const Section& parameters, const std::string& fallback) {
   return parameters.choice_or("quadrature", fallback, {"midpoint", "trapezoid"}) == "midpoint" ? Quadrature::midpoint
-                                                                                              : Quadrature::trapezoid;
+                                                                                               : Quadrature::trapezoid;
 }
 
 /// [initial] position and momentum as vectors of R^n.

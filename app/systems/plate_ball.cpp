@@ -122,37 +122,42 @@ RunResult boundary_value(const Section& scene, const RunContext& context, const 
   result.steps_asked = steps;
   result.iterations = found.iterations;
   for (const auto& s : found.solutions)
-    result.minima.push_back({s.cost, {}, s.kind.is_minimum, s.kind.isolated, s.kind.normal, s.kind.negative_directions});
+    result.minima.push_back(
+        {s.cost, {}, s.kind.is_minimum, s.kind.isolated, s.kind.normal, s.kind.negative_directions});
   for (std::size_t i = 0; i < found.solutions.size(); ++i) {
     const auto momentum = initial_momentum(system, found.solutions[i].path);
     result.minima[i].momentum.assign(momentum.data(), momentum.data() + momentum.size());
   }
   result.notes.push_back(fmt::format("{} starts: {}", options.starts, counted(found.outcomes)));
   if (found.lost > 0)
-    result.notes.push_back(fmt::format("{} solution(s) of the coarse problem could not be continued to this one", found.lost));
+    result.notes.push_back(
+        fmt::format("{} solution(s) of the coarse problem could not be continued to this one", found.lost));
 
-  const auto best = std::find_if(found.solutions.begin(), found.solutions.end(),
-                                 [](const auto& s) { return s.kind.is_minimum; });
+  const auto best =
+      std::find_if(found.solutions.begin(), found.solutions.end(), [](const auto& s) { return s.kind.is_minimum; });
   if (best != found.solutions.end()) {
     record(system, best->path, start, every, result);
     result.cost = best->cost;
     result.steps = steps;
     if (!best->kind.normal)
-      result.notes.push_back("the best path is abnormal: its constraints lose rank there, multipliers and momentum are not "
-                             "unique (the smallest are given)");
+      result.notes.push_back(
+          "the best path is abnormal: its constraints lose rank there, multipliers and momentum are not "
+          "unique (the smallest are given)");
     if (!best->kind.isolated)
       result.notes.push_back("the best path is one of a continuous family of equal cost; its momentum is one of many");
   } else {
     const auto& failure = found.best_failure;
     if (found.solutions.empty()) {
       result.status = std::string(to_string(failure.status));
-      result.message = fmt::format("boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
-                                   "more starts or a longer duration",
-                                   options.starts, failure.residual);
+      result.message = fmt::format(
+          "boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
+          "more starts or a longer duration",
+          options.starts, failure.residual);
     } else {
       result.status = "no_minimum";
-      result.message = fmt::format("boundary value: {} stationary point(s) found, none of them a minimum; use more starts",
-                                   found.solutions.size());
+      result.message =
+          fmt::format("boundary value: {} stationary point(s) found, none of them a minimum; use more starts",
+                      found.solutions.size());
     }
     const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
     if (!path.empty()) {
@@ -181,8 +186,7 @@ RunResult run_plate_ball(const Section& scene, const RunContext& context) {
   const TimeGrid grid = read_time(scene);
   system.h = grid.step;
   if (const auto why = system.infeasible()) scene.section("time", "").fail("", *why);
-  if (scene.has("initial") && scene.has("boundary"))
-    scene.fail("boundary", "give [initial] or [boundary], not both");
+  if (scene.has("initial") && scene.has("boundary")) scene.fail("boundary", "give [initial] or [boundary], not both");
   if (scene.has("boundary")) return boundary_value(scene, context, system, grid.steps);
   if (!scene.has("initial"))
     scene.fail("", "missing table [initial] (position, attitude, momentum) or [boundary] (start, end)");

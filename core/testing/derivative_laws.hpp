@@ -4,7 +4,7 @@
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/core/two_sided.hpp>
 
-namespace lagroid::testing {
+namespace lagroid::laws {
 
 /// The two-sided derivative from nested first-order dual numbers and the groupoid's own product and retraction,
 /// direction by direction: slow, and sharing neither `Mixed` nor closed-form translations with the fast one.
@@ -47,8 +47,7 @@ TwoSidedOf<Sys> nested_two_sided(const Sys& system, const ArrowOf<typename Sys::
 }
 
 /// The largest difference between two derivatives, relative to the largest entry of each part.
-template <int N, int M>
-double derivative_defect(const TwoSided<N, M>& a, const TwoSided<N, M>& b) {
+template <int N, int M> double derivative_defect(const TwoSided<N, M>& a, const TwoSided<N, M>& b) {
   const auto part = [](const auto& x, const auto& y) {
     if constexpr (std::decay_t<decltype(x)>::SizeAtCompileTime == 0) {
       return 0.0;
@@ -61,8 +60,8 @@ double derivative_defect(const TwoSided<N, M>& a, const TwoSided<N, M>& b) {
                    part(a.constraint_source, b.constraint_source), part(a.constraint_target, b.constraint_target)});
 }
 
-/// `draw()` returns a random Step of the system. The laws: the derivatives the solvers use (analytic where the system has
-/// them) and the automatic ones both agree with nested dual numbers.
+/// `draw()` returns a random Step of the system. The laws: the derivatives the solvers use (analytic where the system
+/// has them) and the automatic ones both agree with nested dual numbers.
 template <DiscreteSystem Sys, class Draw>
 LawReport derivative_laws(const Sys& system, const Draw& draw, double tolerance = 1e-9) {
   LawReport report{"derivatives", {}};
@@ -80,4 +79,4 @@ LawReport derivative_laws(const Sys& system, const Draw& draw, double tolerance 
   return report;
 }
 
-}  // namespace lagroid::testing
+}  // namespace lagroid::laws

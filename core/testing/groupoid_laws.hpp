@@ -1,7 +1,7 @@
 #pragma once
 /// The groupoid axioms as a test suite that any groupoid runs by naming itself.
 ///
-///     EXPECT_TRUE(lagroid::testing::groupoid_laws<MyGroupoid>().holds());
+///     EXPECT_TRUE(lagroid::laws::groupoid_laws<MyGroupoid>().holds());
 ///
 /// Arrows are drawn as products of retractions of random algebroid vectors (zero, tiny, moderate, large) over random
 /// objects. A groupoid whose objects are not vectors of R^n passes `draw_object`.
@@ -9,7 +9,7 @@
 #include <lagroid/core/groupoid.hpp>
 #include <lagroid/core/testing/property.hpp>
 
-namespace lagroid::testing {
+namespace lagroid::laws {
 
 /// How large the samples are and how exact the laws must be.
 struct GroupoidLawOptions {
@@ -21,8 +21,7 @@ struct GroupoidLawOptions {
 
 namespace detail {
 
-template <class X, class Y>
-double relative_defect(const X& x, const Y& y) {
+template <class X, class Y> double relative_defect(const X& x, const Y& y) {
   if (x.size() == 0) return 0;
   return (x - y).cwiseAbs().maxCoeff() / (1 + y.cwiseAbs().maxCoeff());
 }
@@ -97,8 +96,8 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     const V x = vector();
     Vector<D, n> e;
     for (int i = 0; i < n; ++i) e(i) = D(0.0, x(i));
-    const auto moved = groupoid.multiply(groupoid.template cast<D>(g),
-                                         groupoid.tau(groupoid.target(groupoid.template cast<D>(g)), e));
+    const auto moved =
+        groupoid.multiply(groupoid.template cast<D>(g), groupoid.tau(groupoid.target(groupoid.template cast<D>(g)), e));
     double worst = 0;
     const auto q = groupoid.coordinates_of_object(groupoid.source(moved));
     for (int i = 0; i < q.size(); ++i) worst = std::max(worst, std::abs(q(i).derivative));
@@ -144,12 +143,11 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     for (const End first : {End::source, End::target})
       for (const End second : {End::source, End::target}) {
         const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M>(g, first, second, 0));
-        const auto slow =
-            groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
+        const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
         for (int i = 0; i < fast.size(); ++i) {
-          worst = std::max({worst, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
-                            relative_defect(fast(i).right, slow(i).right),
-                            relative_defect(fast(i).mixed, slow(i).mixed)});
+          worst =
+              std::max({worst, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
+                        relative_defect(fast(i).right, slow(i).right), relative_defect(fast(i).mixed, slow(i).mixed)});
         }
       }
     return worst;
@@ -158,12 +156,11 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
 }
 
 /// The same for groupoids whose objects are vectors of R^n (or tuples of such), drawn at random.
-template <Groupoid G>
-LawReport groupoid_laws(const G& groupoid = {}, const GroupoidLawOptions& options = {}) {
+template <Groupoid G> LawReport groupoid_laws(const G& groupoid = {}, const GroupoidLawOptions& options = {}) {
   constexpr int size = G::object_coordinate_count();
   return groupoid_laws(
       groupoid, [&] { return ObjectOf<G>(groupoid.template object_at<double>(draw_vector<size>(options.large))); },
       options);
 }
 
-}  // namespace lagroid::testing
+}  // namespace lagroid::laws

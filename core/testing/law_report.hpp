@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::testing {
+namespace lagroid::laws {
 
 /// One law: the worst defect over all samples, against the tolerance it was held to.
 struct Law {
@@ -44,4 +44,4 @@ struct LawReport {
   }
 };
 
-}  // namespace lagroid::testing
+}  // namespace lagroid::laws

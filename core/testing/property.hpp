@@ -11,24 +11,25 @@
 #include <limits>
 #include <string>
 
-namespace lagroid::testing {
+namespace lagroid::laws {
 
 /// RapidCheck seeds itself from the clock. Unless the environment says otherwise (RC_PARAMS="seed=..."), the suites run
 /// from this seed; RapidCheck prints the seed of every run and, on a failure, the line that reproduces it.
 inline void fix_seed() { ::setenv("RC_PARAMS", "seed=20261120", /*overwrite=*/0); }
 
+/// A number in [-1, 1], whatever RapidCheck's current size (which otherwise pulls ranges towards their lower end).
+inline double draw_uniform() { return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(-1000000, 1000001)) * 1e-6; }
+
 /// A vector with entries in [-1, 1] times a size drawn from identity, tiny, moderate and large arguments.
-template <int N>
-Vector<double, N> draw_vector(double large) {
+template <int N> Vector<double, N> draw_vector(double large) {
   const double size = *rc::gen::element(0.0, 1e-12, 1e-8, 1e-3, 0.3, 1.0, large);
   Vector<double, N> v;
-  for (int i = 0; i < N; ++i) v(i) = size * (*rc::gen::inRange(-1000000, 1000001)) * 1e-6;
+  for (int i = 0; i < N; ++i) v(i) = size * draw_uniform();
   return v;
 }
 
 /// Runs `defect` (which draws its sample with RapidCheck and returns a relative error) and records the worst value.
-template <class F>
-Law check_law(const std::string& name, double tolerance, const F& defect) {
+template <class F> Law check_law(const std::string& name, double tolerance, const F& defect) {
   fix_seed();
   Law law{name, 0, 0, tolerance, {}};
   const bool passed = rc::check(name, [&] {
@@ -47,4 +48,4 @@ Law check_law(const std::string& name, double tolerance, const F& defect) {
   return law;
 }
 
-}  // namespace lagroid::testing
+}  // namespace lagroid::laws

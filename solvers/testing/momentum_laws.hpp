@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace lagroid::testing {
+namespace lagroid::laws {
 
 /// For random initial states: every quantity promised as conserved stays where it began over `steps` steps, within
 /// `tolerance` relative to its size. `draw()` returns a State; a step that fails counts as a defect of infinity.
@@ -45,4 +45,4 @@ LawReport momentum_laws(const Sys& system, const Draw& draw, int steps = 50, dou
   return report;
 }
 
-}  // namespace lagroid::testing
+}  // namespace lagroid::laws
