@@ -51,7 +51,8 @@ std::optional<std::string> PlateBall::infeasible() const {
 
 PlateBall::Arrows PlateBall::path(const ArrowOf<GroupoidType>& boundary, long steps,
                                   const Eigen::Matrix2Xd& modes) const {
-  const auto& [move, turn] = boundary;
+  const PairArrow<double, 2>& move = std::get<0>(boundary);
+  const Matrix<double, 3, 3>& turn = std::get<1>(boundary);
   const auto point = [&](double s) {
     Vector<double, 2> q = (1 - s) * move.source + s * move.target;
     for (Eigen::Index j = 0; j < modes.cols(); ++j) q += modes.col(j) * std::sin(double(j + 1) * std::numbers::pi * s);
