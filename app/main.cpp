@@ -46,7 +46,7 @@ int run(const RunOptions& options) {
   std::vector<std::filesystem::path> files;
   if (options.out) {
     try {
-      files = write_outputs(result, *options.out, result.notes);
+      files = write_outputs(result, *options.out);
     } catch (const OutputError& error) {
       result.notes.push_back(fmt::format("outputs not written: {}", error.what()));
       fmt::print(stderr, "lagroid: {}\n", error.what());

@@ -9,7 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
+#include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 
@@ -150,7 +151,9 @@ bool run_gnuplot(const fs::path& folder, std::string& reason) {
   }
   int status = 0;
   waitpid(child, &status, 0);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && fs::exists(folder / "plot.svg")) return true;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && fs::exists(folder / "plot.svg") &&
+      fs::exists(folder / "plot.png"))
+    return true;
   std::ifstream log(folder / "plot.log");
   std::string first;
   for (std::string line; std::getline(log, line);)
@@ -165,6 +168,7 @@ bool run_gnuplot(const fs::path& folder, std::string& reason) {
 }  // namespace
 
 void require_writable(const fs::path& folder) {
+  if (folder.empty()) throw OutputError("--out: the folder's name is empty; give one, as in --out out/run");
   std::error_code error;
   fs::path existing = fs::absolute(folder);
   while (!fs::exists(existing, error) && existing.has_parent_path() && existing != existing.parent_path())
@@ -177,33 +181,34 @@ void require_writable(const fs::path& folder) {
                                   existing.string()));
 }
 
-std::vector<fs::path> write_outputs(const RunResult& result, const fs::path& folder, std::vector<std::string>& notes) {
-  const fs::path target = fs::absolute(folder).lexically_normal();
-  const fs::path staging = target.parent_path() / fmt::format("{}.partial-{}", target.filename().string(), getpid());
+std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
+  // Staged inside the folder itself: the same file system, and no need to write beside it.
+  const fs::path staging = folder / fmt::format(".partial-{}", getpid());
+  const std::vector<std::string> pictures{"plot.svg", "plot.png"};
   try {
     fs::create_directories(staging);
     std::vector<std::string> names{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt"};
     write_hdf5(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
-    write_text(json_report(result) + "\n", staging / "summary.json");
-    write_text(text_report(result), staging / "summary.txt");
     if (result.trajectory.time.size() > 1) {
       write_text(gnuplot_script(result), staging / "plot.gp");
       names.emplace_back("plot.gp");
       std::string reason;
       if (run_gnuplot(staging, reason)) {
-        names.emplace_back("plot.svg");
-        names.emplace_back("plot.png");
+        names.insert(names.end(), pictures.begin(), pictures.end());
       } else {
-        notes.push_back("no pictures: " + reason);
+        result.notes.push_back("no pictures: " + reason);
       }
     }
-    fs::create_directories(target);
+    write_text(json_report(result) + "\n", staging / "summary.json");
+    write_text(text_report(result), staging / "summary.txt");
     std::vector<fs::path> written;
     for (const auto& name : names) {
-      fs::rename(staging / name, target / name);
+      fs::rename(staging / name, folder / name);
       written.push_back(folder / name);
     }
+    for (const auto& name : pictures)
+      if (std::find(names.begin(), names.end(), name) == names.end()) fs::remove(folder / name);  // of an earlier run
     fs::remove_all(staging);
     return written;
   } catch (const fs::filesystem_error& error) {

@@ -20,8 +20,7 @@ void require_writable(const std::filesystem::path& folder);
 
 /// Writes trajectory.h5, trajectory.csv, summary.json, summary.txt, plot.gp, plot.svg and plot.png into `folder`. Every
 /// file is completed under another name and then renamed, so that each is there whole or not at all. Returns the files
-/// written; a missing or failing gnuplot costs the pictures only and is said in `notes`.
-std::vector<std::filesystem::path> write_outputs(const RunResult& result, const std::filesystem::path& folder,
-                                                 std::vector<std::string>& notes);
+/// written; a missing or failing gnuplot costs the pictures only and is added to the result's notes.
+std::vector<std::filesystem::path> write_outputs(RunResult& result, const std::filesystem::path& folder);
 
 }  // namespace lagroid::app

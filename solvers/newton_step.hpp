@@ -14,11 +14,13 @@ struct NewtonOptions {
   int max_iterations = 60;
   int max_halvings = 12;       ///< of a Newton step that would increase the residual
   double accept_excess = 100;  ///< a residual that stagnates is accepted up to this many times its round-off level
+  double tolerance = 0;        ///< a scaled residual this small is accepted too; 0: iterate to round-off
 };
 
 /// Version 1 of the Newton iteration ([N] (3.5)), carried from Lie groups to alpha-fibres: g <- g tau(w), lambda <-
 /// lambda + dlambda, with (w, dlambda) from the matrix of `StepEquations` at the current arrow. Unknowns and equations
-/// are scaled to a matrix with entries near one. Iterates until the residual no longer falls. No allocation.
+/// are scaled to a matrix with entries near one. Iterates to the round-off level of every equation, then once more with
+/// the same factors: what Newton leaves below that level is not random, and would add up over a long run. No allocation.
 template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
@@ -37,20 +39,27 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
       if (!std::isfinite(current.norm)) return end(report, SolveStatus::not_finite);
       lu_.compute(scaling_.apply(current.jacobian));
       if (!(lu_.rcond() > 1e-15)) return end(report, SolveStatus::singular);
-      const typename E::Residual scaled_residual = current.residual.cwiseProduct(scaling_.row);
-      const typename E::Residual correction = -lu_.solve(scaled_residual).cwiseProduct(scaling_.column);
-      solution.remainder = correction.template head<n>();
-      if (current.excess <= 1) return converged(report, system, step);
+      typename E::Residual correction = corrected(current);
+      if (current.excess <= 1 || current.norm <= options_.tolerance) {
+        const Step<Sys> once_more = moved(system, step, correction, 1);
+        const auto derivative = two_sided(system, once_more.arrow, once_more.multipliers);
+        const ScaledResidual<Sys> next(system, state, once_more, derivative, scaling_, /*rescale=*/false);
+        if (next.excess < current.excess) {
+          step = once_more;
+          solution.derivative = derivative;
+          report.residual = next.norm;
+          report.excess = next.excess;
+          correction = corrected(next);
+        }
+        solution.remainder = correction.template head<n>();
+        return converged(report, system, step);
+      }
       if (report.iterations == options_.max_iterations) return end(report, SolveStatus::not_converged);
 
       bool advanced = false;
       double fraction = 1;
       for (int halving = 0; halving <= options_.max_halvings && !advanced; ++halving, fraction /= 2) {
-        Step<Sys> trial = step;
-        const AlgebroidVector<G> w = fraction * correction.template head<n>();
-        trial.arrow = system.groupoid.project(
-            system.groupoid.multiply(step.arrow, system.groupoid.tau(system.groupoid.target(step.arrow), w)));
-        trial.multipliers += fraction * correction.template tail<Sys::constraints>();
+        const Step<Sys> trial = moved(system, step, correction, fraction);
         const auto derivative = two_sided(system, trial.arrow, trial.multipliers);
         const ScaledResidual<Sys> next(system, state, trial, derivative, scaling_, /*rescale=*/false);
         if (next.norm < current.norm || next.excess < current.excess) {
@@ -59,6 +68,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
           solution.derivative = derivative;
           current = next;
         } else if (current.excess <= options_.accept_excess) {
+          solution.remainder = correction.template head<n>();
           return converged(report, system, step);
         }
       }
@@ -68,6 +78,19 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
  private:
   using E = StepEquations<Sys>;
+
+  /// The Newton correction for a residual, with the factors at hand.
+  typename E::Residual corrected(const ScaledResidual<Sys>& at) const {
+    const typename E::Residual right = at.residual.cwiseProduct(scaling_.row);
+    return -lu_.solve(right).cwiseProduct(scaling_.column);
+  }
+  static Step<Sys> moved(const Sys& system, const Step<Sys>& step, const typename E::Residual& correction,
+                         double fraction) {
+    const AlgebroidVector<G> w = fraction * correction.template head<Sys::dimension>();
+    const auto& groupoid = system.groupoid;
+    return {groupoid.project(groupoid.multiply(step.arrow, groupoid.tau(groupoid.target(step.arrow), w))),
+            step.multipliers + fraction * correction.template tail<Sys::constraints>()};
+  }
 
   static StepReport end(StepReport report, SolveStatus status) {
     report.status = status;

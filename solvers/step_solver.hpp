@@ -53,7 +53,6 @@ template <DiscreteSystem Sys> struct ScaledResidual {
     jacobian = E::jacobian(d);
     if (rescale) scaling = Scaling<E::size>::equilibrate(jacobian);
     norm = residual.cwiseProduct(scaling.row).cwiseAbs().maxCoeff();
-    if (!residual.allFinite() || !jacobian.allFinite()) norm = std::numeric_limits<double>::quiet_NaN();
 
     Vector<double, E::size> size =
         jacobian.template leftCols<n>().cwiseAbs() * system.groupoid.coordinate_scale(step.arrow);
@@ -62,6 +61,10 @@ template <DiscreteSystem Sys> struct ScaledResidual {
       size += jacobian.template rightCols<Sys::constraints>().cwiseAbs() * step.multipliers.cwiseAbs();
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     excess = residual.cwiseAbs().cwiseQuotient((epsilon * size).cwiseMax(1e-300)).maxCoeff();
+    if (!residual.allFinite() || !jacobian.allFinite()) {
+      norm = std::numeric_limits<double>::quiet_NaN();
+      excess = std::numeric_limits<double>::infinity();
+    }
   }
 };
 

@@ -23,6 +23,7 @@ namespace detail {
 
 template <class X, class Y> double relative_defect(const X& x, const Y& y) {
   if (x.size() == 0) return 0;
+  if (!x.allFinite() || !y.allFinite()) return std::numeric_limits<double>::infinity();
   return (x - y).cwiseAbs().maxCoeff() / (1 + y.cwiseAbs().maxCoeff());
 }
 
@@ -58,14 +59,14 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
   law("units", options.tolerance, [&] {
     const A g = arrow();
     const auto q = groupoid.source(g);
-    return std::max({arrows(groupoid.compose(groupoid.unit(q), g), g),
+    return worst({arrows(groupoid.compose(groupoid.unit(q), g), g),
                      arrows(groupoid.compose(g, groupoid.unit(groupoid.target(g))), g),
                      objects(groupoid.source(groupoid.unit(q)), q), objects(groupoid.target(groupoid.unit(q)), q)});
   });
   law("inverses", options.tolerance, [&] {
     const A g = arrow();
     const A i = groupoid.inverse(g);
-    return std::max({objects(groupoid.source(i), groupoid.target(g)), objects(groupoid.target(i), groupoid.source(g)),
+    return worst({objects(groupoid.source(i), groupoid.target(g)), objects(groupoid.target(i), groupoid.source(g)),
                      arrows(groupoid.compose(g, i), groupoid.unit(groupoid.source(g))),
                      arrows(groupoid.compose(i, g), groupoid.unit(groupoid.target(g)))});
   });
@@ -73,7 +74,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     const A g = arrow();
     const A h = arrow_from(groupoid.target(g));
     const A gh = groupoid.compose(g, h);
-    return std::max(objects(groupoid.source(gh), groupoid.source(g)), objects(groupoid.target(gh), groupoid.target(h)));
+    return worst({objects(groupoid.source(gh), groupoid.source(g)), objects(groupoid.target(gh), groupoid.target(h))});
   });
   law("associativity", options.tolerance, [&] {
     const A g = arrow();
@@ -87,7 +88,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     const double size = v.norm();
     if (size > options.local) v *= options.local / size;
     const A g = groupoid.tau(q, v);
-    return std::max({arrows(groupoid.tau(q, V(V::Zero())), groupoid.unit(q)), objects(groupoid.source(g), q),
+    return worst({arrows(groupoid.tau(q, V(V::Zero())), groupoid.unit(q)), objects(groupoid.source(g), q),
                      relative_defect(groupoid.tau_inverse(g), v)});
   });
   law("left-invariant fields are alpha-vertical", options.derivative, [&] {
@@ -146,7 +147,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
         const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
         for (int i = 0; i < fast.size(); ++i) {
           worst =
-              std::max({worst, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
+              worst({worst, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
                         relative_defect(fast(i).right, slow(i).right), relative_defect(fast(i).mixed, slow(i).mixed)});
         }
       }

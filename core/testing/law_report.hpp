@@ -2,11 +2,25 @@
 /// What a law suite says of its subject.
 
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <ostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace lagroid::laws {
+
+/// The largest of some defects; a NaN among them makes it infinite, so that none is overlooked.
+inline double worst(std::initializer_list<double> defects) {
+  double largest = 0;
+  for (const double d : defects) {
+    if (!(d <= largest)) largest = d;
+    if (std::isnan(d)) return std::numeric_limits<double>::infinity();
+  }
+  return largest;
+}
 
 /// One law: the worst defect over all samples, against the tolerance it was held to.
 struct Law {
