@@ -15,16 +15,24 @@ double worse(double a, double b) { return a <= b || std::isnan(b) ? b : a; }
 
 }  // namespace
 
-QuantityWatch::QuantityWatch(std::string name, Promise promise, std::size_t width, long expected_samples)
-    : name_(std::move(name)), promise_(promise), expected_(expected_samples), first_(width), last_(width) {}
+QuantityWatch::QuantityWatch(std::string name, Promise promise, std::size_t width)
+    : name_(std::move(name)), promise_(promise), first_(width), last_(width) {}
 
 void QuantityWatch::observe(const double* values, double size) {
   if (samples_ == 0) std::copy_n(values, first_.size(), first_.begin());
   std::copy_n(values, last_.size(), last_.begin());
   double square = 0;
   for (std::size_t i = 0; i < first_.size(); ++i) square += (values[i] - first_[i]) * (values[i] - first_[i]);
-  double& worst = 2 * samples_ < expected_ ? first_half_ : second_half_;
-  worst = worse(worst, std::sqrt(square));
+  constexpr std::size_t most_chunks = 128;
+  if (samples_ == chunk_ * long(envelope_.size())) {
+    if (envelope_.size() == most_chunks) {
+      for (std::size_t i = 0; i < most_chunks / 2; ++i) envelope_[i] = worse(envelope_[2 * i], envelope_[2 * i + 1]);
+      envelope_.resize(most_chunks / 2);
+      chunk_ *= 2;
+    }
+    envelope_.push_back(0);
+  }
+  envelope_.back() = worse(envelope_.back(), std::sqrt(square));
   size_ = std::max(size_, size);
   ++samples_;
 }
@@ -34,7 +42,13 @@ LedgerEntry QuantityWatch::entry() const {
   e.name = name_;
   e.initial = first_;
   e.final = last_;
-  e.drift = worse(first_half_, second_half_);
+  double first_half = 0;
+  double second_half = 0;
+  for (std::size_t i = 0; i < envelope_.size(); ++i) {
+    double& half = 2 * i < envelope_.size() ? first_half : second_half;
+    half = worse(half, envelope_[i]);
+  }
+  e.drift = worse(first_half, second_half);
   double norm = 0;
   for (const double x : first_) norm += x * x;
   norm = std::sqrt(norm);
@@ -48,19 +62,19 @@ LedgerEntry QuantityWatch::entry() const {
   } else {
     e.promise = "bounded";
     constexpr long enough = 1000;
-    const bool settled = second_half_ <= 1.5 * first_half_ + noise;
+    const bool settled = second_half <= 1.5 * first_half + noise;
     e.verdict = samples_ < enough ? "unjudged" : settled ? "bounded" : "growing";
   }
   return e;
 }
 
-LedgerEntry constraint_entry(double largest, double coordinate_size) {
+LedgerEntry constraint_entry(double largest, double size) {
   LedgerEntry e;
   e.name = "constraint residual";
   e.promise = "round-off";
   e.drift = largest;
-  e.relative_drift = largest;
-  e.bound = 100 * round_off * std::max(1.0, coordinate_size);
+  e.relative_drift = size > 0 ? largest / size : largest;
+  e.bound = 100 * round_off * size;
   e.verdict = largest <= e.bound ? "kept" : "BROKEN";
   return e;
 }

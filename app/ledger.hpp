@@ -13,7 +13,7 @@ namespace lagroid::app {
 /// Follows one quantity: its first and last values, its largest deviation, and whether that still grows.
 class QuantityWatch {
  public:
-  QuantityWatch(std::string name, Promise promise, std::size_t width, long expected_samples);
+  QuantityWatch(std::string name, Promise promise, std::size_t width);
   /// `size` is the size of the terms the quantity is made of; round-off is relative to it.
   void observe(const double* values, double size);
   LedgerEntry entry() const;
@@ -21,16 +21,15 @@ class QuantityWatch {
  private:
   std::string name_;
   Promise promise_;
-  long expected_;
   long samples_ = 0;
   std::vector<double> first_;
   std::vector<double> last_;
-  double first_half_ = 0;   // largest deviation among the first half of the expected samples
-  double second_half_ = 0;  // and among the rest
+  std::vector<double> envelope_;  // largest deviation in consecutive chunks of equal length
+  long chunk_ = 1;
   double size_ = 0;
 };
 
-/// The entry for a constraint residual: the largest |phi| met, against round-off in coordinates of the given size.
-LedgerEntry constraint_entry(double largest, double coordinate_size);
+/// The entry for a constraint residual: the largest |phi| met, against round-off in its terms, which have the given size.
+LedgerEntry constraint_entry(double largest, double size);
 
 }  // namespace lagroid::app

@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -26,9 +29,9 @@ struct RunOptions {
   bool json = false;
 };
 
-int refuse(const RunOptions& options, const std::string& message) {
+int refuse(const RunOptions& options, const std::string& message, const std::string& status = "invalid_scene") {
   fmt::print(stderr, "lagroid: {}\n", message);
-  if (options.json) fmt::print("{}\n", json_error("invalid_scene", message));
+  if (options.json) fmt::print("{}\n", json_error(status, message));
   return exit_bad_input;
 }
 
@@ -48,7 +51,8 @@ int run(const RunOptions& options) {
     try {
       files = write_outputs(result, *options.out);
     } catch (const OutputError& error) {
-      result.notes.push_back(fmt::format("outputs not written: {}", error.what()));
+      result.status = "output_failed";
+      result.message = error.what();
       fmt::print(stderr, "lagroid: {}\n", error.what());
       fmt::print("{}\n", options.json ? json_report(result) : text_report(result));
       return exit_failed;
@@ -60,6 +64,10 @@ int run(const RunOptions& options) {
     fmt::print("{}", text_report(result));
     for (const auto& file : files) fmt::print("  wrote {}\n", file.string());
     if (!options.out) fmt::print("  (no files written; --out DIR writes trajectory, plot and summary)\n");
+  }
+  if (std::fflush(stdout) != 0) {
+    fmt::print(stderr, "lagroid: standard output could not be written\n");
+    return exit_failed;
   }
   if (!result.converged()) {
     fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
@@ -87,8 +95,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : exit_bad_input;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    // The flag may not have been read before the mistake was met.
+    for (int i = 1; i < argc; ++i) options.json = options.json || std::string_view(argv[i]) == "--json";
+    return refuse(options, fmt::format("{}; see lagroid --help", error.what()), "invalid_command_line");
   }
   try {
     if (list_command->parsed()) {
@@ -98,6 +108,7 @@ int main(int argc, char** argv) {
     return run(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "lagroid: internal error: {}; please report it with the scene\n", error.what());
+    if (options.json) fmt::print("{}\n", json_error("internal_error", error.what()));
     return 1;
   }
 }

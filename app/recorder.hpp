@@ -8,8 +8,11 @@
 #include <lagroid/core/two_sided.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,10 +48,10 @@ template <DiscreteSystem Sys> class Recorder {
   using G = typename Sys::GroupoidType;
 
   /// `every` = 0 records nothing but the ledger and the endpoints.
-  Recorder(const Sys& system, const Presentation<Sys>& presentation, long steps, long every)
-      : system_(system), presentation_(presentation), quantities_(system.quantities()), steps_(steps), every_(every) {
+  Recorder(const Sys& system, const Presentation<Sys>& presentation, long every)
+      : system_(system), presentation_(presentation), quantities_(system.quantities()), every_(every) {
     for (const auto& q : quantities_) {
-      watches_.emplace_back(q.name, q.promise, q.components.size(), q.needs_step ? steps : steps + 1);
+      watches_.emplace_back(q.name, q.promise, q.components.size());
       first_.emplace_back(q.components.size());
       now_.emplace_back(q.components.size());
     }
@@ -67,28 +70,38 @@ template <DiscreteSystem Sys> class Recorder {
     double residual = 0;
     if (has_step) {
       if constexpr (Sys::constraints > 0) {
-        residual = constraint_values(system_, point.step.arrow).cwiseAbs().maxCoeff();
-        largest_residual_ = std::max(largest_residual_, residual);
-        coordinate_size_ =
-            std::max(coordinate_size_, system_.groupoid.coordinates_of_arrow(point.step.arrow).cwiseAbs().maxCoeff());
+        const auto c = constraint_values(system_, point.step.arrow);
+        residual = c.allFinite() ? c.cwiseAbs().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+        // The size of the constraints' terms changes slowly: looked at where a residual stands out.
+        if (!(residual <= largest_residual_) || point.index == 1) {
+          const auto d = two_sided(system_, point.step.arrow, point.step.multipliers);
+          constraint_size_ = std::max(
+              constraint_size_,
+              (d.constraint_target.cwiseAbs() * system_.groupoid.coordinate_scale(point.step.arrow)).maxCoeff());
+          largest_residual_ = residual;
+        }
       }
       last_multipliers_ = list(point.step.multipliers);
       if (point.index == 1) first_multipliers_ = last_multipliers_;
     }
     last_ = endpoint(point);
     if (point.index == 0) initial_ = last_;
-    if (every_ > 0 && (point.index % every_ == 0 || point.index == steps_)) record(point, residual);
+    last_point_ = point;
+    last_residual_ = residual;
+    pending_ = every_ > 0 && point.index % every_ != 0;
+    if (every_ > 0 && !pending_) record(point, residual);
   }
 
   /// Moves what was observed into the result.
   void finish(RunResult& result) {
+    if (pending_) record(last_point_, last_residual_);
     result.system = presentation_.name;
     result.initial = initial_;
     result.final = last_;
     result.first_multipliers = first_multipliers_;
     result.last_multipliers = last_multipliers_;
     if constexpr (Sys::constraints > 0)
-      result.ledger.entries.push_back(constraint_entry(largest_residual_, coordinate_size_));
+      result.ledger.entries.push_back(constraint_entry(largest_residual_, constraint_size_));
     for (const auto& watch : watches_) result.ledger.entries.push_back(watch.entry());
     result.trajectory = std::move(trajectory_);
     result.trajectory.conventions = presentation_.conventions;
@@ -125,14 +138,14 @@ template <DiscreteSystem Sys> class Recorder {
       s.push_back({"attitude", {"A_w", "A_x", "A_y", "A_z"}, "1", "attitude A, unit quaternion w, x, y, z", false, {}});
     s.push_back({"momentum", p.momentum, p.momentum_unit, "momentum mu in A*G, basis of the retraction", false, {}});
     if constexpr (Sys::constraints > 0) {
-      s.push_back({"multipliers", p.multipliers, "", "multipliers lambda of L + <lambda, phi>", true, {}});
-      s.push_back({"constraint_residual", {"residual"}, "", "largest |phi| on the arrow", true, {}});
+      s.push_back({"multipliers", p.multipliers, "action / unit of the constraint", "multipliers lambda of L + <lambda, phi>", true, {}});
+      s.push_back({"constraint_residual", {"residual"}, "unit of the constraint", "largest |phi| on the arrow", true, {}});
     }
     for (const auto& extra : p.extras) s.push_back(extra.series);
     for (const auto& q : quantities_)
       s.push_back({"drift of " + q.name,
                    {"drift " + q.name},
-                   "",
+                   "unit of the quantity",
                    "norm of the deviation from the first value",
                    q.needs_step,
                    {}});
@@ -184,10 +197,12 @@ template <DiscreteSystem Sys> class Recorder {
   std::vector<QuantityWatch> watches_;
   std::vector<std::vector<double>> first_;
   std::vector<std::vector<double>> now_;
-  long steps_;
   long every_;
   double largest_residual_ = 0;
-  double coordinate_size_ = 0;
+  double constraint_size_ = 0;
+  TrajectoryPoint<Sys> last_point_;
+  double last_residual_ = 0;
+  bool pending_ = false;
   Endpoint initial_;
   Endpoint last_;
   std::vector<double> first_multipliers_;

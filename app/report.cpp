@@ -94,6 +94,7 @@ std::string json_report(const RunResult& r) {
   out["seconds"] = r.seconds;
   out["iterations"] = r.iterations;
   if (r.cost) out["cost"] = *r.cost;
+  if (r.residual) out["residual"] = *r.residual;
   out["initial"] = json(r.initial);
   out["final"] = json(r.final);
   out["multipliers"] = {{"first", r.first_multipliers}, {"last", r.last_multipliers}};
@@ -114,11 +115,11 @@ std::string json_report(const RunResult& r) {
   ledger["solver"] = r.status;
   out["ledger"] = ledger;
   out["notes"] = r.notes;
-  return out.dump(2);
+  return out.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string json_error(const std::string& status, const std::string& message) {
-  return Json{{"status", status}, {"message", message}}.dump(2);
+  return Json{{"status", status}, {"message", message}}.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace lagroid::app

@@ -48,7 +48,7 @@ std::string type_name(const toml::node& node) {
 }
 
 std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   return text;
 }
 
@@ -61,12 +61,12 @@ std::string Section::full(std::string_view key) const {
 
 void Section::fail(std::string_view key, const std::string& problem) const {
   const std::string name = full(key);
-  if (source_->overridden.contains(name)) throw SceneError(fmt::format("--set {}: {}", name, problem));
+  if (source_->overridden.contains(name)) throw SceneError(one_line(fmt::format("--set {}: {}", name, problem)));
   const toml::node* node = table_ && !key.empty() ? table_->get(key) : nullptr;
   const int line = node ? int(node->source().begin.line) : line_;
   const std::string where = line > 0 ? fmt::format("{}:{}", source_->file, line) : source_->file;
-  throw SceneError(name.empty() ? fmt::format("{}: {}", where, problem)
-                                : fmt::format("{}: {}: {}", where, name, problem));
+  throw SceneError(
+      one_line(name.empty() ? fmt::format("{}: {}", where, problem) : fmt::format("{}: {}: {}", where, name, problem)));
 }
 
 const toml::node* Section::find(std::string_view key) const {
@@ -76,14 +76,22 @@ const toml::node* Section::find(std::string_view key) const {
 
 const toml::node& Section::require(std::string_view key, std::string_view what) const {
   const toml::node* node = find(key);
-  if (node == nullptr) fail("", fmt::format("missing key \"{}\": give {}", key, what));
+  if (node == nullptr) {
+    std::vector<std::string> unread;
+    if (table_)
+      for (const auto& [present, unused] : *table_)
+        if (!source_->known.contains(full(present.str()))) unread.emplace_back(present.str());
+    const std::string typo = nearest(key, unread);
+    if (!typo.empty()) fail(typo, fmt::format("unknown key; did you mean \"{}\"?", key));
+    fail("", fmt::format("missing key \"{}\": give {}", key, what));
+  }
   return *node;
 }
 
 bool Section::has(std::string_view key) const { return find(key) != nullptr; }
 
 double Section::checked(std::string_view key, const toml::node& node, const NumberRule& rule) const {
-  const auto value = node.value<double>();
+  const auto value = node.is_integer() ? std::optional(double(**node.as_integer())) : node.value<double>();
   if (!node.is_number() || !value) fail(key, fmt::format("expected a number, got {}", type_name(node)));
   if (!std::isfinite(*value)) fail(key, fmt::format("must be finite, got {}", *value));
   if (!rule.holds(*value)) fail(key, fmt::format("must be {}, got {}", rule.words, *value));
@@ -103,7 +111,7 @@ long Section::integer(std::string_view key, long least, long most) const {
   const toml::node& node = require(key, fmt::format("a whole number from {} to {}", least, most));
   if (!node.is_integer())
     fail(key,
-         fmt::format("expected a whole number, got {}", node.is_number() ? "one with a fraction" : type_name(node)));
+         fmt::format("expected a whole number written without a point, got {}", type_name(node)));
   const long value = long(*node.value<std::int64_t>());
   if (value < least || value > most) fail(key, fmt::format("must be from {} to {}, got {}", least, most, value));
   return value;
@@ -165,7 +173,7 @@ std::array<double, 4> Section::attitude(std::string_view key) const {
 }
 
 Section Section::section(std::string_view key, std::string_view purpose) const {
-  if (find(key) == nullptr) fail("", fmt::format("missing table [{}]: {}", full(key), purpose));
+  if (find(key) == nullptr) require(key, fmt::format("the table [{}]: {}", full(key), purpose));
   return section_or_empty(key);
 }
 

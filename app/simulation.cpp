@@ -3,7 +3,7 @@
 namespace lagroid::app {
 
 TimeGrid read_time(const Section& scene) {
-  const Section time = scene.section("time", "give step and steps, or duration and steps");
+  const Section time = scene.section("time", "step and steps, or duration and steps");
   constexpr long most = 2'000'000'000;
   TimeGrid grid;
   const bool has_duration = time.has("duration");
@@ -18,6 +18,7 @@ StepperChoice read_stepper(const Section& solver) {
   StepperChoice choice;
   choice.ceres = solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres";
   choice.max_iterations = int(solver.integer_or("max_iterations", choice.ceres ? 100 : 60, 1, 100000));
+  choice.tolerance = solver.number_or("tolerance", 0, nonnegative);
   return choice;
 }
 

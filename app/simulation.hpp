@@ -34,6 +34,7 @@ TimeGrid read_time(const Section& scene);
 struct StepperChoice {
   bool ceres = false;
   int max_iterations = 60;
+  double tolerance = 0;  ///< on the scaled residual; 0: to round-off
 };
 StepperChoice read_stepper(const Section& solver);
 
@@ -58,15 +59,16 @@ RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
   const auto start = std::chrono::steady_clock::now();
   std::unique_ptr<StepSolver<Sys>> solver;
   if (choice.ceres) {
-    solver = std::make_unique<CeresStep<Sys>>(choice.max_iterations);
+    solver = std::make_unique<CeresStep<Sys>>(choice.max_iterations, choice.tolerance, system.groupoid);
   } else {
     NewtonOptions options;
     options.max_iterations = choice.max_iterations;
+    options.tolerance = choice.tolerance;
     solver = std::make_unique<NewtonStep<Sys>>(options);
   }
   RunResult result;
   result.steps_asked = steps;
-  Recorder<Sys> recorder(system, presentation, steps, every);
+  Recorder<Sys> recorder(system, presentation, every);
   Integrator<Sys> integrator(system, initial, configuration, std::move(solver));
   recorder.observe(reported(system, integrator.point()));
   {
@@ -77,6 +79,7 @@ RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
       result.ledger.most_iterations = std::max(result.ledger.most_iterations, report.iterations);
       if (!report.converged()) {
         result.status = std::string(to_string(report.status));
+        result.residual = report.residual;
         result.message = step_failure(report, k, integrator.point().time);
         break;
       }

@@ -11,7 +11,10 @@
 #include <lagroid/core/mixed.hpp>
 #include <lagroid/core/types.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -71,8 +74,8 @@ template <class Derived, int Dimension> class LieGroupoid {
   /// tau(a)^{-1} g tau(b): the arrow g with its source displaced by a in A_{alpha(g)}G and its target by b in
   /// A_{beta(g)}G.
   template <class A, class V> A translate(const V& a, const A& g, const V& b) const {
-    const A moved = self().multiply(self().inverse(self().tau(self().source(g), a)), g);
-    return self().multiply(moved, self().tau(self().target(g), b));
+    const A moved = compose(self().inverse(self().tau(self().source(g), a)), g);
+    return compose(moved, self().tau(self().target(g), b));
   }
 
   /// The arrow g as an arrow over the scalar S, a constant if S carries derivatives.
@@ -195,7 +198,8 @@ template <class Derived, int Dimension> class LieGroupoid {
     double gap = 0;
     double size = 1;
     for (Eigen::Index i = 0; i < end.size(); ++i) {
-      gap = std::max(gap, std::abs(double(value_of(end(i)) - value_of(start(i)))));
+      const double difference = std::abs(double(value_of(end(i)) - value_of(start(i))));
+      gap = std::isnan(difference) ? std::numeric_limits<double>::infinity() : std::max(gap, difference);
       size = std::max(size, std::abs(double(value_of(end(i)))));
     }
     if (gap <= 1e-9 * size) return;

@@ -128,7 +128,7 @@ template <class T, int L, int R> Mixed<T, L, R> tanh(const Mixed<T, L, R>& x) {
   const T t1 = (1 - t) * (1 + t);
   return x.chain(t, t1, -2 * t * t1);
 }
-template <class T, int L, int R> Mixed<T, L, R> pow(const Mixed<T, L, R>& x, T p) {
+template <class T, int L, int R> Mixed<T, L, R> pow(const Mixed<T, L, R>& x, std::type_identity_t<T> p) {
   // p = 0 and p = 1 have no singular derivatives at zero.
   const T f1 = p == 0 ? T(0) : p * std::pow(x.value, p - 1);
   const T f2 = p == 0 || p == 1 ? T(0) : p * (p - 1) * std::pow(x.value, p - 2);

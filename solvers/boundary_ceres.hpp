@@ -10,6 +10,29 @@
 
 namespace lagroid {
 
+/// d/dv_j of the gradient df/du_i of f = L + <lambda, phi> when the arrow is first displaced by v, then by u, both at the
+/// same end: f(g tau(v) tau(u)) or f(tau(u)^{-1} tau(v)^{-1} g). The symmetric Hessian of `one_sided_hessian` plus half
+/// the gradient on the bracket [v, u]; the exact derivative of F+ or -F- along the fibre, away from solutions too.
+template <DiscreteSystem Sys>
+Matrix<double, Sys::dimension, Sys::dimension> gradient_derivative(const Sys& system,
+                                                                   const ArrowOf<typename Sys::GroupoidType>& g,
+                                                                   const typename Sys::Multipliers& lambda, End end) {
+  using M = MixedOf<Sys>;
+  constexpr int n = Sys::dimension;
+  const auto& groupoid = system.groupoid;
+  Vector<M, n> u = Vector<M, n>::Constant(M(0));
+  Vector<M, n> v = u;
+  for (int i = 0; i < n; ++i) {
+    u(i).left(i) = 1;
+    v(i).right(i) = 1;
+  }
+  const Vector<M, n> zero = Vector<M, n>::Constant(M(0));
+  const auto start = groupoid.template cast<M>(g);
+  const auto once = end == End::target ? groupoid.translate(zero, start, v) : groupoid.translate(v, start, zero);
+  const auto twice = end == End::target ? groupoid.translate(zero, once, u) : groupoid.translate(u, once, zero);
+  return detail::augmented_lagrangian<M>(system, twice, lambda).mixed;
+}
+
 /// The KKT equations as a least-squares problem of zero residual: unknowns are the reaches X_k = g_1 ... g_k, points of
 /// the alpha-fibre over the first object (k = 1 ... N-1), and the multipliers. Levenberg-Marquardt on the squared
 /// residual knows nothing of minima: any stationary point attracts it. The normal equations square the condition
@@ -49,7 +72,7 @@ template <DiscreteSystem Sys> class BoundaryCeres {
     ArrowOf<G> product = groupoid.unit(groupoid.source(problem.boundary));
     reach[0] = groupoid.coordinates_of_arrow(product);
     for (std::size_t k = 0; k < count; ++k) {
-      product = k + 1 == count ? problem.boundary : groupoid.project(groupoid.multiply(product, path[k].arrow));
+      product = k + 1 == count ? problem.boundary : groupoid.project(groupoid.compose(product, path[k].arrow));
       reach[k + 1] = groupoid.coordinates_of_arrow(product);
       multipliers[k] = path[k].multipliers;
     }
@@ -86,7 +109,7 @@ template <DiscreteSystem Sys> class BoundaryCeres {
 
     for (std::size_t k = 0; k < count; ++k) {
       path[k].arrow = groupoid.project(
-          groupoid.multiply(groupoid.inverse(manifold.arrow(reach[k].data())), manifold.arrow(reach[k + 1].data())));
+          groupoid.compose(groupoid.inverse(manifold.arrow(reach[k].data())), manifold.arrow(reach[k + 1].data())));
       path[k].multipliers = multipliers[k];
     }
     kkt.evaluate(system, path);
@@ -122,7 +145,7 @@ template <DiscreteSystem Sys> class BoundaryCeres {
       const G& groupoid = system_->groupoid;
       const auto before = manifold_->arrow(x[0]);
       const auto node = manifold_->arrow(x[1]);
-      const ArrowOf<G> g = groupoid.multiply(groupoid.inverse(before), node);
+      const ArrowOf<G> g = groupoid.compose(groupoid.inverse(before), node);
       const typename Sys::Multipliers lambda = Eigen::Map<const typename Sys::Multipliers>(x[2]);
       const auto d = two_sided(*system_, g, lambda);
       const auto c_scale = scale_.template head<m>();
@@ -136,7 +159,7 @@ template <DiscreteSystem Sys> class BoundaryCeres {
       typename Sys::Multipliers next_lambda;
       if (!last_) {
         after = manifold_->arrow(x[3]);
-        next = groupoid.multiply(groupoid.inverse(node), after);
+        next = groupoid.compose(groupoid.inverse(node), after);
         next_lambda = Eigen::Map<const typename Sys::Multipliers>(x[4]);
         e = two_sided(*system_, next, next_lambda);
         Eigen::Map<Vector<double, n>> f(residuals + m);
@@ -162,8 +185,8 @@ template <DiscreteSystem Sys> class BoundaryCeres {
       };
       Matrix<double, n, n> stiffness = Matrix<double, n, n>::Zero();
       if (!last_)
-        stiffness = one_sided_hessian(*system_, g, lambda, End::target) +
-                    one_sided_hessian(*system_, next, next_lambda, End::source);
+        stiffness = gradient_derivative(*system_, g, lambda, End::target) +
+                    gradient_derivative(*system_, next, next_lambda, End::source);
       put(0, d.constraint_source.transpose(), d.mixed.transpose(), before);
       put(1, d.constraint_target, stiffness, node);
       put_multiplier(2, d.constraint_target.transpose());

@@ -17,6 +17,7 @@ namespace lagroid {
 /// Everything is kept in scaled unknowns, z = scale * z', so that regularisation and round-off mean the same in each.
 template <DiscreteSystem Sys> class BoundaryKkt {
   static_assert(Sys::object_constraints == 0, "boundary-value problems take arrow constraints only");
+  static_assert(HasTimeStep<Sys>, "the metric of least-norm steps needs the time step h");
 
  public:
   static constexpr int n = Sys::dimension;
@@ -82,14 +83,11 @@ template <DiscreteSystem Sys> class BoundaryKkt {
         if (entry > 0) scale_(i) /= std::sqrt(entry);
       }
     scale_ = scale_.unaryExpr([](double x) { return std::exp2(std::round(std::log2(x))); });
-    chosen_ = true;
   }
-  bool scale_chosen() const { return chosen_; }
 
   /// What a factorisation says of the matrix.
   struct Inertia {
     long negative = 0;
-    long positive = 0;
     double smallest = std::numeric_limits<double>::infinity();  ///< |eigenvalue| of a pivot block, scaled
   };
 
@@ -117,13 +115,12 @@ template <DiscreteSystem Sys> class BoundaryKkt {
       vectors_[k] = eigen.eigenvectors();
       for (int i = 0; i < size; ++i) {
         const double value = eigen.eigenvalues()(i);
-        (value < 0 ? inertia.negative : inertia.positive)++;
+        inertia.negative += value < 0;
         inertia.smallest = std::min(inertia.smallest, std::abs(value));
         const double safe = std::abs(value) < 1e-300 ? 1e-300 : value;
         inverse_values_[k](i) = 1 / safe;
       }
     }
-    inertia.positive -= n;  // the end node
     return inertia;
   }
 
@@ -182,9 +179,6 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   const std::vector<Vector<double, n>>& cost_gradient() const { return gradient_; }
   const Columns& residual() const { return residual_; }
   const Column& scale() const { return scale_; }
-  const std::vector<Block>& diagonal() const { return diagonal_; }
-  const std::vector<Coupling>& coupling() const { return coupling_; }
-  long nodes() const { return long(diagonal_.size()) - 1; }
   long constraint_count() const { return long(diagonal_.size()) * m; }
 
   /// The second-order type of a stationary point: the inertia of the matrix with null directions counted as positive,
@@ -248,7 +242,6 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   std::vector<Vector<double, n>> gradient_;  // of the cost alone
   double cost_ = 0;
   Column scale_ = Column::Ones();
-  bool chosen_ = false;
   std::vector<Block> vectors_;
   std::vector<Column> inverse_values_;
 };

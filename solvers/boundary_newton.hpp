@@ -12,7 +12,7 @@ struct BoundaryOptions {
   int max_iterations = 200;
   double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; iterates on until it no longer falls
   double feasibility = 1e-9;  ///< largest scaled constraint value at which a path counts as admissible on the way
-  double largest_turn = 1.0;  ///< bound on a node displacement in one iteration, in coordinates of AG
+  double largest_displacement = 1.0;  ///< bound on a node displacement in one iteration, in coordinates of AG
 };
 
 /// Newton's method on the manifold of admissible trajectories ([G] 5.1): composable arrows in the constraint set with
@@ -55,6 +55,9 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     }
     if (!out.converged()) {
       if (out.iterations >= options_.max_iterations) out.status = SolveStatus::not_converged;
+      kkt.evaluate(system, path);
+      kkt.choose_scale();
+      out.residual = kkt.residual_norm();
       out.path = std::move(path);
       return out;
     }
@@ -147,7 +150,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
       if (violation <= options_.feasibility && admissible(system, path)) return true;
       kkt.factor(0, 1e-10);
       const Direction direction = without_multipliers(unscaled(kkt, kkt.solve(b)));
-      double fraction = std::min(1.0, options_.largest_turn / reach(direction));
+      double fraction = std::min(1.0, options_.largest_displacement / reach(direction));
       bool advanced = false;
       for (int halving = 0; halving < 30 && !advanced; ++halving, fraction /= 2) {
         Path<Sys> trial = displaced(problem, path, direction.nodes, direction.multipliers, fraction);
@@ -194,7 +197,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     for (; shift < largest; shift = std::max(smallest, 3 * shift)) {
       if (!right_inertia(kkt, shift)) continue;
       const Direction direction = without_multipliers(unscaled(kkt, kkt.solve(side)));
-      if (reach(direction) > options_.largest_turn) continue;
+      if (reach(direction) > options_.largest_displacement) continue;
       double slope = 0;
       for (std::size_t k = 0; k < path.size(); ++k) slope += kkt.cost_gradient()[k].dot(direction.nodes[k]);
       Path<Sys> trial = displaced(problem, path, direction.nodes, direction.multipliers, 1.0);
@@ -235,7 +238,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     for (bool contracts = true; contracts && std::isfinite(norm) && iterations < 30; ++iterations) {
       factor_plainly(kkt);
       const Direction d = unscaled(kkt, refined(kkt, negated(kkt.scaled_residual())));
-      if (reach(d) > options_.largest_turn) break;
+      if (reach(d) > options_.largest_displacement) break;
       Path<Sys> trial = displaced(problem, best, d.nodes, d.multipliers, 1.0);
       kkt.evaluate(system, trial);
       const double next = kkt.residual_norm();
@@ -267,7 +270,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
       while (kkt.factor(primal, regularisation).negative != kkt.constraint_count() && primal < 1e6) primal *= 4;
       const Direction d = unscaled(kkt, kkt.solve(negated(kkt.scaled_residual())));
       Path<Sys> trial = displaced(problem, path, d.nodes, d.multipliers,
-                                  std::min(1.0, options_.largest_turn / std::max(1e-300, reach(d))));
+                                  std::min(1.0, options_.largest_displacement / std::max(1e-300, reach(d))));
       Kkt there = kkt;
       there.evaluate(system, trial);
       const double next = there.residual_norm();

@@ -4,7 +4,9 @@
 #include <lagroid/core/two_sided.hpp>
 #include <lagroid/solvers/status.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace lagroid {
@@ -42,13 +44,13 @@ Path<Sys> displaced(const BoundaryProblem<Sys>& problem, const Path<Sys>& path,
   for (std::size_t k = 0; k < count; ++k) {
     out[k].multipliers = path[k].multipliers + fraction * multipliers[k];
     if (k + 1 == count) {
-      out[k].arrow = groupoid.project(groupoid.multiply(groupoid.inverse(product), problem.boundary));
+      out[k].arrow = groupoid.project(groupoid.compose(groupoid.inverse(product), problem.boundary));
       break;
     }
     const AlgebroidVector<G> before = k == 0 ? AlgebroidVector<G>::Zero().eval() : (fraction * nodes[k - 1]).eval();
     const AlgebroidVector<G> after = fraction * nodes[k];
     out[k].arrow = groupoid.project(groupoid.translate(before, path[k].arrow, after));
-    product = groupoid.project(groupoid.multiply(product, out[k].arrow));
+    product = groupoid.project(groupoid.compose(product, out[k].arrow));
   }
   return out;
 }
@@ -62,18 +64,18 @@ Path<Sys> resampled(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, 
   const std::size_t old_count = path.size();
   std::vector<ArrowOf<G>> reach(old_count + 1, groupoid.unit(groupoid.source(problem.boundary)));
   for (std::size_t k = 0; k < old_count; ++k)
-    reach[k + 1] = groupoid.project(groupoid.multiply(reach[k], path[k].arrow));
+    reach[k + 1] = groupoid.project(groupoid.compose(reach[k], path[k].arrow));
   const auto node = [&](std::size_t k) {
     const double at = double(k) * double(old_count) / double(count);
     const std::size_t i = std::min(std::size_t(at), old_count - 1);
     const AlgebroidVector<G> v = (at - double(i)) * groupoid.tau_inverse(path[i].arrow);
-    return ArrowOf<G>(groupoid.project(groupoid.multiply(reach[i], groupoid.tau(groupoid.target(reach[i]), v))));
+    return ArrowOf<G>(groupoid.project(groupoid.compose(reach[i], groupoid.tau(groupoid.target(reach[i]), v))));
   };
   Path<Sys> out(count);
   ArrowOf<G> before = reach[0];
   for (std::size_t k = 0; k < count; ++k) {
     const ArrowOf<G> after = k + 1 == count ? problem.boundary : node(k + 1);
-    out[k].arrow = groupoid.project(groupoid.multiply(groupoid.inverse(before), after));
+    out[k].arrow = groupoid.project(groupoid.compose(groupoid.inverse(before), after));
     before = after;
     const double at =
         std::clamp((double(k) + 0.5) * double(old_count) / double(count) - 0.5, 0.0, double(old_count - 1));
@@ -97,7 +99,7 @@ struct Classification {
 template <DiscreteSystem Sys> struct BoundarySolution {
   SolveStatus status = SolveStatus::not_converged;
   int iterations = 0;
-  double residual = 0;  ///< largest scaled component of the stationarity and constraint equations
+  double residual = std::numeric_limits<double>::infinity();  ///< largest scaled component of the KKT equations
   double cost = 0;      ///< sum_k L(g_k)
   Classification kind;
   Path<Sys> path;

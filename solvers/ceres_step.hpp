@@ -18,7 +18,8 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
   using G = typename Sys::GroupoidType;
   using E = StepEquations<Sys>;
 
-  explicit CeresStep(int max_iterations = 100) {
+  explicit CeresStep(int max_iterations = 100, double tolerance = 0, const G& groupoid = {})
+      : manifold_(groupoid), tolerance_(tolerance) {
     options_.linear_solver_type = ceres::DENSE_QR;
     options_.max_num_iterations = max_iterations;
     options_.function_tolerance = 0;
@@ -63,7 +64,7 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
     report.residual = final.norm;
     report.excess = final.excess;
     if (!std::isfinite(final.norm)) return end(report, SolveStatus::not_finite);
-    if (!(final.excess <= accept_excess)) return end(report, SolveStatus::stagnated);
+    if (!(final.excess <= accept_excess || final.norm <= tolerance_)) return end(report, SolveStatus::stagnated);
     if constexpr (HasBranch<Sys>) {
       if (!system.admissible(step.arrow)) return end(report, SolveStatus::left_domain);
     }
@@ -118,6 +119,7 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
   };
 
   AlphaFibreManifold<G> manifold_;
+  double tolerance_;
   Cost cost_{manifold_};
   Vector<double, AlphaFibreManifold<G>::ambient> arrow_;
   Vector<double, multiplier_size> multipliers_ = Vector<double, multiplier_size>::Zero();

@@ -59,16 +59,16 @@ template <DiscreteSystem Sys> class Integrator {
     } else {
       solution.step = {system_.groupoid.tau(point_.state.object, system_.groupoid.tau_inverse(point_.step.arrow)),
                        point_.step.multipliers};
+      const AlgebroidVector<G> predicted = system_.groupoid.tau_inverse(solution.step.arrow);
       report = solver_->solve(system_, point_.state, solution);
-      if (!report.converged()) {
+      // A failure, or a solution far from the last step's: look for the one that is continuous in the step size.
+      if (!report.converged() || !near(solution.step, predicted)) {
         const int spent = report.iterations;
         StepSolution<Sys> restart;
         StepReport restarted = first_step(restart);
-        if (restarted.converged()) {
-          report = restarted;
-          solution = restart;
-        }
-        report.iterations += restarted.converged() ? spent : restarted.iterations;
+        restarted.iterations += spent;
+        if (restarted.converged()) solution = restart;
+        if (restarted.converged() || !report.converged()) report = restarted;
       }
     }
     if (report.converged()) accept(solution);
@@ -145,15 +145,18 @@ template <DiscreteSystem Sys> class Integrator {
     const auto& groupoid = system_.groupoid;
     const auto& arrow = solution.step.arrow;
     point_.step = solution.step;
-    point_.state.momentum += solution.derivative.source_gradient + solution.derivative.target_gradient;
 
-    // Compensated accumulation: what rounding took from the objects so far is given back as soon as it can be stored.
+    // Compensated accumulation: what rounding took so far is given back as soon as it can be stored.
+    momentum_carry_ += solution.derivative.source_gradient + solution.derivative.target_gradient;
+    const AlgebroidVector<G> momentum = point_.state.momentum + momentum_carry_;
+    momentum_carry_ -= momentum - point_.state.momentum;
+    point_.state.momentum = momentum;
     carry_ += solution.remainder;
     const auto target = groupoid.target(arrow);
     const ArrowOf<G> nudge = groupoid.tau(target, carry_);
     point_.state.object = groupoid.target(nudge);
     carry_ -= groupoid.tau_inverse(nudge);
-    point_.configuration = groupoid.project(groupoid.multiply(groupoid.multiply(point_.configuration, arrow), nudge));
+    point_.configuration = groupoid.project(groupoid.compose(groupoid.compose(point_.configuration, arrow), nudge));
     ++point_.index;
     if constexpr (HasTimeStep<Sys>) point_.time = double(point_.index) * system_.h;
   }
@@ -161,6 +164,7 @@ template <DiscreteSystem Sys> class Integrator {
   Sys system_;
   std::unique_ptr<StepSolver<Sys>> solver_;
   TrajectoryPoint<Sys> point_;
+  AlgebroidVector<G> momentum_carry_ = AlgebroidVector<G>::Zero();
   AlgebroidVector<G> carry_ = AlgebroidVector<G>::Zero();
 };
 

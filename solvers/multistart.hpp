@@ -27,6 +27,7 @@ template <DiscreteSystem Sys> struct MultistartResult {
   std::map<SolveStatus, int> outcomes;           ///< of the starts, at the first stage
   int lost = 0;                                  ///< solutions of the first stage that could not be continued
   int iterations = 0;
+  int start_iterations = 0;                      ///< of all starts at the first stage
   int most_iterations = 0;             ///< of one start
   BoundarySolution<Sys> best_failure;  ///< smallest residual among failures
 };
@@ -60,7 +61,7 @@ template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem
 
 template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
   const double best = result.best_failure.residual;
-  if (result.best_failure.path.empty() || !std::isfinite(best) || failure.residual < best)
+  if (result.best_failure.path.empty() || failure.residual < best)
     result.best_failure = std::move(failure);
 }
 
@@ -69,6 +70,21 @@ void keep_if_new(std::vector<BoundarySolution<Sys>>& found, const Sys& system, B
   const bool known =
       std::any_of(found.begin(), found.end(), [&](const auto& f) { return same_solution(system, f, solution); });
   if (!known) found.push_back(std::move(solution));
+}
+
+/// A saddle has a way down: solves again from paths bent a little away from each, and keeps what is new.
+template <DiscreteSystem Sys, class Solver>
+void descend_from_saddles(const Solver& solver, const BoundaryProblem<Sys>& problem,
+                          std::vector<BoundarySolution<Sys>>& found, MultistartResult<Sys>& result) {
+  std::vector<Path<Sys>> saddles;
+  for (const auto& solution : found)
+    if (!solution.kind.is_minimum) saddles.push_back(solution.path);
+  for (const auto& path : saddles)
+    for (int attempt = 1; attempt <= 4; ++attempt) {
+      auto next = solver.solve(problem, bent(problem, path, attempt), /*keep_multipliers=*/false);
+      result.iterations += next.iterations;
+      if (next.converged()) keep_if_new(found, problem.system, std::move(next));
+    }
 }
 
 }  // namespace detail
@@ -83,6 +99,7 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
   std::vector<BoundarySolution<Sys>> found;
   for (int i = 0; i < starts; ++i) {
     auto solution = solver.solve(stages.front().problem, guess(i), /*keep_multipliers=*/false);
+    result.start_iterations += solution.iterations;
     result.iterations += solution.iterations;
     result.most_iterations = std::max(result.most_iterations, solution.iterations);
     ++result.outcomes[solution.status];
@@ -93,6 +110,7 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
     }
     report(i + 1);
   }
+  detail::descend_from_saddles(solver, stages.front().problem, found, result);
   for (std::size_t s = 1; s < stages.size(); ++s) {
     const auto& [problem, steps] = stages[s];
     std::vector<BoundarySolution<Sys>> carried;
@@ -114,6 +132,7 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
     }
     found = std::move(carried);
   }
+  if (stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, found, result);
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   result.solutions = std::move(found);
   return result;

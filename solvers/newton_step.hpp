@@ -88,7 +88,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
                          double fraction) {
     const AlgebroidVector<G> w = fraction * correction.template head<Sys::dimension>();
     const auto& groupoid = system.groupoid;
-    return {groupoid.project(groupoid.multiply(step.arrow, groupoid.tau(groupoid.target(step.arrow), w))),
+    return {groupoid.project(groupoid.compose(step.arrow, groupoid.tau(groupoid.target(step.arrow), w))),
             step.multipliers + fraction * correction.template tail<Sys::constraints>()};
   }
 

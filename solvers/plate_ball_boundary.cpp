@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
+#include <stdexcept>
 
 namespace lagroid {
 
@@ -47,7 +50,9 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
   };
 
   std::vector<BoundaryStage<PlateBall>> stages;
-  long steps = std::min(options.steps, coarse_steps);
+  // Coarse enough to be quick, fine enough that the prescribed spin turns by no more than 1.5 a step.
+  const double turns = std::ceil(std::abs(system.spin) * horizon / 1.5);
+  long steps = std::min(options.steps, std::max(coarse_steps, long(std::min(turns, 1e9))));
   const RotationForm first_form =
       stage(steps, RotationForm::exponential).problem.system.infeasible() ? system.rotation : RotationForm::exponential;
   stages.push_back(stage(steps, first_form));
@@ -59,13 +64,19 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
 
   auto result = multistart(solver, stages, options.starts,
                            guess(long(stages.front().steps), stages.front().problem.system), options.report);
-  if (result.solutions.empty() && stages.size() > 1) {
-    // The easier problem led nowhere that the one asked for could be reached from: start on that one itself.
+  // Where the grid cannot be refined towards agreement of the forms, or the easier problem led nowhere, the problem asked
+  // for gets starts of its own.
+  const bool forms_far_apart = first_form != system.rotation && options.steps <= coarse_steps;
+  if (stages.size() > 1 && (forms_far_apart || result.solutions.empty())) {
     const auto direct = stage(options.steps, system.rotation);
-    const int spent = result.iterations;
-    result = multistart(solver, std::vector{direct}, options.starts, guess(options.steps, direct.problem.system),
-                        options.report);
-    result.iterations += spent;
+    auto more = multistart(solver, std::vector{direct}, options.starts, guess(options.steps, direct.problem.system),
+                           options.report);
+    more.iterations += result.iterations;
+    for (auto& solution : result.solutions)
+      detail::keep_if_new(more.solutions, direct.problem.system, std::move(solution));
+    std::sort(more.solutions.begin(), more.solutions.end(),
+              [](const auto& x, const auto& y) { return x.cost < y.cost; });
+    return more;
   }
   return result;
 }
@@ -74,11 +85,34 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
 
 MultistartResult<PlateBall> solve_plate_ball(const PlateBall& system, const ArrowOf<PlateBall::GroupoidType>& boundary,
                                              const PlateBallBoundaryOptions& options) {
+  if (const auto why = unreachable(system, options.steps)) throw std::invalid_argument(*why);
+  if (!system.groupoid.coordinates_of_arrow(boundary).allFinite())
+    throw std::invalid_argument("the boundary arrow is not finite");
   BoundaryOptions solver_options;
   solver_options.tolerance = options.tolerance;
   solver_options.max_iterations = options.max_iterations;
-  if (options.ceres) return run(BoundaryCeres<PlateBall>(solver_options), system, boundary, options);
-  return run(BoundaryNewton<PlateBall>(solver_options), system, boundary, options);
+
+  // Solved with the radius as the unit of length: lengths scale by r, the cost and M by r^2, and so multiply
+  // lambda1, lambda2 by r and lambda3 by r^2.
+  const double r = system.radius;
+  PlateBall unit = system;
+  unit.radius = 1;
+  ArrowOf<PlateBall::GroupoidType> scaled = boundary;
+  std::get<0>(scaled).source /= r;
+  std::get<0>(scaled).target /= r;
+  auto result = options.ceres ? run(BoundaryCeres<PlateBall>(solver_options), unit, scaled, options)
+                              : run(BoundaryNewton<PlateBall>(solver_options), unit, scaled, options);
+  const auto restore = [&](BoundarySolution<PlateBall>& solution) {
+    solution.cost *= r * r;
+    for (auto& [arrow, lambda] : solution.path) {
+      std::get<0>(arrow).source *= r;
+      std::get<0>(arrow).target *= r;
+      lambda = lambda.cwiseProduct(Vector<double, 3>(r, r, r * r)).eval();
+    }
+  };
+  for (auto& solution : result.solutions) restore(solution);
+  restore(result.best_failure);
+  return result;
 }
 
 }  // namespace lagroid

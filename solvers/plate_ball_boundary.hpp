@@ -24,6 +24,7 @@ std::optional<std::string> unreachable(const PlateBall& system, long steps);
 
 /// Minima of the cost between the ends of `boundary`: multistart in the exp form with at most 20 arrows, then
 /// continuation in the number of arrows and in the form of the rotation. `system.h` must be horizon / steps.
+/// Throws std::invalid_argument where `unreachable` has a reason or the boundary is not finite.
 MultistartResult<PlateBall> solve_plate_ball(const PlateBall& system, const ArrowOf<PlateBall::GroupoidType>& boundary,
                                              const PlateBallBoundaryOptions& options);
 

@@ -40,6 +40,9 @@ Step<PlateBall> PlateBall::first_guess(const State<GroupoidType>& s) const {
 }
 
 std::optional<std::string> PlateBall::infeasible() const {
+  if (!(std::isfinite(radius) && std::isfinite(h) && std::isfinite(plate_rate) && std::isfinite(spin)))
+    return "radius, step, plate_rate and spin must be finite";
+  if (!(radius > 0 && h > 0)) return "radius and step must be positive";
   const double turn = std::abs(h * spin);
   if (rotation == RotationForm::trace && turn >= 1)
     return fmt::format("the trace form needs |spin * step| < 1, got {:.6g}; use a smaller step or rotation = \"exp\"",
@@ -66,12 +69,14 @@ PlateBall::Arrows PlateBall::path(const ArrowOf<GroupoidType>& boundary, long st
     const Vector<double, 2> middle = 0.5 * (nodes[k + 1] + nodes[k]);
     Vector<double, 3> w((h * plate_rate * middle(0) - d(1)) / radius, (d(0) + h * plate_rate * middle(1)) / radius,
                         h * spin);
-    if (const double angle = w.norm(); angle > 1.5) w *= 1.5 / angle;
+    const double largest = rotation == RotationForm::trace ? 1.5 : 3.0;
+    if (const double angle = w.norm(); angle > largest) w *= largest / angle;
     attitude[k + 1] = attitude[k] * SO3::exp(w);
   }
-  const Vector<double, 3> bend = SO3::log(Matrix<double, 3, 3>(attitude[steps].transpose() * turn));
+  // Bent from the left: the turn of each step changes by about |bend| / steps, however fast the ball spins.
+  const Vector<double, 3> bend = SO3::log(Matrix<double, 3, 3>(turn * attitude[steps].transpose()));
   for (long k = 1; k <= steps; ++k)
-    attitude[k] = attitude[k] * SO3::exp(Vector<double, 3>(bend * (double(k) / double(steps))));
+    attitude[k] = SO3::exp(Vector<double, 3>(bend * (double(k) / double(steps)))) * attitude[k];
   Arrows arrows;
   arrows.reserve(steps);
   for (long k = 0; k < steps; ++k)
@@ -116,11 +121,20 @@ State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& s
 
 std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
   using Point = TrajectoryPoint<PlateBall>;
+  // Momenta are exchanged between translation and rotation: each is rounded relative to all of them.
+  const auto momentum = [r = radius](const Point& p) {
+    return p.state.momentum.head<2>().norm() + p.state.momentum.tail<3>().norm() / r;
+  };
   std::vector<Quantity<PlateBall>> all;
-  all.push_back(
-      {"spatial momentum A M", {"(AM)1", "(AM)2", "(AM)3"}, Promise::conserved, false, [](const Point& p, double* out) {
-         Eigen::Map<Vector<double, 3>>(out).noalias() = std::get<1>(p.configuration) * p.state.momentum.tail<3>();
-       }});
+  all.push_back({"spatial momentum A M",
+                 {"(AM)1", "(AM)2", "(AM)3"},
+                 Promise::conserved,
+                 false,
+                 [](const Point& p, double* out) {
+                   Eigen::Map<Vector<double, 3>> spatial(out);
+                   spatial = std::get<1>(p.configuration) * p.state.momentum.tail<3>();
+                 },
+                 [momentum, r = radius](const Point& p) { return r * momentum(p); }});
   all.push_back({"J = x py - y px - M3",
                  {"J"},
                  Promise::conserved,
@@ -130,21 +144,26 @@ std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
                    const auto& mu = p.state.momentum;
                    *out = q(0) * mu(1) - q(1) * mu(0) - mu(4);
                  },
-                 [](const Point& p) {
-                   return std::get<0>(p.state.object).norm() * p.state.momentum.head<2>().norm() +
-                          std::abs(p.state.momentum(4));
+                 [momentum, r = radius](const Point& p) {
+                   return (std::get<0>(p.state.object).norm() + r) * momentum(p);
                  }});
   if (plate_rate == 0)
-    all.push_back({"translational momentum", {"px", "py"}, Promise::conserved, false, [](const Point& p, double* out) {
+    all.push_back({"translational momentum",
+                   {"px", "py"},
+                   Promise::conserved,
+                   false,
+                   [](const Point& p, double* out) {
                      out[0] = p.state.momentum(0);
                      out[1] = p.state.momentum(1);
-                   }});
+                   },
+                   momentum});
   const bool exact_energy = rotation == RotationForm::cayley && plate_rate == 0 && spin == 0;
   all.push_back({"energy",
                  {"E"},
                  exact_energy ? Promise::conserved : Promise::bounded,
                  true,
-                 [system = *this](const Point& p, double* out) { *out = system.energy(p.step); }});
+                 [system = *this](const Point& p, double* out) { *out = system.energy(p.step); },
+                 [momentum](const Point& p) { return momentum(p) * momentum(p); }});
   return all;
 }
 

@@ -8,7 +8,6 @@
 #include <lagroid/groupoids/so3.hpp>
 
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 

@@ -117,6 +117,15 @@ TYPED_TEST(GroupMaps, ProjectRepairsSmallDefects) {
   EXPECT_TRUE(r.allFinite());
 }
 
+TEST(InvariantFields, OnAGroupAreTheTranslationsOfTheAlgebra) {
+  // [G] 6.1: X<-(g) = g hat(x), X->(g) = hat(x) g.
+  const SO3 groupoid;
+  const Matrix<double, 3, 3> g = SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9));
+  const Vector<double, 3> x(0.3, 0.5, -0.7);
+  EXPECT_LT((groupoid.left_invariant(g, x) - (g * SO3::hat(x)).reshaped()).norm(), 1e-15);
+  EXPECT_LT((groupoid.right_invariant(g, x) - (SO3::hat(x) * g).reshaped()).norm(), 1e-15);
+}
+
 TEST(SO3Log, IsAccurateUpToPi) {
   const Vector<double, 3> axis = Vector<double, 3>(0.3, -0.5, 0.8).normalized();
   for (const double gap : {1e-1, 1e-4, 1e-8, 1e-12}) {

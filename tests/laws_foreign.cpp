@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 using namespace lagroid;
 
@@ -22,6 +23,8 @@ struct WrongProduct {};
 struct WrongRetraction {};
 struct WrongInverseRetraction {};
 struct WrongSeed {};
+struct NotANumber {};
+struct MovesItsTarget {};
 
 template <class Fault> struct Affine : LieGroupoid<Affine<Fault>, 2> {
   template <class S> using Arrow = AffineArrow<S>;
@@ -44,9 +47,10 @@ template <class Fault> struct Affine : LieGroupoid<Affine<Fault>, 2> {
     return {g.a + h.a, is<WrongProduct> ? S(g.b + h.b) : S(exp(h.a) * g.b + h.b), g.x};
   }
   template <class S> static Arrow<S> tau(const Vector<S, 1>& q, const Vector<S, 2>& v) {
-    return {v(0), is<WrongRetraction> ? S(v(1) + S(1e-3)) : v(1), q(0)};
+    return {v(0), is<WrongRetraction> ? S(v(1) + S(1e-3)) : v(1), is<MovesItsTarget> ? S(q(0) + v(0)) : q(0)};
   }
   template <class S> static Vector<S, 2> tau_inverse(const Arrow<S>& g) {
+    if constexpr (is<NotANumber>) return {g.a, S(std::numeric_limits<double>::quiet_NaN())};
     return {g.a, is<WrongInverseRetraction> ? S(g.b * (S(1) + g.b)) : g.b};
   }
   template <class S> static Vector<S, 3> coordinates(const Arrow<S>& g) { return {g.a, g.b, g.x}; }
@@ -92,6 +96,8 @@ TEST(BrokenGroupoid, WrongTarget) { expect_broken<WrongTarget>({"source and targ
 TEST(BrokenGroupoid, WrongProduct) { expect_broken<WrongProduct>({"source and target of products"}); }
 TEST(BrokenGroupoid, WrongRetraction) { expect_broken<WrongRetraction>({"retraction"}); }
 TEST(BrokenGroupoid, WrongInverseRetraction) { expect_broken<WrongInverseRetraction>({"retraction"}); }
+TEST(BrokenGroupoid, NotANumberInALaterComponent) { expect_broken<NotANumber>({"retraction"}); }
+TEST(BrokenGroupoid, RetractionThatLeavesItsFibre) { expect_broken<MovesItsTarget>({"retraction"}); }
 TEST(BrokenGroupoid, WrongSeed) { expect_broken<WrongSeed>({"closed-form translations"}); }
 
 /// R^2 with a product that is not associative.

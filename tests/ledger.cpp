@@ -11,7 +11,7 @@ using namespace lagroid::app;
 namespace {
 
 template <class F> LedgerEntry judge(Promise promise, long samples, const F& value) {
-  QuantityWatch watch("q", promise, 1, samples);
+  QuantityWatch watch("q", promise, 1);
   for (long k = 0; k < samples; ++k) {
     const double x = value(k);
     watch.observe(&x, std::abs(x));
@@ -43,10 +43,13 @@ TEST(Ledger, NaNIsNeverKept) {
   EXPECT_EQ(e.verdict, "BROKEN");
 }
 
-TEST(Ledger, ConstraintResidualIsJudgedByTheSizeOfTheCoordinates) {
+TEST(Ledger, ConstraintResidualIsJudgedByTheSizeOfItsTerms) {
   EXPECT_EQ(constraint_entry(1e-15, 1).verdict, "kept");
   EXPECT_EQ(constraint_entry(1e-12, 1).verdict, "BROKEN");
   EXPECT_EQ(constraint_entry(1e-12, 1000).verdict, "kept");
+  EXPECT_EQ(constraint_entry(1e-15, 1e-3).verdict, "kept");
+  EXPECT_EQ(constraint_entry(1e-12, 1e-3).verdict, "BROKEN");
+  EXPECT_EQ(constraint_entry(std::nan(""), 1).verdict, "BROKEN");
 }
 
 }  // namespace

@@ -195,6 +195,9 @@ TEST(Boundary, DecidableImpossibilitiesAreRefused) {
   EXPECT_TRUE(unreachable(system, 10).has_value());
   system.rotation = RotationForm::exponential;
   EXPECT_FALSE(unreachable(system, 10).has_value());
+  EXPECT_THROW(solve(system, boundary({0, 0}, {1, 0}, {0, 0, 0}), 2), std::invalid_argument);
+  system.spin = std::nan("");
+  EXPECT_TRUE(unreachable(system, 10).has_value());
   system.spin = 6.3;
   EXPECT_TRUE(unreachable(system, 10).has_value());
   system.rotation = RotationForm::cayley;
@@ -240,6 +243,112 @@ TEST(Kkt, MatrixIsTheDerivativeOfTheEquationsAtASolution) {
   for (int k = 0; k < 8; ++k) {
     const auto difference = ((plus.residual()[k] - minus.residual()[k]) / (2 * e)).eval();
     EXPECT_LT((difference - product[k]).norm(), 1e-6 * (1 + product[k].norm())) << k;
+  }
+}
+
+TEST(Ceres, GradientDerivativeIsExactAwayFromSolutions) {
+  PlateBall system;
+  system.plate_rate = 0.8;
+  system.rotation = RotationForm::exponential;
+  const auto& groupoid = system.groupoid;
+  const ArrowOf<G> g{PairArrow<double, 2>{{0.1, 0.2}, {0.3, 0.1}}, SO3::exp(Vector<double, 3>(0.2, -0.5, 0.3))};
+  const Vector<double, 3> lambda(2, -3, 1.5);
+  const Vector<double, 5> zero = Vector<double, 5>::Zero();
+  const double e = 1e-6;
+  for (int j = 0; j < 5; ++j) {
+    const Vector<double, 5> v = e * Vector<double, 5>::Unit(j);
+    const Vector<double, 5> back = -v;
+    const Vector<double, 5> target = (two_sided(system, groupoid.translate(zero, g, v), lambda).target_gradient -
+                         two_sided(system, groupoid.translate(zero, g, back), lambda).target_gradient) / (2 * e);
+    const Vector<double, 5> source = (two_sided(system, groupoid.translate(v, g, zero), lambda).source_gradient -
+                         two_sided(system, groupoid.translate(back, g, zero), lambda).source_gradient) / (2 * e);
+    EXPECT_LT((gradient_derivative(system, g, lambda, End::target).col(j) - target).norm(), 1e-7);
+    EXPECT_LT((gradient_derivative(system, g, lambda, End::source).col(j) - source).norm(), 1e-7);
+  }
+  // The symmetric Hessian differs: that is the bracket.
+  EXPECT_GT((gradient_derivative(system, g, lambda, End::target) - one_sided_hessian(system, g, lambda, End::target)).norm(),
+            0.1);
+}
+
+/// Negative eigenvalues of the Hessian on the null space of the constraint Jacobian, both dense.
+long dense_negative_directions(const PlateBall& system, const Path<PlateBall>& path) {
+  BoundaryKkt<PlateBall> kkt;
+  kkt.evaluate(system, path);
+  const int count = int(path.size());
+  Eigen::MatrixXd full(8 * count, 8 * count);
+  for (int column = 0; column < 8 * count; ++column) {
+    BoundaryKkt<PlateBall>::Columns z(count, Vector<double, 8>::Zero());
+    z[column / 8](column % 8) = 1;
+    const auto image = kkt.multiply(z);
+    for (int k = 0; k < count; ++k) full.block<8, 1>(8 * k, column) = image[k];
+  }
+  Eigen::MatrixXd hessian(5 * (count - 1), 5 * (count - 1));
+  Eigen::MatrixXd jacobian(3 * count, 5 * (count - 1));
+  for (int k = 0; k < count; ++k)
+    for (int l = 0; l + 1 < count; ++l) {
+      jacobian.block<3, 5>(3 * k, 5 * l) = full.block<3, 5>(8 * k, 8 * l + 3);
+      if (k + 1 < count) hessian.block<5, 5>(5 * k, 5 * l) = full.block<5, 5>(8 * k + 3, 8 * l + 3);
+    }
+  const Eigen::MatrixXd kernel = jacobian.fullPivLu().kernel();
+  const Eigen::MatrixXd basis = kernel.householderQr().householderQ() *
+                                Eigen::MatrixXd::Identity(kernel.rows(), kernel.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(basis.transpose() * hessian * basis);
+  return (eigen.eigenvalues().array() < 0).count();
+}
+
+TEST(Classification, TellsSaddlesFromMinima) {
+  // Ceres is attracted by any stationary point; each classification is compared with a dense one.
+  const auto c = cases::find("P2-bvp-elastica");
+  PlateBall system = cases::system(c, "exp");
+  system.h = 1.0 / 12;
+  const auto found = solve(system, boundary(c), 12, /*ceres=*/true);
+  int saddles = 0;
+  int minima = 0;
+  for (const auto& s : found.solutions) {
+    EXPECT_EQ(s.kind.negative_directions, dense_negative_directions(system, s.path)) << s.cost;
+    EXPECT_EQ(s.kind.is_minimum, s.kind.negative_directions == 0);
+    (s.kind.is_minimum ? minima : saddles)++;
+  }
+  EXPECT_GE(saddles, 2);
+  EXPECT_GE(minima, 2);
+}
+
+TEST(Boundary, UnitsOfLengthDoNotMatter) {
+  for (const double r : {1e-3, 1.0, 100.0}) {
+    PlateBall system;
+    system.rotation = RotationForm::exponential;
+    system.radius = r;
+    system.plate_rate = 0.5;
+    system.h = 1.0 / 12;
+    const auto found = solve(system, boundary({0.2 * r, -0.1 * r}, {r, 0.5 * r}, {0.6, -0.3, 0.9}), 12);
+    ASSERT_FALSE(found.solutions.empty()) << r;
+    EXPECT_GE(found.outcomes.at(SolveStatus::converged), 36) << r;
+    PlateBall unit = system;
+    unit.radius = 1;
+    const auto reference = solve(unit, boundary({0.2, -0.1}, {1, 0.5}, {0.6, -0.3, 0.9}), 12);
+    ASSERT_EQ(found.solutions.size(), reference.solutions.size()) << r;
+    for (std::size_t i = 0; i < found.solutions.size(); ++i)
+      EXPECT_NEAR(found.solutions[i].cost / (r * r), reference.solutions[i].cost, 1e-10 * reference.solutions[i].cost);
+    EXPECT_LT(end_defect(system, boundary({0.2 * r, -0.1 * r}, {r, 0.5 * r}, {0.6, -0.3, 0.9}),
+                         found.solutions.front().path), 1e-12 * (1 + r));
+  }
+}
+
+TEST(Boundary, LargeTurnsPerStep) {
+  // Costs of paths found by an independent program (sequential quadratic programming in Python) for the same ends.
+  struct Case {
+    RotationForm form;
+    double spin, known;
+  };
+  for (const Case c : {Case{RotationForm::cayley, 58, 1.45604}, Case{RotationForm::exponential, 58, 5.36557},
+                       Case{RotationForm::exponential, 40, 9.01308}}) {
+    PlateBall system;
+    system.rotation = c.form;
+    system.spin = c.spin;
+    system.h = 1.0 / 20;
+    const auto found = solve(system, boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9}), 20);
+    ASSERT_FALSE(found.solutions.empty()) << c.spin;
+    EXPECT_LT(found.solutions.front().cost, c.known * (1 + 1e-5)) << c.spin;
   }
 }
 

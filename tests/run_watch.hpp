@@ -42,6 +42,7 @@ std::map<std::string, Watched> watch(const Sys& system, const State<typename Sys
         deviation += (now[j] - first[i][j]) * (now[j] - first[i][j]);
         norm += first[i][j] * first[i][j];
       }
+      if (!std::isfinite(deviation)) return {};
       auto& w = out[quantities[i].name];
       deviation = std::sqrt(deviation / norm);
       w.drift = std::max(w.drift, deviation);

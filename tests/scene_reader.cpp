@@ -87,7 +87,9 @@ TEST_F(Scene, Mistakes) {
   expect(valid + "[boundary]\n", {"boundary", "not both"});
   expect(with("[initial]", "[elsewhere]"), {"missing table [initial]"});
   expect(valid + "[solver]\nmethod = \"newtn\"\n", {"solver.method", "did you mean \"newton\""});
-  expect(valid + "[solver]\nstarts = 3\n", {"solver.starts", "unknown key"});
+  expect(valid + "[solver]\nstart = 3\n", {"solver.start", "unknown key", "\"starts\""});
+  expect(valid + "[solver]\nstarts = 0\n", {"solver.starts", "from 1"});
+  EXPECT_EQ(error(valid + "[solver]\nstarts = 3\nseed = 4\ntolerance = 1e-12\n"), "");
   expect(valid + "[outputs]\nevery = 3\n", {"outputs", "unknown key", "\"output\""});
   expect("system = ", {".toml:1", "not valid TOML"});
   expect("", {"missing key \"system\""});
@@ -118,7 +120,7 @@ TEST_F(Scene, OtherSystems) {
          {":3", "initial.position", "0.7071067812"});
   expect("system = \"spherical_pendulum\"\n[initial]\nposition = [1, 0, 0]\nmomentum = [1, 0, 1]\n",
          {":4", "initial.momentum", "tangent"});
-  expect("system = \"pendulum\"\n[initial]\nposition = [1]\nmomentum = [0]\n", {"missing table [time]"});
+  expect("system = \"pendulum\"\n[initial]\nposition = [1]\nmomentum = [0]\n", {"missing key \"time\"", "[time]"});
 }
 
 TEST_F(Scene, BoundaryMistakes) {
@@ -133,7 +135,7 @@ end = { position = [1, 0.5], attitude = [0.6, -0.3, 0.9] }
   expect(boundary, {":2", "time", "at least 3 steps"});
   std::string no_end = boundary;
   no_end.erase(no_end.find("end ="));
-  expect(no_end, {"boundary", "missing table [boundary.end]"});
+  expect(no_end, {"boundary", "missing key \"end\"", "[boundary.end]"});
 }
 
 }  // namespace

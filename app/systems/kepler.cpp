@@ -13,7 +13,7 @@ RunResult run_kepler(const Section& scene, const RunContext& context) {
   p.panels = {{"orbit", "x", "y", "x", {"y"}, true},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"momentum error", "t", "|L - L_0|", "t", {"drift angular momentum"}}};
-  const Section section = scene.section("initial", "give position and momentum");
+  const Section section = scene.section("initial", "position and momentum");
   const auto initial = read_vector_state<2>(section, "x, y", "px, py");
   if (initial.object.norm() == 0) section.fail("position", "lies on the centre of attraction; move it away from 0, 0");
   return run_mechanical<Kepler, 2>(scene, context, system, p, initial);

@@ -15,7 +15,7 @@ RunResult run_pendulum(const Section& scene, const RunContext& context) {
   p.panels = {{"angle", "t", "q", "t", {"q"}},
               {"phase plane", "q", "p", "q", {"p"}},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}}};
-  const auto initial = read_vector_state<1>(scene.section("initial", "give position and momentum"),
+  const auto initial = read_vector_state<1>(scene.section("initial", "position and momentum"),
                                             "the angle from the downward vertical", "m l^2 dq/dt");
   return run_mechanical<Pendulum, 1>(scene, context, system, p, initial);
 }

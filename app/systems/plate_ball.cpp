@@ -51,13 +51,24 @@ ArrowOf<G> end_point(const Section& end) {
   return {PairArrow<double, 2>{at, at}, rotation_from(a)};
 }
 
+/// [solver] starts and seed. Initial-value runs read them too, so that a scene may switch between the two.
+PlateBallBoundaryOptions read_multistart(const Section& solver) {
+  PlateBallBoundaryOptions options;
+  options.starts = int(solver.integer_or("starts", options.starts, 1, 100000));
+  options.seed =
+      std::uint64_t(solver.integer_or("seed", long(options.seed), 0, std::numeric_limits<long>::max()));
+  return options;
+}
+
 RunResult initial_value(const Section& scene, const RunContext& context, const PlateBall& system, long steps) {
-  const Section initial = scene.section("initial", "give position, attitude and momentum");
+  const Section initial = scene.section("initial", "position, attitude and momentum");
   const ArrowOf<G> configuration = end_point(initial);
   State<G> state;
   std::get<0>(state.object) = std::get<0>(configuration).source;
   state.momentum = Eigen::Map<const Vector<double, 5>>(initial.numbers("momentum", 5, "px, py, M1, M2, M3").data());
-  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
+  const Section solver = scene.section_or_empty("solver");
+  const StepperChoice choice = read_stepper(solver);
+  read_multistart(solver);
   const long every = read_every(scene, context);
   scene.finish();
   return simulate(system, presentation(system), state, configuration, steps, choice, every, context);
@@ -67,7 +78,7 @@ RunResult initial_value(const Section& scene, const RunContext& context, const P
 void record(const PlateBall& system, const Path<PlateBall>& path, const ArrowOf<G>& start, long every,
             RunResult& result) {
   const auto p = presentation(system);
-  Recorder<PlateBall> recorder(system, p, long(path.size()), every);
+  Recorder<PlateBall> recorder(system, p, every);
   TrajectoryPoint<PlateBall> point;
   point.configuration = start;
   point.state = legendre_minus(system, path.front());
@@ -76,7 +87,7 @@ void record(const PlateBall& system, const Path<PlateBall>& path, const ArrowOf<
     ++point.index;
     point.time = double(point.index) * system.h;
     point.step = step;
-    point.configuration = system.groupoid.project(system.groupoid.multiply(point.configuration, step.arrow));
+    point.configuration = system.groupoid.project(system.groupoid.compose(point.configuration, step.arrow));
     point.state = legendre_plus(system, step);
     recorder.observe(point);
   }
@@ -91,22 +102,20 @@ std::string counted(const std::map<SolveStatus, int>& outcomes) {
 }
 
 RunResult boundary_value(const Section& scene, const RunContext& context, const PlateBall& system, long steps) {
-  const Section boundary = scene.section("boundary", "give start and end");
-  const Section start_section = boundary.section("start", "give position and attitude");
-  const Section end_section = boundary.section("end", "give position and attitude");
+  const Section boundary = scene.section("boundary", "start and end");
+  const Section start_section = boundary.section("start", "position and attitude");
+  const Section end_section = boundary.section("end", "position and attitude");
   const ArrowOf<G> start = end_point(start_section);
   const ArrowOf<G> end = end_point(end_section);
   const Section solver = scene.section_or_empty("solver");
-  PlateBallBoundaryOptions options;
+  PlateBallBoundaryOptions options = read_multistart(solver);
   options.steps = steps;
   options.ceres = solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres";
-  options.starts = int(solver.integer_or("starts", options.starts, 1, 100000));
-  options.seed = std::uint64_t(solver.integer_or("seed", long(options.seed), 0, std::numeric_limits<long>::max()));
   options.tolerance = solver.number_or("tolerance", options.tolerance, positive);
   options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, 1000000));
   const long every = read_every(scene, context);
   scene.finish();
-  if (const auto why = unreachable(system, steps)) scene.section("time", "").fail("", *why);
+  if (const auto why = unreachable(system, steps)) scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
 
   const auto clock = std::chrono::steady_clock::now();
   const ArrowOf<G> displacement{PairArrow<double, 2>{std::get<0>(start).target, std::get<0>(end).target},
@@ -139,6 +148,10 @@ RunResult boundary_value(const Section& scene, const RunContext& context, const 
     record(system, best->path, start, every, result);
     result.cost = best->cost;
     result.steps = steps;
+    if (best != found.solutions.begin())
+      result.notes.push_back(fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
+                                         "beside it and were not reached; try more starts or another number of steps",
+                                         found.solutions.front().cost));
     if (!best->kind.normal)
       result.notes.push_back(
           "the best path is abnormal: its constraints lose rank there, multipliers and momentum are not "
@@ -165,7 +178,7 @@ RunResult boundary_value(const Section& scene, const RunContext& context, const 
       for (auto& entry : result.ledger.entries) entry.verdict = "unjudged";
     }
   }
-  result.ledger.mean_iterations = double(found.iterations) / double(options.starts);
+  result.ledger.mean_iterations = double(found.start_iterations) / double(options.starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return result;
@@ -185,7 +198,7 @@ RunResult run_plate_ball(const Section& scene, const RunContext& context) {
                                     : RotationForm::cayley;
   const TimeGrid grid = read_time(scene);
   system.h = grid.step;
-  if (const auto why = system.infeasible()) scene.section("time", "").fail("", *why);
+  if (const auto why = system.infeasible()) scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
   if (scene.has("initial") && scene.has("boundary")) scene.fail("boundary", "give [initial] or [boundary], not both");
   if (scene.has("boundary")) return boundary_value(scene, context, system, grid.steps);
   if (!scene.has("initial"))

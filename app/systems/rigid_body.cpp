@@ -6,7 +6,7 @@
 namespace lagroid::app {
 
 RunResult run_rigid_body(const Section& scene, const RunContext& context) {
-  const Section parameters = scene.section("parameters", "give inertia, the three principal moments");
+  const Section parameters = scene.section("parameters", "inertia, the three principal moments");
   RigidBody system;
   const auto inertia = parameters.numbers("inertia", 3, "principal moments");
   for (const double moment : inertia)
@@ -26,7 +26,7 @@ RunResult run_rigid_body(const Section& scene, const RunContext& context) {
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"spatial momentum error", "t", "|A M - (A M)_0|", "t", {"drift spatial momentum A M"}}};
 
-  const Section initial = scene.section("initial", "give attitude and momentum");
+  const Section initial = scene.section("initial", "attitude and momentum");
   State<SO3> state;
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
   const auto attitude = initial.has("attitude") ? initial.attitude("attitude") : std::array<double, 4>{1, 0, 0, 0};

@@ -18,7 +18,7 @@ RunResult run_spherical_pendulum(const Section& scene, const RunContext& context
   p.panels = {{"seen from above", "x", "y", "x", {"y"}, true},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"vertical momentum and constraint", "t", "error", "t", {"drift vertical angular momentum", "residual"}}};
-  const Section section = scene.section("initial", "give position and momentum");
+  const Section section = scene.section("initial", "position and momentum");
   auto initial = read_vector_state<3>(section, "x, y, z with z up", "px, py, pz");
   const double norm = initial.object.norm();
   if (std::abs(norm - system.length) > 1e-6 * system.length)

@@ -52,10 +52,11 @@ template <int N, int M> double derivative_defect(const TwoSided<N, M>& a, const 
     if constexpr (std::decay_t<decltype(x)>::SizeAtCompileTime == 0) {
       return 0.0;
     } else {
+      if (!x.allFinite() || !y.allFinite()) return std::numeric_limits<double>::infinity();
       return (x - y).cwiseAbs().maxCoeff() / (1 + y.cwiseAbs().maxCoeff());
     }
   };
-  return std::max({std::abs(a.value - b.value) / (1 + std::abs(b.value)), part(a.source_gradient, b.source_gradient),
+  return worst({std::abs(a.value - b.value) / (1 + std::abs(b.value)), part(a.source_gradient, b.source_gradient),
                    part(a.target_gradient, b.target_gradient), part(a.mixed, b.mixed), part(a.constraint, b.constraint),
                    part(a.constraint_source, b.constraint_source), part(a.constraint_target, b.constraint_target)});
 }

@@ -99,10 +99,18 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     for (int i = 0; i < n; ++i) e(i) = D(0.0, x(i));
     const auto moved =
         groupoid.multiply(groupoid.template cast<D>(g), groupoid.tau(groupoid.target(groupoid.template cast<D>(g)), e));
-    double worst = 0;
+    double largest = 0;
     const auto q = groupoid.coordinates_of_object(groupoid.source(moved));
-    for (int i = 0; i < q.size(); ++i) worst = std::max(worst, std::abs(q(i).derivative));
-    return worst;
+    for (int i = 0; i < q.size(); ++i) largest = worst({largest, std::abs(q(i).derivative)});
+    return largest;
+  });
+  law("right-invariant fields are beta-vertical", options.derivative, [&] {
+    const A g = arrow();
+    const auto moved = groupoid.with_tangent(g, groupoid.right_invariant(g, vector()));
+    double largest = 0;
+    const auto q = groupoid.coordinates_of_object(groupoid.target(moved));
+    for (int i = 0; i < q.size(); ++i) largest = worst({largest, std::abs(q(i).derivative)});
+    return largest;
   });
   law("left-invariant fields are invariant (1)", options.derivative, [&] {
     const A g = arrow();
@@ -140,18 +148,17 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
   law("closed-form translations", options.derivative, [&] {
     using M = Mixed<double, n, n>;
     const A g = arrow();
-    double worst = 0;
+    double largest = 0;
     for (const End first : {End::source, End::target})
       for (const End second : {End::source, End::target}) {
         const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M>(g, first, second, 0));
         const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
         for (int i = 0; i < fast.size(); ++i) {
-          worst =
-              worst({worst, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
-                        relative_defect(fast(i).right, slow(i).right), relative_defect(fast(i).mixed, slow(i).mixed)});
+          largest = worst({largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
+                           relative_defect(fast(i).right, slow(i).right), relative_defect(fast(i).mixed, slow(i).mixed)});
         }
       }
-    return worst;
+    return largest;
   });
   return report;
 }

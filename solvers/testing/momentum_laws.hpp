@@ -26,7 +26,7 @@ LawReport momentum_laws(const Sys& system, const Draw& draw, int steps = 50, dou
       std::vector<double> first(quantity.components.size());
       std::vector<double> now(quantity.components.size());
       double size = 1e-3;
-      double worst = 0;
+      double largest = 0;
       for (int k = 0; k <= steps; ++k) {
         if (k > 0 && !integrator.advance().converged()) return std::numeric_limits<double>::infinity();
         if (k == 0 && quantity.needs_step) continue;
@@ -34,12 +34,12 @@ LawReport momentum_laws(const Sys& system, const Draw& draw, int steps = 50, dou
         if (k == (quantity.needs_step ? 1 : 0)) first = now;
         double norm = 0;
         for (std::size_t i = 0; i < now.size(); ++i) {
-          worst = std::max(worst, std::abs(now[i] - first[i]));
+          largest = worst({largest, std::abs(now[i] - first[i])});
           norm += now[i] * now[i];
         }
         size = std::max({size, std::sqrt(norm), quantity.size ? quantity.size(integrator.point()) : 0.0});
       }
-      return worst / size;
+      return largest / size;
     }));
   }
   return report;
