@@ -29,7 +29,8 @@ class QuantityWatch {
   double size_ = 0;
 };
 
-/// The entry for a constraint residual: the largest |phi| met, against round-off in its terms, which have the given size.
+/// The entry for a constraint residual: the largest |phi| met, against round-off in its terms, which have the given
+/// size.
 LedgerEntry constraint_entry(double largest, double size);
 
 }  // namespace lagroid::app

@@ -138,8 +138,14 @@ template <DiscreteSystem Sys> class Recorder {
       s.push_back({"attitude", {"A_w", "A_x", "A_y", "A_z"}, "1", "attitude A, unit quaternion w, x, y, z", false, {}});
     s.push_back({"momentum", p.momentum, p.momentum_unit, "momentum mu in A*G, basis of the retraction", false, {}});
     if constexpr (Sys::constraints > 0) {
-      s.push_back({"multipliers", p.multipliers, "action / unit of the constraint", "multipliers lambda of L + <lambda, phi>", true, {}});
-      s.push_back({"constraint_residual", {"residual"}, "unit of the constraint", "largest |phi| on the arrow", true, {}});
+      s.push_back({"multipliers",
+                   p.multipliers,
+                   "action / unit of the constraint",
+                   "multipliers lambda of L + <lambda, phi>",
+                   true,
+                   {}});
+      s.push_back(
+          {"constraint_residual", {"residual"}, "unit of the constraint", "largest |phi| on the arrow", true, {}});
     }
     for (const auto& extra : p.extras) s.push_back(extra.series);
     for (const auto& q : quantities_)

@@ -78,8 +78,8 @@ std::string text_report(const RunResult& r) {
     line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}", e.name, e.promise, e.drift,
                      e.relative_drift, bound, e.verdict));
   }
-  line(fmt::format("    {:<28} mean {:.2f}, most {}", "Newton iterations", r.ledger.mean_iterations,
-                   r.ledger.most_iterations));
+  line(
+      fmt::format("    {:<28} mean {:.2f}, most {}", "iterations", r.ledger.mean_iterations, r.ledger.most_iterations));
   line(fmt::format("    {:<28} {}", "solver", r.status));
   return out;
 }

@@ -82,7 +82,7 @@ struct RunResult {
   double seconds = 0;
   long iterations = 0;
   std::optional<double> cost;
-  std::optional<double> residual;    ///< of a solve that failed: the smallest scaled residual found
+  std::optional<double> residual;  ///< of a solve that failed: the smallest scaled residual found
   Endpoint initial;
   Endpoint final;
   std::vector<double> first_multipliers;

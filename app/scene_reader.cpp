@@ -48,7 +48,8 @@ std::string type_name(const toml::node& node) {
 }
 
 std::string one_line(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   return text;
 }
 
@@ -61,7 +62,15 @@ std::string Section::full(std::string_view key) const {
 
 void Section::fail(std::string_view key, const std::string& problem) const {
   const std::string name = full(key);
-  if (source_->overridden.contains(name)) throw SceneError(one_line(fmt::format("--set {}: {}", name, problem)));
+  // An override answers for everything below it.
+  std::string origin = name;
+  while (!origin.empty() && !source_->overridden.contains(origin)) {
+    const auto dot = origin.rfind('.');
+    origin = dot == std::string::npos ? "" : origin.substr(0, dot);
+  }
+  if (!origin.empty() && origin != name)
+    throw SceneError(one_line(fmt::format("--set {}: {}: {}", origin, name, problem)));
+  if (!origin.empty()) throw SceneError(one_line(fmt::format("--set {}: {}", name, problem)));
   const toml::node* node = table_ && !key.empty() ? table_->get(key) : nullptr;
   const int line = node ? int(node->source().begin.line) : line_;
   const std::string where = line > 0 ? fmt::format("{}:{}", source_->file, line) : source_->file;
@@ -110,8 +119,7 @@ double Section::number_or(std::string_view key, double fallback, const NumberRul
 long Section::integer(std::string_view key, long least, long most) const {
   const toml::node& node = require(key, fmt::format("a whole number from {} to {}", least, most));
   if (!node.is_integer())
-    fail(key,
-         fmt::format("expected a whole number written without a point, got {}", type_name(node)));
+    fail(key, fmt::format("expected a whole number written without a point, got {}", type_name(node)));
   const long value = long(*node.value<std::int64_t>());
   if (value < least || value > most) fail(key, fmt::format("must be from {} to {}, got {}", least, most, value));
   return value;

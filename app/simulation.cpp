@@ -7,8 +7,8 @@ TimeGrid read_time(const Section& scene) {
   constexpr long most = 2'000'000'000;
   TimeGrid grid;
   const bool has_duration = time.has("duration");
-  if (has_duration && time.has("step"))
-    time.fail("duration", "give step or duration, not both (steps goes with either)");
+  const bool has_step = time.has("step");
+  if (has_duration && has_step) time.fail("duration", "give step or duration, not both (steps goes with either)");
   grid.steps = time.integer("steps", 1, most);
   grid.step = has_duration ? time.number("duration", positive) / double(grid.steps) : time.number("step", positive);
   return grid;

@@ -21,7 +21,8 @@ template <> inline constexpr double factorial<0> = 1.0;
 /// Stumpff function c_K(x) = sum_i (-x)^i / (2i + K)!.
 ///
 /// With x = a^2: c_0 = cos a, c_1 = sin a / a, c_2 = (1 - cos a)/a^2, c_3 = (a - sin a)/a^3.
-/// Requires x >= 0. Relative error a few round-offs for K <= 3 at every x.
+/// Requires x >= 0. Error a few round-offs, relative to 1/K!, for
+/// K <= 3 at every x.
 template <int K, std::floating_point T> T stumpff(T x) {
   static_assert(K >= 0);
   constexpr T series_limit = 4;

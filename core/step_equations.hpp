@@ -63,8 +63,8 @@ template <int Size> struct Scaling {
 };
 
 /// The condition number of the equilibrated matrix of T F- at a point of Sigma_L; infinite where the system is not
-/// regular ([G] Def. 3.5). The matrix of T F+ is its transpose up to signs, so that one number serves both, which is
-/// Corollary 3.4 of [G].
+/// regular ([G] Def. 3.5). For arrow constraints the matrix of T F+ is its transpose
+/// up to signs, so that one number serves both, which is Corollary 3.4 of [G].
 template <DiscreteSystem Sys> double regularity_condition(const Sys& system, const Step<Sys>& step) {
   using E = StepEquations<Sys>;
   const auto j = E::jacobian(two_sided(system, step.arrow, step.multipliers));

@@ -19,10 +19,11 @@ namespace lagroid {
 /// on the objects between arrows. Multipliers enter as L + <lambda, phi> + <lambda, C> ([G]'s sign).
 ///
 /// Optional members, used where present:
-///     bool admissible(const ArrowOf<G>& g) const      g lies on the branch on which the discretisation is meant to
-///     live Step<System> first_guess(const State<G>&) const  where the solve of a step that has no predecessor starts
-///     TwoSided<...> two_sided(g, lambda) const         analytic derivatives, in place of the automatic ones
-///     double h                                         the time step, if there is one
+///
+///     bool admissible(const ArrowOf<G>& g) const         whether g lies on the discretisation's own branch
+///     Step<System> first_guess(const State<G>&) const    where the solve of a step without predecessor starts
+///     TwoSided<...> two_sided(g, lambda) const           analytic derivatives, in place of the automatic ones
+///     double h                                           the time step, if there is one
 template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraints = 0> class System {
  public:
   using GroupoidType = G;

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include <string>
+#include <array>
 
 namespace lagroid {
 

@@ -10,9 +10,9 @@
 
 namespace lagroid {
 
-/// d/dv_j of the gradient df/du_i of f = L + <lambda, phi> when the arrow is first displaced by v, then by u, both at the
-/// same end: f(g tau(v) tau(u)) or f(tau(u)^{-1} tau(v)^{-1} g). The symmetric Hessian of `one_sided_hessian` plus half
-/// the gradient on the bracket [v, u]; the exact derivative of F+ or -F- along the fibre, away from solutions too.
+/// d/dv_j of the gradient df/du_i of f = L + <lambda, phi> when the arrow is first displaced by v, then by u, both at
+/// the same end: f(g tau(v) tau(u)) or f(tau(u)^{-1} tau(v)^{-1} g). The symmetric Hessian of `one_sided_hessian` plus
+/// half the gradient on the bracket [v, u]; the exact derivative of F+ or -F- along the fibre, away from solutions too.
 template <DiscreteSystem Sys>
 Matrix<double, Sys::dimension, Sys::dimension> gradient_derivative(const Sys& system,
                                                                    const ArrowOf<typename Sys::GroupoidType>& g,

@@ -100,7 +100,7 @@ template <DiscreteSystem Sys> struct BoundarySolution {
   SolveStatus status = SolveStatus::not_converged;
   int iterations = 0;
   double residual = std::numeric_limits<double>::infinity();  ///< largest scaled component of the KKT equations
-  double cost = 0;      ///< sum_k L(g_k)
+  double cost = 0;                                            ///< sum_k L(g_k)
   Classification kind;
   Path<Sys> path;
   bool converged() const { return status == SolveStatus::converged; }

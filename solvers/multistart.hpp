@@ -27,7 +27,7 @@ template <DiscreteSystem Sys> struct MultistartResult {
   std::map<SolveStatus, int> outcomes;           ///< of the starts, at the first stage
   int lost = 0;                                  ///< solutions of the first stage that could not be continued
   int iterations = 0;
-  int start_iterations = 0;                      ///< of all starts at the first stage
+  int start_iterations = 0;            ///< of all starts at the first stage
   int most_iterations = 0;             ///< of one start
   BoundarySolution<Sys> best_failure;  ///< smallest residual among failures
 };
@@ -61,8 +61,7 @@ template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem
 
 template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
   const double best = result.best_failure.residual;
-  if (result.best_failure.path.empty() || failure.residual < best)
-    result.best_failure = std::move(failure);
+  if (result.best_failure.path.empty() || failure.residual < best) result.best_failure = std::move(failure);
 }
 
 template <DiscreteSystem Sys>

@@ -20,7 +20,8 @@ struct NewtonOptions {
 /// Version 1 of the Newton iteration ([N] (3.5)), carried from Lie groups to alpha-fibres: g <- g tau(w), lambda <-
 /// lambda + dlambda, with (w, dlambda) from the matrix of `StepEquations` at the current arrow. Unknowns and equations
 /// are scaled to a matrix with entries near one. Iterates to the round-off level of every equation, then once more with
-/// the same factors: what Newton leaves below that level is not random, and would add up over a long run. No allocation.
+/// the same factors: what Newton leaves below that level is not random, and would add up over a long run. No
+/// allocation.
 template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;

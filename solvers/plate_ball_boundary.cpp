@@ -64,8 +64,8 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
 
   auto result = multistart(solver, stages, options.starts,
                            guess(long(stages.front().steps), stages.front().problem.system), options.report);
-  // Where the grid cannot be refined towards agreement of the forms, or the easier problem led nowhere, the problem asked
-  // for gets starts of its own.
+  // Where the grid cannot be refined towards agreement of the forms, or the easier problem led nowhere, the problem
+  // asked for gets starts of its own.
   const bool forms_far_apart = first_form != system.rotation && options.steps <= coarse_steps;
   if (stages.size() > 1 && (forms_far_apart || result.solutions.empty())) {
     const auto direct = stage(options.steps, system.rotation);

@@ -5,9 +5,9 @@
 
 namespace lagroid {
 
-/// Only `converged` lets a caller use the result; every other outcome leaves the caller's state as it was.
+/// Only `converged` lets a caller go on; whoever marches a trajectory keeps its last state on every other outcome.
 enum class SolveStatus {
-  converged,      ///< residual at its round-off floor
+  converged,      ///< residual as small as the solver promises (its options say how small)
   stagnated,      ///< the residual stopped falling above that floor
   singular,       ///< the matrix of the step is singular: the system is not regular here ([G] Def. 3.5)
   left_domain,    ///< converged, but on another branch of the discretisation or outside the retraction's domain

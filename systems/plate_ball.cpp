@@ -69,9 +69,8 @@ PlateBall::Arrows PlateBall::path(const ArrowOf<GroupoidType>& boundary, long st
     const Vector<double, 2> middle = 0.5 * (nodes[k + 1] + nodes[k]);
     Vector<double, 3> w((h * plate_rate * middle(0) - d(1)) / radius, (d(0) + h * plate_rate * middle(1)) / radius,
                         h * spin);
-    const double largest = rotation == RotationForm::trace ? 1.5 : 3.0;
-    if (const double angle = w.norm(); angle > largest) w *= largest / angle;
-    attitude[k + 1] = attitude[k] * SO3::exp(w);
+    if (const double angle = w.norm(); rotation == RotationForm::exponential && angle > 3.1) w *= 3.1 / angle;
+    attitude[k + 1] = attitude[k] * rotation_of(w);
   }
   // Bent from the left: the turn of each step changes by about |bend| / steps, however fast the ball spins.
   const Vector<double, 3> bend = SO3::log(Matrix<double, 3, 3>(turn * attitude[steps].transpose()));
@@ -135,18 +134,17 @@ std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
                    spatial = std::get<1>(p.configuration) * p.state.momentum.tail<3>();
                  },
                  [momentum, r = radius](const Point& p) { return r * momentum(p); }});
-  all.push_back({"J = x py - y px - M3",
-                 {"J"},
-                 Promise::conserved,
-                 false,
-                 [](const Point& p, double* out) {
-                   const auto& q = std::get<0>(p.state.object);
-                   const auto& mu = p.state.momentum;
-                   *out = q(0) * mu(1) - q(1) * mu(0) - mu(4);
-                 },
-                 [momentum, r = radius](const Point& p) {
-                   return (std::get<0>(p.state.object).norm() + r) * momentum(p);
-                 }});
+  all.push_back(
+      {"J = x py - y px - M3",
+       {"J"},
+       Promise::conserved,
+       false,
+       [](const Point& p, double* out) {
+         const auto& q = std::get<0>(p.state.object);
+         const auto& mu = p.state.momentum;
+         *out = q(0) * mu(1) - q(1) * mu(0) - mu(4);
+       },
+       [momentum, r = radius](const Point& p) { return (std::get<0>(p.state.object).norm() + r) * momentum(p); }});
   if (plate_rate == 0)
     all.push_back({"translational momentum",
                    {"px", "py"},

@@ -1,4 +1,5 @@
 // The program as a user runs it: exit codes, JSON, files.
+#include <H5Cpp.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -117,10 +119,56 @@ TEST_F(CommandLine, BadScenesExitTwoAndWriteNothing) {
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
     EXPECT_EQ(nlohmann::json::parse(r.out).at("status"), "invalid_scene");
   }
+  const Outcome no_scene = run("run --json");
+  EXPECT_EQ(no_scene.code, 2);
+  EXPECT_EQ(nlohmann::json::parse(no_scene.out).at("status"), "invalid_command_line");
+  EXPECT_EQ(std::count(no_scene.err.begin(), no_scene.err.end(), '\n'), 1) << no_scene.err;
+  EXPECT_EQ(run("run " + example("pendulum") + " --out ''").code, 2);
   EXPECT_EQ(run("run").code, 2);
   EXPECT_EQ(run("").code, 2);
   EXPECT_EQ(run("run " + example("plate_ball") + " --frobnicate").code, 2);
   EXPECT_EQ(entries(), 1U) << "only the captured stderr";
+}
+
+TEST_F(CommandLine, WritesIntoAFolderWhoseParentIsNotWritable) {
+  const fs::path parent = folder_ / "parent";
+  const fs::path out = parent / "mine";
+  fs::create_directories(out);
+  std::ofstream(out / "plot.svg") << "of an earlier run";
+  fs::permissions(parent, fs::perms::owner_read | fs::perms::owner_exec);
+  const Outcome r = run("run " + example("pendulum") + " --set time.steps=1 --out " + out.string());
+  fs::permissions(parent, fs::perms::owner_all);
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_GT(fs::file_size(out / "plot.svg"), 100U);
+  EXPECT_EQ(std::distance(fs::directory_iterator(parent), fs::directory_iterator()), 1) << "nothing beside the folder";
+}
+
+TEST_F(CommandLine, Hdf5HoldsWhatTheCsvHolds) {
+  const fs::path out = folder_ / "both";
+  ASSERT_EQ(run("run " + example("plate_ball_initial_value") + " --out " + out.string()).code, 0);
+  H5::H5File file((out / "trajectory.h5").string(), H5F_ACC_RDONLY);
+  const H5::DataSet position = file.openDataSet("position");
+  std::vector<double> values(std::size_t(position.getSpace().getSimpleExtentNpoints()));
+  ASSERT_EQ(values.size(), 2U * 201U);
+  position.read(values.data(), H5::PredType::NATIVE_DOUBLE);
+  std::string unit;
+  const H5::Attribute attribute = position.openAttribute("unit");
+  attribute.read(attribute.getStrType(), unit);
+  EXPECT_EQ(unit, "m");
+  EXPECT_TRUE(file.attrExists("convention: attitude"));
+  std::ifstream csv(out / "trajectory.csv");
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line.substr(0, 6), "t,x,y,");
+  for (std::size_t k = 0; std::getline(csv, line); ++k) {
+    double t = 0;
+    double x = 0;
+    double y = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &t, &x, &y), 3);
+    EXPECT_EQ(x, values[2 * k]);
+    EXPECT_EQ(y, values[2 * k + 1]);
+    EXPECT_NEAR(t, 0.02 * double(k), 1e-14);
+  }
 }
 
 TEST_F(CommandLine, UnwritableFolderIsRefusedBeforeRunning) {

@@ -47,7 +47,7 @@ TEST(Ledger, ConstraintResidualIsJudgedByTheSizeOfItsTerms) {
   EXPECT_EQ(constraint_entry(1e-15, 1).verdict, "kept");
   EXPECT_EQ(constraint_entry(1e-12, 1).verdict, "BROKEN");
   EXPECT_EQ(constraint_entry(1e-12, 1000).verdict, "kept");
-  EXPECT_EQ(constraint_entry(1e-15, 1e-3).verdict, "kept");
+  EXPECT_EQ(constraint_entry(1e-18, 1e-3).verdict, "kept");
   EXPECT_EQ(constraint_entry(1e-12, 1e-3).verdict, "BROKEN");
   EXPECT_EQ(constraint_entry(std::nan(""), 1).verdict, "BROKEN");
 }

@@ -259,15 +259,18 @@ TEST(Ceres, GradientDerivativeIsExactAwayFromSolutions) {
     const Vector<double, 5> v = e * Vector<double, 5>::Unit(j);
     const Vector<double, 5> back = -v;
     const Vector<double, 5> target = (two_sided(system, groupoid.translate(zero, g, v), lambda).target_gradient -
-                         two_sided(system, groupoid.translate(zero, g, back), lambda).target_gradient) / (2 * e);
+                                      two_sided(system, groupoid.translate(zero, g, back), lambda).target_gradient) /
+                                     (2 * e);
     const Vector<double, 5> source = (two_sided(system, groupoid.translate(v, g, zero), lambda).source_gradient -
-                         two_sided(system, groupoid.translate(back, g, zero), lambda).source_gradient) / (2 * e);
+                                      two_sided(system, groupoid.translate(back, g, zero), lambda).source_gradient) /
+                                     (2 * e);
     EXPECT_LT((gradient_derivative(system, g, lambda, End::target).col(j) - target).norm(), 1e-7);
     EXPECT_LT((gradient_derivative(system, g, lambda, End::source).col(j) - source).norm(), 1e-7);
   }
   // The symmetric Hessian differs: that is the bracket.
-  EXPECT_GT((gradient_derivative(system, g, lambda, End::target) - one_sided_hessian(system, g, lambda, End::target)).norm(),
-            0.1);
+  EXPECT_GT(
+      (gradient_derivative(system, g, lambda, End::target) - one_sided_hessian(system, g, lambda, End::target)).norm(),
+      0.1);
 }
 
 /// Negative eigenvalues of the Hessian on the null space of the constraint Jacobian, both dense.
@@ -290,8 +293,8 @@ long dense_negative_directions(const PlateBall& system, const Path<PlateBall>& p
       if (k + 1 < count) hessian.block<5, 5>(5 * k, 5 * l) = full.block<5, 5>(8 * k + 3, 8 * l + 3);
     }
   const Eigen::MatrixXd kernel = jacobian.fullPivLu().kernel();
-  const Eigen::MatrixXd basis = kernel.householderQr().householderQ() *
-                                Eigen::MatrixXd::Identity(kernel.rows(), kernel.cols());
+  const Eigen::MatrixXd basis =
+      kernel.householderQr().householderQ() * Eigen::MatrixXd::Identity(kernel.rows(), kernel.cols());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(basis.transpose() * hessian * basis);
   return (eigen.eigenvalues().array() < 0).count();
 }
@@ -329,8 +332,9 @@ TEST(Boundary, UnitsOfLengthDoNotMatter) {
     ASSERT_EQ(found.solutions.size(), reference.solutions.size()) << r;
     for (std::size_t i = 0; i < found.solutions.size(); ++i)
       EXPECT_NEAR(found.solutions[i].cost / (r * r), reference.solutions[i].cost, 1e-10 * reference.solutions[i].cost);
-    EXPECT_LT(end_defect(system, boundary({0.2 * r, -0.1 * r}, {r, 0.5 * r}, {0.6, -0.3, 0.9}),
-                         found.solutions.front().path), 1e-12 * (1 + r));
+    EXPECT_LT(
+        end_defect(system, boundary({0.2 * r, -0.1 * r}, {r, 0.5 * r}, {0.6, -0.3, 0.9}), found.solutions.front().path),
+        1e-12 * (1 + r));
   }
 }
 

@@ -65,6 +65,9 @@ TEST_F(Scene, Mistakes) {
   expect(with("radius", "raduis"), {".toml:3", "parameters.raduis", "unknown key", "\"radius\""});
   expect(with("plate_ball", "plate_bal"), {".toml:1", "system", "plate_bal", "did you mean \"plate_ball\""});
   expect(with("system = \"plate_ball\"", "# none"), {"missing key \"system\""});
+  expect(with("system =", "sytem ="), {".toml:1", "sytem", "unknown key; did you mean \"system\""});
+  expect(with("momentum =", "momenta ="), {".toml:13", "initial.momenta", "did you mean \"momentum\""});
+  expect(with("radius = 1.0", "radius = 1.0\n\"a\\nb\" = 3"), {"unknown key"});
   expect(with("step = 0.05", "step = -0.05"), {".toml:8", "time.step", "positive", "-0.05"});
   expect(with("step = 0.05", "step = 0"), {"time.step", "positive"});
   expect(with("step = 0.05", "step = nan"), {"time.step", "finite"});
@@ -107,6 +110,8 @@ TEST_F(Scene, MissingFile) {
 TEST_F(Scene, Overrides) {
   EXPECT_EQ(error(valid, {"time.steps=3", "parameters.rotation=exp", "initial.position=[1, 2]"}), "");
   expect(valid, {"--set time.step", "positive"}, {"time.step=-1"});
+  expect(valid, {"--set initial", "initial.position", "expected 2 numbers"},
+         {"initial={position=[1],momentum=[0,0,0,0,0]}"});
   expect(valid, {"--set parameters.raduis", "\"radius\""}, {"parameters.raduis=1"});
   expect(valid, {"--set steps", "key=value"}, {"steps"});
   expect(valid, {"--set system.x", "not a table"}, {"system.x=1"});
@@ -132,7 +137,8 @@ steps = 2
 start = { position = [0, 0] }
 end = { position = [1, 0.5], attitude = [0.6, -0.3, 0.9] }
 )";
-  expect(boundary, {":2", "time", "at least 3 steps"});
+  expect(boundary, {":4", "time.steps", "at least 3 steps"});
+  expect(boundary, {"--set time.steps", "at least 3 steps"}, {"time.steps=1"});
   std::string no_end = boundary;
   no_end.erase(no_end.find("end ="));
   expect(no_end, {"boundary", "missing key \"end\"", "[boundary.end]"});

@@ -55,8 +55,7 @@ ArrowOf<G> end_point(const Section& end) {
 PlateBallBoundaryOptions read_multistart(const Section& solver) {
   PlateBallBoundaryOptions options;
   options.starts = int(solver.integer_or("starts", options.starts, 1, 100000));
-  options.seed =
-      std::uint64_t(solver.integer_or("seed", long(options.seed), 0, std::numeric_limits<long>::max()));
+  options.seed = std::uint64_t(solver.integer_or("seed", long(options.seed), 0, std::numeric_limits<long>::max()));
   return options;
 }
 
@@ -115,7 +114,8 @@ RunResult boundary_value(const Section& scene, const RunContext& context, const 
   options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, 1000000));
   const long every = read_every(scene, context);
   scene.finish();
-  if (const auto why = unreachable(system, steps)) scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
+  if (const auto why = unreachable(system, steps))
+    scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
 
   const auto clock = std::chrono::steady_clock::now();
   const ArrowOf<G> displacement{PairArrow<double, 2>{std::get<0>(start).target, std::get<0>(end).target},
@@ -149,9 +149,10 @@ RunResult boundary_value(const Section& scene, const RunContext& context, const 
     result.cost = best->cost;
     result.steps = steps;
     if (best != found.solutions.begin())
-      result.notes.push_back(fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
-                                         "beside it and were not reached; try more starts or another number of steps",
-                                         found.solutions.front().cost));
+      result.notes.push_back(
+          fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
+                      "beside it and were not reached; try more starts or another number of steps",
+                      found.solutions.front().cost));
     if (!best->kind.normal)
       result.notes.push_back(
           "the best path is abnormal: its constraints lose rank there, multipliers and momentum are not "
@@ -198,7 +199,8 @@ RunResult run_plate_ball(const Section& scene, const RunContext& context) {
                                     : RotationForm::cayley;
   const TimeGrid grid = read_time(scene);
   system.h = grid.step;
-  if (const auto why = system.infeasible()) scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
+  if (const auto why = system.infeasible())
+    scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
   if (scene.has("initial") && scene.has("boundary")) scene.fail("boundary", "give [initial] or [boundary], not both");
   if (scene.has("boundary")) return boundary_value(scene, context, system, grid.steps);
   if (!scene.has("initial"))

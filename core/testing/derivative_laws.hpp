@@ -57,8 +57,8 @@ template <int N, int M> double derivative_defect(const TwoSided<N, M>& a, const 
     }
   };
   return worst({std::abs(a.value - b.value) / (1 + std::abs(b.value)), part(a.source_gradient, b.source_gradient),
-                   part(a.target_gradient, b.target_gradient), part(a.mixed, b.mixed), part(a.constraint, b.constraint),
-                   part(a.constraint_source, b.constraint_source), part(a.constraint_target, b.constraint_target)});
+                part(a.target_gradient, b.target_gradient), part(a.mixed, b.mixed), part(a.constraint, b.constraint),
+                part(a.constraint_source, b.constraint_source), part(a.constraint_target, b.constraint_target)});
 }
 
 /// `draw()` returns a random Step of the system. The laws: the derivatives the solvers use (analytic where the system

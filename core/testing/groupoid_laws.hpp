@@ -60,15 +60,15 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     const A g = arrow();
     const auto q = groupoid.source(g);
     return worst({arrows(groupoid.compose(groupoid.unit(q), g), g),
-                     arrows(groupoid.compose(g, groupoid.unit(groupoid.target(g))), g),
-                     objects(groupoid.source(groupoid.unit(q)), q), objects(groupoid.target(groupoid.unit(q)), q)});
+                  arrows(groupoid.compose(g, groupoid.unit(groupoid.target(g))), g),
+                  objects(groupoid.source(groupoid.unit(q)), q), objects(groupoid.target(groupoid.unit(q)), q)});
   });
   law("inverses", options.tolerance, [&] {
     const A g = arrow();
     const A i = groupoid.inverse(g);
     return worst({objects(groupoid.source(i), groupoid.target(g)), objects(groupoid.target(i), groupoid.source(g)),
-                     arrows(groupoid.compose(g, i), groupoid.unit(groupoid.source(g))),
-                     arrows(groupoid.compose(i, g), groupoid.unit(groupoid.target(g)))});
+                  arrows(groupoid.compose(g, i), groupoid.unit(groupoid.source(g))),
+                  arrows(groupoid.compose(i, g), groupoid.unit(groupoid.target(g)))});
   });
   law("source and target of products", options.tolerance, [&] {
     const A g = arrow();
@@ -89,7 +89,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     if (size > options.local) v *= options.local / size;
     const A g = groupoid.tau(q, v);
     return worst({arrows(groupoid.tau(q, V(V::Zero())), groupoid.unit(q)), objects(groupoid.source(g), q),
-                     relative_defect(groupoid.tau_inverse(g), v)});
+                  relative_defect(groupoid.tau_inverse(g), v)});
   });
   law("left-invariant fields are alpha-vertical", options.derivative, [&] {
     const A g = arrow();
@@ -154,8 +154,9 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
         const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M>(g, first, second, 0));
         const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
         for (int i = 0; i < fast.size(); ++i) {
-          largest = worst({largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
-                           relative_defect(fast(i).right, slow(i).right), relative_defect(fast(i).mixed, slow(i).mixed)});
+          largest =
+              worst({largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
+                     relative_defect(fast(i).right, slow(i).right), relative_defect(fast(i).mixed, slow(i).mixed)});
         }
       }
     return largest;

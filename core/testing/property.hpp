@@ -13,8 +13,8 @@
 
 namespace lagroid::laws {
 
-/// RapidCheck seeds itself from the clock. Unless the environment says otherwise (RC_PARAMS="seed=..."), the suites run
-/// from this seed; RapidCheck prints the seed of every run and, on a failure, the line that reproduces it.
+/// RapidCheck seeds itself from the clock. Unless the environment sets RC_PARAMS (put a seed into it: "seed=..."), the
+/// suites run from this seed; RapidCheck prints the seed of every run and, on a failure, the line that reproduces it.
 inline void fix_seed() { ::setenv("RC_PARAMS", "seed=20261120", /*overwrite=*/0); }
 
 /// A number in [-1, 1], whatever RapidCheck's current size (which otherwise pulls ranges towards their lower end).
