@@ -45,6 +45,9 @@ std::string endpoint(const Endpoint& e) {
   return out + fmt::format("momentum {}", numbers(e.momentum));
 }
 
+/// The solver's own promise: every step, or the boundary value, solved within its iterations.
+std::string solver_verdict(const RunResult& r) { return r.converged() ? "kept" : "BROKEN"; }
+
 std::string kind(const Minimum& m) {
   std::string out = m.is_minimum ? "minimum" : fmt::format("saddle ({} descending)", m.negative_directions);
   if (!m.isolated) out += ", not isolated";
@@ -78,9 +81,9 @@ std::string text_report(const RunResult& r) {
     line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}", e.name, e.promise, e.drift,
                      e.relative_drift, bound, e.verdict));
   }
-  line(
-      fmt::format("    {:<28} mean {:.2f}, most {}", "iterations", r.ledger.mean_iterations, r.ledger.most_iterations));
-  line(fmt::format("    {:<28} {}", "solver", r.status));
+  line(fmt::format("    {:<28} mean {:.2f}, most {}: {}", "iterations", r.ledger.mean_iterations,
+                   r.ledger.most_iterations, solver_verdict(r)));
+  line(fmt::format("    {:<28} every equation solved, status {}: {}", "solver", r.status, solver_verdict(r)));
   return out;
 }
 
@@ -111,8 +114,9 @@ std::string json_report(const RunResult& r) {
   Json entries = Json::array();
   for (const auto& e : r.ledger.entries) entries.push_back(json(e));
   ledger["entries"] = entries;
-  ledger["iterations"] = {{"mean", r.ledger.mean_iterations}, {"max", r.ledger.most_iterations}};
-  ledger["solver"] = r.status;
+  ledger["iterations"] = {
+      {"mean", r.ledger.mean_iterations}, {"max", r.ledger.most_iterations}, {"verdict", solver_verdict(r)}};
+  ledger["solver"] = {{"status", r.status}, {"verdict", solver_verdict(r)}};
   out["ledger"] = ledger;
   out["notes"] = r.notes;
   return out.dump(2, ' ', false, Json::error_handler_t::replace);

@@ -40,11 +40,9 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     coupling_.assign(count, Coupling::Zero());
     residual_.assign(count, Column::Zero());
     gradient_.assign(count, Vector<double, n>::Zero());
-    cost_ = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [arrow, lambda] = path[k];
       const auto d = two_sided(system, arrow, lambda);
-      cost_ += d.value - lambda.dot(d.constraint);
       residual_[k].template head<m>() = d.constraint;
       diagonal_[k].template topRightCorner<m, n>() = d.constraint_target;
       diagonal_[k].template bottomLeftCorner<n, m>() = d.constraint_target.transpose();
@@ -175,7 +173,6 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     return norm;
   }
 
-  double cost() const { return cost_; }
   const std::vector<Vector<double, n>>& cost_gradient() const { return gradient_; }
   const Columns& residual() const { return residual_; }
   const Column& scale() const { return scale_; }
@@ -240,7 +237,6 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   std::vector<Coupling> coupling_;  // k: rows z_k, columns v_{k-1}
   Columns residual_;
   std::vector<Vector<double, n>> gradient_;  // of the cost alone
-  double cost_ = 0;
   Column scale_ = Column::Ones();
   std::vector<Block> vectors_;
   std::vector<Column> inverse_values_;
