@@ -81,11 +81,9 @@ template <DiscreteSystem Sys> class Recorder {
           largest_residual_ = residual;
         }
       }
-      last_multipliers_ = list(point.step.multipliers);
-      if (point.index == 1) first_multipliers_ = last_multipliers_;
     }
-    last_ = endpoint(point);
-    if (point.index == 0) initial_ = last_;
+    if (point.index == 0) initial_ = endpoint(point);
+    if (point.index == 1) first_multipliers_ = list(point.step.multipliers);
     last_point_ = point;
     last_residual_ = residual;
     pending_ = every_ > 0 && point.index % every_ != 0;
@@ -97,9 +95,9 @@ template <DiscreteSystem Sys> class Recorder {
     if (pending_) record(last_point_, last_residual_);
     result.system = presentation_.name;
     result.initial = initial_;
-    result.final = last_;
+    result.final = endpoint(last_point_);
     result.first_multipliers = first_multipliers_;
-    result.last_multipliers = last_multipliers_;
+    if (last_point_.index > 0) result.last_multipliers = list(last_point_.step.multipliers);
     if constexpr (Sys::constraints > 0)
       result.ledger.entries.push_back(constraint_entry(largest_residual_, constraint_size_));
     for (const auto& watch : watches_) result.ledger.entries.push_back(watch.entry());
@@ -165,12 +163,12 @@ template <DiscreteSystem Sys> class Recorder {
       target.insert(target.end(), values.begin(), values.end());
     };
     const bool has_step = point.index > 0;
-    if (!presentation_.position.empty()) put(last_.position);
-    if (presentation_.has_attitude) put(*last_.attitude);
-    put(last_.momentum);
+    if (!presentation_.position.empty()) put(presentation_.position_of(point));
+    if (presentation_.has_attitude) put(presentation_.attitude_of(point));
+    put(point.state.momentum);
     if constexpr (Sys::constraints > 0) {
       if (has_step) {
-        put(last_multipliers_);
+        put(point.step.multipliers);
         put(std::vector{residual});
       } else {
         at += 2;
@@ -210,9 +208,7 @@ template <DiscreteSystem Sys> class Recorder {
   double last_residual_ = 0;
   bool pending_ = false;
   Endpoint initial_;
-  Endpoint last_;
   std::vector<double> first_multipliers_;
-  std::vector<double> last_multipliers_;
   Trajectory trajectory_;
 };
 

@@ -44,6 +44,12 @@ Presentation<PlateBall> presentation(const PlateBall& system) {
   return p;
 }
 
+/// A step that is too large or a path of too few: blamed on the key that set it.
+[[noreturn]] void refuse_time(const Section& scene, const std::string& why) {
+  const Section time = scene.section_or_empty("time");
+  time.fail(time.has("step") ? "step" : "steps", why);
+}
+
 ArrowOf<G> end_point(const Section& end) {
   const auto q = end.numbers("position", 2, "x, y");
   const Vector<double, 2> at(q[0], q[1]);
@@ -114,8 +120,7 @@ RunResult boundary_value(const Section& scene, const RunContext& context, const 
   options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, 1000000));
   const long every = read_every(scene, context);
   scene.finish();
-  if (const auto why = unreachable(system, steps))
-    scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
+  if (const auto why = unreachable(system, steps)) refuse_time(scene, *why);
 
   const auto clock = std::chrono::steady_clock::now();
   const ArrowOf<G> displacement{PairArrow<double, 2>{std::get<0>(start).target, std::get<0>(end).target},
@@ -199,8 +204,7 @@ RunResult run_plate_ball(const Section& scene, const RunContext& context) {
                                     : RotationForm::cayley;
   const TimeGrid grid = read_time(scene);
   system.h = grid.step;
-  if (const auto why = system.infeasible())
-    scene.section("time", "").fail(scene.section("time", "").has("step") ? "step" : "steps", *why);
+  if (const auto why = system.infeasible()) refuse_time(scene, *why);
   if (scene.has("initial") && scene.has("boundary")) scene.fail("boundary", "give [initial] or [boundary], not both");
   if (scene.has("boundary")) return boundary_value(scene, context, system, grid.steps);
   if (!scene.has("initial"))
