@@ -8,6 +8,7 @@
 /// its derivative at 0 fixes the basis in which vectors of AG and momenta of A*G are written throughout.
 
 #include <lagroid/core/dual.hpp>
+#include <lagroid/core/jet.hpp>
 #include <lagroid/core/mixed.hpp>
 #include <lagroid/core/types.hpp>
 
@@ -57,8 +58,9 @@ concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
 ///
 /// and, only when arrows (objects) are not Eigen matrices, `arrow_size`, `coordinates(g)`, `arrow<S>(coordinates)`
 /// (`object_size`, `object_coordinates(q)`, `object<S>(coordinates)`).
-/// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and
-/// `seed` (the translations in closed form, see below). Everything else is deduced.
+/// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and, for speed,
+/// `seed` (the translations in closed form), `extend`, `nudge`, `chart` and `arrow_in_chart` (see below). Everything
+/// else is deduced.
 ///
 /// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
 template <class Derived, int Dimension> class LieGroupoid {
@@ -87,22 +89,40 @@ template <class Derived, int Dimension> class LieGroupoid {
     return object_at<S>(coordinates_of_object(q).template cast<S>().eval());
   }
 
-  /// The arrow tau(a)^{-1} g tau(b) with first- and second-order infinitesimals: the `left` infinitesimals of the
-  /// scalar M = Mixed<T, n, n>, numbers offset ... offset + dimension - 1, displace the end `first`; its `right` ones
-  /// the end `second`. Derived by composition; a groupoid that knows its translations in closed form supplies its own
-  /// `seed` with this signature (the law suites compare the two).
+  /// The arrow tau(a)^{-1} g tau(b) with infinitesimals a, b: the `left` infinitesimals of the scalar M (Mixed or Jet),
+  /// numbers offset ... offset + dimension - 1, displace the end `first`; its `right` ones the end `second`. Derived by
+  /// composition; a groupoid that knows its translations in closed form supplies its own `seed` with this signature
+  /// (the law suites compare the two).
   template <class M, class A> auto seed_by_composition(const A& g, End first, End second, int offset) const {
     Vector<M, Dimension> a = Vector<M, Dimension>::Constant(M(0));
     Vector<M, Dimension> b = a;
     for (int i = 0; i < Dimension; ++i) {
-      (first == End::source ? a : b)(i).left(offset + i) += 1;
-      (second == End::source ? a : b)(i).right(offset + i) += 1;
+      (first == End::source ? a : b)(i).set_left(offset + i, 1);
+      (second == End::source ? a : b)(i).set_right(offset + i, 1);
     }
     return translate(a, cast<M>(g), b);
   }
   template <class M, class A> auto seed(const A& g, End first, End second, int offset = 0) const {
     return seed_by_composition<M>(g, first, second, offset);
   }
+
+  /// g tau(w): the arrow with its target displaced by w. Derived by composition; a groupoid that knows a cheaper way
+  /// supplies its own, equal to round-off.
+  template <class A, class V> A extend(const A& g, const V& w) const {
+    return compose(g, self().tau(self().target(g), w));
+  }
+  /// g <- g tau(w) for a w of the size of round-off. Returns the part of w that the numbers in which g is stored were
+  /// too coarse to take.
+  template <class A, class V> V nudge(A& g, const V& w) const {
+    const A by = self().tau(self().target(g), w);
+    g = compose(g, by);
+    return w - self().tau_inverse(by);
+  }
+
+  /// Coordinates of the arrows near the unit in which a trajectory is extrapolated, and their inverse: tau unless the
+  /// groupoid knows a cheaper smooth chart of its alpha-fibres.
+  template <class A> auto chart(const A& g) const { return self().tau_inverse(g); }
+  template <class Q, class V> auto arrow_in_chart(const Q& q, const V& v) const { return self().tau(q, v); }
 
   /// The left-invariant field X<-(g) = d/dt|0 g tau(t X) of X in A_{beta(g)}G, in arrow coordinates. [G] (1)
   template <class A, class V> auto left_invariant(const A& g, const V& x) const {

@@ -1,10 +1,10 @@
 #pragma once
 /// The mixed second-order dual number: the scalar behind the two-sided derivative.
 
-#include <lagroid/core/special_functions.hpp>
-#include <lagroid/core/types.hpp>
+#include <lagroid/core/elementary.hpp>
+#include <lagroid/core/lanes.hpp>
 
-#include <cmath>
+#include <array>
 #include <ostream>
 #include <type_traits>
 
@@ -14,27 +14,49 @@ namespace lagroid {
 ///
 /// Evaluating f on it gives f, df/dv, df/dw and d2f/dv dw exactly, in one pass. Pure second derivatives in v or in w
 /// are not carried; seed both sets with the same directions to obtain them. Constructible from a double, unlike nested
-/// first-order jets, so that formulas may contain plain constants.
-template <class T, int L, int R> struct Mixed {
+/// first-order jets, so that formulas may contain plain constants. Each row of C lies in one register where the machine
+/// has them wide enough.
+template <class T, int L, int R> class Mixed {
+ public:
   using Real = T;
   static constexpr int left_size = L;
   static constexpr int right_size = R;
+  static constexpr int order = 2;
+  using Left = Lanes<T, L>;
+  using Right = Lanes<T, R>;
+  using Rows = std::array<Right, L>;
 
   T value{};
-  Vector<T, L> left = Vector<T, L>::Zero();
-  Vector<T, R> right = Vector<T, R>::Zero();
-  Matrix<T, L, R> mixed = Matrix<T, L, R>::Zero();
 
   Mixed() = default;
   /// A constant. Implicit, so that formulas may contain plain numbers.
   template <class A>
   requires std::is_arithmetic_v<A> Mixed(A x) : value(T(x)) {}  // NOLINT(google-explicit-constructor)
-  template <class V, class W, class C>
-  Mixed(T x, const V& v, const W& w, const C& c) : value(x), left(v), right(w), mixed(c) {}
+  Mixed(T x, const Left& v, const Right& w) : value(x), left_(v), right_(w) {}
+
+  static Left left_unit(int i) { return Left::unit(i); }
+  static Right right_unit(int j) { return Right::unit(j); }
+
+  T left(int i) const { return left_[i]; }
+  T right(int j) const { return right_[j]; }
+  T mixed(int i, int j) const { return row_[i][j]; }
+  Vector<T, L> left() const { return left_.vector(); }
+  Vector<T, R> right() const { return right_.vector(); }
+  Matrix<T, L, R> mixed() const {
+    Matrix<T, L, R> c;
+    for (int i = 0; i < L; ++i) c.row(i) = row_[i].vector().transpose();
+    return c;
+  }
+  void set_left(int i, T x) { left_.set(i, x); }
+  void set_right(int j, T x) { right_.set(j, x); }
+  void set_mixed(int i, int j, T x) { row_[i].set(j, x); }
+  /// d/dw of the coefficient of v_i.
+  void set_row(int i, const Right& row) { row_[i] = row; }
 
   /// The composition with a function of one variable, given its value and two derivatives at `value`.
   Mixed chain(T f, T f1, T f2) const {
-    return {f, f1 * left, f1 * right, f1 * mixed + (f2 * left) * right.transpose()};
+    const Left curved = f2 * left_;
+    return with_rows(f, f1 * left_, f1 * right_, [&](int i) { return f1 * row_[i] + curved[i] * right_; });
   }
 
   Mixed& operator+=(const Mixed& b) { return *this = *this + b; }
@@ -43,27 +65,40 @@ template <class T, int L, int R> struct Mixed {
   Mixed& operator/=(const Mixed& b) { return *this = *this / b; }
 
   friend Mixed operator+(const Mixed& a) { return a; }
-  friend Mixed operator-(const Mixed& a) { return {-a.value, -a.left, -a.right, -a.mixed}; }
+  friend Mixed operator-(const Mixed& a) {
+    return with_rows(-a.value, -a.left_, -a.right_, [&](int i) { return -a.row_[i]; });
+  }
   friend Mixed operator+(const Mixed& a, const Mixed& b) {
-    return {a.value + b.value, a.left + b.left, a.right + b.right, a.mixed + b.mixed};
+    return with_rows(a.value + b.value, a.left_ + b.left_, a.right_ + b.right_,
+                     [&](int i) { return a.row_[i] + b.row_[i]; });
   }
   friend Mixed operator-(const Mixed& a, const Mixed& b) {
-    return {a.value - b.value, a.left - b.left, a.right - b.right, a.mixed - b.mixed};
+    return with_rows(a.value - b.value, a.left_ - b.left_, a.right_ - b.right_,
+                     [&](int i) { return a.row_[i] - b.row_[i]; });
   }
   friend Mixed operator*(const Mixed& a, const Mixed& b) {
-    return {a.value * b.value, a.value * b.left + b.value * a.left, a.value * b.right + b.value * a.right,
-            a.value * b.mixed + b.value * a.mixed + a.left * b.right.transpose() + b.left * a.right.transpose()};
+    return with_rows(a.value * b.value, a.value * b.left_ + b.value * a.left_,
+                     a.value * b.right_ + b.value * a.right_, [&](int i) {
+                       return a.value * b.row_[i] + b.value * a.row_[i] + a.left_[i] * b.right_ +
+                              b.left_[i] * a.right_;
+                     });
   }
   friend Mixed operator/(const Mixed& a, const Mixed& b) {
     const T inverse = 1 / b.value;
     return a * b.chain(inverse, -inverse * inverse, 2 * inverse * inverse * inverse);
   }
 
-  friend Mixed operator+(const Mixed& a, T b) { return {a.value + b, a.left, a.right, a.mixed}; }
+  friend Mixed operator+(const Mixed& a, T b) {
+    Mixed out = a;
+    out.value += b;
+    return out;
+  }
   friend Mixed operator+(T a, const Mixed& b) { return b + a; }
-  friend Mixed operator-(const Mixed& a, T b) { return {a.value - b, a.left, a.right, a.mixed}; }
-  friend Mixed operator-(T a, const Mixed& b) { return {a - b.value, -b.left, -b.right, -b.mixed}; }
-  friend Mixed operator*(const Mixed& a, T b) { return {a.value * b, a.left * b, a.right * b, a.mixed * b}; }
+  friend Mixed operator-(const Mixed& a, T b) { return a + (-b); }
+  friend Mixed operator-(T a, const Mixed& b) { return -b + a; }
+  friend Mixed operator*(const Mixed& a, T b) {
+    return with_rows(a.value * b, b * a.left_, b * a.right_, [&](int i) { return b * a.row_[i]; });
+  }
   friend Mixed operator*(T a, const Mixed& b) { return b * a; }
   friend Mixed operator/(const Mixed& a, T b) { return a * (1 / b); }
   friend Mixed operator/(T a, const Mixed& b) {
@@ -74,94 +109,25 @@ template <class T, int L, int R> struct Mixed {
   friend bool operator==(const Mixed& a, const Mixed& b) { return a.value == b.value; }
   friend auto operator<=>(const Mixed& a, const Mixed& b) { return a.value <=> b.value; }
   friend std::ostream& operator<<(std::ostream& out, const Mixed& a) { return out << a.value; }
+
+ private:
+  template <class F> static Mixed with_rows(T x, const Left& v, const Right& w, const F& row) {
+    Mixed out(x, v, w);
+    for (int i = 0; i < L; ++i) out.row_[i] = row(i);
+    return out;
+  }
+
+  Left left_;
+  Right right_;
+  Rows row_{};
 };
 
 template <class T, int L, int R> constexpr T value_of(const Mixed<T, L, R>& x) { return x.value; }
 
-template <class T, int L, int R> Mixed<T, L, R> sqrt(const Mixed<T, L, R>& x) {
-  const T f = std::sqrt(x.value);
-  return x.chain(f, T(0.5) / f, T(-0.25) / (f * x.value));
-}
-template <class T, int L, int R> Mixed<T, L, R> exp(const Mixed<T, L, R>& x) {
-  const T f = std::exp(x.value);
-  return x.chain(f, f, f);
-}
-template <class T, int L, int R> Mixed<T, L, R> log(const Mixed<T, L, R>& x) {
-  const T inverse = 1 / x.value;
-  return x.chain(std::log(x.value), inverse, -inverse * inverse);
-}
-template <class T, int L, int R> Mixed<T, L, R> sin(const Mixed<T, L, R>& x) {
-  const T s = std::sin(x.value);
-  return x.chain(s, std::cos(x.value), -s);
-}
-template <class T, int L, int R> Mixed<T, L, R> cos(const Mixed<T, L, R>& x) {
-  const T c = std::cos(x.value);
-  return x.chain(c, -std::sin(x.value), -c);
-}
-template <class T, int L, int R> Mixed<T, L, R> tan(const Mixed<T, L, R>& x) {
-  const T t = std::tan(x.value);
-  const T t1 = 1 + t * t;
-  return x.chain(t, t1, 2 * t * t1);
-}
-template <class T, int L, int R> Mixed<T, L, R> asin(const Mixed<T, L, R>& x) {
-  const T d = 1 / std::sqrt((1 - x.value) * (1 + x.value));
-  return x.chain(std::asin(x.value), d, x.value * d * d * d);
-}
-template <class T, int L, int R> Mixed<T, L, R> acos(const Mixed<T, L, R>& x) {
-  const T d = -1 / std::sqrt((1 - x.value) * (1 + x.value));
-  return x.chain(std::acos(x.value), d, x.value * d * d * d);
-}
-template <class T, int L, int R> Mixed<T, L, R> atan(const Mixed<T, L, R>& x) {
-  const T d = 1 / (1 + x.value * x.value);
-  return x.chain(std::atan(x.value), d, -2 * x.value * d * d);
-}
-template <class T, int L, int R> Mixed<T, L, R> sinh(const Mixed<T, L, R>& x) {
-  const T s = std::sinh(x.value);
-  return x.chain(s, std::cosh(x.value), s);
-}
-template <class T, int L, int R> Mixed<T, L, R> cosh(const Mixed<T, L, R>& x) {
-  const T c = std::cosh(x.value);
-  return x.chain(c, std::sinh(x.value), c);
-}
-template <class T, int L, int R> Mixed<T, L, R> tanh(const Mixed<T, L, R>& x) {
-  const T t = std::tanh(x.value);
-  const T t1 = (1 - t) * (1 + t);
-  return x.chain(t, t1, -2 * t * t1);
-}
-template <class T, int L, int R> Mixed<T, L, R> pow(const Mixed<T, L, R>& x, std::type_identity_t<T> p) {
-  // p = 0 and p = 1 have no singular derivatives at zero.
-  const T f1 = p == 0 ? T(0) : p * std::pow(x.value, p - 1);
-  const T f2 = p == 0 || p == 1 ? T(0) : p * (p - 1) * std::pow(x.value, p - 2);
-  return x.chain(std::pow(x.value, p), f1, f2);
-}
-template <class T, int L, int R> Mixed<T, L, R> abs(const Mixed<T, L, R>& x) { return x.value < 0 ? -x : x; }
-/// The angle of the point (x, y); the derivative is that of the smooth function away from the origin.
-template <class T, int L, int R> Mixed<T, L, R> atan2(const Mixed<T, L, R>& y, const Mixed<T, L, R>& x) {
-  Mixed<T, L, R> angle = std::abs(x.value) > std::abs(y.value) ? atan(y / x) : -atan(x / y);  // right up to a constant
-  angle.value = std::atan2(y.value, x.value);
-  return angle;
-}
-
-template <int K, class T, int L, int R> Mixed<T, L, R> stumpff(const Mixed<T, L, R>& x) {
-  const T f1 = stumpff_derivative<K>(x.value);
-  const T f2 = -(stumpff_derivative<K + 1>(x.value) - K * stumpff_derivative<K + 2>(x.value)) / 2;
-  return x.chain(stumpff<K>(x.value), f1, f2);
-}
-template <int Order, class T, int L, int R> Mixed<T, L, R> angle_ratio(const Mixed<T, L, R>& w) {
-  static_assert(Order <= 1);
-  return w.chain(angle_ratio<Order>(w.value), angle_ratio<Order + 1>(w.value), angle_ratio<Order + 2>(w.value));
-}
-
 }  // namespace lagroid
 
-template <class T, int L, int R> struct Eigen::NumTraits<lagroid::Mixed<T, L, R>> : Eigen::NumTraits<T> {
-  using Real = lagroid::Mixed<T, L, R>;
-  using NonInteger = Real;
-  using Nested = Real;
-  using Literal = T;
-  enum { IsComplex = 0, RequireInitialization = 1, ReadCost = L * R, AddCost = 2 * L * R, MulCost = 5 * L * R };
-};
-
+template <class T, int L, int R>
+struct Eigen::NumTraits<lagroid::Mixed<T, L, R>> : lagroid::detail::DerivativeTraits<lagroid::Mixed<T, L, R>> {};
 template <class T, int L, int R, class Operation>
 struct Eigen::ScalarBinaryOpTraits<lagroid::Mixed<T, L, R>, T, Operation> {
   using ReturnType = lagroid::Mixed<T, L, R>;

@@ -23,6 +23,7 @@ namespace lagroid {
 ///     bool admissible(const ArrowOf<G>& g) const         whether g lies on the discretisation's own branch
 ///     Step<System> first_guess(const State<G>&) const    where the solve of a step without predecessor starts
 ///     TwoSided<...> two_sided(g, lambda) const           analytic derivatives, in place of the automatic ones
+///     Gradients<...> gradients(g, lambda) const          analytic first derivatives alone, likewise
 ///     double h                                           the time step, if there is one
 template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraints = 0> class System {
  public:
@@ -55,20 +56,24 @@ template <class System> struct Step {
 };
 
 /// Gradients of the augmented function f = L + <lambda, phi> + <lambda, C o alpha> in the two-sided displacement
-/// (v, w) -> f(tau(v)^{-1} g tau(w)), all at v = w = 0, with its mixed second derivative.
+/// (v, w) -> f(tau(v)^{-1} g tau(w)) at v = w = 0.
 ///
-/// The discrete Legendre transforms are F- = -source_gradient and F+ = target_gradient ([G] Def. 3.3); the derivative
-/// of F- along the alpha-fibre is -mixed.
-template <int N, int M> struct TwoSided {
-  double value;                            ///< f(g), which is L(g) where the constraints hold
-  Vector<double, N> source_gradient;       ///< df/dv
-  Vector<double, N> target_gradient;       ///< df/dw
+/// The discrete Legendre transforms are F- = -source_gradient and F+ = target_gradient ([G] Def. 3.3).
+template <int N, int M> struct Gradients {
+  double value;                       ///< f(g), which is L(g) where the constraints hold
+  Vector<double, N> source_gradient;  ///< df/dv
+  Vector<double, N> target_gradient;  ///< df/dw
+  Vector<double, M> constraint;       ///< (phi(g), C(beta(g)))
+};
+
+/// The gradients with the mixed second derivative: the derivative of F- along the alpha-fibre is -mixed.
+template <int N, int M> struct TwoSided : Gradients<N, M> {
   Matrix<double, N, N> mixed;              ///< d2f / dv dw
-  Vector<double, M> constraint;            ///< (phi(g), C(beta(g)))
   Matrix<double, N, M> constraint_source;  ///< d(phi, C o alpha)/dv, column by column
   Matrix<double, M, N> constraint_target;  ///< d(phi, C o beta)/dw, row by row
 };
 
+template <class Sys> using GradientsOf = Gradients<Sys::dimension, Sys::constraints>;
 template <class Sys> using TwoSidedOf = TwoSided<Sys::dimension, Sys::constraints>;
 
 /// What the solvers require of a system. Build one by deriving from `System`.
@@ -88,6 +93,11 @@ concept DiscreteSystem = Groupoid<typename Sys::GroupoidType> &&
 template <class Sys>
 concept HasAnalyticDerivatives = requires(const Sys& system, const Step<Sys>& step) {
   system.two_sided(step.arrow, step.multipliers);
+};
+
+template <class Sys>
+concept HasAnalyticGradients = requires(const Sys& system, const Step<Sys>& step) {
+  { system.gradients(step.arrow, step.multipliers) } -> std::convertible_to<GradientsOf<Sys>>;
 };
 
 template <class Sys>

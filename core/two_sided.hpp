@@ -24,41 +24,75 @@ S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multip
 
 }  // namespace detail
 
+template <class Sys> using JetOf = Jet<double, Sys::dimension, Sys::dimension>;
 template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
+
+namespace detail {
+
+/// f, phi and C evaluated on the arrow seeded with infinitesimals of the scalar S (Jet: gradients, Mixed: all).
+template <class S, class Out, class Sys>
+Out seeded_derivatives(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                       const typename Sys::Multipliers& lambda) {
+  constexpr bool second_order = S::order == 2;
+  const auto gs = system.groupoid.template seed<S>(g, End::source, End::target);
+  Out out;
+  S f = system.lagrangian(gs);
+  if constexpr (Sys::arrow_constraints > 0) {
+    const Vector<S, Sys::arrow_constraints> phi = system.constraint(gs);
+    for (int a = 0; a < Sys::arrow_constraints; ++a) {
+      f += phi(a) * lambda(a);
+      out.constraint(a) = phi(a).value;
+      if constexpr (second_order) {
+        out.constraint_source.col(a) = phi(a).left();
+        out.constraint_target.row(a) = phi(a).right().transpose();
+      }
+    }
+  }
+  if constexpr (Sys::object_constraints > 0) {
+    const auto at_source = system.object_constraint(system.groupoid.source(gs));
+    const auto at_target = system.object_constraint(system.groupoid.target(gs));
+    for (int a = 0; a < Sys::object_constraints; ++a) {
+      const int k = Sys::arrow_constraints + a;
+      f += at_source(a) * lambda(k);
+      out.constraint(k) = at_target(a).value;
+      if constexpr (second_order) {
+        out.constraint_source.col(k) = at_source(a).left();
+        out.constraint_target.row(k) = at_target(a).right().transpose();
+      }
+    }
+  }
+  out.value = f.value;
+  out.source_gradient = f.left();
+  out.target_gradient = f.right();
+  if constexpr (second_order) out.mixed = f.mixed();
+  return out;
+}
+
+}  // namespace detail
+
+/// The gradients by first-order dual numbers: one pass through L, phi and C.
+template <DiscreteSystem Sys>
+GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                                     const typename Sys::Multipliers& lambda) {
+  return detail::seeded_derivatives<JetOf<Sys>, GradientsOf<Sys>>(system, g, lambda);
+}
 
 /// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
 template <DiscreteSystem Sys>
 TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                     const typename Sys::Multipliers& lambda) {
-  using M = MixedOf<Sys>;
-  const auto gm = system.groupoid.template seed<M>(g, End::source, End::target);
-  TwoSidedOf<Sys> out;
-  M f = system.lagrangian(gm);
-  if constexpr (Sys::arrow_constraints > 0) {
-    const Vector<M, Sys::arrow_constraints> phi = system.constraint(gm);
-    for (int a = 0; a < Sys::arrow_constraints; ++a) {
-      f += phi(a) * lambda(a);
-      out.constraint(a) = phi(a).value;
-      out.constraint_source.col(a) = phi(a).left;
-      out.constraint_target.row(a) = phi(a).right.transpose();
-    }
+  return detail::seeded_derivatives<MixedOf<Sys>, TwoSidedOf<Sys>>(system, g, lambda);
+}
+
+/// The gradients: the system's analytic ones if it has them, else the automatic ones.
+template <DiscreteSystem Sys>
+GradientsOf<Sys> gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                           const typename Sys::Multipliers& lambda) {
+  if constexpr (HasAnalyticGradients<Sys>) {
+    return system.gradients(g, lambda);
+  } else {
+    return automatic_gradients(system, g, lambda);
   }
-  if constexpr (Sys::object_constraints > 0) {
-    const auto at_source = system.object_constraint(system.groupoid.source(gm));
-    const auto at_target = system.object_constraint(system.groupoid.target(gm));
-    for (int a = 0; a < Sys::object_constraints; ++a) {
-      const int k = Sys::arrow_constraints + a;
-      f += at_source(a) * lambda(k);
-      out.constraint(k) = at_target(a).value;
-      out.constraint_source.col(k) = at_source(a).left;
-      out.constraint_target.row(k) = at_target(a).right.transpose();
-    }
-  }
-  out.value = f.value;
-  out.source_gradient = f.left;
-  out.target_gradient = f.right;
-  out.mixed = f.mixed;
-  return out;
 }
 
 /// The two-sided derivative: the system's analytic one if it has one, else the automatic one.
@@ -78,7 +112,7 @@ Matrix<double, Sys::dimension, Sys::dimension> one_sided_hessian(const Sys& syst
                                                                  const ArrowOf<typename Sys::GroupoidType>& g,
                                                                  const typename Sys::Multipliers& lambda, End end) {
   using M = MixedOf<Sys>;
-  return detail::augmented_lagrangian<M>(system, system.groupoid.template seed<M>(g, end, end), lambda).mixed;
+  return detail::augmented_lagrangian<M>(system, system.groupoid.template seed<M>(g, end, end), lambda).mixed();
 }
 
 /// The constraint values (phi(g), C(beta(g))).
@@ -94,13 +128,13 @@ Vector<double, Sys::constraints> constraint_values(const Sys& system, const Arro
 /// The discrete Legendre transform F-: the state at the source of g. [G] Def. 3.3
 template <DiscreteSystem Sys>
 State<typename Sys::GroupoidType> legendre_minus(const Sys& system, const Step<Sys>& step) {
-  return {system.groupoid.source(step.arrow), -two_sided(system, step.arrow, step.multipliers).source_gradient};
+  return {system.groupoid.source(step.arrow), -gradients(system, step.arrow, step.multipliers).source_gradient};
 }
 
 /// The discrete Legendre transform F+: the state at the target of g. [G] Def. 3.3
 template <DiscreteSystem Sys>
 State<typename Sys::GroupoidType> legendre_plus(const Sys& system, const Step<Sys>& step) {
-  return {system.groupoid.target(step.arrow), two_sided(system, step.arrow, step.multipliers).target_gradient};
+  return {system.groupoid.target(step.arrow), gradients(system, step.arrow, step.multipliers).target_gradient};
 }
 
 }  // namespace lagroid

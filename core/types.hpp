@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include <utility>
+
 namespace lagroid {
 
 template <class S, int N> using Vector = Eigen::Matrix<S, N, 1>;
@@ -13,5 +15,11 @@ template <class S, int Rows, int Columns> using Matrix = Eigen::Matrix<S, Rows, 
 constexpr double value_of(double x) { return x; }
 constexpr float value_of(float x) { return x; }
 constexpr long double value_of(long double x) { return x; }
+
+/// f<0>(), f<1>(), ..., f<N - 1>().
+template <int N, class F> constexpr void unrolled(const F& f) {
+  [&]<int... I>(std::integer_sequence<int, I...>) { (f.template operator()<I>(), ...); }
+  (std::make_integer_sequence<int, N>{});
+}
 
 }  // namespace lagroid

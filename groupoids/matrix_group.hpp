@@ -14,7 +14,8 @@ enum class Retraction { exponential, cayley };
 
 /// A group of N x N matrices as a groupoid over a single object, with Lie algebra coordinates xi in R^n, n = Dimension.
 ///
-/// The derived class supplies hat, vee, exp, log, ad, dexp, dexp_inverse and inverse; deduced here are the groupoid
+/// The derived class supplies hat, its entries basis(i, r, c) = hat(e_i)_rc as constants, vee, exp, log, ad, dexp,
+/// dexp_inverse and inverse; deduced here are the groupoid
 /// operations, the Cayley map and its differentials, and the closed-form translations.
 ///
 /// Differentials are left-trivialised ([G] 6.1): d/dt tau(xi + t eta) = tau(xi) hat(dtau_xi eta).
@@ -76,42 +77,113 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
   /// The i-th basis matrix of the Lie algebra.
-  static Matrix<double, N, N> generator(int i) { return Derived::hat(Algebra<double>(Algebra<double>::Unit(i))); }
+  static Matrix<double, N, N> generator(int i) {
+    Matrix<double, N, N> e;
+    for (int r = 0; r < N; ++r)
+      for (int c = 0; c < N; ++c) e(r, c) = Derived::basis(i, r, c);
+    return e;
+  }
 
   /// Both retractions are tau(xi) = I + X + X^2/2 + O(X^3) with tau(xi)^{-1} = tau(-xi), X = hat(xi); hence the exact
-  /// first and second derivatives of tau(a)^{-1} g tau(b) at a = b = 0.
+  /// first and second derivatives of tau(a)^{-1} g tau(b) at a = b = 0. The loops run at compile time, so that zeros of
+  /// the basis matrices cost nothing.
   template <class M, class T>
   static Matrix<M, N, N> seed(const Matrix<T, N, N>& g, End first, End second, int offset = 0) {
-    static const auto basis = [] {
-      std::array<Matrix<T, N, N>, Dimension> e;
-      for (int i = 0; i < Dimension; ++i) e[i] = generator(i).template cast<T>();
-      return e;
-    }();
     Matrix<M, N, N> out;
-    for (int k = 0; k < g.size(); ++k) out(k) = M(g(k));
-    for (int i = 0; i < Dimension; ++i) {
-      const Matrix<T, N, N> from_source = -basis[i] * g;
-      const Matrix<T, N, N> from_target = g * basis[i];
-      const Matrix<T, N, N>& by_first = first == End::source ? from_source : from_target;
-      const Matrix<T, N, N>& by_second = second == End::source ? from_source : from_target;
-      for (int k = 0; k < g.size(); ++k) {
-        out(k).left(offset + i) = by_first(k);
-        out(k).right(offset + i) = by_second(k);
-      }
-      for (int j = 0; j < Dimension; ++j) {
-        const Matrix<T, N, N> square = (basis[i] * basis[j] + basis[j] * basis[i]) / T(2);
-        Matrix<T, N, N> c;
-        if (first == End::source && second == End::target) c = from_source * basis[j];
-        if (first == End::target && second == End::source) c = -basis[j] * from_target;
-        if (first == End::source && second == End::source) c = square * g;
-        if (first == End::target && second == End::target) c = g * square;
-        for (int k = 0; k < g.size(); ++k) out(k).mixed(offset + i, offset + j) = c(k);
+    unrolled<N>([&]<int R>() {
+      unrolled<N>([&]<int C>() {
+        typename M::Left left{};
+        typename M::Right right{};
+        unrolled<Dimension>([&]<int I>() {
+          if constexpr (moves(I, R, C)) {
+            left = left + displaced<T, I, R, C>(g, first) * M::left_unit(offset + I);
+            right = right + displaced<T, I, R, C>(g, second) * M::right_unit(offset + I);
+          }
+        });
+        out(R, C) = M(g(R, C), left, right);
+      });
+    });
+    if constexpr (M::order == 2) {
+      if (first == End::source && second == End::target) {
+        seed_mixed(g, out, offset);
+      } else {
+        seed_second(g, out, first, second, offset);
       }
     }
     return out;
   }
 
+  /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
+  template <class T> static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
+    if (value_of(w.squaredNorm()) > 1e-11) return g * tau(Object<T>{}, w);
+    const Matrix<T, N, N> gw = g * Derived::hat(w);
+    return g + gw + T(0.5) * (gw * Derived::hat(w)).eval();
+  }
+  template <class T> static Algebra<T> nudge(Matrix<T, N, N>& g, const Algebra<T>& w) {
+    g += (g * Derived::hat(w)).eval();
+    return Algebra<T>::Zero();
+  }
+
  private:
+  /// Whether entry (r, c) of E_i g or of g E_i can be other than zero.
+  static constexpr bool moves(int i, int r, int c) {
+    for (int s = 0; s < N; ++s)
+      if (Derived::basis(i, r, s) != 0 || Derived::basis(i, s, c) != 0) return true;
+    return false;
+  }
+
+  /// Entry (r, c) of the derivative of tau(a)^{-1} g or of g tau(b) along the i-th basis vector.
+  template <class T, int I, int R, int C> static T displaced(const Matrix<T, N, N>& g, End end) {
+    T sum(0);
+    if (end == End::source) {
+      unrolled<N>([&]<int S>() {
+        if constexpr (Derived::basis(I, R, S) != 0) sum -= T(Derived::basis(I, R, S)) * g(S, C);
+      });
+    } else {
+      unrolled<N>([&]<int S>() {
+        if constexpr (Derived::basis(I, S, C) != 0) sum += g(R, S) * T(Derived::basis(I, S, C));
+      });
+    }
+    return sum;
+  }
+
+  /// The mixed derivatives -E_i g E_j: row i of entry (r, c) is -sum_s (E_i)_rs (g E_j)_sc.
+  template <class M, class T> static void seed_mixed(const Matrix<T, N, N>& g, Matrix<M, N, N>& out, int offset) {
+    unrolled<N>([&]<int C>() {
+      std::array<typename M::Right, N> along{};  // (g E_j)_sc, side by side over j
+      unrolled<N>([&]<int S>() {
+        unrolled<Dimension>([&]<int J>() {
+          if constexpr (moves(J, S, C))
+            along[S] = along[S] + displaced<T, J, S, C>(g, End::target) * M::right_unit(offset + J);
+        });
+      });
+      unrolled<N>([&]<int R>() {
+        unrolled<Dimension>([&]<int I>() {
+          typename M::Right row{};
+          unrolled<N>([&]<int S>() {
+            if constexpr (Derived::basis(I, R, S) != 0) row = row - T(Derived::basis(I, R, S)) * along[S];
+          });
+          out(R, C).set_row(offset + I, row);
+        });
+      });
+    });
+  }
+
+  /// The same when both infinitesimals displace one end, or the target first.
+  template <class M, class T>
+  static void seed_second(const Matrix<T, N, N>& g, Matrix<M, N, N>& out, End first, End second, int offset) {
+    for (int i = 0; i < Dimension; ++i)
+      for (int j = 0; j < Dimension; ++j) {
+        const Matrix<T, N, N> ei = generator(i).template cast<T>();
+        const Matrix<T, N, N> ej = generator(j).template cast<T>();
+        const Matrix<T, N, N> square = (ei * ej + ej * ei) / T(2);
+        Matrix<T, N, N> c = g * square;
+        if (first != second) c = -ej * g * ei;
+        if (first == second && first == End::source) c = square * g;
+        for (int k = 0; k < g.size(); ++k) out(k).set_mixed(offset + i, offset + j, c(k));
+      }
+  }
+
   template <class S, class F> static Matrix<S, Dimension, Dimension> columns(const F& conjugate) {
     Matrix<S, Dimension, Dimension> d;
     for (int i = 0; i < Dimension; ++i) d.col(i) = Derived::vee(conjugate(generator(i).template cast<S>().eval()));

@@ -41,10 +41,20 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
     for (int i = 0; i < N; ++i) {
       out.source(i) = M(g.source(i));
       out.target(i) = M(g.target(i));
-      (first == End::source ? out.source : out.target)(i).left(offset + i) = 1;
-      (second == End::source ? out.source : out.target)(i).right(offset + i) = 1;
+      (first == End::source ? out.source : out.target)(i).set_left(offset + i, 1);
+      (second == End::source ? out.source : out.target)(i).set_right(offset + i, 1);
     }
     return out;
+  }
+
+  template <class T> static PairArrow<T, N> extend(const PairArrow<T, N>& g, const Vector<T, N>& w) {
+    return {g.source, g.target + w};
+  }
+  template <class T> static Vector<T, N> nudge(PairArrow<T, N>& g, const Vector<T, N>& w) {
+    const Vector<T, N> target = g.target + w;
+    const Vector<T, N> taken = target - g.target;
+    g.target = target;
+    return w - taken;
   }
 
   static std::string name() { return "Pair<" + std::to_string(N) + ">"; }

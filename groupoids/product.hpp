@@ -47,6 +47,21 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   template <class... As> auto project(const std::tuple<As...>& g) const {
     return map([](const auto& f, const auto& gi) { return f.project(gi); }, g);
   }
+  template <class... As, class V> auto extend(const std::tuple<As...>& g, const V& w) const {
+    return indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).extend(std::get<I>(g), segment<dimensions, I>(w)); });
+  }
+  template <class... As, class V> V nudge(std::tuple<As...>& g, const V& w) const {
+    return concatenate<rank>(indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).nudge(std::get<I>(g), segment<dimensions, I>(w)); }));
+  }
+  template <class... As> auto chart(const std::tuple<As...>& g) const {
+    return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.chart(gi); }, g));
+  }
+  template <class... Qs, class V> auto arrow_in_chart(const std::tuple<Qs...>& q, const V& v) const {
+    return indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).arrow_in_chart(std::get<I>(q), segment<dimensions, I>(v)); });
+  }
 
   template <class... As> Vector<double, rank> coordinate_scale(const std::tuple<As...>& g) const {
     return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.coordinate_scale(gi); }, g));
@@ -104,9 +119,13 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   template <int Size, class Tuple> static auto concatenate(const Tuple& parts) {
     using S = typename std::tuple_element_t<0, Tuple>::Scalar;
     Vector<S, Size> out;
-    int at = 0;
-    std::apply([&](const auto&... part) { ((out.segment(at, part.size()) = part, at += int(part.size())), ...); },
-               parts);
+    const auto put = [&]<int At, int I>(const auto& self) {
+      const auto& part = std::get<I>(parts);
+      constexpr int length = std::decay_t<decltype(part)>::SizeAtCompileTime;
+      out.template segment<length>(At) = part;
+      if constexpr (I + 1 < int(factors)) self.template operator()<At + length, I + 1>(self);
+    };
+    put.template operator()<0, 0>(put);
     return out;
   }
 };

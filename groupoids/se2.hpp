@@ -13,6 +13,10 @@ struct SpecialEuclidean2 : MatrixGroup<SpecialEuclidean2<Tau>, 3, 3, Tau> {
     x << S(0), -xi(0), xi(1), xi(0), S(0), xi(2), S(0), S(0), S(0);
     return x;
   }
+  static constexpr int basis(int i, int r, int c) {
+    if (i == 0) return r < 2 && c < 2 ? SO2::basis(0, r, c) : 0;
+    return r == i - 1 && c == 2 ? 1 : 0;
+  }
   template <class S> static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
     return Vector<S, 3>(x(1, 0), x(0, 2), x(1, 2));
   }

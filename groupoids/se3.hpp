@@ -17,6 +17,10 @@ struct SpecialEuclidean3 : MatrixGroup<SpecialEuclidean3<Tau>, 4, 6, Tau> {
     x.template topRightCorner<3, 1>() = xi.template tail<3>();
     return x;
   }
+  static constexpr int basis(int i, int r, int c) {
+    if (i < 3) return r < 3 && c < 3 ? SO3::basis(i, r, c) : 0;
+    return r == i - 3 && c == 3 ? 1 : 0;
+  }
   template <class S> static Vector<S, 6> vee(const Matrix<S, 4, 4>& x) {
     Vector<S, 6> xi;
     xi << SO3::vee(Matrix<S, 3, 3>(x.template topLeftCorner<3, 3>())), x.template topRightCorner<3, 1>();

@@ -15,6 +15,7 @@ struct SpecialOrthogonal2 : MatrixGroup<SpecialOrthogonal2<Tau>, 2, 1, Tau> {
     x << S(0), -xi(0), xi(0), S(0);
     return x;
   }
+  static constexpr int basis(int, int r, int c) { return r - c; }
   template <class S> static Vector<S, 1> vee(const Matrix<S, 2, 2>& x) { return Vector<S, 1>(x(1, 0)); }
   template <class S> static Matrix<S, 2, 2> inverse(const Matrix<S, 2, 2>& g) { return g.transpose(); }
   template <class S> static Matrix<S, 2, 2> exp(const Vector<S, 1>& xi) {

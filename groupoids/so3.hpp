@@ -20,6 +20,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     x << S(0), -w(2), w(1), w(2), S(0), -w(0), -w(1), w(0), S(0);
     return x;
   }
+  static constexpr int basis(int i, int r, int c) { return (r - c) * (c - i) * (r - i) / 2; }
   /// The axial vector of the antisymmetric part.
   template <class S> static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
     return Vector<S, 3>(x(2, 1) - x(1, 2), x(0, 2) - x(2, 0), x(1, 0) - x(0, 1)) * S(0.5);
@@ -89,6 +90,12 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   /// The nearest rotation matrix to first order in the defect: one Newton-Schulz step g (3 I - g^T g) / 2.
   static Matrix<double, 3, 3> project(const Matrix<double, 3, 3>& g) {
     return g * (1.5 * Matrix<double, 3, 3>::Identity() - 0.5 * (g.transpose() * g).eval());
+  }
+
+  /// The Cayley coordinates: no trigonometric functions.
+  template <class T> static Vector<T, 3> chart(const Matrix<T, 3, 3>& g) { return cayley_inverse(g); }
+  template <class T> static Matrix<T, 3, 3> arrow_in_chart(const Vector<T, 0>&, const Vector<T, 3>& v) {
+    return cayley(v);
   }
   static std::string name() { return "SO(3)"; }
 };

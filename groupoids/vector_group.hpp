@@ -24,8 +24,8 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
     Vector<M, N> out;
     for (int i = 0; i < N; ++i) {
       out(i) = M(g(i));
-      out(i).left(offset + i) = first == End::source ? -1 : 1;
-      out(i).right(offset + i) = second == End::source ? -1 : 1;
+      out(i).set_left(offset + i, first == End::source ? -1 : 1);
+      out(i).set_right(offset + i, second == End::source ? -1 : 1);
     }
     return out;
   }

@@ -23,14 +23,14 @@ Matrix<double, Sys::dimension, Sys::dimension> gradient_derivative(const Sys& sy
   Vector<M, n> u = Vector<M, n>::Constant(M(0));
   Vector<M, n> v = u;
   for (int i = 0; i < n; ++i) {
-    u(i).left(i) = 1;
-    v(i).right(i) = 1;
+    u(i).set_left(i, 1);
+    v(i).set_right(i, 1);
   }
   const Vector<M, n> zero = Vector<M, n>::Constant(M(0));
   const auto start = groupoid.template cast<M>(g);
   const auto once = end == End::target ? groupoid.translate(zero, start, v) : groupoid.translate(v, start, zero);
   const auto twice = end == End::target ? groupoid.translate(zero, once, u) : groupoid.translate(u, once, zero);
-  return detail::augmented_lagrangian<M>(system, twice, lambda).mixed;
+  return detail::augmented_lagrangian<M>(system, twice, lambda).mixed();
 }
 
 /// The KKT equations as a least-squares problem of zero residual: unknowns are the reaches X_k = g_1 ... g_k, points of

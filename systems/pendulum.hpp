@@ -25,6 +25,8 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
   std::vector<Quantity<Pendulum>> quantities() const { return {energy_quantity()}; }
 };
 
+extern template GradientsOf<Pendulum> automatic_gradients(const Pendulum&, const ArrowOf<Pair<1>>&,
+                                                         const Pendulum::Multipliers&);
 extern template TwoSidedOf<Pendulum> automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
                                                          const Pendulum::Multipliers&);
 

@@ -95,6 +95,8 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   std::vector<Quantity<PlateBall>> quantities() const;
 };
 
+extern template GradientsOf<PlateBall> automatic_gradients(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
+                                                          const PlateBall::Multipliers&);
 extern template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
                                                           const PlateBall::Multipliers&);
 extern template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,

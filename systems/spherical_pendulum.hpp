@@ -38,6 +38,8 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   }
 };
 
+extern template GradientsOf<SphericalPendulum> automatic_gradients(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
+                                                                  const SphericalPendulum::Multipliers&);
 extern template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
                                                                   const SphericalPendulum::Multipliers&);
 

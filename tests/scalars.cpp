@@ -1,5 +1,6 @@
 // Mixed and dual numbers, and the functions the group maps are made of.
 #include <lagroid/core/dual.hpp>
+#include <lagroid/core/jet.hpp>
 #include <lagroid/core/mixed.hpp>
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@ using namespace lagroid;
 namespace {
 
 using M = Mixed<double, 2, 3>;
+using J = Jet<double, 2, 3>;
 using D = Dual<Dual<double>>;
 
 // Seeds two variables with all infinitesimals of both kinds.
@@ -19,16 +21,26 @@ struct Seeds {
   double x, y;
   Vector<double, 2> xl{0.7, -0.3}, yl{0.2, 1.1};
   Vector<double, 3> xr{0.5, 0.4, -0.9}, yr{-0.6, 0.8, 0.1};
-  M mx() const { return {x, xl, xr, Matrix<double, 2, 3>::Zero()}; }
-  M my() const { return {y, yl, yr, Matrix<double, 2, 3>::Zero()}; }
+  template <class S> static S seeded(double value, const Vector<double, 2>& left, const Vector<double, 3>& right) {
+    S s(value);
+    for (int i = 0; i < 2; ++i) s.set_left(i, left(i));
+    for (int j = 0; j < 3; ++j) s.set_right(j, right(j));
+    return s;
+  }
+  template <class S = M> S mx() const { return seeded<S>(x, xl, xr); }
+  template <class S = M> S my() const { return seeded<S>(y, yl, yr); }
   D dx(int i, int j) const { return {{x, xr(j)}, {xl(i), 0.0}}; }
   D dy(int i, int j) const { return {{y, yr(j)}, {yl(i), 0.0}}; }
 };
 
-// f on Mixed against f on nested dual numbers, entry by entry.
+// f on Mixed and on Jet against f on nested dual numbers, entry by entry.
 template <class F> void expect_agreement(const char* name, const F& f, double x, double y, double tolerance = 1e-12) {
   const Seeds s{x, y};
   const M m = f(s.mx(), s.my());
+  const J jet = f(s.mx<J>(), s.my<J>());
+  EXPECT_NEAR(jet.value, m.value, tolerance * (1 + std::abs(m.value))) << name;
+  EXPECT_LT((jet.left() - m.left()).norm(), tolerance * (1 + m.left().norm())) << name;
+  EXPECT_LT((jet.right() - m.right()).norm(), tolerance * (1 + m.right().norm())) << name;
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 3; ++j) {
       const D d = f(s.dx(i, j), s.dy(i, j));
@@ -58,10 +70,10 @@ TEST(Mixed, ArithmeticWithPlainNumbers) {
   const M a = 2.0 * x + 1.0 - x / 4.0 + 3.0 / x - (5.0 - x);
   const M b = M(2) * x + M(1) - x / M(4) + M(3) / x - (M(5) - x);
   EXPECT_NEAR(a.value, b.value, 1e-14);
-  EXPECT_TRUE(a.left.isApprox(b.left, 1e-14));
-  EXPECT_TRUE(a.right.isApprox(b.right, 1e-14));
-  EXPECT_TRUE(a.mixed.isApprox(b.mixed, 1e-13));
-  EXPECT_EQ(M(3).left.norm(), 0);
+  EXPECT_TRUE(a.left().isApprox(b.left(), 1e-14));
+  EXPECT_TRUE(a.right().isApprox(b.right(), 1e-14));
+  EXPECT_TRUE(a.mixed().isApprox(b.mixed(), 1e-13));
+  EXPECT_EQ(M(3).left().norm(), 0);
   EXPECT_LT(M(1), M(2));
 }
 
@@ -143,8 +155,8 @@ TEST(SpecialFunctions, AngleRatioAndItsDerivatives) {
 TEST(Mixed, LongDoubleInstantiation) {
   using L = Mixed<long double, 1, 1>;
   L x(0.5L);
-  x.left(0) = 1;
-  x.right(0) = 1;
+  x.set_left(0, 1);
+  x.set_right(0, 1);
   const L y = sin(x * x);
   EXPECT_NEAR(double(y.mixed(0, 0)), 2 * std::cos(0.25) - std::sin(0.25), 1e-15);
 }

@@ -61,6 +61,20 @@ template <int N, int M> double derivative_defect(const TwoSided<N, M>& a, const 
                 part(a.constraint_source, b.constraint_source), part(a.constraint_target, b.constraint_target)});
 }
 
+/// The same for the gradients alone.
+template <int N, int M> double gradient_defect(const Gradients<N, M>& a, const Gradients<N, M>& b) {
+  TwoSided<N, M> x{};
+  TwoSided<N, M> y{};
+  static_cast<Gradients<N, M>&>(x) = a;
+  static_cast<Gradients<N, M>&>(y) = b;
+  for (auto* d : {&x, &y}) {
+    d->mixed.setZero();
+    d->constraint_source.setZero();
+    d->constraint_target.setZero();
+  }
+  return derivative_defect(x, y);
+}
+
 /// `draw()` returns a random Step of the system. The laws: the derivatives the solvers use (analytic where the system
 /// has them) and the automatic ones both agree with nested dual numbers.
 template <DiscreteSystem Sys, class Draw>
@@ -70,6 +84,14 @@ LawReport derivative_laws(const Sys& system, const Draw& draw, double tolerance 
     const Step<Sys> s = draw();
     return derivative_defect(automatic_two_sided(system, s.arrow, s.multipliers),
                              nested_two_sided(system, s.arrow, s.multipliers));
+  }));
+  report.laws.push_back(check_law("gradients", tolerance, [&] {
+    const Step<Sys> s = draw();
+    return worst({gradient_defect<Sys::dimension, Sys::constraints>(
+                      automatic_gradients(system, s.arrow, s.multipliers),
+                      nested_two_sided(system, s.arrow, s.multipliers)),
+                  gradient_defect<Sys::dimension, Sys::constraints>(
+                      gradients(system, s.arrow, s.multipliers), nested_two_sided(system, s.arrow, s.multipliers))});
   }));
   if constexpr (HasAnalyticDerivatives<Sys>)
     report.laws.push_back(check_law("analytic derivatives", tolerance, [&] {

@@ -155,11 +155,57 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
         const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
         for (int i = 0; i < fast.size(); ++i) {
           largest =
-              worst({largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left, slow(i).left),
-                     relative_defect(fast(i).right, slow(i).right), relative_defect(fast(i).mixed, slow(i).mixed)});
+              worst({largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left(), slow(i).left()),
+                     relative_defect(fast(i).right(), slow(i).right()), relative_defect(fast(i).mixed(), slow(i).mixed())});
         }
       }
     return largest;
+  });
+  law("first-order translations", options.derivative, [&] {
+    using M = Mixed<double, n, n>;
+    const A g = arrow();
+    using J = Jet<double, n, n>;
+    double largest = 0;
+    for (const End first : {End::source, End::target})
+      for (const End second : {End::source, End::target}) {
+        const auto once = groupoid.coordinates_of_arrow(groupoid.template seed<J>(g, first, second, 0));
+        const auto twice = groupoid.coordinates_of_arrow(groupoid.template seed<M>(g, first, second, 0));
+        for (int i = 0; i < once.size(); ++i)
+          largest = worst({largest, std::abs(once(i).value - twice(i).value),
+                           relative_defect(once(i).left(), twice(i).left()),
+                           relative_defect(once(i).right(), twice(i).right())});
+      }
+    return largest;
+  });
+  law("extending an arrow", options.tolerance, [&] {
+    const A g = arrow();
+    V w = vector();
+    if (w.norm() > options.local) w *= options.local / w.norm();
+    double largest = 0;
+    for (const double size : {1.0, 1e-3, 1e-6, 1e-9})
+      largest = worst({largest, arrows(groupoid.extend(g, V(size * w)),
+                                       groupoid.compose(g, groupoid.tau(groupoid.target(g), V(size * w))))});
+    return largest;
+  });
+  law("nudging an arrow", options.tolerance, [&] {
+    // Thousands of displacements below the spacing of the numbers add up to one that is not.
+    const A g = arrow();
+    constexpr int count = 4096;
+    V w = vector();
+    w *= options.local / (1 + w.norm());
+    w *= 1e-13;
+    A moved = g;
+    V rest = V::Zero();
+    for (int k = 0; k < count; ++k) rest = groupoid.nudge(moved, V(rest + w));
+    return arrows(moved, groupoid.compose(g, groupoid.tau(groupoid.target(g), V(count * w)))) / 10;
+  });
+  law("chart", options.tolerance, [&] {
+    const auto q = draw_object();
+    V v = vector();
+    if (v.norm() > options.local) v *= options.local / v.norm();
+    const A g = groupoid.tau(q, v);
+    return worst({arrows(groupoid.arrow_in_chart(q, groupoid.chart(g)), g),
+                  arrows(groupoid.arrow_in_chart(q, V(V::Zero())), groupoid.unit(q))});
   });
   return report;
 }

@@ -1,0 +1,91 @@
+#pragma once
+/// A few numbers side by side in vector registers: the storage of derivative-carrying scalars.
+
+#include <lagroid/core/types.hpp>
+
+#include <array>
+#include <bit>
+#include <concepts>
+#include <type_traits>
+
+namespace lagroid {
+
+namespace detail {
+
+/// How many numbers of type T one register of the target machine holds.
+template <class T> constexpr int register_lanes() {
+#if defined(__AVX512F__)
+  constexpr int bytes = 64;
+#elif defined(__AVX__)
+  constexpr int bytes = 32;
+#else
+  constexpr int bytes = 16;
+#endif
+  return std::same_as<T, double> || std::same_as<T, float> ? bytes / int(sizeof(T)) : 1;
+}
+
+template <class T, int Width> struct Register {
+  using Type [[gnu::vector_size(Width * sizeof(T))]] = T;
+};
+template <class T> struct Register<T, 1> { using Type = T; };
+
+}  // namespace detail
+
+/// N numbers, padded with zeros to whole registers; a vector space with componentwise operations.
+template <class T, int N> class Lanes {
+  static constexpr int width = std::min(int(std::bit_ceil(unsigned(N))), detail::register_lanes<T>());
+  static constexpr int count = (N + width - 1) / width;
+  using Register = typename detail::Register<T, width>::Type;
+
+ public:
+  /// The numbers themselves, in order.
+  Vector<T, N> vector() const {
+    Vector<T, N> out;
+    for (int i = 0; i < N; ++i) out(i) = (*this)[i];
+    return out;
+  }
+  T operator[](int i) const {
+    if constexpr (width == 1) {
+      return part_[i];
+    } else {
+      return part_[i / width][i % width];
+    }
+  }
+  void set(int i, T x) {
+    if constexpr (width == 1) {
+      part_[i] = x;
+    } else {
+      part_[i / width][i % width] = x;
+    }
+  }
+  /// One in place i, zero elsewhere.
+  static Lanes unit(int i) {
+    Lanes out;
+    out.set(i, T(1));
+    return out;
+  }
+
+  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return each([&](int k) -> Register { return a.part_[k] + b.part_[k]; });
+  }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) {
+    return each([&](int k) -> Register { return a.part_[k] - b.part_[k]; });
+  }
+  friend Lanes operator-(const Lanes& a) {
+    return each([&](int k) -> Register { return -a.part_[k]; });
+  }
+  friend Lanes operator*(T s, const Lanes& a) {
+    return each([&](int k) -> Register { return s * a.part_[k]; });
+  }
+
+ private:
+  template <class F> static Lanes each(const F& f) {
+    Lanes out;
+    for (int k = 0; k < count; ++k) out.part_[k] = f(k);
+    return out;
+  }
+
+  std::array<Register, count> part_{};
+};
+
+}  // namespace lagroid
