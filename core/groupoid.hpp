@@ -90,20 +90,20 @@ template <class Derived, int Dimension> class LieGroupoid {
   }
 
   /// The arrow tau(a)^{-1} g tau(b) with infinitesimals a, b: the `left` infinitesimals of the scalar M (Mixed or Jet),
-  /// numbers offset ... offset + dimension - 1, displace the end `first`; its `right` ones the end `second`. Derived by
+  /// numbers Offset ... Offset + dimension - 1, displace the end First; its `right` ones the end Second. Derived by
   /// composition; a groupoid that knows its translations in closed form supplies its own `seed` with this signature
   /// (the law suites compare the two).
-  template <class M, class A> auto seed_by_composition(const A& g, End first, End second, int offset) const {
+  template <class M, End First, End Second, int Offset, class A> auto seed_by_composition(const A& g) const {
     Vector<M, Dimension> a = Vector<M, Dimension>::Constant(M(0));
     Vector<M, Dimension> b = a;
     for (int i = 0; i < Dimension; ++i) {
-      (first == End::source ? a : b)(i).set_left(offset + i, 1);
-      (second == End::source ? a : b)(i).set_right(offset + i, 1);
+      (First == End::source ? a : b)(i).set_left(Offset + i, 1);
+      (Second == End::source ? a : b)(i).set_right(Offset + i, 1);
     }
     return translate(a, cast<M>(g), b);
   }
-  template <class M, class A> auto seed(const A& g, End first, End second, int offset = 0) const {
-    return seed_by_composition<M>(g, first, second, offset);
+  template <class M, End First, End Second, int Offset = 0, class A> auto seed(const A& g) const {
+    return seed_by_composition<M, First, Second, Offset>(g);
   }
 
   /// g tau(w): the arrow with its target displaced by w. Derived by composition; a groupoid that knows a cheaper way

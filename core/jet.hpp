@@ -10,7 +10,7 @@
 namespace lagroid {
 
 /// x + a.v + b.w with v v = v w = w w = 0, v of L and w of R infinitesimals: `Mixed` without its second derivatives, at
-/// a fraction of the cost. A groupoid's `seed` serves both.
+/// a fraction of the cost. Like a double, indeterminate until given a value. A groupoid's `seed` serves both.
 template <class T, int L, int R> class Jet {
  public:
   using Real = T;
@@ -20,13 +20,13 @@ template <class T, int L, int R> class Jet {
   using Left = Lanes<T, L + R>;
   using Right = Lanes<T, L + R>;
 
-  T value{};
+  T value;
 
   Jet() = default;
   /// A constant. Implicit, so that formulas may contain plain numbers.
   template <class A>
-  requires std::is_arithmetic_v<A> Jet(A x) : value(T(x)) {}  // NOLINT(google-explicit-constructor)
-  Jet(T x, const Left& v, const Right& w) : value(x), gradient_(v + w) {}
+  requires std::is_arithmetic_v<A> Jet(A x) : value(T(x)), gradient_{} {}  // NOLINT(google-explicit-constructor)
+  [[gnu::always_inline]] Jet(T x, const Left& v, const Right& w) : value(x), gradient_(v + w) {}
 
   static Left left_unit(int i) { return Left::unit(i); }
   static Right right_unit(int j) { return Right::unit(L + j); }
@@ -39,34 +39,38 @@ template <class T, int L, int R> class Jet {
   void set_right(int j, T x) { gradient_.set(L + j, x); }
 
   /// The composition with a function of one variable, given its value and derivatives at `value`.
-  Jet chain(T f, T f1, T /*f2*/) const { return {f, f1 * gradient_}; }
+  [[gnu::always_inline]] Jet chain(T f, T f1, T /*f2*/) const { return {f, f1 * gradient_}; }
 
   Jet& operator+=(const Jet& b) { return *this = *this + b; }
   Jet& operator-=(const Jet& b) { return *this = *this - b; }
   Jet& operator*=(const Jet& b) { return *this = *this * b; }
   Jet& operator/=(const Jet& b) { return *this = *this / b; }
 
-  friend Jet operator+(const Jet& a) { return a; }
-  friend Jet operator-(const Jet& a) { return {-a.value, -a.gradient_}; }
-  friend Jet operator+(const Jet& a, const Jet& b) { return {a.value + b.value, a.gradient_ + b.gradient_}; }
-  friend Jet operator-(const Jet& a, const Jet& b) { return {a.value - b.value, a.gradient_ - b.gradient_}; }
-  friend Jet operator*(const Jet& a, const Jet& b) {
+  [[gnu::always_inline]] friend Jet operator+(const Jet& a) { return a; }
+  [[gnu::always_inline]] friend Jet operator-(const Jet& a) { return {-a.value, -a.gradient_}; }
+  [[gnu::always_inline]] friend Jet operator+(const Jet& a, const Jet& b) {
+    return {a.value + b.value, a.gradient_ + b.gradient_};
+  }
+  [[gnu::always_inline]] friend Jet operator-(const Jet& a, const Jet& b) {
+    return {a.value - b.value, a.gradient_ - b.gradient_};
+  }
+  [[gnu::always_inline]] friend Jet operator*(const Jet& a, const Jet& b) {
     return {a.value * b.value, a.value * b.gradient_ + b.value * a.gradient_};
   }
-  friend Jet operator/(const Jet& a, const Jet& b) {
+  [[gnu::always_inline]] friend Jet operator/(const Jet& a, const Jet& b) {
     const T inverse = 1 / b.value;
     const T quotient = a.value * inverse;
     return {quotient, inverse * (a.gradient_ - quotient * b.gradient_)};
   }
 
-  friend Jet operator+(const Jet& a, T b) { return {a.value + b, a.gradient_}; }
-  friend Jet operator+(T a, const Jet& b) { return b + a; }
-  friend Jet operator-(const Jet& a, T b) { return {a.value - b, a.gradient_}; }
-  friend Jet operator-(T a, const Jet& b) { return {a - b.value, -b.gradient_}; }
-  friend Jet operator*(const Jet& a, T b) { return {a.value * b, b * a.gradient_}; }
-  friend Jet operator*(T a, const Jet& b) { return b * a; }
-  friend Jet operator/(const Jet& a, T b) { return a * (1 / b); }
-  friend Jet operator/(T a, const Jet& b) {
+  [[gnu::always_inline]] friend Jet operator+(const Jet& a, T b) { return {a.value + b, a.gradient_}; }
+  [[gnu::always_inline]] friend Jet operator+(T a, const Jet& b) { return b + a; }
+  [[gnu::always_inline]] friend Jet operator-(const Jet& a, T b) { return {a.value - b, a.gradient_}; }
+  [[gnu::always_inline]] friend Jet operator-(T a, const Jet& b) { return {a - b.value, -b.gradient_}; }
+  [[gnu::always_inline]] friend Jet operator*(const Jet& a, T b) { return {a.value * b, b * a.gradient_}; }
+  [[gnu::always_inline]] friend Jet operator*(T a, const Jet& b) { return b * a; }
+  [[gnu::always_inline]] friend Jet operator/(const Jet& a, T b) { return a * (1 / b); }
+  [[gnu::always_inline]] friend Jet operator/(T a, const Jet& b) {
     const T inverse = 1 / b.value;
     return {a * inverse, (-a * inverse * inverse) * b.gradient_};
   }
@@ -76,7 +80,7 @@ template <class T, int L, int R> class Jet {
   friend std::ostream& operator<<(std::ostream& out, const Jet& a) { return out << a.value; }
 
  private:
-  Jet(T x, const Left& gradient) : value(x), gradient_(gradient) {}
+  [[gnu::always_inline]] Jet(T x, const Left& gradient) : value(x), gradient_(gradient) {}
 
   Lanes<T, L + R> gradient_;
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <concepts>
+#include <cstring>
 #include <type_traits>
 
 namespace lagroid {
@@ -24,9 +25,7 @@ template <class T> constexpr int register_lanes() {
   return std::same_as<T, double> || std::same_as<T, float> ? bytes / int(sizeof(T)) : 1;
 }
 
-template <class T, int Width> struct Register {
-  using Type [[gnu::vector_size(Width * sizeof(T))]] = T;
-};
+template <class T, int Width> struct Register { using Type [[gnu::vector_size(Width * sizeof(T))]] = T; };
 template <class T> struct Register<T, 1> { using Type = T; };
 
 }  // namespace detail
@@ -37,21 +36,38 @@ template <class T, int N> class Lanes {
   static constexpr int count = (N + width - 1) / width;
   using Register = typename detail::Register<T, width>::Type;
 
+  using Row = std::array<T, width * count>;
+  static constexpr std::array<Row, N> units = [] {
+    std::array<Row, N> rows{};
+    for (int i = 0; i < N; ++i) rows[i][i] = T(1);
+    return rows;
+  }();
+
  public:
+  Lanes() = default;
+  // Register by register: a copy in larger pieces would wait for the smaller stores before it.
+  [[gnu::always_inline]] Lanes(const Lanes& a) {
+    unrolled<count>([&]<int K>() { part_[K] = a.part_[K]; });
+  }
+  [[gnu::always_inline]] Lanes& operator=(const Lanes& a) {
+    unrolled<count>([&]<int K>() { part_[K] = a.part_[K]; });
+    return *this;
+  }
+
   /// The numbers themselves, in order.
   Vector<T, N> vector() const {
     Vector<T, N> out;
     for (int i = 0; i < N; ++i) out(i) = (*this)[i];
     return out;
   }
-  T operator[](int i) const {
+  [[gnu::always_inline]] T operator[](int i) const {
     if constexpr (width == 1) {
       return part_[i];
     } else {
       return part_[i / width][i % width];
     }
   }
-  void set(int i, T x) {
+  [[gnu::always_inline]] void set(int i, T x) {
     if constexpr (width == 1) {
       part_[i] = x;
     } else {
@@ -59,33 +75,33 @@ template <class T, int N> class Lanes {
     }
   }
   /// One in place i, zero elsewhere.
-  static Lanes unit(int i) {
+  [[gnu::always_inline]] static Lanes unit(int i) {
     Lanes out;
-    out.set(i, T(1));
+    std::memcpy(&out.part_, &units[i], sizeof out.part_);
     return out;
   }
 
-  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return each([&](int k) -> Register { return a.part_[k] + b.part_[k]; });
   }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a, const Lanes& b) {
     return each([&](int k) -> Register { return a.part_[k] - b.part_[k]; });
   }
-  friend Lanes operator-(const Lanes& a) {
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a) {
     return each([&](int k) -> Register { return -a.part_[k]; });
   }
-  friend Lanes operator*(T s, const Lanes& a) {
+  [[gnu::always_inline]] friend Lanes operator*(T s, const Lanes& a) {
     return each([&](int k) -> Register { return s * a.part_[k]; });
   }
 
  private:
-  template <class F> static Lanes each(const F& f) {
+  template <class F> [[gnu::always_inline]] static Lanes each(const F& f) {
     Lanes out;
-    for (int k = 0; k < count; ++k) out.part_[k] = f(k);
+    unrolled<count>([&]<int K>() { out.part_[K] = f(K); });
     return out;
   }
 
-  std::array<Register, count> part_{};
+  std::array<Register, count> part_;
 };
 
 }  // namespace lagroid

@@ -16,6 +16,40 @@ namespace detail {
 template <int K> constexpr double factorial = K* factorial<K - 1>;
 template <> inline constexpr double factorial<0> = 1.0;
 
+/// sum_i c_i x^i over the first `terms` coefficients.
+template <std::floating_point T, std::size_t N> T horner(const std::array<T, N>& c, int terms, T x) {
+  T sum = c[std::size_t(terms) - 1];
+  for (int i = terms - 2; i >= 0; --i) sum = c[std::size_t(i)] + x * sum;
+  return sum;
+}
+
+/// (-1)^i / (2i + K)!.
+template <int K, std::floating_point T, int Terms>
+inline constexpr std::array<T, Terms> stumpff_coefficients = [] {
+  std::array<T, Terms> c{};
+  T term = T(1) / T(factorial<K>);
+  for (int i = 0; i < Terms; ++i) {
+    c[std::size_t(i)] = term;
+    term /= -T(2 * i + K + 1) * T(2 * i + K + 2);
+  }
+  return c;
+}();
+
+/// Coefficients in u = 1 - w of the Order-th derivative in w of 2 acos(w) / sqrt(1 - w^2) = 2 sum_k b_k u^k,
+/// b_{k+1} / b_k = (k + 1) / (2k + 3).
+template <int Order, std::floating_point T, int Terms>
+inline constexpr std::array<T, Terms> angle_ratio_coefficients = [] {
+  std::array<T, Terms> c{};
+  T b = 2;
+  for (int k = 0; k < Terms + Order; ++k) {
+    T falling = Order % 2 == 0 ? T(1) : T(-1);
+    for (int j = 0; j < Order; ++j) falling *= T(k - j);
+    if (k >= Order) c[std::size_t(k - Order)] = falling * b;
+    b *= T(k + 1) / T(2 * k + 3);
+  }
+  return c;
+}();
+
 }  // namespace detail
 
 /// Stumpff function c_K(x) = sum_i (-x)^i / (2i + K)!.
@@ -27,14 +61,10 @@ template <int K, std::floating_point T> T stumpff(T x) {
   static_assert(K >= 0);
   constexpr T series_limit = 4;
   if (x < series_limit) {
-    constexpr int terms = std::numeric_limits<T>::digits > 60 ? 18 : 15;
-    T term = T(1) / T(detail::factorial<K>);
-    T sum = term;
-    for (int i = 1; i < terms; ++i) {
-      term *= -x / (T(2 * i + K) * T(2 * i + K - 1));
-      sum += term;
-    }
-    return sum;
+    constexpr bool extended = std::numeric_limits<T>::digits > 60;
+    constexpr int terms = extended ? 18 : 15;
+    const int needed = extended ? terms : x < T(0.01) ? 5 : x < T(0.25) ? 8 : terms;
+    return detail::horner(detail::stumpff_coefficients<K, T, terms>, needed, x);
   }
   if constexpr (K == 0) {
     return std::cos(std::sqrt(x));
@@ -60,21 +90,10 @@ template <int Order, std::floating_point T> T angle_ratio(T w) {
   static_assert(0 <= Order && Order <= 3);
   const T u = 1 - w;
   if (u < T(0.1)) {
-    // f = 2 sum_k b_k u^k with b_{k+1} / b_k = (k + 1) / (2k + 3).
+    constexpr bool extended = std::numeric_limits<T>::digits > 60;
     constexpr int terms = 22;
-    T b = 2;
-    T power = 1;
-    T sum = 0;
-    for (int k = 0; k < terms; ++k) {
-      if (k >= Order) {
-        T falling = 1;
-        for (int j = 0; j < Order; ++j) falling *= T(k - j);
-        sum += falling * b * power;
-        power *= u;
-      }
-      b *= T(k + 1) / T(2 * k + 3);
-    }
-    return Order % 2 == 0 ? sum : -sum;
+    const int needed = extended ? terms : u < T(1e-3) ? 7 : u < T(1e-2) ? 10 : terms;
+    return detail::horner(detail::angle_ratio_coefficients<Order, T, terms>, needed, u);
   }
   const T s2 = (1 - w) * (1 + w);
   if constexpr (Order == 0) {

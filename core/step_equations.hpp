@@ -17,7 +17,7 @@ template <class Sys> struct StepEquations {
   using Residual = Vector<double, size>;
   using Jacobian = Matrix<double, size, size>;
 
-  static Residual residual(const TwoSidedOf<Sys>& d, const AlgebroidVector<typename Sys::GroupoidType>& momentum) {
+  static Residual residual(const GradientsOf<Sys>& d, const AlgebroidVector<typename Sys::GroupoidType>& momentum) {
     Residual r;
     r.template head<Sys::dimension>() = -d.source_gradient - momentum;
     r.template tail<Sys::constraints>() = d.constraint;

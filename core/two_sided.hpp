@@ -34,7 +34,7 @@ template <class S, class Out, class Sys>
 Out seeded_derivatives(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                        const typename Sys::Multipliers& lambda) {
   constexpr bool second_order = S::order == 2;
-  const auto gs = system.groupoid.template seed<S>(g, End::source, End::target);
+  const auto gs = system.groupoid.template seed<S, End::source, End::target>(g);
   Out out;
   S f = system.lagrangian(gs);
   if constexpr (Sys::arrow_constraints > 0) {
@@ -112,7 +112,10 @@ Matrix<double, Sys::dimension, Sys::dimension> one_sided_hessian(const Sys& syst
                                                                  const ArrowOf<typename Sys::GroupoidType>& g,
                                                                  const typename Sys::Multipliers& lambda, End end) {
   using M = MixedOf<Sys>;
-  return detail::augmented_lagrangian<M>(system, system.groupoid.template seed<M>(g, end, end), lambda).mixed();
+  const auto at = [&]<End Which>() {
+    return detail::augmented_lagrangian<M>(system, system.groupoid.template seed<M, Which, Which>(g), lambda).mixed();
+  };
+  return end == End::source ? at.template operator()<End::source>() : at.template operator()<End::target>();
 }
 
 /// The constraint values (phi(g), C(beta(g))).

@@ -17,7 +17,7 @@ constexpr float value_of(float x) { return x; }
 constexpr long double value_of(long double x) { return x; }
 
 /// f<0>(), f<1>(), ..., f<N - 1>().
-template <int N, class F> constexpr void unrolled(const F& f) {
+template <int N, class F> [[gnu::always_inline]] constexpr void unrolled(const F& f) {
   [&]<int... I>(std::integer_sequence<int, I...>) { (f.template operator()<I>(), ...); }
   (std::make_integer_sequence<int, N>{});
 }

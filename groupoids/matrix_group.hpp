@@ -87,29 +87,18 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// Both retractions are tau(xi) = I + X + X^2/2 + O(X^3) with tau(xi)^{-1} = tau(-xi), X = hat(xi); hence the exact
   /// first and second derivatives of tau(a)^{-1} g tau(b) at a = b = 0. The loops run at compile time, so that zeros of
   /// the basis matrices cost nothing.
-  template <class M, class T>
-  static Matrix<M, N, N> seed(const Matrix<T, N, N>& g, End first, End second, int offset = 0) {
+  template <class M, End First, End Second, int Offset = 0, class T>
+  [[gnu::always_inline]] static Matrix<M, N, N> seed(const Matrix<T, N, N>& g) {
     Matrix<M, N, N> out;
-    unrolled<N>([&]<int R>() {
-      unrolled<N>([&]<int C>() {
-        typename M::Left left{};
-        typename M::Right right{};
-        unrolled<Dimension>([&]<int I>() {
-          if constexpr (moves(I, R, C)) {
-            left = left + displaced<T, I, R, C>(g, first) * M::left_unit(offset + I);
-            right = right + displaced<T, I, R, C>(g, second) * M::right_unit(offset + I);
-          }
-        });
+    unrolled<N>([&]<int C>() {
+      unrolled<N>([&]<int R>() {
+        const auto left = side_by_side<First, R, C>(g, [](int i) { return M::left_unit(Offset + i); });
+        const auto right = side_by_side<Second, R, C>(g, [](int j) { return M::right_unit(Offset + j); });
         out(R, C) = M(g(R, C), left, right);
+        if constexpr (M::order == 2 && First == Second) seed_square<First, R, C, Offset>(g, out(R, C));
       });
+      if constexpr (M::order == 2 && First != Second) seed_mixed<Second, C, Offset>(g, out);
     });
-    if constexpr (M::order == 2) {
-      if (first == End::source && second == End::target) {
-        seed_mixed(g, out, offset);
-      } else {
-        seed_second(g, out, first, second, offset);
-      }
-    }
     return out;
   }
 
@@ -125,62 +114,80 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
  private:
-  /// Whether entry (r, c) of E_i g or of g E_i can be other than zero.
-  static constexpr bool moves(int i, int r, int c) {
+  /// Entry (r, c) of the derivative of tau(a)^{-1} g or of g tau(b) along the i-th basis vector.
+  template <End Which, int R, int C, int I, class T>
+  [[gnu::always_inline]] static T displaced(const Matrix<T, N, N>& g) {
+    T sum(0);
+    unrolled<N>([&]<int S>() {
+      if constexpr (Which == End::source && Derived::basis(I, R, S) != 0) sum -= T(Derived::basis(I, R, S)) * g(S, C);
+      if constexpr (Which == End::target && Derived::basis(I, S, C) != 0) sum += T(Derived::basis(I, S, C)) * g(R, S);
+    });
+    return sum;
+  }
+  /// Whether that entry can be other than zero.
+  template <End Which> static constexpr bool moves(int r, int c, int i) {
     for (int s = 0; s < N; ++s)
-      if (Derived::basis(i, r, s) != 0 || Derived::basis(i, s, c) != 0) return true;
+      if (Derived::basis(i, Which == End::source ? r : s, Which == End::source ? s : c) != 0) return true;
     return false;
   }
 
-  /// Entry (r, c) of the derivative of tau(a)^{-1} g or of g tau(b) along the i-th basis vector.
-  template <class T, int I, int R, int C> static T displaced(const Matrix<T, N, N>& g, End end) {
-    T sum(0);
-    if (end == End::source) {
-      unrolled<N>([&]<int S>() {
-        if constexpr (Derived::basis(I, R, S) != 0) sum -= T(Derived::basis(I, R, S)) * g(S, C);
-      });
-    } else {
-      unrolled<N>([&]<int S>() {
-        if constexpr (Derived::basis(I, S, C) != 0) sum += g(R, S) * T(Derived::basis(I, S, C));
-      });
-    }
+  /// These derivatives over i, each along its unit.
+  template <End Which, int R, int C, class T, class Unit>
+  [[gnu::always_inline]] static auto side_by_side(const Matrix<T, N, N>& g, const Unit& unit) {
+    decltype(unit(0)) sum{};
+    unrolled<Dimension>([&]<int I>() {
+      if constexpr (moves<Which>(R, C, I)) sum = sum + displaced<Which, R, C, I>(g) * unit(I);
+    });
     return sum;
   }
 
-  /// The mixed derivatives -E_i g E_j: row i of entry (r, c) is -sum_s (E_i)_rs (g E_j)_sc.
-  template <class M, class T> static void seed_mixed(const Matrix<T, N, N>& g, Matrix<M, N, N>& out, int offset) {
-    unrolled<N>([&]<int C>() {
-      std::array<typename M::Right, N> along{};  // (g E_j)_sc, side by side over j
-      unrolled<N>([&]<int S>() {
-        unrolled<Dimension>([&]<int J>() {
-          if constexpr (moves(J, S, C))
-            along[S] = along[S] + displaced<T, J, S, C>(g, End::target) * M::right_unit(offset + J);
-        });
-      });
+  /// The mixed derivatives -E_i g E_j where the second infinitesimal displaces the other end than the first: row i of
+  /// entry (r, c) is made of the derivatives of column c along j.
+  template <End Second, int C, int Offset, class M, class T>
+  [[gnu::always_inline]] static void seed_mixed(const Matrix<T, N, N>& g, Matrix<M, N, N>& out) {
+    using Right = typename M::Right;
+    const auto unit = [](int j) { return M::right_unit(Offset + j); };
+    if constexpr (Second == End::target) {
+      std::array<Right, N> along;
+      unrolled<N>([&]<int S>() { along[S] = side_by_side<End::target, S, C>(g, unit); });
       unrolled<N>([&]<int R>() {
         unrolled<Dimension>([&]<int I>() {
-          typename M::Right row{};
+          Right row{};
           unrolled<N>([&]<int S>() {
             if constexpr (Derived::basis(I, R, S) != 0) row = row - T(Derived::basis(I, R, S)) * along[S];
           });
-          out(R, C).set_row(offset + I, row);
+          out(R, C).set_row(Offset + I, row);
         });
       });
-    });
+    } else {
+      unrolled<N>([&]<int R>() {
+        unrolled<Dimension>([&]<int I>() {
+          Right row{};
+          unrolled<N>([&]<int S>() {
+            if constexpr (Derived::basis(I, S, C) != 0)
+              row = row + T(Derived::basis(I, S, C)) * side_by_side<End::source, R, S>(g, unit);
+          });
+          out(R, C).set_row(Offset + I, row);
+        });
+      });
+    }
   }
 
-  /// The same when both infinitesimals displace one end, or the target first.
-  template <class M, class T>
-  static void seed_second(const Matrix<T, N, N>& g, Matrix<M, N, N>& out, End first, End second, int offset) {
+  /// The second derivatives where both infinitesimals displace the same end: (E_i E_j + E_j E_i) / 2 beside g.
+  template <End Which, int R, int C, int Offset, class M, class T>
+  static void seed_square(const Matrix<T, N, N>& g, M& out) {
     for (int i = 0; i < Dimension; ++i)
       for (int j = 0; j < Dimension; ++j) {
-        const Matrix<T, N, N> ei = generator(i).template cast<T>();
-        const Matrix<T, N, N> ej = generator(j).template cast<T>();
-        const Matrix<T, N, N> square = (ei * ej + ej * ei) / T(2);
-        Matrix<T, N, N> c = g * square;
-        if (first != second) c = -ej * g * ei;
-        if (first == second && first == End::source) c = square * g;
-        for (int k = 0; k < g.size(); ++k) out(k).set_mixed(offset + i, offset + j, c(k));
+        const auto square = [&](int r, int c) {
+          int sum = 0;
+          for (int s = 0; s < N; ++s)
+            sum +=
+                Derived::basis(i, r, s) * Derived::basis(j, s, c) + Derived::basis(j, r, s) * Derived::basis(i, s, c);
+          return T(sum) / T(2);
+        };
+        T sum(0);
+        for (int s = 0; s < N; ++s) sum += Which == End::source ? square(R, s) * g(s, C) : g(R, s) * square(s, C);
+        out.set_mixed(Offset + i, Offset + j, sum);
       }
   }
 

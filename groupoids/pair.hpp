@@ -36,14 +36,17 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
   }
   template <class S, class V> static Arrow<S> arrow(const V& x) { return {x.template head<N>(), x.template tail<N>()}; }
 
-  template <class M, class T> static Arrow<M> seed(const PairArrow<T, N>& g, End first, End second, int offset = 0) {
+  template <class M, End First, End Second, int Offset = 0, class T>
+  [[gnu::always_inline]] static Arrow<M> seed(const PairArrow<T, N>& g) {
+    const auto moved = [](End end, T x, int i) {
+      return M(x, First == end ? M::left_unit(Offset + i) : typename M::Left{},
+               Second == end ? M::right_unit(Offset + i) : typename M::Right{});
+    };
     Arrow<M> out;
-    for (int i = 0; i < N; ++i) {
-      out.source(i) = M(g.source(i));
-      out.target(i) = M(g.target(i));
-      (first == End::source ? out.source : out.target)(i).set_left(offset + i, 1);
-      (second == End::source ? out.source : out.target)(i).set_right(offset + i, 1);
-    }
+    unrolled<N>([&]<int I>() {
+      out.source(I) = moved(End::source, g.source(I), I);
+      out.target(I) = moved(End::target, g.target(I), I);
+    });
     return out;
   }
 

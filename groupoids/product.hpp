@@ -52,8 +52,8 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
         [&]<std::size_t I>() { return std::get<I>(factor).extend(std::get<I>(g), segment<dimensions, I>(w)); });
   }
   template <class... As, class V> V nudge(std::tuple<As...>& g, const V& w) const {
-    return concatenate<rank>(indexed(
-        [&]<std::size_t I>() { return std::get<I>(factor).nudge(std::get<I>(g), segment<dimensions, I>(w)); }));
+    return concatenate<rank>(
+        indexed([&]<std::size_t I>() { return std::get<I>(factor).nudge(std::get<I>(g), segment<dimensions, I>(w)); }));
   }
   template <class... As> auto chart(const std::tuple<As...>& g) const {
     return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.chart(gi); }, g));
@@ -82,11 +82,12 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
         [&]<std::size_t I>() { return std::get<I>(factor).template object_at<S>(segment<object_sizes, I>(x)); });
   }
 
-  template <class M, class... As>
-  Arrow<M> seed(const std::tuple<As...>& g, End first, End second, int offset = 0) const {
-    return indexed([&]<std::size_t I>() {
-      return std::get<I>(factor).template seed<M>(std::get<I>(g), first, second, offset + start(dimensions, I));
-    });
+  template <class M, End First, End Second, int Offset = 0, class... As>
+  [[gnu::always_inline]] Arrow<M> seed(const std::tuple<As...>& g) const {
+    return [&]<std::size_t... I>(std::index_sequence<I...>)->Arrow<M> {
+      return {std::get<I>(factor).template seed<M, First, Second, Offset + start(dimensions, I)>(std::get<I>(g))...};
+    }
+    (std::make_index_sequence<factors>{});
   }
 
   static std::string name() {

@@ -23,7 +23,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   static constexpr int basis(int i, int r, int c) { return (r - c) * (c - i) * (r - i) / 2; }
   /// The axial vector of the antisymmetric part.
   template <class S> static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
-    return Vector<S, 3>(x(2, 1) - x(1, 2), x(0, 2) - x(2, 0), x(1, 0) - x(0, 1)) * S(0.5);
+    return {(x(2, 1) - x(1, 2)) * 0.5, (x(0, 2) - x(2, 0)) * 0.5, (x(1, 0) - x(0, 1)) * 0.5};
   }
   template <class S> static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) { return g.transpose(); }
   /// Rodrigues: I + c_1(|w|^2) hat(w) + c_2(|w|^2) hat(w)^2.
@@ -43,15 +43,16 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     const double trace = d0 + d1 + d2;
     Vector<S, 4> q;
     if (trace >= std::max({d0, d1, d2})) {
-      const S s = sqrt(S(1) + g(0, 0) + g(1, 1) + g(2, 2)) * S(2);
-      q << s * S(0.25), (g(2, 1) - g(1, 2)) / s, (g(0, 2) - g(2, 0)) / s, (g(1, 0) - g(0, 1)) / s;
+      const S s = sqrt(g(0, 0) + g(1, 1) + g(2, 2) + 1.0) * 2.0;
+      const S inverse = 1.0 / s;
+      q << s * 0.25, (g(2, 1) - g(1, 2)) * inverse, (g(0, 2) - g(2, 0)) * inverse, (g(1, 0) - g(0, 1)) * inverse;
     } else {
       const int i = d0 >= d1 && d0 >= d2 ? 0 : (d1 >= d2 ? 1 : 2);
       const int j = (i + 1) % 3;
       const int k = (i + 2) % 3;
-      const S s = sqrt(S(1) + g(i, i) - g(j, j) - g(k, k)) * S(2);
+      const S s = sqrt(g(i, i) - g(j, j) - g(k, k) + 1.0) * 2.0;
       q(0) = (g(k, j) - g(j, k)) / s;
-      q(1 + i) = s * S(0.25);
+      q(1 + i) = s * 0.25;
       q(1 + j) = (g(j, i) + g(i, j)) / s;
       q(1 + k) = (g(k, i) + g(i, k)) / s;
     }
@@ -71,12 +72,13 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   /// cay(w) = I + (hat(w) + hat(w)^2 / 2) / (1 + |w|^2 / 4): the rotation by 2 atan(|w|/2) about w.
   template <class S> static Matrix<S, 3, 3> cayley(const Vector<S, 3>& w) {
     const Matrix<S, 3, 3> h = hat(w);
-    const S scale = S(1) / (S(1) + w.squaredNorm() * S(0.25));
-    return Matrix<S, 3, 3>::Identity() + scale * h + (scale * S(0.5)) * (h * h).eval();
+    const S scale = 1.0 / (w.squaredNorm() * 0.25 + 1.0);
+    return Matrix<S, 3, 3>::Identity() + scale * h + (scale * 0.5) * (h * h).eval();
   }
   /// w = 2 tan(angle/2) axis = 4 vee(g) / (1 + tr g). Requires an angle below pi.
   template <class S> static Vector<S, 3> cayley_inverse(const Matrix<S, 3, 3>& g) {
-    return vee(g) * (S(4) / (S(1) + g(0, 0) + g(1, 1) + g(2, 2)));
+    const S scale = 2.0 / (g(0, 0) + g(1, 1) + g(2, 2) + 1.0);
+    return {(g(2, 1) - g(1, 2)) * scale, (g(0, 2) - g(2, 0)) * scale, (g(1, 0) - g(0, 1)) * scale};
   }
 
   template <class S> static Matrix<S, 3, 3> ad(const Vector<S, 3>& w) { return hat(w); }

@@ -46,8 +46,8 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
   StepReport solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) override {
     Step<Sys>& step = solution.step;
     StepReport report;
-    solution.derivative = two_sided(system, step.arrow, step.multipliers);
-    const ScaledResidual<Sys> start(system, state, step, solution.derivative, cost_.scaling, /*rescale=*/true);
+    const ScaledResidual<Sys> start(system, state, step, two_sided(system, step.arrow, step.multipliers), cost_.scaling,
+                                    /*rescale=*/true);
     if (!std::isfinite(start.norm)) return end(report, SolveStatus::not_finite);
     cost_.system = &system;
     cost_.state = &state;
@@ -59,8 +59,9 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
     report.iterations = int(summary.iterations.size());
     step.arrow = manifold_.arrow(arrow_.data());
     step.multipliers = multipliers_.template head<Sys::constraints>();
-    solution.derivative = two_sided(system, step.arrow, step.multipliers);
-    const ScaledResidual<Sys> final(system, state, step, solution.derivative, cost_.scaling, /*rescale=*/false);
+    const auto derivative = two_sided(system, step.arrow, step.multipliers);
+    solution.gradients = derivative;
+    const ScaledResidual<Sys> final(system, state, step, derivative, cost_.scaling, /*rescale=*/false);
     report.residual = final.norm;
     report.excess = final.excess;
     if (!std::isfinite(final.norm)) return end(report, SolveStatus::not_finite);

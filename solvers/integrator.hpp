@@ -2,6 +2,7 @@
 /// The one-step map on A*G: (q, mu) -> g -> (q', mu').
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/solvers/extrapolation.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
 #include <algorithm>
@@ -57,12 +58,14 @@ template <DiscreteSystem Sys> class Integrator {
     if (point_.index == 0) {
       report = first_step(solution);
     } else {
-      solution.step = {system_.groupoid.tau(point_.state.object, system_.groupoid.tau_inverse(point_.step.arrow)),
-                       point_.step.multipliers};
-      const AlgebroidVector<G> predicted = system_.groupoid.tau_inverse(solution.step.arrow);
+      const Unknowns predicted = past_.next();
+      const AlgebroidVector<G> v = predicted.template head<Sys::dimension>();
+      solution.step = {system_.groupoid.arrow_in_chart(point_.state.object, v),
+                       predicted.template tail<Sys::constraints>()};
       report = solver_->solve(system_, point_.state, solution);
-      // A failure, or a solution far from the last step's: look for the one that is continuous in the step size.
-      if (!report.converged() || !near(solution.step, predicted)) {
+      // A failure, or a solution far from the predicted: look for the one that is continuous in the step size.
+      if (!report.converged() || !near(v, system_.groupoid.chart(solution.step.arrow))) {
+        past_.clear();
         const int spent = report.iterations;
         StepSolution<Sys> restart;
         StepReport restarted = first_step(restart);
@@ -114,12 +117,12 @@ template <DiscreteSystem Sys> class Integrator {
     while (report.converged() && fraction < 1) {
       const double next = std::min(1.0, fraction * factor);
       scaled.h = next == 1 ? system_.h : next * system_.h;
-      const AlgebroidVector<G> v = groupoid.tau_inverse(solution.step.arrow) * (next / fraction);
+      const AlgebroidVector<G> v = groupoid.chart(solution.step.arrow) * (next / fraction);
       StepSolution<Sys> trial;
-      trial.step = {groupoid.tau(point_.state.object, v), solution.step.multipliers};
+      trial.step = {groupoid.arrow_in_chart(point_.state.object, v), solution.step.multipliers};
       StepReport attempt = solver_->solve(scaled, point_.state, trial);
       iterations += attempt.iterations;
-      if (attempt.converged() && near(trial.step, v)) {
+      if (attempt.converged() && near(v, groupoid.chart(trial.step.arrow))) {
         report = attempt;
         solution = trial;
         fraction = next;
@@ -136,9 +139,8 @@ template <DiscreteSystem Sys> class Integrator {
   }
 
   /// Whether a solve stayed on the branch it was continued along: the arrow within half its own size of its prediction.
-  bool near(const Step<Sys>& solved, const AlgebroidVector<G>& predicted) const {
-    const AlgebroidVector<G> v = system_.groupoid.tau_inverse(solved.arrow);
-    return (v - predicted).norm() <= 0.5 * std::max(v.norm(), predicted.norm());
+  static bool near(const AlgebroidVector<G>& predicted, const AlgebroidVector<G>& solved) {
+    return (solved - predicted).squaredNorm() <= 0.25 * std::max(solved.squaredNorm(), predicted.squaredNorm());
   }
 
   void accept(const StepSolution<Sys>& solution) {
@@ -147,25 +149,30 @@ template <DiscreteSystem Sys> class Integrator {
     point_.step = solution.step;
 
     // Compensated accumulation: what rounding took so far is given back as soon as it can be stored.
-    momentum_carry_ += solution.derivative.source_gradient + solution.derivative.target_gradient;
+    momentum_carry_ += solution.gradients.source_gradient + solution.gradients.target_gradient;
     const AlgebroidVector<G> momentum = point_.state.momentum + momentum_carry_;
     momentum_carry_ -= momentum - point_.state.momentum;
     point_.state.momentum = momentum;
-    carry_ += solution.remainder;
-    const auto target = groupoid.target(arrow);
-    const ArrowOf<G> nudge = groupoid.tau(target, carry_);
-    point_.state.object = groupoid.target(nudge);
-    carry_ -= groupoid.tau_inverse(nudge);
-    point_.configuration = groupoid.project(groupoid.compose(groupoid.compose(point_.configuration, arrow), nudge));
+    ArrowOf<G> reached = groupoid.compose(point_.configuration, arrow);
+    carry_ = groupoid.nudge(reached, AlgebroidVector<G>(carry_ + solution.remainder));
+    point_.configuration = groupoid.project(reached);
+    point_.state.object = groupoid.target(point_.configuration);
+    Unknowns unknowns;
+    unknowns << groupoid.chart(arrow), solution.step.multipliers;
+    past_.push(unknowns);
     ++point_.index;
     if constexpr (HasTimeStep<Sys>) point_.time = double(point_.index) * system_.h;
   }
+
+  using Unknowns = Vector<double, Sys::dimension + Sys::constraints>;
+  static constexpr int extrapolation_degree = 5;
 
   Sys system_;
   std::unique_ptr<StepSolver<Sys>> solver_;
   TrajectoryPoint<Sys> point_;
   AlgebroidVector<G> momentum_carry_ = AlgebroidVector<G>::Zero();
   AlgebroidVector<G> carry_ = AlgebroidVector<G>::Zero();
+  Extrapolation<Sys::dimension + Sys::constraints, extrapolation_degree> past_;
 };
 
 }  // namespace lagroid

@@ -1,10 +1,12 @@
 #pragma once
 /// Newton's iteration on the alpha-fibre of a groupoid.
 
+#include <lagroid/solvers/small_inverse.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,10 +20,13 @@ struct NewtonOptions {
 };
 
 /// Version 1 of the Newton iteration ([N] (3.5)), carried from Lie groups to alpha-fibres: g <- g tau(w), lambda <-
-/// lambda + dlambda, with (w, dlambda) from the matrix of `StepEquations` at the current arrow. Unknowns and equations
-/// are scaled to a matrix with entries near one. Iterates to the round-off level of every equation, then once more with
-/// the same factors: what Newton leaves below that level is not random, and would add up over a long run. No
-/// allocation.
+/// lambda + dlambda, with (w, dlambda) from the matrix of `StepEquations`. Unknowns and equations are scaled to a
+/// matrix with entries near one. Iterates to the round-off level of every equation, and on until what the iteration
+/// itself leaves is well below that: it is not random, and would add up over a long run. No allocation.
+///
+/// A step whose guess is good (the next one of a smooth trajectory) takes the short way: chord iterations with the
+/// inverse of a matrix that is renewed only when that saves time, gradients alone being evaluated. Whenever these do
+/// not contract, the solve starts again from the guess with a full Newton iteration, damped so that the residual falls.
 template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
@@ -29,83 +34,191 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   explicit NewtonStep(NewtonOptions options = {}) : options_(options) {}
 
   StepReport solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) override {
-    constexpr int n = Sys::dimension;
     StepReport report;
-    Step<Sys>& step = solution.step;
-    solution.derivative = two_sided(system, step.arrow, step.multipliers);
-    ScaledResidual<Sys> current(system, state, step, solution.derivative, scaling_, /*rescale=*/true);
-    for (;; ++report.iterations) {
-      report.residual = current.norm;
-      report.excess = current.excess;
-      if (!std::isfinite(current.norm)) return end(report, SolveStatus::not_finite);
-      lu_.compute(scaling_.apply(current.jacobian));
-      if (!(lu_.rcond() > 1e-15)) return end(report, SolveStatus::singular);
-      typename E::Residual correction = corrected(current);
-      if (current.excess <= 1 || current.norm <= options_.tolerance) {
-        const Step<Sys> once_more = moved(system, step, correction, 1);
-        const auto derivative = two_sided(system, once_more.arrow, once_more.multipliers);
-        const ScaledResidual<Sys> next(system, state, once_more, derivative, scaling_, /*rescale=*/false);
-        if (next.excess < current.excess) {
-          step = once_more;
-          solution.derivative = derivative;
-          report.residual = next.norm;
-          report.excess = next.excess;
-          correction = corrected(next);
-        }
-        solution.remainder = correction.template head<n>();
-        return converged(report, system, step);
-      }
-      if (report.iterations == options_.max_iterations) return end(report, SolveStatus::not_converged);
-
-      bool advanced = false;
-      double fraction = 1;
-      for (int halving = 0; halving <= options_.max_halvings && !advanced; ++halving, fraction /= 2) {
-        const Step<Sys> trial = moved(system, step, correction, fraction);
-        const auto derivative = two_sided(system, trial.arrow, trial.multipliers);
-        const ScaledResidual<Sys> next(system, state, trial, derivative, scaling_, /*rescale=*/false);
-        if (next.norm < current.norm || next.excess < current.excess) {
-          advanced = true;
-          step = trial;
-          solution.derivative = derivative;
-          current = next;
-        } else if (current.excess <= options_.accept_excess) {
-          solution.remainder = correction.template head<n>();
-          return converged(report, system, step);
-        }
-      }
-      if (!advanced) return end(report, SolveStatus::stagnated);
+    if (chord_.kept) {
+      const Step<Sys> guess = solution.step;
+      if (by_chords(system, state, solution, report)) return report;
+      chord_.kept = false;
+      solution.step = guess;
     }
+    by_newton(system, state, solution, report);
+    if (report.converged()) keep(system, state, solution.step);
+    return report;
   }
 
  private:
   using E = StepEquations<Sys>;
+  using Residual = typename E::Residual;
+  static constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  static constexpr double leftover = 0.1;  ///< of a round-off level: what the iteration may leave
+
+  /// The matrix that chord iterations use, and what is known of their convergence.
+  struct Chord {
+    bool kept = false;
+    typename E::Jacobian inverse;
+    Residual floor;    ///< reciprocal round-off level of each equation
+    double first = 0;  ///< excess at the guess of the last solve
+    double rate = 0;   ///< contraction of an iteration, as last seen
+    int age = 0;       ///< solves since the matrix was evaluated
+  };
+
+  // ---- the short way
+
+  bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report) {
+    Step<Sys>& step = solution.step;
+    if (renewal_pays()) {
+      const auto d = two_sided(system, step.arrow, step.multipliers);
+      if (!renew(system, state, step, d)) return false;
+      solution.gradients = d;
+    } else {
+      ++chord_.age;
+      solution.gradients = gradients(system, step.arrow, step.multipliers);
+    }
+    Residual residual = E::residual(solution.gradients, state.momentum);
+    double excess = excess_of(residual);
+    chord_.first = excess;
+    double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * excess) : chord_.rate;
+    double remains = excess;
+    for (int iteration = 1; iteration <= longest_chord; ++iteration) {
+      const Residual correction = -(chord_.inverse * residual);
+      step = moved(system, step, correction);
+      solution.gradients = gradients(system, step.arrow, step.multipliers);
+      residual = E::residual(solution.gradients, state.momentum);
+      const double next = excess_of(residual);
+      if (!(next <= std::max(1.0, 0.3 * excess))) return false;
+      if (next > 10) rate = std::max(next / excess, iteration == 1 ? 0 : rate);
+      remains *= rate;
+      excess = next;
+      report.iterations = iteration;
+      if (excess <= 1 && remains <= leftover) {
+        chord_.rate = rate;
+        solution.remainder = -(chord_.inverse.template topRows<Sys::dimension>() * residual);
+        report.residual = residual.cwiseProduct(scaling_.row).cwiseAbs().maxCoeff();
+        report.excess = excess;
+        finish(report, system, step);
+        return report.converged();
+      }
+    }
+    return false;
+  }
+
+  /// Whether a new matrix costs less than the iterations it would save. One costs about as much as `renewal_price`
+  /// chord iterations.
+  bool renewal_pays() const {
+    const auto iterations = [&](double rate) {
+      int count = 0;
+      for (double e = chord_.first; e > leftover && count < longest_chord; e *= rate) ++count;
+      return count;
+    };
+    const double ageing = chord_.age == 0 ? 1 : double(chord_.age + 1) / chord_.age;
+    const double kept = std::max(chord_.rate * ageing, 1e-3);
+    return iterations(kept) > iterations(std::min(0.1, 10 * epsilon * chord_.first)) + renewal_price;
+  }
+  static constexpr int longest_chord = 12;
+  static constexpr int renewal_price = 3;
+
+  /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
+  bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step, const TwoSidedOf<Sys>& d) {
+    const typename E::Jacobian jacobian = E::jacobian(d);
+    const typename E::Jacobian scaled = scaling_.apply(jacobian);
+    const typename E::Jacobian inverse = small_inverse_(scaled);
+    if (!(SmallInverse<E::size>::condition(scaled, inverse) < worst_condition)) return false;
+    chord_.inverse = scaling_.column.asDiagonal() * inverse * scaling_.row.asDiagonal();
+    chord_.floor = round_off_level(system, state, step, jacobian).cwiseInverse();
+    chord_.age = 0;
+    return true;
+  }
+  static constexpr double worst_condition = 1e6;
+
+  double excess_of(const Residual& residual) const { return residual.cwiseProduct(chord_.floor).cwiseAbs().maxCoeff(); }
+
+  /// After a full solve: the matrix there, for the steps that follow.
+  void keep(const Sys& system, const State<G>& state, const Step<Sys>& step) {
+    const auto d = two_sided(system, step.arrow, step.multipliers);
+    const typename E::Jacobian scaled = scaling_.apply(E::jacobian(d));
+    small_inverse_.choose_pivots(scaled);
+    chord_.kept = renew(system, state, step, d);
+    chord_.first = 1e12;
+    chord_.rate = 0.1;
+    chord_.age = 1;
+  }
+
+  // ---- the long way
+
+  void by_newton(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report) {
+    Step<Sys>& step = solution.step;
+    auto derivative = two_sided(system, step.arrow, step.multipliers);
+    ScaledResidual<Sys> current(system, state, step, derivative, scaling_, /*rescale=*/true);
+    const auto at = [&](SolveStatus status, const Residual& correction) {
+      solution.gradients = derivative;
+      solution.remainder = correction.template head<Sys::dimension>();
+      report.residual = current.norm;
+      report.excess = current.excess;
+      report.status = status;
+      if (status == SolveStatus::converged) finish(report, system, step);
+    };
+    const Residual none = Residual::Zero();
+    for (const int before = report.iterations;; ++report.iterations) {
+      if (!std::isfinite(current.norm)) return at(SolveStatus::not_finite, none);
+      lu_.compute(scaling_.apply(current.jacobian));
+      if (!(lu_.rcond() > 1e-15)) return at(SolveStatus::singular, none);
+      const Residual correction = corrected(current);
+      if (current.excess <= 1 || current.norm <= options_.tolerance) {
+        const Step<Sys> once_more = moved(system, step, correction);
+        const auto d = two_sided(system, once_more.arrow, once_more.multipliers);
+        const ScaledResidual<Sys> next(system, state, once_more, d, scaling_, /*rescale=*/false);
+        if (next.excess >= current.excess) return at(SolveStatus::converged, correction);
+        step = once_more;
+        derivative = d;
+        current = next;
+        return at(SolveStatus::converged, corrected(current));
+      }
+      if (report.iterations - before == options_.max_iterations) return at(SolveStatus::not_converged, none);
+
+      bool advanced = false;
+      double fraction = 1;
+      for (int halving = 0; halving <= options_.max_halvings && !advanced; ++halving, fraction /= 2) {
+        const Step<Sys> trial = moved(system, step, fraction * correction);
+        const auto d = two_sided(system, trial.arrow, trial.multipliers);
+        const ScaledResidual<Sys> next(system, state, trial, d, scaling_, /*rescale=*/false);
+        if (next.norm < current.norm || next.excess < current.excess) {
+          advanced = true;
+          step = trial;
+          derivative = d;
+          current = next;
+        } else if (current.excess <= options_.accept_excess) {
+          return at(SolveStatus::converged, correction);
+        }
+      }
+      if (!advanced) return at(SolveStatus::stagnated, none);
+    }
+  }
 
   /// The Newton correction for a residual, with the factors at hand.
-  typename E::Residual corrected(const ScaledResidual<Sys>& at) const {
-    const typename E::Residual right = at.residual.cwiseProduct(scaling_.row);
+  Residual corrected(const ScaledResidual<Sys>& at) const {
+    const Residual right = at.residual.cwiseProduct(scaling_.row);
     return -lu_.solve(right).cwiseProduct(scaling_.column);
   }
-  static Step<Sys> moved(const Sys& system, const Step<Sys>& step, const typename E::Residual& correction,
-                         double fraction) {
-    const AlgebroidVector<G> w = fraction * correction.template head<Sys::dimension>();
-    const auto& groupoid = system.groupoid;
-    return {groupoid.project(groupoid.compose(step.arrow, groupoid.tau(groupoid.target(step.arrow), w))),
-            step.multipliers + fraction * correction.template tail<Sys::constraints>()};
+
+  // ---- both
+
+  static Step<Sys> moved(const Sys& system, const Step<Sys>& step, const Residual& correction) {
+    const AlgebroidVector<G> w = correction.template head<Sys::dimension>();
+    return {system.groupoid.project(system.groupoid.extend(step.arrow, w)),
+            step.multipliers + correction.template tail<Sys::constraints>()};
   }
 
-  static StepReport end(StepReport report, SolveStatus status) {
-    report.status = status;
-    return report;
-  }
-  static StepReport converged(StepReport report, const Sys& system, const Step<Sys>& step) {
+  static void finish(StepReport& report, const Sys& system, const Step<Sys>& step) {
+    report.status = SolveStatus::converged;
     if constexpr (HasBranch<Sys>) {
-      if (!system.admissible(step.arrow)) return end(report, SolveStatus::left_domain);
+      if (!system.admissible(step.arrow)) report.status = SolveStatus::left_domain;
     }
-    return end(report, SolveStatus::converged);
   }
 
   NewtonOptions options_;
   Scaling<E::size> scaling_;
+  SmallInverse<E::size> small_inverse_;
+  Chord chord_;
   Eigen::PartialPivLU<typename E::Jacobian> lu_;
 };
 

@@ -21,7 +21,7 @@ struct StepReport {
 /// A step with what the solver knows about it.
 template <DiscreteSystem Sys> struct StepSolution {
   Step<Sys> step;
-  TwoSidedOf<Sys> derivative;
+  GradientsOf<Sys> gradients;  ///< at the arrow
   /// The correction w in A_{beta(g)}G, g tau(w), that the next iteration would make: below the spacing of the numbers
   /// the arrow is stored in, but a bias when it is lost step after step.
   AlgebroidVector<typename Sys::GroupoidType> remainder = AlgebroidVector<typename Sys::GroupoidType>::Zero();
@@ -38,29 +38,36 @@ template <DiscreteSystem Sys> class StepSolver {
                            StepSolution<Sys>& solution) = 0;
 };
 
+/// What round-off in mu, in the products J_ij lambda_j and in the arrow puts into each step equation.
+template <DiscreteSystem Sys>
+typename StepEquations<Sys>::Residual round_off_level(const Sys& system, const State<typename Sys::GroupoidType>& state,
+                                                      const Step<Sys>& step,
+                                                      const typename StepEquations<Sys>::Jacobian& jacobian) {
+  constexpr int n = Sys::dimension;
+  typename StepEquations<Sys>::Residual size =
+      jacobian.template leftCols<n>().cwiseAbs() * system.groupoid.coordinate_scale(step.arrow);
+  size.template head<n>() += state.momentum.cwiseAbs();
+  if constexpr (Sys::constraints > 0)
+    size += jacobian.template rightCols<Sys::constraints>().cwiseAbs() * step.multipliers.cwiseAbs();
+  return (std::numeric_limits<double>::epsilon() * size).cwiseMax(1e-300);
+}
+
 /// The scaled step equations at one point, with an estimate of how far round-off lets them be solved.
 template <DiscreteSystem Sys> struct ScaledResidual {
   using E = StepEquations<Sys>;
   typename E::Residual residual;
   typename E::Jacobian jacobian;
   double norm;    ///< max_i row_i |r_i|
-  double excess;  ///< max_i |r_i| / f_i, f the round-off in mu, in the products J_ij lambda_j and in the arrow
+  double excess;  ///< max_i |r_i| / f_i, f the round-off level
 
   ScaledResidual(const Sys& system, const State<typename Sys::GroupoidType>& state, const Step<Sys>& step,
                  const TwoSidedOf<Sys>& d, Scaling<E::size>& scaling, bool rescale) {
-    constexpr int n = Sys::dimension;
     residual = E::residual(d, state.momentum);
     jacobian = E::jacobian(d);
     if (rescale) scaling = Scaling<E::size>::equilibrate(jacobian);
     norm = residual.cwiseProduct(scaling.row).cwiseAbs().maxCoeff();
 
-    Vector<double, E::size> size =
-        jacobian.template leftCols<n>().cwiseAbs() * system.groupoid.coordinate_scale(step.arrow);
-    size.template head<n>() += state.momentum.cwiseAbs();
-    if constexpr (Sys::constraints > 0)
-      size += jacobian.template rightCols<Sys::constraints>().cwiseAbs() * step.multipliers.cwiseAbs();
-    constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    excess = residual.cwiseAbs().cwiseQuotient((epsilon * size).cwiseMax(1e-300)).maxCoeff();
+    excess = residual.cwiseAbs().cwiseQuotient(round_off_level(system, state, step, jacobian)).maxCoeff();
     if (!residual.allFinite() || !jacobian.allFinite()) {
       norm = std::numeric_limits<double>::quiet_NaN();
       excess = std::numeric_limits<double>::infinity();

@@ -33,7 +33,7 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
 };
 
 extern template GradientsOf<Kepler> automatic_gradients(const Kepler&, const ArrowOf<Pair<2>>&,
-                                                       const Kepler::Multipliers&);
+                                                        const Kepler::Multipliers&);
 extern template TwoSidedOf<Kepler> automatic_two_sided(const Kepler&, const ArrowOf<Pair<2>>&,
                                                        const Kepler::Multipliers&);
 

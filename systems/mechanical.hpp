@@ -25,7 +25,7 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
     const Vector<S, N> dq = g.target - g.source;
     const S kinetic = dq.squaredNorm() * (0.5 * self().mass() / h);
     if (quadrature == Quadrature::midpoint) {
-      return kinetic - self().potential(Vector<S, N>((g.source + g.target) * S(0.5))) * h;
+      return kinetic - self().potential(Vector<S, N>((g.source + g.target) * 0.5)) * h;
     }
     return kinetic - (self().potential(g.source) + self().potential(g.target)) * (0.5 * h);
   }

@@ -26,7 +26,7 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
 };
 
 extern template GradientsOf<Pendulum> automatic_gradients(const Pendulum&, const ArrowOf<Pair<1>>&,
-                                                         const Pendulum::Multipliers&);
+                                                          const Pendulum::Multipliers&);
 extern template TwoSidedOf<Pendulum> automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
                                                          const Pendulum::Multipliers&);
 

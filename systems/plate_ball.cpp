@@ -9,7 +9,7 @@
 namespace lagroid {
 
 template GradientsOf<PlateBall> automatic_gradients(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                   const PlateBall::Multipliers&);
+                                                    const PlateBall::Multipliers&);
 template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
                                                    const PlateBall::Multipliers&);
 template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,

@@ -45,7 +45,7 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   template <class S> Vector<S, 3> constraint(const Arrow<S>& g) const {
     const auto& [move, turn] = g;
     const Vector<S, 2> d = move.target - move.source;
-    const Vector<S, 2> middle = (move.source + move.target) * S(0.5);
+    const Vector<S, 2> middle = (move.source + move.target) * 0.5;
     const Vector<S, 3> w = rotation_vector(turn);
     return {d(1) + w(0) * radius - middle(0) * (h * plate_rate), d(0) - w(1) * radius + middle(1) * (h * plate_rate),
             S(h * spin) - w(2)};
@@ -96,7 +96,7 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
 };
 
 extern template GradientsOf<PlateBall> automatic_gradients(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                          const PlateBall::Multipliers&);
+                                                           const PlateBall::Multipliers&);
 extern template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
                                                           const PlateBall::Multipliers&);
 extern template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,

@@ -4,7 +4,7 @@
 namespace lagroid {
 
 template GradientsOf<RigidBody> automatic_gradients(const RigidBody&, const ArrowOf<SO3>&,
-                                                   const RigidBody::Multipliers&);
+                                                    const RigidBody::Multipliers&);
 template TwoSidedOf<RigidBody> automatic_two_sided(const RigidBody&, const ArrowOf<SO3>&,
                                                    const RigidBody::Multipliers&);
 

@@ -50,7 +50,7 @@ struct RigidBody : System<RigidBody, SO3> {
 };
 
 extern template GradientsOf<RigidBody> automatic_gradients(const RigidBody&, const ArrowOf<SO3>&,
-                                                          const RigidBody::Multipliers&);
+                                                           const RigidBody::Multipliers&);
 extern template TwoSidedOf<RigidBody> automatic_two_sided(const RigidBody&, const ArrowOf<SO3>&,
                                                           const RigidBody::Multipliers&);
 

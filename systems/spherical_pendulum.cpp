@@ -3,7 +3,7 @@
 namespace lagroid {
 
 template GradientsOf<SphericalPendulum> automatic_gradients(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
-                                                           const SphericalPendulum::Multipliers&);
+                                                            const SphericalPendulum::Multipliers&);
 template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
                                                            const SphericalPendulum::Multipliers&);
 

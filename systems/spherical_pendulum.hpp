@@ -18,7 +18,7 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   double mass() const { return bob_mass; }
   template <class S> S potential(const Vector<S, 3>& q) const { return q(2) * (bob_mass * gravity); }
   template <class S> Vector<S, 1> object_constraint(const Vector<S, 3>& q) const {
-    return Vector<S, 1>((q.squaredNorm() - S(length * length)) * S(0.5));
+    return Vector<S, 1>((q.squaredNorm() - length * length) * 0.5);
   }
 
   /// The continuous solution after time t: p' = -m g e3 + s q with s such that the rod keeps its length.
@@ -39,7 +39,7 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
 };
 
 extern template GradientsOf<SphericalPendulum> automatic_gradients(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
-                                                                  const SphericalPendulum::Multipliers&);
+                                                                   const SphericalPendulum::Multipliers&);
 extern template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
                                                                   const SphericalPendulum::Multipliers&);
 

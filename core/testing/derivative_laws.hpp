@@ -87,11 +87,10 @@ LawReport derivative_laws(const Sys& system, const Draw& draw, double tolerance 
   }));
   report.laws.push_back(check_law("gradients", tolerance, [&] {
     const Step<Sys> s = draw();
-    return worst({gradient_defect<Sys::dimension, Sys::constraints>(
-                      automatic_gradients(system, s.arrow, s.multipliers),
-                      nested_two_sided(system, s.arrow, s.multipliers)),
-                  gradient_defect<Sys::dimension, Sys::constraints>(
-                      gradients(system, s.arrow, s.multipliers), nested_two_sided(system, s.arrow, s.multipliers))});
+    return worst({gradient_defect<Sys::dimension, Sys::constraints>(automatic_gradients(system, s.arrow, s.multipliers),
+                                                                    nested_two_sided(system, s.arrow, s.multipliers)),
+                  gradient_defect<Sys::dimension, Sys::constraints>(gradients(system, s.arrow, s.multipliers),
+                                                                    nested_two_sided(system, s.arrow, s.multipliers))});
   }));
   if constexpr (HasAnalyticDerivatives<Sys>)
     report.laws.push_back(check_law("analytic derivatives", tolerance, [&] {

@@ -146,36 +146,26 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     return relative_defect(inverted, (units - v).eval());
   });
   law("closed-form translations", options.derivative, [&] {
-    using M = Mixed<double, n, n>;
     const A g = arrow();
-    double largest = 0;
-    for (const End first : {End::source, End::target})
-      for (const End second : {End::source, End::target}) {
-        const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M>(g, first, second, 0));
-        const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M>(g, first, second, 0));
-        for (int i = 0; i < fast.size(); ++i) {
-          largest =
-              worst({largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left(), slow(i).left()),
-                     relative_defect(fast(i).right(), slow(i).right()), relative_defect(fast(i).mixed(), slow(i).mixed())});
-        }
-      }
-    return largest;
-  });
-  law("first-order translations", options.derivative, [&] {
-    using M = Mixed<double, n, n>;
-    const A g = arrow();
-    using J = Jet<double, n, n>;
-    double largest = 0;
-    for (const End first : {End::source, End::target})
-      for (const End second : {End::source, End::target}) {
-        const auto once = groupoid.coordinates_of_arrow(groupoid.template seed<J>(g, first, second, 0));
-        const auto twice = groupoid.coordinates_of_arrow(groupoid.template seed<M>(g, first, second, 0));
-        for (int i = 0; i < once.size(); ++i)
-          largest = worst({largest, std::abs(once(i).value - twice(i).value),
-                           relative_defect(once(i).left(), twice(i).left()),
-                           relative_defect(once(i).right(), twice(i).right())});
-      }
-    return largest;
+    const auto defect = [&]<End First, End Second>() {
+      using M = Mixed<double, n, n>;
+      using J = Jet<double, n, n>;
+      const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M, First, Second, 0>(g));
+      const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M, First, Second>(g));
+      const auto first_order = groupoid.coordinates_of_arrow(groupoid.template seed<J, First, Second>(g));
+      double largest = 0;
+      for (int i = 0; i < fast.size(); ++i)
+        largest = worst(
+            {largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left(), slow(i).left()),
+             relative_defect(fast(i).right(), slow(i).right()), relative_defect(fast(i).mixed(), slow(i).mixed()),
+             std::abs(first_order(i).value - slow(i).value), relative_defect(first_order(i).left(), slow(i).left()),
+             relative_defect(first_order(i).right(), slow(i).right())});
+      return largest;
+    };
+    return worst({defect.template operator()<End::source, End::target>(),
+                  defect.template operator()<End::target, End::source>(),
+                  defect.template operator()<End::source, End::source>(),
+                  defect.template operator()<End::target, End::target>()});
   });
   law("extending an arrow", options.tolerance, [&] {
     const A g = arrow();
