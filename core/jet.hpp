@@ -1,5 +1,5 @@
 #pragma once
-/// The first-order dual number with two sets of infinitesimals: the scalar behind gradients.
+/// The first-order dual number with several infinitesimals: the scalar behind gradients.
 
 #include <lagroid/core/elementary.hpp>
 #include <lagroid/core/lanes.hpp>
@@ -9,16 +9,16 @@
 
 namespace lagroid {
 
-/// x + a.v + b.w with v v = v w = w w = 0, v of L and w of R infinitesimals: `Mixed` without its second derivatives, at
-/// a fraction of the cost. Like a double, indeterminate until given a value. A groupoid's `seed` serves both.
-template <class T, int L, int R> class Jet {
+/// x + a.v with N infinitesimals v, v v = 0: `Mixed` without its second derivatives, at a fraction of the cost. Like a
+/// double, indeterminate until given a value. A groupoid's `seed` serves both; to it the left infinitesimals and the
+/// right ones are the same set.
+template <class T, int N> class Jet {
  public:
   using Real = T;
-  static constexpr int left_size = L;
-  static constexpr int right_size = R;
+  static constexpr int size = N;
   static constexpr int order = 1;
-  using Left = Lanes<T, L + R>;
-  using Right = Lanes<T, L + R>;
+  using Left = Lanes<T, N>;
+  using Right = Lanes<T, N>;
 
   T value;
 
@@ -27,16 +27,15 @@ template <class T, int L, int R> class Jet {
   template <class A>
   requires std::is_arithmetic_v<A> Jet(A x) : value(T(x)), gradient_{} {}  // NOLINT(google-explicit-constructor)
   [[gnu::always_inline]] Jet(T x, const Left& v, const Right& w) : value(x), gradient_(v + w) {}
+  [[gnu::always_inline]] Jet(T x, const Left& gradient) : value(x), gradient_(gradient) {}
 
   static Left left_unit(int i) { return Left::unit(i); }
-  static Right right_unit(int j) { return Right::unit(L + j); }
+  static Right right_unit(int i) { return Right::unit(i); }
 
-  T left(int i) const { return gradient_[i]; }
-  T right(int j) const { return gradient_[L + j]; }
-  Vector<T, L> left() const { return gradient_.vector().template head<L>(); }
-  Vector<T, R> right() const { return gradient_.vector().template tail<R>(); }
+  T gradient(int i) const { return gradient_[i]; }
+  Vector<T, N> gradient() const { return gradient_.vector(); }
   void set_left(int i, T x) { gradient_.set(i, x); }
-  void set_right(int j, T x) { gradient_.set(L + j, x); }
+  void set_right(int i, T x) { gradient_.set(i, x); }
 
   /// The composition with a function of one variable, given its value and derivatives at `value`.
   [[gnu::always_inline]] Jet chain(T f, T f1, T /*f2*/) const { return {f, f1 * gradient_}; }
@@ -80,22 +79,20 @@ template <class T, int L, int R> class Jet {
   friend std::ostream& operator<<(std::ostream& out, const Jet& a) { return out << a.value; }
 
  private:
-  [[gnu::always_inline]] Jet(T x, const Left& gradient) : value(x), gradient_(gradient) {}
-
-  Lanes<T, L + R> gradient_;
+  Lanes<T, N> gradient_;
 };
 
-template <class T, int L, int R> constexpr T value_of(const Jet<T, L, R>& x) { return x.value; }
+template <class T, int N> constexpr T value_of(const Jet<T, N>& x) { return x.value; }
 
 }  // namespace lagroid
 
-template <class T, int L, int R>
-struct Eigen::NumTraits<lagroid::Jet<T, L, R>> : lagroid::detail::DerivativeTraits<lagroid::Jet<T, L, R>> {};
-template <class T, int L, int R, class Operation>
-struct Eigen::ScalarBinaryOpTraits<lagroid::Jet<T, L, R>, T, Operation> {
-  using ReturnType = lagroid::Jet<T, L, R>;
+template <class T, int N>
+struct Eigen::NumTraits<lagroid::Jet<T, N>> : lagroid::detail::DerivativeTraits<lagroid::Jet<T, N>> {};
+template <class T, int N, class Operation>
+struct Eigen::ScalarBinaryOpTraits<lagroid::Jet<T, N>, T, Operation> {
+  using ReturnType = lagroid::Jet<T, N>;
 };
-template <class T, int L, int R, class Operation>
-struct Eigen::ScalarBinaryOpTraits<T, lagroid::Jet<T, L, R>, Operation> {
-  using ReturnType = lagroid::Jet<T, L, R>;
+template <class T, int N, class Operation>
+struct Eigen::ScalarBinaryOpTraits<T, lagroid::Jet<T, N>, Operation> {
+  using ReturnType = lagroid::Jet<T, N>;
 };

@@ -24,64 +24,73 @@ S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multip
 
 }  // namespace detail
 
-template <class Sys> using JetOf = Jet<double, Sys::dimension, Sys::dimension>;
+template <class Sys> using JetOf = Jet<double, Sys::GroupoidType::frame_size>;
 template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
 
-namespace detail {
-
-/// f, phi and C evaluated on the arrow seeded with infinitesimals of the scalar S (Jet: gradients, Mixed: all).
-template <class S, class Out, class Sys>
-Out seeded_derivatives(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
-                       const typename Sys::Multipliers& lambda) {
-  constexpr bool second_order = S::order == 2;
-  const auto gs = system.groupoid.template seed<S, End::source, End::target>(g);
-  Out out;
-  S f = system.lagrangian(gs);
-  if constexpr (Sys::arrow_constraints > 0) {
-    const Vector<S, Sys::arrow_constraints> phi = system.constraint(gs);
-    for (int a = 0; a < Sys::arrow_constraints; ++a) {
-      f += phi(a) * lambda(a);
-      out.constraint(a) = phi(a).value;
-      if constexpr (second_order) {
-        out.constraint_source.col(a) = phi(a).left();
-        out.constraint_target.row(a) = phi(a).right().transpose();
-      }
-    }
-  }
-  if constexpr (Sys::object_constraints > 0) {
-    const auto at_source = system.object_constraint(system.groupoid.source(gs));
-    const auto at_target = system.object_constraint(system.groupoid.target(gs));
-    for (int a = 0; a < Sys::object_constraints; ++a) {
-      const int k = Sys::arrow_constraints + a;
-      f += at_source(a) * lambda(k);
-      out.constraint(k) = at_target(a).value;
-      if constexpr (second_order) {
-        out.constraint_source.col(k) = at_source(a).left();
-        out.constraint_target.row(k) = at_target(a).right().transpose();
-      }
-    }
-  }
-  out.value = f.value;
-  out.source_gradient = f.left();
-  out.target_gradient = f.right();
-  if constexpr (second_order) out.mixed = f.mixed();
-  return out;
-}
-
-}  // namespace detail
-
-/// The gradients by first-order dual numbers: one pass through L, phi and C.
+/// The gradients by first-order dual numbers: one pass through L, phi and C along the groupoid's frame.
 template <DiscreteSystem Sys>
 GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                      const typename Sys::Multipliers& lambda) {
-  return detail::seeded_derivatives<JetOf<Sys>, GradientsOf<Sys>>(system, g, lambda);
+  using J = JetOf<Sys>;
+  const auto& groupoid = system.groupoid;
+  const auto gj = groupoid.template seed_frame<J>(g);
+  GradientsOf<Sys> out;
+  J f = system.lagrangian(gj);
+  if constexpr (Sys::arrow_constraints > 0) {
+    const Vector<J, Sys::arrow_constraints> phi = system.constraint(gj);
+    for (int a = 0; a < Sys::arrow_constraints; ++a) {
+      f += phi(a) * lambda(a);
+      out.constraint(a) = phi(a).value;
+    }
+  }
+  if constexpr (Sys::object_constraints > 0) {
+    const auto at_source = system.object_constraint(groupoid.source(gj));
+    const auto at_target = system.object_constraint(groupoid.target(g));
+    for (int a = 0; a < Sys::object_constraints; ++a) {
+      f += at_source(a) * lambda(Sys::arrow_constraints + a);
+      out.constraint(Sys::arrow_constraints + a) = at_target(a);
+    }
+  }
+  const Vector<double, J::size> gradient = f.gradient();
+  out.value = f.value;
+  out.source_gradient = groupoid.source_part(g, gradient);
+  out.target_gradient = groupoid.target_part(g, gradient);
+  return out;
 }
 
 /// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
 template <DiscreteSystem Sys>
 TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                     const typename Sys::Multipliers& lambda) {
-  return detail::seeded_derivatives<MixedOf<Sys>, TwoSidedOf<Sys>>(system, g, lambda);
+  using M = MixedOf<Sys>;
+  const auto gm = system.groupoid.template seed<M, End::source, End::target>(g);
+  TwoSidedOf<Sys> out;
+  M f = system.lagrangian(gm);
+  if constexpr (Sys::arrow_constraints > 0) {
+    const Vector<M, Sys::arrow_constraints> phi = system.constraint(gm);
+    for (int a = 0; a < Sys::arrow_constraints; ++a) {
+      f += phi(a) * lambda(a);
+      out.constraint(a) = phi(a).value;
+      out.constraint_source.col(a) = phi(a).left();
+      out.constraint_target.row(a) = phi(a).right().transpose();
+    }
+  }
+  if constexpr (Sys::object_constraints > 0) {
+    const auto at_source = system.object_constraint(system.groupoid.source(gm));
+    const auto at_target = system.object_constraint(system.groupoid.target(gm));
+    for (int a = 0; a < Sys::object_constraints; ++a) {
+      const int k = Sys::arrow_constraints + a;
+      f += at_source(a) * lambda(k);
+      out.constraint(k) = at_target(a).value;
+      out.constraint_source.col(k) = at_source(a).left();
+      out.constraint_target.row(k) = at_target(a).right().transpose();
+    }
+  }
+  out.value = f.value;
+  out.source_gradient = f.left();
+  out.target_gradient = f.right();
+  out.mixed = f.mixed();
+  return out;
 }
 
 /// The gradients: the system's analytic ones if it has them, else the automatic ones.

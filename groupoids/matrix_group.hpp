@@ -87,19 +87,43 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// Both retractions are tau(xi) = I + X + X^2/2 + O(X^3) with tau(xi)^{-1} = tau(-xi), X = hat(xi); hence the exact
   /// first and second derivatives of tau(a)^{-1} g tau(b) at a = b = 0. The loops run at compile time, so that zeros of
   /// the basis matrices cost nothing.
-  template <class M, End First, End Second, int Offset = 0, class T>
+  template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
   [[gnu::always_inline]] static Matrix<M, N, N> seed(const Matrix<T, N, N>& g) {
     Matrix<M, N, N> out;
     unrolled<N>([&]<int C>() {
       unrolled<N>([&]<int R>() {
-        const auto left = side_by_side<First, R, C>(g, [](int i) { return M::left_unit(Offset + i); });
-        const auto right = side_by_side<Second, R, C>(g, [](int j) { return M::right_unit(Offset + j); });
+        const auto left = side_by_side<First, R, C>(g, [](int i) { return M::left_unit(LeftOffset + i); });
+        const auto right = side_by_side<Second, R, C>(g, [](int j) { return M::right_unit(RightOffset + j); });
         out(R, C) = M(g(R, C), left, right);
-        if constexpr (M::order == 2 && First == Second) seed_square<First, R, C, Offset>(g, out(R, C));
+        if constexpr (M::order == 2 && First == Second) seed_square<First, R, C, LeftOffset, RightOffset>(g, out(R, C));
       });
-      if constexpr (M::order == 2 && First != Second) seed_mixed<Second, C, Offset>(g, out);
+      if constexpr (M::order == 2 && First != Second) seed_mixed<Second, C, LeftOffset, RightOffset>(g, out);
     });
     return out;
+  }
+
+  /// The frame of the target's displacements: df(tau(v)^{-1} g) = -Ad*_{g^{-1}} df(g tau(w)).
+  static constexpr int frame_size = Dimension;
+  template <class J, int Offset = 0, class T>
+  [[gnu::always_inline]] static Matrix<J, N, N> seed_frame(const Matrix<T, N, N>& g) {
+    Matrix<J, N, N> out;
+    unrolled<N>([&]<int C>() {
+      unrolled<N>([&]<int R>() {
+        const auto along = side_by_side<End::target, R, C>(g, [](int i) { return J::right_unit(Offset + i); });
+        out(R, C) = J(g(R, C), along);
+      });
+    });
+    return out;
+  }
+  template <class T> static Algebra<T> source_part(const Matrix<T, N, N>& g, const Algebra<T>& c) {
+    return -(Derived::adjoint(Derived::inverse(g)).transpose() * c);
+  }
+  template <class T> static Algebra<T> target_part(const Matrix<T, N, N>&, const Algebra<T>& c) { return c; }
+
+  /// The matrix of Ad_g: hat(Ad_g xi) = g hat(xi) g^{-1}.
+  template <class S> static Matrix<S, Dimension, Dimension> adjoint(const Matrix<S, N, N>& g) {
+    const Matrix<S, N, N> inverse = Derived::inverse(g);
+    return columns<S>([&](const Matrix<S, N, N>& e) -> Matrix<S, N, N> { return g * e * inverse; });
   }
 
   /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
@@ -117,7 +141,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// Entry (r, c) of the derivative of tau(a)^{-1} g or of g tau(b) along the i-th basis vector.
   template <End Which, int R, int C, int I, class T>
   [[gnu::always_inline]] static T displaced(const Matrix<T, N, N>& g) {
-    T sum(0);
+    T sum = -T(0);  // the zero that adds without a trace
     unrolled<N>([&]<int S>() {
       if constexpr (Which == End::source && Derived::basis(I, R, S) != 0) sum -= T(Derived::basis(I, R, S)) * g(S, C);
       if constexpr (Which == End::target && Derived::basis(I, S, C) != 0) sum += T(Derived::basis(I, S, C)) * g(R, S);
@@ -143,10 +167,10 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
 
   /// The mixed derivatives -E_i g E_j where the second infinitesimal displaces the other end than the first: row i of
   /// entry (r, c) is made of the derivatives of column c along j.
-  template <End Second, int C, int Offset, class M, class T>
+  template <End Second, int C, int LeftOffset, int RightOffset, class M, class T>
   [[gnu::always_inline]] static void seed_mixed(const Matrix<T, N, N>& g, Matrix<M, N, N>& out) {
     using Right = typename M::Right;
-    const auto unit = [](int j) { return M::right_unit(Offset + j); };
+    const auto unit = [](int j) { return M::right_unit(RightOffset + j); };
     if constexpr (Second == End::target) {
       std::array<Right, N> along;
       unrolled<N>([&]<int S>() { along[S] = side_by_side<End::target, S, C>(g, unit); });
@@ -156,7 +180,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
           unrolled<N>([&]<int S>() {
             if constexpr (Derived::basis(I, R, S) != 0) row = row - T(Derived::basis(I, R, S)) * along[S];
           });
-          out(R, C).set_row(Offset + I, row);
+          out(R, C).set_row(LeftOffset + I, row);
         });
       });
     } else {
@@ -167,14 +191,14 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
             if constexpr (Derived::basis(I, S, C) != 0)
               row = row + T(Derived::basis(I, S, C)) * side_by_side<End::source, R, S>(g, unit);
           });
-          out(R, C).set_row(Offset + I, row);
+          out(R, C).set_row(LeftOffset + I, row);
         });
       });
     }
   }
 
   /// The second derivatives where both infinitesimals displace the same end: (E_i E_j + E_j E_i) / 2 beside g.
-  template <End Which, int R, int C, int Offset, class M, class T>
+  template <End Which, int R, int C, int LeftOffset, int RightOffset, class M, class T>
   static void seed_square(const Matrix<T, N, N>& g, M& out) {
     for (int i = 0; i < Dimension; ++i)
       for (int j = 0; j < Dimension; ++j) {
@@ -187,7 +211,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
         };
         T sum(0);
         for (int s = 0; s < N; ++s) sum += Which == End::source ? square(R, s) * g(s, C) : g(R, s) * square(s, C);
-        out.set_mixed(Offset + i, Offset + j, sum);
+        out.set_mixed(LeftOffset + i, RightOffset + j, sum);
       }
   }
 

@@ -36,11 +36,11 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
   }
   template <class S, class V> static Arrow<S> arrow(const V& x) { return {x.template head<N>(), x.template tail<N>()}; }
 
-  template <class M, End First, End Second, int Offset = 0, class T>
+  template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
   [[gnu::always_inline]] static Arrow<M> seed(const PairArrow<T, N>& g) {
     const auto moved = [](End end, T x, int i) {
-      return M(x, First == end ? M::left_unit(Offset + i) : typename M::Left{},
-               Second == end ? M::right_unit(Offset + i) : typename M::Right{});
+      return M(x, First == end ? M::left_unit(LeftOffset + i) : typename M::Left{},
+               Second == end ? M::right_unit(RightOffset + i) : typename M::Right{});
     };
     Arrow<M> out;
     unrolled<N>([&]<int I>() {

@@ -82,12 +82,28 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
         [&]<std::size_t I>() { return std::get<I>(factor).template object_at<S>(segment<object_sizes, I>(x)); });
   }
 
-  template <class M, End First, End Second, int Offset = 0, class... As>
+  template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class... As>
   [[gnu::always_inline]] Arrow<M> seed(const std::tuple<As...>& g) const {
     return [&]<std::size_t... I>(std::index_sequence<I...>)->Arrow<M> {
-      return {std::get<I>(factor).template seed<M, First, Second, Offset + start(dimensions, I)>(std::get<I>(g))...};
+      return {std::get<I>(factor).template seed<M, First, Second, LeftOffset + start(dimensions, I), RightOffset + start(dimensions, I)>(std::get<I>(g))...};
     }
     (std::make_index_sequence<factors>{});
+  }
+  static constexpr int frame_size = (Gs::frame_size + ...);
+  template <class J, int Offset = 0, class... As>
+  [[gnu::always_inline]] Arrow<J> seed_frame(const std::tuple<As...>& g) const {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) -> Arrow<J> {
+      return {std::get<I>(factor).template seed_frame<J, Offset + start(frame_sizes, I)>(std::get<I>(g))...};
+    }
+    (std::make_index_sequence<factors>{});
+  }
+  template <class... As, class V> auto source_part(const std::tuple<As...>& g, const V& c) const {
+    return concatenate<rank>(indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).source_part(std::get<I>(g), segment<frame_sizes, I>(c)); }));
+  }
+  template <class... As, class V> auto target_part(const std::tuple<As...>& g, const V& c) const {
+    return concatenate<rank>(indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).target_part(std::get<I>(g), segment<frame_sizes, I>(c)); }));
   }
 
   static std::string name() {
@@ -98,6 +114,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
 
  private:
   static constexpr std::array<int, factors> dimensions{Gs::dimension...};
+  static constexpr std::array<int, factors> frame_sizes{Gs::frame_size...};
   static constexpr std::array<int, factors> arrow_sizes{Gs::arrow_coordinate_count()...};
   static constexpr std::array<int, factors> object_sizes{Gs::object_coordinate_count()...};
 

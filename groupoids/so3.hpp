@@ -81,6 +81,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     return {(g(2, 1) - g(1, 2)) * scale, (g(0, 2) - g(2, 0)) * scale, (g(1, 0) - g(0, 1)) * scale};
   }
 
+  template <class S> static const Matrix<S, 3, 3>& adjoint(const Matrix<S, 3, 3>& g) { return g; }
   template <class S> static Matrix<S, 3, 3> ad(const Vector<S, 3>& w) { return hat(w); }
   template <class S> static Matrix<S, 3, 3> dexp(const Vector<S, 3>& w) {
     return dexp_from_ad<S, 3>(hat(w), w.squaredNorm());
@@ -93,6 +94,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   static Matrix<double, 3, 3> project(const Matrix<double, 3, 3>& g) {
     return g * (1.5 * Matrix<double, 3, 3>::Identity() - 0.5 * (g.transpose() * g).eval());
   }
+  template <class T> static Vector<T, 3> source_part(const Matrix<T, 3, 3>& g, const Vector<T, 3>& c) { return -(g * c); }
 
   /// The Cayley coordinates: no trigonometric functions.
   template <class T> static Vector<T, 3> chart(const Matrix<T, 3, 3>& g) { return cayley_inverse(g); }

@@ -20,13 +20,13 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
   template <class S> static Vector<S, N> multiply(const Vector<S, N>& g, const Vector<S, N>& h) { return g + h; }
   template <class S> static Vector<S, N> tau(const Vector<S, 0>&, const Vector<S, N>& v) { return v; }
   template <class S> static Vector<S, N> tau_inverse(const Vector<S, N>& g) { return g; }
-  template <class M, End First, End Second, int Offset = 0, class T>
+  template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
   [[gnu::always_inline]] static Vector<M, N> seed(const Vector<T, N>& g) {
     constexpr T by_first = First == End::source ? -1 : 1;
     constexpr T by_second = Second == End::source ? -1 : 1;
     Vector<M, N> out;
     unrolled<N>(
-        [&]<int I>() { out(I) = M(g(I), by_first * M::left_unit(Offset + I), by_second * M::right_unit(Offset + I)); });
+        [&]<int I>() { out(I) = M(g(I), by_first * M::left_unit(LeftOffset + I), by_second * M::right_unit(RightOffset + I)); });
     return out;
   }
 

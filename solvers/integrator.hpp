@@ -165,7 +165,7 @@ template <DiscreteSystem Sys> class Integrator {
   }
 
   using Unknowns = Vector<double, Sys::dimension + Sys::constraints>;
-  static constexpr int extrapolation_degree = 5;
+  static constexpr int extrapolation_degree = 7;
 
   Sys system_;
   std::unique_ptr<StepSolver<Sys>> solver_;

@@ -115,7 +115,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
     return iterations(kept) > iterations(std::min(0.1, 10 * epsilon * chord_.first)) + renewal_price;
   }
   static constexpr int longest_chord = 12;
-  static constexpr int renewal_price = 3;
+  static constexpr int renewal_price = 1;
 
   /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
   bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step, const TwoSidedOf<Sys>& d) {
@@ -204,7 +204,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   static Step<Sys> moved(const Sys& system, const Step<Sys>& step, const Residual& correction) {
     const AlgebroidVector<G> w = correction.template head<Sys::dimension>();
-    return {system.groupoid.project(system.groupoid.extend(step.arrow, w)),
+    return {system.groupoid.extend(step.arrow, w),
             step.multipliers + correction.template tail<Sys::constraints>()};
   }
 

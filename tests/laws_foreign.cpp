@@ -55,8 +55,9 @@ template <class Fault> struct Affine : LieGroupoid<Affine<Fault>, 2> {
   }
   template <class S> static Vector<S, 3> coordinates(const Arrow<S>& g) { return {g.a, g.b, g.x}; }
   template <class S, class V> static Arrow<S> arrow(const V& x) { return {x(0), x(1), x(2)}; }
-  template <class M, End First, End Second, int Offset = 0, class A> auto seed(const A& g) const {
-    auto out = this->template seed_by_composition<M, First, Second, Offset>(g);
+  template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class A>
+  auto seed(const A& g) const {
+    auto out = this->template seed_by_composition<M, First, Second, LeftOffset, RightOffset>(g);
     if constexpr (is<WrongSeed> && M::order == 2)
       for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j) out.b.set_mixed(i, j, -out.b.mixed(i, j));

@@ -149,23 +149,40 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     const A g = arrow();
     const auto defect = [&]<End First, End Second>() {
       using M = Mixed<double, n, n>;
-      using J = Jet<double, n, n>;
-      const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M, First, Second, 0>(g));
+      using J = Jet<double, 2 * n>;
+      const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M, First, Second, 0, 0>(g));
       const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M, First, Second>(g));
-      const auto first_order = groupoid.coordinates_of_arrow(groupoid.template seed<J, First, Second>(g));
+      const auto first_order = groupoid.coordinates_of_arrow(groupoid.template seed<J, First, Second, 0, n>(g));
       double largest = 0;
       for (int i = 0; i < fast.size(); ++i)
         largest = worst(
             {largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left(), slow(i).left()),
              relative_defect(fast(i).right(), slow(i).right()), relative_defect(fast(i).mixed(), slow(i).mixed()),
-             std::abs(first_order(i).value - slow(i).value), relative_defect(first_order(i).left(), slow(i).left()),
-             relative_defect(first_order(i).right(), slow(i).right())});
+             std::abs(first_order(i).value - slow(i).value), relative_defect(first_order(i).gradient().template head<n>().eval(), slow(i).left()),
+                         relative_defect(first_order(i).gradient().template tail<n>().eval(), slow(i).right())});
       return largest;
     };
     return worst({defect.template operator()<End::source, End::target>(),
                   defect.template operator()<End::target, End::source>(),
                   defect.template operator()<End::source, End::source>(),
                   defect.template operator()<End::target, End::target>()});
+  });
+  law("frame", options.derivative, [&] {
+    // A random linear function of the arrow's coordinates, differentiated along the frame and along both ends.
+    const A g = arrow();
+    using F = Jet<double, G::frame_size>;
+    using J = Jet<double, 2 * n>;
+    const auto along_frame = groupoid.coordinates_of_arrow(groupoid.template seed_frame<F>(g));
+    const auto along_ends = groupoid.coordinates_of_arrow(groupoid.template seed<J, End::source, End::target, 0, n>(g));
+    Vector<double, G::frame_size> c = Vector<double, G::frame_size>::Zero();
+    Vector<double, 2 * n> ends = Vector<double, 2 * n>::Zero();
+    for (int i = 0; i < along_frame.size(); ++i) {
+      const double weight = vector()(0);
+      c += weight * along_frame(i).gradient();
+      ends += weight * along_ends(i).gradient();
+    }
+    return worst({relative_defect(groupoid.source_part(g, c), ends.template head<n>().eval()),
+                  relative_defect(groupoid.target_part(g, c), ends.template tail<n>().eval())});
   });
   law("extending an arrow", options.tolerance, [&] {
     const A g = arrow();
