@@ -74,6 +74,12 @@ template <class T, int N> class Lanes {
       part_[i / width][i % width] = x;
     }
   }
+  /// The N numbers at `x`.
+  [[gnu::always_inline]] static Lanes load(const T* x) {
+    Lanes out{};
+    std::memcpy(&out.part_, x, N * sizeof(T));
+    return out;
+  }
   /// One in place i, zero elsewhere.
   [[gnu::always_inline]] static Lanes unit(int i) {
     Lanes out;

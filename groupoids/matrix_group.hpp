@@ -127,17 +127,39 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
   /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
-  template <class T> static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
+  template <class T>
+  [[gnu::always_inline]] static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
     if (value_of(w.squaredNorm()) > 1e-11) return g * tau(Object<T>{}, w);
-    const Matrix<T, N, N> gw = g * Derived::hat(w);
-    return g + gw + T(0.5) * (gw * Derived::hat(w)).eval();
+    const Matrix<T, N, N> gw = times_hat(g, w);
+    const Matrix<T, N, N> gww = times_hat(gw, w);
+    Matrix<T, N, N> out;
+    unrolled<N * N>([&]<int K>() { out(K) = g(K) + (gw(K) + T(0.5) * gww(K)); });
+    return out;
   }
   template <class T> static Algebra<T> nudge(Matrix<T, N, N>& g, const Algebra<T>& w) {
-    g += (g * Derived::hat(w)).eval();
+    const Matrix<T, N, N> gw = times_hat(g, w);
+    unrolled<N * N>([&]<int K>() { g(K) += gw(K); });
     return Algebra<T>::Zero();
   }
 
  private:
+  /// g hat(w).
+  template <class T> [[gnu::always_inline]] static Matrix<T, N, N> times_hat(const Matrix<T, N, N>& g, const Algebra<T>& w) {
+    Matrix<T, N, N> out;
+    unrolled<N>([&]<int C>() {
+      unrolled<N>([&]<int R>() {
+        T sum = -T(0);
+        unrolled<N>([&]<int S>() {
+          unrolled<Dimension>([&]<int I>() {
+            if constexpr (Derived::basis(I, S, C) != 0) sum += g(R, S) * (T(Derived::basis(I, S, C)) * w(I));
+          });
+        });
+        out(R, C) = sum;
+      });
+    });
+    return out;
+  }
+
   /// Entry (r, c) of the derivative of tau(a)^{-1} g or of g tau(b) along the i-th basis vector.
   template <End Which, int R, int C, int I, class T>
   [[gnu::always_inline]] static T displaced(const Matrix<T, N, N>& g) {

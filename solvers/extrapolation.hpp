@@ -9,40 +9,66 @@
 
 namespace lagroid {
 
-/// Newton's backward-difference extrapolation, x_{k+1} ~ sum_j nabla^j x_k over j = 0 ... degree. The degree follows
-/// the sequence: as high as the differences keep falling, at most `MaxDegree`, so that neither round-off nor a kink is
-/// amplified.
+/// The value at k + 1 of the polynomial through the last degree + 1 vectors of a sequence,
+/// x_{k+1} ~ sum_j (-1)^j binomial(degree + 1, j + 1) x_{k-j}. The degree follows the sequence: where the next backward
+/// difference is no smaller than the last, it stops, so that neither round-off nor a kink is amplified.
 template <int Size, int MaxDegree> class Extrapolation {
  public:
   void clear() { known_ = 0; }
 
   void push(const Vector<double, Size>& x) {
-    Vector<double, Size> difference = x;
-    const int count = std::min(known_ + 1, MaxDegree + 1);
-    for (int j = 0; j < count; ++j) {
-      const Vector<double, Size> next = difference - nabla_[std::size_t(j)];
-      nabla_[std::size_t(j)] = difference;
-      difference = next;
-    }
-    known_ = count;
+    newest_ = (newest_ + length - 1) % length;
+    past_[std::size_t(newest_)] = x;
+    known_ = std::min(known_ + 1, length);
+    if (known_ < length || --until_review_ <= 0) choose_degree();
   }
 
   /// Requires at least one vector pushed.
   Vector<double, Size> next() const {
-    Vector<double, Size> sum = nabla_[0];
-    double last = nabla_[0].squaredNorm();
-    for (int j = 1; j < known_; ++j) {
-      const double size = nabla_[std::size_t(j)].squaredNorm();
-      if (!(size < last)) break;
-      sum += nabla_[std::size_t(j)];
-      last = size;
-    }
+    // The newest last: it is the one that is not known early.
+    const auto& weight = weights[std::size_t(degree_)];
+    Vector<double, Size> sum = Vector<double, Size>::Zero();
+    for (int j = degree_; j >= 0; --j) sum += weight[std::size_t(j)] * back(j);
     return sum;
   }
 
  private:
-  std::array<Vector<double, Size>, std::size_t(MaxDegree) + 1> nabla_;
+  static constexpr int length = MaxDegree + 1;
+  static constexpr int review = 16;  ///< steps from one choice of the degree to the next
+  using Weights = std::array<double, std::size_t(length)>;
+
+  static constexpr std::array<Weights, std::size_t(length)> weights = [] {
+    std::array<Weights, std::size_t(length)> w{};
+    for (std::size_t degree = 0; degree < std::size_t(length); ++degree) {
+      double binomial = 1;
+      for (std::size_t j = 0; j <= degree; ++j) {
+        binomial = binomial * double(degree + 1 - j) / double(j + 1);
+        w[degree][j] = j % 2 == 0 ? binomial : -binomial;
+      }
+    }
+    return w;
+  }();
+
+  const Vector<double, Size>& back(int j) const { return past_[std::size_t((newest_ + j) % length)]; }
+
+  void choose_degree() {
+    until_review_ = review;
+    std::array<Vector<double, Size>, std::size_t(length)> difference;
+    for (int j = 0; j < known_; ++j) difference[std::size_t(j)] = back(j);
+    double last = difference[0].squaredNorm();
+    for (degree_ = 0; degree_ + 1 < known_; ++degree_) {
+      for (int j = 0; j + degree_ + 1 < known_; ++j) difference[std::size_t(j)] -= difference[std::size_t(j) + 1];
+      const double size = difference[0].squaredNorm();
+      if (!(size < last)) break;
+      last = size;
+    }
+  }
+
+  std::array<Vector<double, Size>, std::size_t(length)> past_;
+  int newest_ = 0;
   int known_ = 0;
+  int degree_ = 0;
+  int until_review_ = 0;
 };
 
 }  // namespace lagroid

@@ -149,7 +149,7 @@ template <DiscreteSystem Sys> class Integrator {
     point_.step = solution.step;
 
     // Compensated accumulation: what rounding took so far is given back as soon as it can be stored.
-    momentum_carry_ += solution.gradients.source_gradient + solution.gradients.target_gradient;
+    momentum_carry_ += solution.momentum_change;
     const AlgebroidVector<G> momentum = point_.state.momentum + momentum_carry_;
     momentum_carry_ -= momentum - point_.state.momentum;
     point_.state.momentum = momentum;

@@ -52,47 +52,48 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
   static constexpr double leftover = 0.1;  ///< of a round-off level: what the iteration may leave
 
-  /// The matrix that chord iterations use, and what is known of their convergence.
+  /// What is known of the convergence of chord iterations.
   struct Chord {
-    bool kept = false;
-    typename E::Jacobian inverse;
-    Residual floor;    ///< reciprocal round-off level of each equation
-    double first = 0;  ///< excess at the guess of the last solve
-    double rate = 0;   ///< contraction of an iteration, as last seen
-    int age = 0;       ///< solves since the matrix was evaluated
+    bool kept = false;  ///< there is an inverse to iterate with
+    Residual floor;     ///< reciprocal round-off level of each equation
+    double first = 0;   ///< excess at the guess of the last solve
+    double rate = 0;    ///< contraction of an iteration, as last seen
+    int age = 0;        ///< solves since the matrix was evaluated
   };
 
   // ---- the short way
 
   bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report) {
     Step<Sys>& step = solution.step;
+    GradientsOf<Sys> d;
     if (renewal_pays()) {
-      const auto d = two_sided(system, step.arrow, step.multipliers);
-      if (!renew(system, state, step, d)) return false;
-      solution.gradients = d;
+      const auto all = two_sided(system, step.arrow, step.multipliers);
+      if (!renew(system, state, step, E::jacobian(all))) return false;
+      d = all;
     } else {
       ++chord_.age;
-      solution.gradients = gradients(system, step.arrow, step.multipliers);
+      d = gradients(system, step.arrow, step.multipliers);
     }
-    Residual residual = E::residual(solution.gradients, state.momentum);
+    Residual residual = E::residual(d, state.momentum);
     double excess = excess_of(residual);
     chord_.first = excess;
     double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * excess) : chord_.rate;
     double remains = excess;
     for (int iteration = 1; iteration <= longest_chord; ++iteration) {
-      const Residual correction = -(chord_.inverse * residual);
-      step = moved(system, step, correction);
-      solution.gradients = gradients(system, step.arrow, step.multipliers);
-      residual = E::residual(solution.gradients, state.momentum);
+      move(system, step, -inverse_.apply(residual));
+      const GradientsOf<Sys> there = gradients(system, step.arrow, step.multipliers);
+      residual = E::residual(there, state.momentum);
       const double next = excess_of(residual);
       if (!(next <= std::max(1.0, 0.3 * excess))) return false;
       if (next > 10) rate = std::max(next / excess, iteration == 1 ? 0 : rate);
       remains *= rate;
       excess = next;
-      report.iterations = iteration;
       if (excess <= 1 && remains <= leftover) {
         chord_.rate = rate;
-        solution.remainder = -(chord_.inverse.template topRows<Sys::dimension>() * residual);
+        const Residual correction = -inverse_.apply(residual);
+        solution.remainder = correction.template head<Sys::dimension>();
+        solution.momentum_change = there.source_gradient + there.target_gradient;
+        report.iterations = iteration;
         report.residual = residual.cwiseProduct(scaling_.row).cwiseAbs().maxCoeff();
         report.excess = excess;
         finish(report, system, step);
@@ -115,29 +116,22 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
     return iterations(kept) > iterations(std::min(0.1, 10 * epsilon * chord_.first)) + renewal_price;
   }
   static constexpr int longest_chord = 12;
-  static constexpr int renewal_price = 1;
+  static constexpr int renewal_price = E::size > 4 ? 4 : 1;
 
   /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
-  bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step, const TwoSidedOf<Sys>& d) {
-    const typename E::Jacobian jacobian = E::jacobian(d);
-    const typename E::Jacobian scaled = scaling_.apply(jacobian);
-    const typename E::Jacobian inverse = small_inverse_(scaled);
-    if (!(SmallInverse<E::size>::condition(scaled, inverse) < worst_condition)) return false;
-    chord_.inverse = scaling_.column.asDiagonal() * inverse * scaling_.row.asDiagonal();
+  bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step, const typename E::Jacobian& jacobian) {
     chord_.floor = round_off_level(system, state, step, jacobian).cwiseInverse();
     chord_.age = 0;
-    return true;
+    return inverse_.invert(jacobian);
   }
-  static constexpr double worst_condition = 1e6;
 
   double excess_of(const Residual& residual) const { return residual.cwiseProduct(chord_.floor).cwiseAbs().maxCoeff(); }
 
   /// After a full solve: the matrix there, for the steps that follow.
   void keep(const Sys& system, const State<G>& state, const Step<Sys>& step) {
-    const auto d = two_sided(system, step.arrow, step.multipliers);
-    const typename E::Jacobian scaled = scaling_.apply(E::jacobian(d));
-    small_inverse_.choose_pivots(scaled);
-    chord_.kept = renew(system, state, step, d);
+    const typename E::Jacobian jacobian = E::jacobian(two_sided(system, step.arrow, step.multipliers));
+    inverse_.choose_pivots(jacobian, scaling_);
+    chord_.kept = renew(system, state, step, jacobian);
     chord_.first = 1e12;
     chord_.rate = 0.1;
     chord_.age = 1;
@@ -150,7 +144,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
     auto derivative = two_sided(system, step.arrow, step.multipliers);
     ScaledResidual<Sys> current(system, state, step, derivative, scaling_, /*rescale=*/true);
     const auto at = [&](SolveStatus status, const Residual& correction) {
-      solution.gradients = derivative;
+      solution.momentum_change = derivative.source_gradient + derivative.target_gradient;
       solution.remainder = correction.template head<Sys::dimension>();
       report.residual = current.norm;
       report.excess = current.excess;
@@ -202,10 +196,13 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   // ---- both
 
-  static Step<Sys> moved(const Sys& system, const Step<Sys>& step, const Residual& correction) {
-    const AlgebroidVector<G> w = correction.template head<Sys::dimension>();
-    return {system.groupoid.extend(step.arrow, w),
-            step.multipliers + correction.template tail<Sys::constraints>()};
+  static void move(const Sys& system, Step<Sys>& step, const Residual& correction) {
+    step.arrow = system.groupoid.extend(step.arrow, AlgebroidVector<G>(correction.template head<Sys::dimension>()));
+    step.multipliers += correction.template tail<Sys::constraints>();
+  }
+  static Step<Sys> moved(const Sys& system, Step<Sys> step, const Residual& correction) {
+    move(system, step, correction);
+    return step;
   }
 
   static void finish(StepReport& report, const Sys& system, const Step<Sys>& step) {
@@ -217,7 +214,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   NewtonOptions options_;
   Scaling<E::size> scaling_;
-  SmallInverse<E::size> small_inverse_;
+  SmallInverse<E::size> inverse_;
   Chord chord_;
   Eigen::PartialPivLU<typename E::Jacobian> lu_;
 };

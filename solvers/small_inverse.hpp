@@ -1,7 +1,8 @@
 #pragma once
 /// The inverse of a small matrix whose structure changes little from one call to the next.
 
-#include <lagroid/core/types.hpp>
+#include <lagroid/core/lanes.hpp>
+#include <lagroid/core/step_equations.hpp>
 
 #include <Eigen/LU>
 
@@ -10,77 +11,97 @@
 
 namespace lagroid {
 
-/// Inverts matrices of a slowly varying family. Up to size four by cofactors; up to size eight by elimination of a
-/// leading 4 x 4 block, itself inverted by cofactors, after a permutation of rows and columns that full pivoting chose
-/// once (`choose_pivots`) and that later calls keep; beyond by LU with partial pivoting.
+/// Inverts the matrices of a slowly varying family, in scaled and permuted rows and columns.
+///
+/// Up to size four by cofactors; up to size eight by elimination of a leading 4 x 4 block, itself inverted by
+/// cofactors, after a permutation that full pivoting chose once (`choose_pivots`) and that later calls keep; beyond by LU
+/// with partial pivoting.
 template <int Size> class SmallInverse {
  public:
   using Square = Matrix<double, Size, Size>;
+  using Column = Vector<double, Size>;
 
-  /// Chooses the permutation that serves matrices near `a`.
-  void choose_pivots(const Square& a) {
+  /// Chooses scales and permutation that serve matrices near `a`.
+  void choose_pivots(const Square& a, const Scaling<Size>& scaling) {
     if constexpr (blocked) {
-      const Eigen::FullPivLU<Square> lu(a);
-      const auto& p = lu.permutationP().indices();
-      const auto& q = lu.permutationQ().indices();
+      const Eigen::FullPivLU<Square> lu(scaling.apply(a));
       for (int i = 0; i < Size; ++i) {
-        row_of_[std::size_t(p(i))] = i;
-        column_of_[std::size_t(i)] = q(i);
+        row_of_[std::size_t(lu.permutationP().indices()(i))] = i;
+        column_of_[std::size_t(i)] = lu.permutationQ().indices()(i);
       }
     }
-  }
-
-  /// a^{-1}; not accurate, or not finite, where the leading block is near singular (`condition` tells).
-  Square operator()(const Square& a) const {
-    if constexpr (Size <= 4) {
-      return a.inverse();
-    } else if constexpr (blocked) {
-      return by_blocks(a);
-    } else {
-      return a.partialPivLu().inverse();
+    for (std::size_t i = 0; i < std::size_t(Size); ++i) {
+      row_scale_(Eigen::Index(i)) = scaling.row(row_of_[i]);
+      column_scale_(Eigen::Index(i)) = scaling.column(column_of_[i]);
     }
   }
 
-  /// The product of the largest row sums of a and of its computed inverse: large or not finite where the inverse is not
-  /// to be trusted.
-  static double condition(const Square& a, const Square& inverse) {
-    return a.cwiseAbs().rowwise().sum().maxCoeff() * inverse.cwiseAbs().rowwise().sum().maxCoeff();
+  /// Inverts `a`; false where the result is not to be trusted: an entry of the scaled inverse is beyond `largest_entry`
+  /// or not finite.
+  bool invert(const Square& a) {
+    Square m;
+    for (int j = 0; j < Size; ++j)
+      for (int i = 0; i < Size; ++i)
+        m(i, j) = a(row_of_[std::size_t(i)], column_of_[std::size_t(j)]) * row_scale_(i) * column_scale_(j);
+    const Square inverse = inverse_of(m);
+    for (int j = 0; j < Size; ++j) columns_[std::size_t(j)] = Lanes<double, Size>::load(inverse.col(j).data());
+    return inverse.cwiseAbs().maxCoeff() < largest_entry;
+  }
+
+  /// a^{-1} b.
+  Column apply(const Column& b) const {
+    // Two sums, for two chains of additions instead of one.
+    Lanes<double, Size> sum[2] = {{}, {}};
+    unrolled<Size>([&]<int J>() {
+      sum[J % 2] = sum[J % 2] + (b(row_of_[J]) * row_scale_(J)) * columns_[J];
+    });
+    const Column x = (sum[0] + sum[1]).vector();
+    Column out;
+    for (int i = 0; i < Size; ++i) out(column_of_[std::size_t(i)]) = x(i) * column_scale_(i);
+    return out;
   }
 
  private:
   static constexpr bool blocked = Size > 4 && Size <= 8;
   static constexpr int head = 4;
   static constexpr int tail = blocked ? Size - head : 1;
+  static constexpr double largest_entry = 1e4;
 
-  Square by_blocks(const Square& matrix) const {
-    Square m;
-    for (int j = 0; j < Size; ++j)
-      for (int i = 0; i < Size; ++i) m(i, j) = matrix(row_of_[std::size_t(i)], column_of_[std::size_t(j)]);
-    const Matrix<double, head, head> a = m.template topLeftCorner<head, head>().inverse();
-    const Matrix<double, head, tail> u = a * m.template topRightCorner<head, tail>();
-    const Matrix<double, tail, head> t = m.template bottomLeftCorner<tail, head>() * a;
-    const Matrix<double, tail, tail> schur =
-        m.template bottomRightCorner<tail, tail>() - m.template bottomLeftCorner<tail, head>() * u;
-    const Matrix<double, tail, tail> s = schur.inverse();
-    const Matrix<double, head, tail> us = u * s;
-    Square inverse;
-    inverse.template topLeftCorner<head, head>() = a + us * t;
-    inverse.template topRightCorner<head, tail>() = -us;
-    inverse.template bottomLeftCorner<tail, head>().noalias() = -s * t;
-    inverse.template bottomRightCorner<tail, tail>() = s;
-    Square out;
-    for (int j = 0; j < Size; ++j)
-      for (int i = 0; i < Size; ++i) out(column_of_[std::size_t(i)], row_of_[std::size_t(j)]) = inverse(i, j);
-    return out;
+  static Square inverse_of(const Square& m) {
+    if constexpr (Size <= 4) {
+      return m.inverse();
+    } else if constexpr (blocked) {
+      const Matrix<double, head, head> a = m.template topLeftCorner<head, head>().inverse();
+      const Matrix<double, head, tail> u = a.lazyProduct(m.template topRightCorner<head, tail>());
+      const Matrix<double, tail, head> t = m.template bottomLeftCorner<tail, head>().lazyProduct(a);
+      const Matrix<double, tail, tail> s =
+          (m.template bottomRightCorner<tail, tail>() - m.template bottomLeftCorner<tail, head>().lazyProduct(u))
+              .eval()
+              .inverse();
+      const Matrix<double, head, tail> us = u.lazyProduct(s);
+      Square inverse;
+      inverse.template topLeftCorner<head, head>() = a + us.lazyProduct(t);
+      inverse.template topRightCorner<head, tail>() = -us;
+      inverse.template bottomLeftCorner<tail, head>() = -s.lazyProduct(t);
+      inverse.template bottomRightCorner<tail, tail>() = s;
+      return inverse;
+    } else {
+      return m.partialPivLu().inverse();
+    }
   }
 
-  static constexpr auto identity = [] {
-    std::array<int, std::size_t(Size)> order{};
+  using Order = std::array<int, std::size_t(Size)>;
+  static constexpr Order in_order = [] {
+    Order order{};
     for (int i = 0; i < Size; ++i) order[std::size_t(i)] = i;
     return order;
   }();
-  std::array<int, std::size_t(Size)> row_of_ = identity;     ///< position i takes this row ...
-  std::array<int, std::size_t(Size)> column_of_ = identity;  ///< ... and this column
+
+  Order row_of_ = in_order;     ///< place i takes this row of the matrix ...
+  Order column_of_ = in_order;  ///< ... and this column
+  Column row_scale_ = Column::Ones();
+  Column column_scale_ = Column::Ones();
+  std::array<Lanes<double, Size>, std::size_t(Size)> columns_;
 };
 
 }  // namespace lagroid

@@ -21,7 +21,7 @@ struct StepReport {
 /// A step with what the solver knows about it.
 template <DiscreteSystem Sys> struct StepSolution {
   Step<Sys> step;
-  GradientsOf<Sys> gradients;  ///< at the arrow
+  AlgebroidVector<typename Sys::GroupoidType> momentum_change;  ///< (F+ - F-)(g, lambda)
   /// The correction w in A_{beta(g)}G, g tau(w), that the next iteration would make: below the spacing of the numbers
   /// the arrow is stored in, but a bias when it is lost step after step.
   AlgebroidVector<typename Sys::GroupoidType> remainder = AlgebroidVector<typename Sys::GroupoidType>::Zero();
