@@ -112,10 +112,6 @@ int main() {
         subject("Kepler kernel, degree 2", kernels::Kepler<2>(system.h, 1, start.object, start.momentum)));
     subjects.push_back(
         subject("Kepler kernel, degree 3", kernels::Kepler<3>(system.h, 1, start.object, start.momentum)));
-    subjects.push_back(
-        subject("Kepler radial kernel, last", kernels::KeplerRadial<0>(system.h, 1, start.object, start.momentum)));
-    subjects.push_back(
-        subject("Kepler radial kernel, degree 2", kernels::KeplerRadial<2>(system.h, 1, start.object, start.momentum)));
     subjects.push_back(framework("Kepler framework", system, start, {start.object, start.object}));
   }
   {

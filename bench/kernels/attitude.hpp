@@ -1,34 +1,42 @@
 #pragma once
 /// A rotation matrix that is turned at every step.
 
-#include <Eigen/Core>
+#include "vectors.hpp"
 
 namespace kernels {
 
 /// A in SO(3), its columns padded to four numbers: one vector register each.
 class Attitude {
  public:
-  explicit Attitude(const Eigen::Matrix3d& a) { a_.topRows<3>() = a; }
+  explicit Attitude(const Eigen::Matrix3d& a) {
+    for (int j = 0; j < 3; ++j) column_[j] = Column{a(0, j), a(1, j), a(2, j), 0};
+  }
 
-  Eigen::Matrix3d matrix() const { return a_.topRows<3>(); }
+  Eigen::Matrix3d matrix() const {
+    Eigen::Matrix3d a;
+    for (int j = 0; j < 3; ++j) a.col(j) << column_[j][0], column_[j][1], column_[j][2];
+    return a;
+  }
 
-  /// A <- A g, brought back to SO(3) by one Newton-Schulz step A <- A (3 I - A^T A) / 2 = (3 I - A A^T) A / 2.
-  void turn(const Eigen::Matrix3d& g) {
-    const Padded b = product(a_, g);
-    const Padded square = product(b, b.topRows<3>().transpose());
-    a_ = 1.5 * b - 0.5 * product(square, b.topRows<3>());
+  /// A <- A g with g = c I + hat(w) + d w w^T (every rotation about w has this form), brought back to SO(3) by one
+  /// Newton-Schulz step A <- A (3 I - A^T A) / 2 = (3 I - A A^T) A / 2.
+  void turn(Triple w, double c, double d) {
+    const Triple z = d * w;
+    const Column turned[3] = {combined(column_, c + z.x * w.x, z.x * w.y + w.z, z.x * w.z - w.y),
+                              combined(column_, z.x * w.y - w.z, c + z.y * w.y, z.y * w.z + w.x),
+                              combined(column_, z.x * w.z + w.y, z.y * w.z - w.x, c + z.z * w.z)};
+    Column square[3];
+    for (int j = 0; j < 3; ++j) square[j] = combined(turned, turned[0][j], turned[1][j], turned[2][j]);
+    for (int j = 0; j < 3; ++j)
+      column_[j] = 1.5 * turned[j] - 0.5 * combined(square, turned[j][0], turned[j][1], turned[j][2]);
   }
 
  private:
-  using Padded = Eigen::Matrix<double, 4, 3>;
+  using Column = double __attribute__((vector_size(4 * sizeof(double))));
 
-  template <class Derived> static Padded product(const Padded& a, const Eigen::MatrixBase<Derived>& g) {
-    Padded out;
-    for (int j = 0; j < 3; ++j) out.col(j) = a.col(0) * g(0, j) + a.col(1) * g(1, j) + a.col(2) * g(2, j);
-    return out;
-  }
+  static Column combined(const Column (&a)[3], double x, double y, double z) { return a[0] * x + a[1] * y + a[2] * z; }
 
-  Padded a_ = Padded::Zero();
+  Column column_[3];
 };
 
 }  // namespace kernels

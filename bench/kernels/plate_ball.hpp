@@ -4,8 +4,6 @@
 #include "attitude.hpp"
 #include "extrapolation.hpp"
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <limits>
 
@@ -57,73 +55,64 @@ template <int Degree = 0> class PlateBall {
         linear_(start.linear_momentum),
         body_(start.body_momentum),
         attitude_(start.attitude),
-        nu_(Eigen::Vector2d(body_.head<2>())) {}
+        nu_(Pair(body_.x, body_.y)) {}
 
   void step() {
     const double half = 0.5 * h_;
-    const Eigen::Vector3d& m = body_;
-    const double a1 = rolling_ * (rate_ * (position_(0) + half * linear_(0)) - linear_(1));
-    const double a2 = rolling_ * (rate_ * (position_(1) + half * linear_(1)) + linear_(0));
-    Eigen::Vector2d nu = nu_.next();
-    Eigen::Vector3d w(a1 + k1_ * nu(0) + k2_ * nu(1), a2 + k1_ * nu(1) - k2_ * nu(0), w3_);
-    const double tolerance = round_off * (std::abs(a1) + std::abs(a2) + k1_ * (std::abs(nu(0)) + std::abs(nu(1))));
+    const Triple m = body_;
+    const double a1 = rolling_ * (rate_ * (position_.x + half * linear_.x) - linear_.y);
+    const double a2 = rolling_ * (rate_ * (position_.y + half * linear_.y) + linear_.x);
+    Pair nu = nu_.next();
+    Triple w(a1 + k1_ * nu.x + k2_ * nu.y, a2 + k1_ * nu.y - k2_ * nu.x, w3_);
+    const double tolerance = round_off * (std::abs(a1) + std::abs(a2) + k1_ * (std::abs(nu.x) + std::abs(nu.y)));
     double cosine = 1;
-    double d = 0;
-    double e = 0;
-    double along = 0;
-    Eigen::Vector3d turning;
+    double d = 0;        // 1 / (1 + C)
+    double stretch = 0;  // (w.M) / (C (1 + C))
+    Triple turning;      // w x M
     for (int iteration = 0;; ++iteration) {
-      cosine = std::sqrt(1 - w.squaredNorm());
-      e = 1 / (cosine * (1 + cosine));
+      cosine = std::sqrt(1 - dot(w, w));
+      const double e = 1 / (cosine * (1 + cosine));
       d = cosine * e;
-      along = w.dot(m);
-      turning = w.cross(m);
-      const double stretch = along * e;
-      nu(0) = m(0) - d * turning(0) + stretch * w(0);
-      nu(1) = m(1) - d * turning(1) + stretch * w(1);
-      const double r1 = w(0) - a1 - k1_ * nu(0) - k2_ * nu(1);
-      const double r2 = w(1) - a2 - k1_ * nu(1) + k2_ * nu(0);
+      stretch = e * dot(w, m);
+      turning = cross(w, m);
+      nu = {m.x - d * turning.x + stretch * w.x, m.y - d * turning.y + stretch * w.y};
+      const double r1 = w.x - a1 - k1_ * nu.x - k2_ * nu.y;
+      const double r2 = w.y - a2 - k1_ * nu.y + k2_ * nu.x;
       if ((std::abs(r1) <= tolerance && std::abs(r2) <= tolerance) || iteration == max_iterations) break;
-      // d nu_i / d w_j = -d (e_j x M)_i + e (w_i M_j + (w.M) delta_ij) + slope_i w_j, with slope_i w.dw from d and e.
-      const double change = along * e * e * e * (1 + cosine) * (1 + 2 * cosine);
-      const double slope1 = w(0) * change - cosine * e * e * turning(0);
-      const double slope2 = w(1) * change - cosine * e * e * turning(1);
-      const double n11 = stretch + e * w(0) * m(0) + slope1 * w(0);
-      const double n12 = e * w(0) * m(1) + slope1 * w(1) - d * m(2);
-      const double n21 = e * w(1) * m(0) + slope2 * w(0) + d * m(2);
-      const double n22 = stretch + e * w(1) * m(1) + slope2 * w(1);
+      // d nu_i / d w_j = -d (e_j x M)_i + e w_i M_j + stretch delta_ij + slope_i w_j, the slope from those of d and e.
+      const double change = stretch * e * e * (1 + cosine) * (1 + 2 * cosine);
+      const double slope1 = w.x * change - cosine * e * e * turning.x;
+      const double slope2 = w.y * change - cosine * e * e * turning.y;
+      const double n11 = stretch + e * w.x * m.x + slope1 * w.x;
+      const double n12 = e * w.x * m.y + slope1 * w.y - d * m.z;
+      const double n21 = e * w.y * m.x + slope2 * w.x + d * m.z;
+      const double n22 = stretch + e * w.y * m.y + slope2 * w.y;
       const double j11 = 1 - k1_ * n11 - k2_ * n21;
       const double j12 = -k1_ * n12 - k2_ * n22;
       const double j21 = k2_ * n11 - k1_ * n21;
       const double j22 = 1 + k2_ * n12 - k1_ * n22;
       const double scale = 1 / (j11 * j22 - j12 * j21);
-      w(0) -= scale * (j22 * r1 - j12 * r2);
-      w(1) -= scale * (j11 * r2 - j21 * r1);
+      w.x -= scale * (j22 * r1 - j12 * r2);
+      w.y -= scale * (j11 * r2 - j21 * r1);
     }
     nu_.record(nu);
-    const Eigen::Vector3d full(nu(0), nu(1), m(2) - d * turning(2) + along * e * w(2));
-    const double l1 = full(0) * inverse_radius_;
-    const double l2 = -full(1) * inverse_radius_;
-    multipliers_ << l1, l2, -full(2);
-    position_(0) += h_ * (linear_(0) - l2 - half * rate_ * l1);
-    position_(1) += h_ * (linear_(1) - l1 + half * rate_ * l2);
-    linear_(0) -= h_ * rate_ * l1;
-    linear_(1) += h_ * rate_ * l2;
-    body_ -= w.cross(full);
-    Eigen::Matrix3d g;
-    const Eigen::Vector3d z = d * w;
-    g << cosine + z(0) * w(0), z(0) * w(1) - w(2), z(0) * w(2) + w(1),  //
-        z(0) * w(1) + w(2), cosine + z(1) * w(1), z(1) * w(2) - w(0),   //
-        z(0) * w(2) - w(1), z(1) * w(2) + w(0), cosine + z(2) * w(2);
-    attitude_.turn(g);
+    const Triple full(nu.x, nu.y, m.z - d * turning.z + stretch * w.z);
+    multipliers_ = {inverse_radius_ * full.x, -inverse_radius_ * full.y, -full.z};
+    const double tilt1 = rate_ * multipliers_.x;
+    const double tilt2 = rate_ * multipliers_.y;
+    position_ =
+        position_ + h_ * Pair(linear_.x - multipliers_.y - half * tilt1, linear_.y - multipliers_.x + half * tilt2);
+    linear_ = linear_ + h_ * Pair(-tilt1, tilt2);
+    body_ = m - cross(w, full);
+    attitude_.turn(w, cosine, d);
   }
 
-  const Eigen::Vector2d& position() const { return position_; }
-  const Eigen::Vector2d& linear_momentum() const { return linear_; }
-  const Eigen::Vector3d& body_momentum() const { return body_; }
+  Eigen::Vector2d position() const { return position_.vector(); }
+  Eigen::Vector2d linear_momentum() const { return linear_.vector(); }
+  Eigen::Vector3d body_momentum() const { return body_.vector(); }
   Eigen::Matrix3d attitude() const { return attitude_.matrix(); }
   /// (l1, l2, l3) of the last step.
-  const Eigen::Vector3d& multipliers() const { return multipliers_; }
+  Eigen::Vector3d multipliers() const { return multipliers_.vector(); }
 
  private:
   static constexpr int max_iterations = 20;
@@ -136,12 +125,12 @@ template <int Degree = 0> class PlateBall {
   double k1_;
   double k2_;
   double w3_;
-  Eigen::Vector2d position_;
-  Eigen::Vector2d linear_;
-  Eigen::Vector3d body_;
+  Pair position_;
+  Pair linear_;
+  Triple body_;
   Attitude attitude_;
-  Extrapolation<2, Degree> nu_;
-  Eigen::Vector3d multipliers_ = Eigen::Vector3d::Zero();
+  Extrapolation<Pair, Degree> nu_;
+  Triple multipliers_;
 };
 
 }  // namespace kernels

@@ -4,8 +4,7 @@
 #include "attitude.hpp"
 #include "extrapolation.hpp"
 
-#include <Eigen/Geometry>
-
+#include <cmath>
 #include <limits>
 
 namespace kernels {
@@ -23,70 +22,64 @@ template <int Degree = 0> class So3Cayley {
  public:
   So3Cayley(double h, const Eigen::Vector3d& inertia, const Eigen::Vector3d& momentum, const Eigen::Matrix3d& attitude)
       : h_(h),
+        rate_(1 / h),
         inertia_(inertia),
-        velocity_(h * inertia.cwiseInverse()),
+        inverse_(Eigen::Vector3d(h * inertia.cwiseInverse())),
         tolerance_(2 * std::numeric_limits<double>::epsilon() * h * momentum.norm()),
         momentum_(momentum),
         attitude_(attitude) {}
 
   void step() {
-    const Eigen::Vector3d explicit_part = velocity_.cwiseProduct(momentum_);
-    const Eigen::Vector3d right = h_ * momentum_;
-    Eigen::Vector3d x = explicit_part + correction_.next();
-    Eigen::Vector3d turning;
+    const Triple& i = inertia_;
+    const Triple right = h_ * momentum_;
+    const Triple explicit_part = scaled(inverse_, momentum_);
+    Triple x = explicit_part + correction_.next();
+    Triple turning;
     for (int iteration = 0;; ++iteration) {
-      const Eigen::Vector3d p = inertia_.cwiseProduct(x);
-      const double quarter = 0.25 * x.dot(p);
-      turning = x.cross(p);
-      const Eigen::Vector3d residual = p + 0.5 * turning + quarter * x - right;
-      if (residual.lpNorm<Eigen::Infinity>() <= tolerance_ || iteration == max_iterations) break;
-      // J = diag(I) + (hat(x) diag(I) - hat(p)) / 2 + (x.p) / 4 + x p^T / 2, solved by Cramer's rule.
-      const Eigen::Vector3d y = 0.5 * x;
-      const Eigen::Vector3d s = 0.5 * p;
-      const auto& i = inertia_;
-      const Eigen::Vector3d a(i(0) + quarter + y(0) * p(0), y(2) * i(0) - s(2) + y(1) * p(0),
-                              s(1) - y(1) * i(0) + y(2) * p(0));
-      const Eigen::Vector3d b(s(2) - y(2) * i(1) + y(0) * p(1), i(1) + quarter + y(1) * p(1),
-                              y(0) * i(1) - s(0) + y(2) * p(1));
-      const Eigen::Vector3d c(y(1) * i(2) - s(1) + y(0) * p(2), s(0) - y(0) * i(2) + y(1) * p(2),
-                              i(2) + quarter + y(2) * p(2));
-      const Eigen::Vector3d bc = b.cross(c);
-      const double scale = 1 / a.dot(bc);
-      x -= scale * Eigen::Vector3d(residual.dot(bc), residual.dot(c.cross(a)), residual.dot(a.cross(b)));
+      const Triple p = scaled(i, x);
+      const double quarter = 0.25 * dot(x, p);
+      turning = cross(x, p);
+      const Triple residual = p + 0.5 * turning + quarter * x - right;
+      if (solved(residual) || iteration == max_iterations) break;
+      // J = diag(I) + (hat(x) diag(I) - hat(p)) / 2 + (x.p) / 4 + x p^T / 2 = (a b c), by Cramer's rule.
+      const Triple y = 0.5 * x;
+      const Triple s = 0.5 * p;
+      const Triple a(i.x + quarter + y.x * p.x, y.z * i.x - s.z + y.y * p.x, s.y - y.y * i.x + y.z * p.x);
+      const Triple b(s.z - y.z * i.y + y.x * p.y, i.y + quarter + y.y * p.y, y.x * i.y - s.x + y.z * p.y);
+      const Triple c(y.y * i.z - s.y + y.x * p.z, s.x - y.x * i.z + y.y * p.z, i.z + quarter + y.z * p.z);
+      const Triple bc = cross(b, c);
+      x = x - (1 / dot(a, bc)) * Triple(dot(residual, bc), dot(residual, cross(c, a)), dot(residual, cross(a, b)));
     }
     correction_.record(x - explicit_part);
     solution_ = x;
-    momentum_ -= turning / h_;
-    attitude_.turn(cayley(x));
+    momentum_ = momentum_ - rate_ * turning;
+    // cay(x) = c I + hat(y) + d y y^T with y = x / (1 + |x|^2/4), c = 2 / (1 + |x|^2/4) - 1, d = (1 + |x|^2/4) / 2.
+    const double stretch = 1 + 0.25 * dot(x, x);
+    const double scale = 1 / stretch;
+    attitude_.turn(scale * x, 2 * scale - 1, 0.5 * stretch);
   }
 
-  const Eigen::Vector3d& momentum() const { return momentum_; }
+  Eigen::Vector3d momentum() const { return momentum_.vector(); }
   Eigen::Matrix3d attitude() const { return attitude_.matrix(); }
   /// x of the last step.
-  const Eigen::Vector3d& solution() const { return solution_; }
-
-  static Eigen::Matrix3d cayley(const Eigen::Vector3d& x) {
-    const double scale = 1 / (1 + 0.25 * x.squaredNorm());
-    const Eigen::Vector3d y = scale * x;
-    const Eigen::Vector3d z = 0.5 * y;
-    Eigen::Matrix3d g;
-    g << 1 - z(1) * x(1) - z(2) * x(2), z(0) * x(1) - y(2), z(0) * x(2) + y(1),  //
-        z(0) * x(1) + y(2), 1 - z(0) * x(0) - z(2) * x(2), z(1) * x(2) - y(0),   //
-        z(0) * x(2) - y(1), z(1) * x(2) + y(0), 1 - z(0) * x(0) - z(1) * x(1);
-    return g;
-  }
+  Eigen::Vector3d solution() const { return solution_.vector(); }
 
  private:
   static constexpr int max_iterations = 20;
 
+  bool solved(Triple r) const {
+    return std::abs(r.x) <= tolerance_ && std::abs(r.y) <= tolerance_ && std::abs(r.z) <= tolerance_;
+  }
+
   double h_;
-  Eigen::Vector3d inertia_;
-  Eigen::Vector3d velocity_;  // h I^{-1}
+  double rate_;
+  Triple inertia_;
+  Triple inverse_;  // h I^{-1}
   double tolerance_;
-  Eigen::Vector3d momentum_;
+  Triple momentum_;
   Attitude attitude_;
-  Extrapolation<3, Degree> correction_{Eigen::Vector3d::Zero()};
-  Eigen::Vector3d solution_ = Eigen::Vector3d::Zero();
+  Extrapolation<Triple, Degree> correction_;
+  Triple solution_;
 };
 
 }  // namespace kernels

@@ -1,7 +1,7 @@
 #pragma once
 /// The spherical pendulum by SHAKE, by hand.
 
-#include <Eigen/Core>
+#include "vectors.hpp"
 
 #include <cmath>
 
@@ -26,19 +26,19 @@ class SphericalPendulum {
         momentum_(momentum) {}
 
   void step() {
-    Eigen::Vector3d b = position_ + drift_ * momentum_;
-    b(2) -= fall_;
-    const double excess = b.squaredNorm() - square_length_;
-    const double along = b.dot(position_);
-    const double s = -excess / (along + std::sqrt(along * along - position_.squaredNorm() * excess));
-    momentum_ += (rate_ * s) * position_;
-    momentum_(2) -= weight_;
+    Triple b = position_ + drift_ * momentum_;
+    b.z -= fall_;
+    const double excess = dot(b, b) - square_length_;
+    const double along = dot(b, position_);
+    const double s = -excess / (along + std::sqrt(along * along - dot(position_, position_) * excess));
+    momentum_ = momentum_ + (rate_ * s) * position_;
+    momentum_.z -= weight_;
     position_ = b + s * position_;
     multiplier_ = rate_ * s;
   }
 
-  const Eigen::Vector3d& position() const { return position_; }
-  const Eigen::Vector3d& momentum() const { return momentum_; }
+  Eigen::Vector3d position() const { return position_.vector(); }
+  Eigen::Vector3d momentum() const { return momentum_.vector(); }
   /// lambda of the last step.
   double multiplier() const { return multiplier_; }
 
@@ -48,8 +48,8 @@ class SphericalPendulum {
   double rate_;
   double fall_;
   double weight_;
-  Eigen::Vector3d position_;
-  Eigen::Vector3d momentum_;
+  Triple position_;
+  Triple momentum_;
   double multiplier_ = 0;
 };
 
