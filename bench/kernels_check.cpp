@@ -1,4 +1,5 @@
 // The hand-written kernels compute what the framework computes.
+#include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 #include <lagroid/systems/kepler.hpp>
@@ -6,6 +7,7 @@
 
 #include "kernels/kepler.hpp"
 #include "kernels/plate_ball.hpp"
+#include "kernels/plate_ball_boundary.hpp"
 #include "kernels/plate_ball_derivatives.hpp"
 #include "kernels/rigid_body_derivatives.hpp"
 #include "kernels/so3_cayley.hpp"
@@ -206,6 +208,68 @@ TEST(SphericalPendulumKernel, IsTheFramework) {
     ASSERT_LT(excess(system, before, step), 4) << k;
     ASSERT_NEAR(SphericalPendulum::vertical_angular_momentum({kernel.position(), kernel.momentum()}),
                 SphericalPendulum::vertical_angular_momentum(start), 1e-13);
+  }
+}
+
+/// A case of the plate-ball boundary-value problem: N steps in unit time, in the trace form.
+struct BoundaryCase {
+  BoundaryProblem<PlateBall> problem;
+  Path<PlateBall> start;
+};
+
+/// Starts from the minimum of 20 steps in the exponential form.
+BoundaryCase boundary_case(bool rotating, std::size_t count) {
+  constexpr long coarse = 20;
+  PlateBall system;
+  system.h = 1.0 / coarse;
+  system.rotation = RotationForm::exponential;
+  if (rotating) {
+    system.plate_rate = 1;
+    system.spin = 0.5;
+  }
+  const Vector2d from = rotating ? Vector2d(0.2, -0.1) : Vector2d(0, 0);
+  const ArrowOf<PlateBall::GroupoidType> ends{PairArrow<double, 2>{from, Vector2d(1, 0.5)},
+                                              SO3::exp(Vector3d(0.6, -0.3, 0.9))};
+  Path<PlateBall> path;
+  for (auto& arrow : system.path(ends, coarse, Eigen::Matrix2Xd::Zero(2, 0))) path.push_back({arrow, {0, 0, 0}});
+  BoundaryProblem<PlateBall> problem{system, ends};
+  const auto solution = BoundaryNewton<PlateBall>().solve(problem, std::move(path), false);
+  EXPECT_TRUE(solution.converged());
+  problem.system.h = 1.0 / double(count);
+  problem.system.rotation = RotationForm::trace;
+  return {problem, resampled(problem, solution.path, count)};
+}
+
+kernels::PlateBallPath nodes(const Path<PlateBall>& path) {
+  kernels::PlateBallPath out;
+  out.position.push_back(std::get<0>(path.front().arrow).source);
+  out.attitude.push_back(Matrix3d::Identity());
+  for (const auto& [arrow, lambda] : path) {
+    out.position.push_back(std::get<0>(arrow).target);
+    out.attitude.push_back(SO3::project(out.attitude.back() * std::get<1>(arrow)));
+    out.multipliers.push_back(lambda);
+  }
+  return out;
+}
+
+kernels::PlateBallParameters parameters(const PlateBall& s) { return {s.h, s.radius, s.plate_rate, s.spin}; }
+
+TEST(PlateBallBoundaryKernel, IsTheFramework) {
+  for (const bool rotating : {false, true}) {
+    const BoundaryCase c = boundary_case(rotating, 50);
+    const auto expected = BoundaryNewton<PlateBall>().solve(c.problem, c.start, /*keep_multipliers=*/true);
+    ASSERT_TRUE(expected.converged());
+    kernels::PlateBallBoundary kernel(parameters(c.problem.system), nodes(c.start));
+    const int iterations = kernel.solve(1e-10);
+    ASSERT_GT(iterations, 0);
+    ASSERT_LT(iterations, 20);
+    EXPECT_NEAR(kernel.cost(), expected.cost, 1e-10 * expected.cost);
+    const auto reference = nodes(expected.path);
+    for (std::size_t k = 0; k < reference.multipliers.size(); ++k) {
+      ASSERT_LT((kernel.positions()[k] - reference.position[k]).norm(), 1e-11);
+      ASSERT_LT((kernel.attitudes()[k] - reference.attitude[k]).norm(), 1e-11);
+      ASSERT_LT((kernel.multipliers(k) - reference.multipliers[k]).norm(), 1e-9);
+    }
   }
 }
 
