@@ -9,6 +9,7 @@
 #include "kernels/plate_ball.hpp"
 #include "kernels/plate_ball_boundary.hpp"
 #include "kernels/plate_ball_derivatives.hpp"
+#include "kernels/plate_ball_ipopt.hpp"
 #include "kernels/rigid_body_derivatives.hpp"
 #include "kernels/so3_cayley.hpp"
 #include "kernels/spherical_pendulum.hpp"
@@ -269,6 +270,23 @@ TEST(PlateBallBoundaryKernel, IsTheFramework) {
       ASSERT_LT((kernel.positions()[k] - reference.position[k]).norm(), 1e-11);
       ASSERT_LT((kernel.attitudes()[k] - reference.attitude[k]).norm(), 1e-11);
       ASSERT_LT((kernel.multipliers(k) - reference.multipliers[k]).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(PlateBallIpopt, ReachesTheSameMinimum) {
+  for (const bool rotating : {false, true}) {
+    const BoundaryCase c = boundary_case(rotating, 50);
+    const auto expected = BoundaryNewton<PlateBall>().solve(c.problem, c.start, /*keep_multipliers=*/true);
+    const auto found = kernels::solve_with_ipopt(parameters(c.problem.system), nodes(c.start), 1e-10);
+    ASSERT_TRUE(expected.converged());
+    ASSERT_TRUE(found.solved);
+    EXPECT_NEAR(found.cost, expected.cost, 1e-8 * expected.cost);
+    const auto reference = nodes(expected.path);
+    for (std::size_t k = 0; k < reference.multipliers.size(); ++k) {
+      ASSERT_LT((found.path.position[k] - reference.position[k]).norm(), 1e-8);
+      ASSERT_LT((found.path.attitude[k] - reference.attitude[k]).norm(), 1e-8);
+      ASSERT_LT((found.path.multipliers[k] - reference.multipliers[k]).norm(), 1e-6);
     }
   }
 }
