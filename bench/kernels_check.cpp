@@ -1,13 +1,12 @@
 // The hand-written kernels compute what the framework computes.
-#include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
+#include "boundary_case.hpp"
 #include "kernels/kepler.hpp"
 #include "kernels/plate_ball.hpp"
-#include "kernels/plate_ball_boundary.hpp"
 #include "kernels/plate_ball_derivatives.hpp"
 #include "kernels/plate_ball_ipopt.hpp"
 #include "kernels/rigid_body_derivatives.hpp"
@@ -20,6 +19,10 @@
 #include <memory>
 
 using namespace lagroid;
+using bench::boundary_case;
+using bench::BoundaryCase;
+using bench::nodes;
+using bench::parameters;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -211,49 +214,6 @@ TEST(SphericalPendulumKernel, IsTheFramework) {
                 SphericalPendulum::vertical_angular_momentum(start), 1e-13);
   }
 }
-
-/// A case of the plate-ball boundary-value problem: N steps in unit time, in the trace form.
-struct BoundaryCase {
-  BoundaryProblem<PlateBall> problem;
-  Path<PlateBall> start;
-};
-
-/// Starts from the minimum of 20 steps in the exponential form.
-BoundaryCase boundary_case(bool rotating, std::size_t count) {
-  constexpr long coarse = 20;
-  PlateBall system;
-  system.h = 1.0 / coarse;
-  system.rotation = RotationForm::exponential;
-  if (rotating) {
-    system.plate_rate = 1;
-    system.spin = 0.5;
-  }
-  const Vector2d from = rotating ? Vector2d(0.2, -0.1) : Vector2d(0, 0);
-  const ArrowOf<PlateBall::GroupoidType> ends{PairArrow<double, 2>{from, Vector2d(1, 0.5)},
-                                              SO3::exp(Vector3d(0.6, -0.3, 0.9))};
-  Path<PlateBall> path;
-  for (auto& arrow : system.path(ends, coarse, Eigen::Matrix2Xd::Zero(2, 0))) path.push_back({arrow, {0, 0, 0}});
-  BoundaryProblem<PlateBall> problem{system, ends};
-  const auto solution = BoundaryNewton<PlateBall>().solve(problem, std::move(path), false);
-  EXPECT_TRUE(solution.converged());
-  problem.system.h = 1.0 / double(count);
-  problem.system.rotation = RotationForm::trace;
-  return {problem, resampled(problem, solution.path, count)};
-}
-
-kernels::PlateBallPath nodes(const Path<PlateBall>& path) {
-  kernels::PlateBallPath out;
-  out.position.push_back(std::get<0>(path.front().arrow).source);
-  out.attitude.push_back(Matrix3d::Identity());
-  for (const auto& [arrow, lambda] : path) {
-    out.position.push_back(std::get<0>(arrow).target);
-    out.attitude.push_back(SO3::project(out.attitude.back() * std::get<1>(arrow)));
-    out.multipliers.push_back(lambda);
-  }
-  return out;
-}
-
-kernels::PlateBallParameters parameters(const PlateBall& s) { return {s.h, s.radius, s.plate_rate, s.spin}; }
 
 TEST(PlateBallBoundaryKernel, IsTheFramework) {
   for (const bool rotating : {false, true}) {
