@@ -32,8 +32,8 @@ struct PlateBallPath {
 ///     second  sym(hat(nu) g^T) / 2 - (nu.w) I,            -sym(hat(nu) g) / 2 - (nu.w) I.
 ///
 /// The matrix is block tridiagonal: S_k = D_k - C_k P C_k^T with P the (v, v) block of S_{k-1}^{-1} and C_k (8 x 5) the
-/// coupling to v_{k-1}. Each S_k is reduced by Gaussian elimination with row pivoting, together with the six right-hand
-/// sides that are needed of it; O(N), storage reused.
+/// coupling to v_{k-1}. Each S_k is inverted by Gaussian elimination with row pivoting: eight right-hand sides fill a
+/// vector register as the six that are needed would. O(N), storage reused.
 class PlateBallBoundary {
  public:
   /// Starts from a path; its ends stay where they are.
@@ -65,40 +65,35 @@ class PlateBallBoundary {
     Terms ahead = terms(0);
     for (std::size_t k = 0; k < count; ++k) {
       const Terms here = ahead;
+      const bool last = k + 1 == count;
       Block& block = blocks_[k];
-      block.coupling.topRows<3>() = here.constraint_source;
-      block.coupling.bottomRows<5>() = here.mixed.transpose();
-
-      Square s = Square::Zero();
-      s.topRightCorner<3, 5>() = here.constraint_target;
-      s.bottomLeftCorner<5, 3>() = here.constraint_target.transpose();
-      Square sides = Square::Zero();
-      sides.bottomLeftCorner<5, 5>().setIdentity();
-      Column right;
-      right.head<3>() = -here.constraint;
-      if (k + 1 < count) {
+      Square matrix = Square::Zero();
+      block.coupling.setZero();
+      block.coupling.topRightCorner<3, 5>() = here.constraint_source;
+      block.right.head<3>() = -here.constraint;
+      if (last) {  // whose node does not move
+        matrix.bottomRightCorner<5, 5>().setIdentity();
+        block.right.tail<5>().setZero();
+      } else {
         ahead = terms(k + 1);
-        s(3, 3) = 2;
-        s(4, 4) = 2;
-        s.bottomRightCorner<3, 3>() = here.target_hessian + ahead.source_hessian;
-        right.tail<5>() = -here.target_gradient - ahead.source_gradient;
-      } else {  // the last node does not move
-        s.topRightCorner<3, 5>().setZero();
-        s.bottomLeftCorner<5, 3>().setZero();
-        s.bottomRightCorner<5, 5>().setIdentity();
-        block.coupling.bottomRows<5>().setZero();
-        right.tail<5>().setZero();
+        matrix.topRightCorner<3, 5>() = here.constraint_target;
+        matrix.bottomLeftCorner<5, 3>() = here.constraint_target.transpose();
+        matrix(3, 3) = 2;
+        matrix(4, 4) = 2;
+        matrix.bottomRightCorner<3, 3>() = here.target_hessian + ahead.source_hessian;
+        block.coupling.bottomRightCorner<5, 5>() = here.mixed.transpose();
+        block.right.tail<5>() = -here.target_gradient - ahead.source_gradient;
       }
-      largest = std::max(largest, right.cwiseAbs().maxCoeff());
+      largest = std::max(largest, block.right.cwiseAbs().maxCoeff());
       if (k > 0) {
-        const Square& before = blocks_[k - 1].solution;
-        const Coupling moved = block.coupling * before.bottomLeftCorner<5, 5>();
-        s.noalias() -= moved * block.coupling.transpose();
-        right.noalias() -= block.coupling * before.bottomRows<5>().col(5);
+        const Block& before = blocks_[k - 1];
+        const Columns columns = block.coupling.rightCols<5>().transpose();
+        const Columns moved = before.inverse.bottomRightCorner<5, 5>().lazyProduct(columns);
+        matrix -= moved.transpose().lazyProduct(columns);
+        const Column solved = before.inverse.transpose() * before.right;
+        block.right -= columns.transpose() * solved.tail<5>();
       }
-      sides.col(5) = right;
-      eliminate(s, sides);
-      block.solution = sides;
+      invert(matrix, block.inverse);
     }
     return largest / std::sqrt(parameters_.h);
   }
@@ -107,10 +102,9 @@ class PlateBallBoundary {
   void update() {
     Column z = Column::Zero();
     for (std::size_t k = blocks_.size(); k-- > 0;) {
-      Column weights = Column::Zero();
-      weights(5) = 1;
-      if (k + 1 < blocks_.size()) weights.head<5>() = -blocks_[k + 1].coupling.transpose() * z;
-      z = blocks_[k].solution * weights;
+      Column right = blocks_[k].right;
+      if (k + 1 < blocks_.size()) right -= blocks_[k + 1].coupling.transpose() * z;
+      z = blocks_[k].inverse.transpose() * right;
       path_.multipliers[k] += z.head<3>();
       if (k + 1 == blocks_.size()) continue;
       path_.position[k + 1] += z.segment<2>(3);
@@ -131,13 +125,14 @@ class PlateBallBoundary {
 
  private:
   using Square = Eigen::Matrix<double, 8, 8, Eigen::RowMajor>;
-  using Coupling = Eigen::Matrix<double, 8, 5>;
+  using Columns = Eigen::Matrix<double, 5, 8, Eigen::RowMajor>;
   using Column = Eigen::Matrix<double, 8, 1>;
 
-  /// What the elimination leaves of a block: C_k, and S_k^{-1} applied to the five columns of v and to the right side.
+  /// What the elimination leaves of a block. The inverse is symmetric, and used by rows throughout.
   struct Block {
-    Coupling coupling;
-    Square solution;
+    Square coupling;  // C_k, in the columns of v
+    Square inverse;   // S_k^{-1}
+    Column right;     // b_k - C_k (S_{k-1}^{-1} b_{k-1})_v
   };
 
   /// h times the action of one step, with its derivatives.
@@ -208,27 +203,28 @@ class PlateBallBoundary {
     return s;
   }
 
-  /// sides <- s^{-1} sides.
-  static void eliminate(Square& s, Square& sides) {
-    Column inverse;
+  /// inverse = s^{-1}, by Gaussian elimination with row pivoting; s is overwritten.
+  static void invert(Square& s, Square& inverse) {
+    inverse.setIdentity();
+    Column reciprocal;
     for (int p = 0; p < 8; ++p) {
       int pivot = p;
       for (int i = p + 1; i < 8; ++i)
         if (std::abs(s(i, p)) > std::abs(s(pivot, p))) pivot = i;
       if (pivot != p) {
         s.row(p).swap(s.row(pivot));
-        sides.row(p).swap(sides.row(pivot));
+        inverse.row(p).swap(inverse.row(pivot));
       }
-      inverse(p) = 1 / s(p, p);
+      reciprocal(p) = 1 / s(p, p);
       for (int i = p + 1; i < 8; ++i) {
-        const double factor = s(i, p) * inverse(p);
+        const double factor = s(i, p) * reciprocal(p);
         s.row(i) -= factor * s.row(p);
-        sides.row(i) -= factor * sides.row(p);
+        inverse.row(i) -= factor * inverse.row(p);
       }
     }
     for (int p = 7; p >= 0; --p) {
-      sides.row(p) *= inverse(p);
-      for (int i = 0; i < p; ++i) sides.row(i) -= s(i, p) * sides.row(p);
+      inverse.row(p) *= reciprocal(p);
+      for (int i = 0; i < p; ++i) inverse.row(i) -= s(i, p) * inverse.row(p);
     }
   }
 
