@@ -6,8 +6,12 @@
 
 #include "kernels/plate_ball_boundary.hpp"
 
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace bench {
 
@@ -19,8 +23,8 @@ struct BoundaryCase {
   Path<PlateBall> start;
 };
 
-/// Starts from the minimum of 20 steps in the exponential form.
-inline BoundaryCase boundary_case(bool rotating, std::size_t count) {
+/// Starts from the minimum of 20 steps in the exponential form, its nodes displaced by a sine wave of the given size.
+inline BoundaryCase boundary_case(bool rotating, std::size_t count, double size = 0.1) {
   constexpr long coarse = 20;
   PlateBall system;
   system.h = 1.0 / coarse;
@@ -39,7 +43,12 @@ inline BoundaryCase boundary_case(bool rotating, std::size_t count) {
   if (!solution.converged()) throw std::runtime_error("the coarse problem was not solved");
   problem.system.h = 1.0 / double(count);
   problem.system.rotation = RotationForm::trace;
-  return {problem, resampled(problem, solution.path, count)};
+  std::vector<Vector<double, 5>> wave(count);
+  for (std::size_t k = 0; k < count; ++k)
+    wave[k] =
+        size * std::sin(2 * std::numbers::pi * double(k + 1) / double(count)) * Vector<double, 5>(1, -1, 1, 1, -1);
+  const std::vector<Vector<double, 3>> same(count, Vector<double, 3>::Zero());
+  return {problem, displaced(problem, resampled(problem, solution.path, count), wave, same, 1.0)};
 }
 
 /// The path in the terms of the peers.

@@ -221,9 +221,9 @@ TEST(PlateBallBoundaryKernel, IsTheFramework) {
     const auto expected = BoundaryNewton<PlateBall>().solve(c.problem, c.start, /*keep_multipliers=*/true);
     ASSERT_TRUE(expected.converged());
     kernels::PlateBallBoundary kernel(parameters(c.problem.system), nodes(c.start));
-    const int iterations = kernel.solve(1e-10);
+    const int iterations = kernel.solve(1e-12);
     ASSERT_GT(iterations, 0);
-    ASSERT_LT(iterations, 20);
+    ASSERT_LT(iterations, 10);
     EXPECT_NEAR(kernel.cost(), expected.cost, 1e-10 * expected.cost);
     const auto reference = nodes(expected.path);
     for (std::size_t k = 0; k < reference.multipliers.size(); ++k) {

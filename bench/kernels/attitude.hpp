@@ -22,19 +22,24 @@ class Attitude {
   /// Newton-Schulz step A <- A (3 I - A^T A) / 2 = (3 I - A A^T) A / 2.
   void turn(Triple w, double c, double d) {
     const Triple z = d * w;
-    const Column turned[3] = {combined(column_, c + z.x * w.x, z.x * w.y + w.z, z.x * w.z - w.y),
-                              combined(column_, z.x * w.y - w.z, c + z.y * w.y, z.y * w.z + w.x),
-                              combined(column_, z.x * w.z + w.y, z.y * w.z - w.x, c + z.z * w.z)};
+    Column turned[3];
+    combine(column_, c + z.x * w.x, z.x * w.y + w.z, z.x * w.z - w.y, turned[0]);
+    combine(column_, z.x * w.y - w.z, c + z.y * w.y, z.y * w.z + w.x, turned[1]);
+    combine(column_, z.x * w.z + w.y, z.y * w.z - w.x, c + z.z * w.z, turned[2]);
     Column square[3];
-    for (int j = 0; j < 3; ++j) square[j] = combined(turned, turned[0][j], turned[1][j], turned[2][j]);
-    for (int j = 0; j < 3; ++j)
-      column_[j] = 1.5 * turned[j] - 0.5 * combined(square, turned[j][0], turned[j][1], turned[j][2]);
+    for (int j = 0; j < 3; ++j) combine(turned, turned[0][j], turned[1][j], turned[2][j], square[j]);
+    for (int j = 0; j < 3; ++j) {
+      combine(square, turned[j][0], turned[j][1], turned[j][2], column_[j]);
+      column_[j] = 1.5 * turned[j] - 0.5 * column_[j];
+    }
   }
 
  private:
   using Column = double __attribute__((vector_size(4 * sizeof(double))));
 
-  static Column combined(const Column (&a)[3], double x, double y, double z) { return a[0] * x + a[1] * y + a[2] * z; }
+  static void combine(const Column (&a)[3], double x, double y, double z, Column& out) {
+    out = a[0] * x + a[1] * y + a[2] * z;
+  }
 
   Column column_[3];
 };
