@@ -4,6 +4,7 @@
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
+#include "../tests/allocation_counter.hpp"
 #include "boundary_case.hpp"
 #include "kernels/kepler.hpp"
 #include "kernels/plate_ball.hpp"
@@ -249,6 +250,28 @@ TEST(PlateBallIpopt, ReachesTheSameMinimum) {
       ASSERT_LT((found.path.multipliers[k] - reference.multipliers[k]).norm(), 1e-6);
     }
   }
+}
+
+/// Heap allocations of a hundred calls.
+template <class F> long allocations(const F& call) {
+  const long before = allocation_count();
+  for (int k = 0; k < 100; ++k) call();
+  return allocation_count() - before;
+}
+
+TEST(Kernels, DoNotAllocate) {
+  if (allocation_count() < 0) GTEST_SKIP() << "allocations cannot be counted here";
+  kernels::So3Cayley<3> body(0.01, {1, 2, 3}, {0.4, 1.9, -1.1}, Matrix3d::Identity());
+  kernels::PlateBall<3> ball({0.02, 1, 0.7, 0.4}, {{0.3, -0.2}, {0.9, 0.2}, {0.6, -0.4, 0.8}, Matrix3d::Identity()});
+  kernels::Kepler<3> planet(0.01, 1, {0.8, 0}, {0, 1.2});
+  kernels::SphericalPendulum pendulum(0.01, 1, 1, 1, {0.6, 0, -0.8}, {0.4, 0.9, 0.3});
+  const BoundaryCase c = boundary_case(true, 20);
+  kernels::PlateBallBoundary boundary(parameters(c.problem.system), nodes(c.start));
+  EXPECT_EQ(allocations([&] { body.step(); }), 0);
+  EXPECT_EQ(allocations([&] { ball.step(); }), 0);
+  EXPECT_EQ(allocations([&] { planet.step(); }), 0);
+  EXPECT_EQ(allocations([&] { pendulum.step(); }), 0);
+  EXPECT_EQ(allocations([&] { boundary.iterate(); }), 0);
 }
 
 }  // namespace

@@ -57,6 +57,20 @@ Subject framework(std::string name, const Sys& system, const State<typename Sys:
           {}};
 }
 
+/// One evaluation of the derivatives per step. The arrow passes through memory, so that each one is made.
+template <class F, class A> Subject derivatives(std::string name, F evaluate, A arrow) {
+  return {std::move(name),
+          [evaluate, arrow](int steps) {
+            for (int k = 0; k < steps; ++k) {
+              const A* input = &arrow;
+              asm volatile("" : "+r"(input) : : "memory");
+              const auto result = evaluate(*input);
+              asm volatile("" : : "r"(&result) : "memory");
+            }
+          },
+          {}};
+}
+
 }  // namespace
 
 int main() {
@@ -79,6 +93,12 @@ int main() {
         subject("SO(3) kernel, degree 3", kernels::So3Cayley<3>(system.h, system.inertia, start.momentum, one)));
     subjects.push_back(
         subject("SO(3) kernel, degree 4", kernels::So3Cayley<4>(system.h, system.inertia, start.momentum, one)));
+    const Matrix3d turn = SO3::exp(Vector3d(0.01, -0.02, 0.03));
+    subjects.push_back(derivatives(
+        "SO(3) derivatives by hand", [hand](const Matrix3d& g) { return hand.two_sided(g, {}); }, turn));
+    subjects.push_back(derivatives(
+        "SO(3) derivatives, automatic", [system](const Matrix3d& g) { return automatic_two_sided(system, g, {}); },
+        turn));
     subjects.push_back(framework("SO(3) framework", system, start, one));
     subjects.push_back(framework("SO(3) framework, hand derivatives", hand, start, one));
   }
@@ -99,6 +119,14 @@ int main() {
     subjects.push_back(subject("plate-ball kernel, degree 2", kernels::PlateBall<2>(parameters, at)));
     subjects.push_back(subject("plate-ball kernel, degree 3", kernels::PlateBall<3>(parameters, at)));
     subjects.push_back(subject("plate-ball kernel, degree 4", kernels::PlateBall<4>(parameters, at)));
+    const ArrowOf<PlateBall::GroupoidType> roll{PairArrow<double, 2>{at.position, Vector2d(0.31, -0.18)},
+                                                SO3::exp(Vector3d(0.01, -0.02, 0.03))};
+    const Vector3d lambda(0.6, 0.4, -0.8);
+    subjects.push_back(derivatives(
+        "plate-ball derivatives by hand", [=](const auto& g) { return hand.two_sided(g, lambda); }, roll));
+    subjects.push_back(derivatives(
+        "plate-ball derivatives, automatic",
+        [=](const auto& g) { return automatic_two_sided<PlateBall>(hand, g, lambda); }, roll));
     subjects.push_back(framework("plate-ball framework", system, start, configuration));
     subjects.push_back(framework("plate-ball framework, hand derivatives", hand, start, configuration));
   }
