@@ -14,7 +14,8 @@ namespace lagroid {
 /// For object constraints F- contains lambda . dC o rho at the source, the impulse between two arrows.
 template <class Sys> struct StepEquations {
   static constexpr int size = Sys::dimension + Sys::constraints;
-  using Residual = Vector<double, size>;
+  /// Not aligned, so that Eigen reads it number by number, as it is written.
+  using Residual = Eigen::Matrix<double, size, 1, Eigen::DontAlign>;
   using Jacobian = Matrix<double, size, size>;
 
   static Residual residual(const GradientsOf<Sys>& d, const AlgebroidVector<typename Sys::GroupoidType>& momentum) {

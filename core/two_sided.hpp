@@ -29,7 +29,7 @@ template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimensio
 
 /// The gradients by first-order dual numbers: one pass through L, phi and C along the groupoid's frame.
 template <DiscreteSystem Sys>
-GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+[[gnu::flatten]] GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                      const typename Sys::Multipliers& lambda) {
   using J = JetOf<Sys>;
   const auto& groupoid = system.groupoid;
@@ -60,7 +60,7 @@ GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename S
 
 /// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
 template <DiscreteSystem Sys>
-TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+[[gnu::flatten]] TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                     const typename Sys::Multipliers& lambda) {
   using M = MixedOf<Sys>;
   const auto gm = system.groupoid.template seed<M, End::source, End::target>(g);

@@ -32,7 +32,11 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   template <class S> static Object<S> target(const Matrix<S, N, N>&) { return {}; }
   template <class S> static Matrix<S, N, N> unit(const Vector<S, 0>&) { return Matrix<S, N, N>::Identity(); }
   template <class S> static Matrix<S, N, N> multiply(const Matrix<S, N, N>& g, const Matrix<S, N, N>& h) {
-    return g * h;
+    return by_entry<S>([&]<int R, int C>() {
+      S sum = g(R, 0) * h(0, C);
+      unrolled<N - 1>([&]<int I>() { sum += g(R, I + 1) * h(I + 1, C); });
+      return sum;
+    });
   }
   template <class S> static Matrix<S, N, N> tau(const Vector<S, 0>&, const Algebra<S>& xi) {
     if constexpr (Tau == Retraction::exponential) {
@@ -118,7 +122,9 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   template <class T> static Algebra<T> source_part(const Matrix<T, N, N>& g, const Algebra<T>& c) {
     return -(Derived::adjoint(Derived::inverse(g)).transpose() * c);
   }
-  template <class T> static Algebra<T> target_part(const Matrix<T, N, N>&, const Algebra<T>& c) { return c; }
+  template <class T> static Algebra<T> target_part(const Matrix<T, N, N>&, const Algebra<T>& c) {
+    return c.template head<Dimension>();  // entry by entry, see by_entry
+  }
 
   /// The matrix of Ad_g: hat(Ad_g xi) = g hat(xi) g^{-1}.
   template <class S> static Matrix<S, Dimension, Dimension> adjoint(const Matrix<S, N, N>& g) {
@@ -132,9 +138,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     if (value_of(w.squaredNorm()) > 1e-11) return g * tau(Object<T>{}, w);
     const Matrix<T, N, N> gw = times_hat(g, w);
     const Matrix<T, N, N> gww = times_hat(gw, w);
-    Matrix<T, N, N> out;
-    unrolled<N * N>([&]<int K>() { out(K) = g(K) + (gw(K) + T(0.5) * gww(K)); });
-    return out;
+    return by_entry<T>([&]<int R, int C>() { return g(R, C) + (gw(R, C) + T(0.5) * gww(R, C)); });
   }
   template <class T> static Algebra<T> nudge(Matrix<T, N, N>& g, const Algebra<T>& w) {
     const Matrix<T, N, N> gw = times_hat(g, w);
@@ -142,22 +146,26 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return Algebra<T>::Zero();
   }
 
+ protected:
+  /// The matrix of entries f<r, c>(). (In registers, where Eigen's packet operations would go through memory.)
+  template <class S, class F> [[gnu::always_inline]] static Matrix<S, N, N> by_entry(const F& f) {
+    Matrix<S, N, N> out;
+    unrolled<N>([&]<int C>() { unrolled<N>([&]<int R>() { out(R, C) = f.template operator()<R, C>(); }); });
+    return out;
+  }
+
  private:
   /// g hat(w).
   template <class T> [[gnu::always_inline]] static Matrix<T, N, N> times_hat(const Matrix<T, N, N>& g, const Algebra<T>& w) {
-    Matrix<T, N, N> out;
-    unrolled<N>([&]<int C>() {
-      unrolled<N>([&]<int R>() {
-        T sum = -T(0);
-        unrolled<N>([&]<int S>() {
-          unrolled<Dimension>([&]<int I>() {
-            if constexpr (Derived::basis(I, S, C) != 0) sum += g(R, S) * (T(Derived::basis(I, S, C)) * w(I));
-          });
+    return by_entry<T>([&]<int R, int C>() {
+      T sum = -T(0);
+      unrolled<N>([&]<int S>() {
+        unrolled<Dimension>([&]<int I>() {
+          if constexpr (Derived::basis(I, S, C) != 0) sum += g(R, S) * (T(Derived::basis(I, S, C)) * w(I));
         });
-        out(R, C) = sum;
       });
+      return sum;
     });
-    return out;
   }
 
   /// Entry (r, c) of the derivative of tau(a)^{-1} g or of g tau(b) along the i-th basis vector.

@@ -71,9 +71,19 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
 
   /// cay(w) = I + (hat(w) + hat(w)^2 / 2) / (1 + |w|^2 / 4): the rotation by 2 atan(|w|/2) about w.
   template <class S> static Matrix<S, 3, 3> cayley(const Vector<S, 3>& w) {
-    const Matrix<S, 3, 3> h = hat(w);
-    const S scale = 1.0 / (w.squaredNorm() * 0.25 + 1.0);
-    return Matrix<S, 3, 3>::Identity() + scale * h + (scale * 0.5) * (h * h).eval();
+    const S x = w(0) * w(0);
+    const S y = w(1) * w(1);
+    const S z = w(2) * w(2);
+    const S scale = 1.0 / ((x + y + z) * 0.25 + 1.0);
+    const S half = scale * 0.5;
+    const Vector<S, 3> a(scale * w(0), scale * w(1), scale * w(2));
+    const S xy = half * w(0) * w(1);
+    const S xz = half * w(0) * w(2);
+    const S yz = half * w(1) * w(2);
+    Matrix<S, 3, 3> g;
+    g << 1.0 - half * (y + z), xy - a(2), xz + a(1), xy + a(2), 1.0 - half * (x + z), yz - a(0), xz - a(1), yz + a(0),
+        1.0 - half * (x + y);
+    return g;
   }
   /// w = 2 tan(angle/2) axis = 4 vee(g) / (1 + tr g). Requires an angle below pi.
   template <class S> static Vector<S, 3> cayley_inverse(const Matrix<S, 3, 3>& g) {
@@ -92,9 +102,25 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
 
   /// The nearest rotation matrix to first order in the defect: one Newton-Schulz step g (3 I - g^T g) / 2.
   static Matrix<double, 3, 3> project(const Matrix<double, 3, 3>& g) {
-    return g * (1.5 * Matrix<double, 3, 3>::Identity() - 0.5 * (g.transpose() * g).eval());
+    const auto square = [&](int i, int j) { return g(0, i) * g(0, j) + g(1, i) * g(1, j) + g(2, i) * g(2, j); };
+    const double xx = 1.5 - 0.5 * square(0, 0);
+    const double yy = 1.5 - 0.5 * square(1, 1);
+    const double zz = 1.5 - 0.5 * square(2, 2);
+    const double xy = -0.5 * square(0, 1);
+    const double xz = -0.5 * square(0, 2);
+    const double yz = -0.5 * square(1, 2);
+    Matrix<double, 3, 3> out;
+    unrolled<3>([&]<int R>() {
+      out(R, 0) = g(R, 0) * xx + g(R, 1) * xy + g(R, 2) * xz;
+      out(R, 1) = g(R, 0) * xy + g(R, 1) * yy + g(R, 2) * yz;
+      out(R, 2) = g(R, 0) * xz + g(R, 1) * yz + g(R, 2) * zz;
+    });
+    return out;
   }
-  template <class T> static Vector<T, 3> source_part(const Matrix<T, 3, 3>& g, const Vector<T, 3>& c) { return -(g * c); }
+  template <class T> static Vector<T, 3> source_part(const Matrix<T, 3, 3>& g, const Vector<T, 3>& c) {
+    const auto row = [&](int r) { return -(g(r, 0) * c(0) + g(r, 1) * c(1) + g(r, 2) * c(2)); };
+    return {row(0), row(1), row(2)};
+  }
 
   /// The Cayley coordinates: no trigonometric functions.
   template <class T> static Vector<T, 3> chart(const Matrix<T, 3, 3>& g) { return cayley_inverse(g); }

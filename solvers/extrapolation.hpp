@@ -17,8 +17,8 @@ template <int Size, int MaxDegree> class Extrapolation {
   void clear() { known_ = 0; }
 
   void push(const Vector<double, Size>& x) {
-    newest_ = (newest_ + length - 1) % length;
-    past_[std::size_t(newest_)] = x;
+    newest_ = newest_ == 0 ? length - 1 : newest_ - 1;
+    past_[std::size_t(newest_)] = past_[std::size_t(newest_ + length)] = x;
     known_ = std::min(known_ + 1, length);
     if (known_ < length || --until_review_ <= 0) choose_degree();
   }
@@ -49,7 +49,7 @@ template <int Size, int MaxDegree> class Extrapolation {
     return w;
   }();
 
-  const Vector<double, Size>& back(int j) const { return past_[std::size_t((newest_ + j) % length)]; }
+  const Vector<double, Size>& back(int j) const { return past_[std::size_t(newest_ + j)]; }
 
   void choose_degree() {
     until_review_ = review;
@@ -64,7 +64,7 @@ template <int Size, int MaxDegree> class Extrapolation {
     }
   }
 
-  std::array<Vector<double, Size>, std::size_t(length)> past_;
+  std::array<Vector<double, Size>, 2 * std::size_t(length)> past_;  ///< a ring, twice over: a window lies in one piece
   int newest_ = 0;
   int known_ = 0;
   int degree_ = 0;

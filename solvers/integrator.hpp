@@ -52,30 +52,23 @@ template <DiscreteSystem Sys> class Integrator {
   const TrajectoryPoint<Sys>& point() const { return point_; }
   const Sys& system() const { return system_; }
 
-  StepReport advance() {
+  [[gnu::flatten]] StepReport advance() {
     StepSolution<Sys> solution;
-    StepReport report;
-    if (point_.index == 0) {
-      report = first_step(solution);
-    } else {
-      const Unknowns predicted = past_.next();
-      const AlgebroidVector<G> v = predicted.template head<Sys::dimension>();
-      solution.step = {system_.groupoid.arrow_in_chart(point_.state.object, v),
-                       predicted.template tail<Sys::constraints>()};
-      report = solver_->solve(system_, point_.state, solution);
-      // A failure, or a solution far from the predicted: look for the one that is continuous in the step size.
-      if (!report.converged() || !near(v, system_.groupoid.chart(solution.step.arrow))) {
-        past_.clear();
-        const int spent = report.iterations;
-        StepSolution<Sys> restart;
-        StepReport restarted = first_step(restart);
-        restarted.iterations += spent;
-        if (restarted.converged()) solution = restart;
-        if (restarted.converged() || !report.converged()) report = restarted;
+    if (point_.index == 0) return restart(solution, {});
+    const Unknowns predicted = past_.next();
+    const AlgebroidVector<G> v = predicted.template head<Sys::dimension>();
+    const ArrowOf<G> arrow = system_.groupoid.arrow_in_chart(point_.state.object, v);
+    solution.step.arrow = arrow;
+    solution.step.multipliers = predicted.template tail<Sys::constraints>();
+    const StepReport report = solver_->solve(system_, point_.state, solution);
+    if (report.converged()) {
+      const AlgebroidVector<G> solved = system_.groupoid.chart(solution.step.arrow);
+      if (near(v, solved)) {
+        accept(solution, solved);
+        return report;
       }
     }
-    if (report.converged()) accept(solution);
-    return report;
+    return restart(solution, report);
   }
 
  private:
@@ -86,6 +79,21 @@ template <DiscreteSystem Sys> class Integrator {
     } else {
       return {system.groupoid.unit(point_.state.object), Sys::Multipliers::Zero()};
     }
+  }
+
+  /// A step without predecessor, or one whose solve failed or ended far from the predicted arrow: the solution that is
+  /// continuous in the step size; if there is none, what the solve before found.
+  StepReport restart(StepSolution<Sys>& found, const StepReport& before) {
+    past_.clear();
+    StepSolution<Sys> solution;
+    StepReport report = first_step(solution);
+    report.iterations += before.iterations;
+    if (!report.converged() && before.converged()) {
+      report = before;
+      solution = found;
+    }
+    if (report.converged()) accept(solution, system_.groupoid.chart(solution.step.arrow));
+    return report;
   }
 
   StepReport first_step(StepSolution<Sys>& solution) {
@@ -143,7 +151,8 @@ template <DiscreteSystem Sys> class Integrator {
     return (solved - predicted).squaredNorm() <= 0.25 * std::max(solved.squaredNorm(), predicted.squaredNorm());
   }
 
-  void accept(const StepSolution<Sys>& solution) {
+  /// `chart` is the arrow in the groupoid's chart.
+  void accept(const StepSolution<Sys>& solution, const AlgebroidVector<G>& chart) {
     const auto& groupoid = system_.groupoid;
     const auto& arrow = solution.step.arrow;
     point_.step = solution.step;
@@ -155,10 +164,12 @@ template <DiscreteSystem Sys> class Integrator {
     point_.state.momentum = momentum;
     ArrowOf<G> reached = groupoid.compose(point_.configuration, arrow);
     carry_ = groupoid.nudge(reached, AlgebroidVector<G>(carry_ + solution.remainder));
-    point_.configuration = groupoid.project(reached);
-    point_.state.object = groupoid.target(point_.configuration);
+    const ArrowOf<G> projected = groupoid.project(reached);
+    point_.configuration = projected;
+    const ObjectOf<G> object = groupoid.target(projected);
+    point_.state.object = object;
     Unknowns unknowns;
-    unknowns << groupoid.chart(arrow), solution.step.multipliers;
+    unknowns << chart, solution.step.multipliers;
     past_.push(unknowns);
     ++point_.index;
     if constexpr (HasTimeStep<Sys>) point_.time = double(point_.index) * system_.h;

@@ -36,10 +36,8 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   StepReport solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) override {
     StepReport report;
     if (chord_.kept) {
-      const Step<Sys> guess = solution.step;
       if (by_chords(system, state, solution, report)) return report;
       chord_.kept = false;
-      solution.step = guess;
     }
     by_newton(system, state, solution, report);
     if (report.converged()) keep(system, state, solution.step);
@@ -63,24 +61,25 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   // ---- the short way
 
-  bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report) {
-    Step<Sys>& step = solution.step;
-    GradientsOf<Sys> d;
+  [[gnu::flatten]] bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report) {
+    Step<Sys> step;
+    step = solution.step;
+    Residual residual;
     if (renewal_pays()) {
-      const auto all = two_sided(system, step.arrow, step.multipliers);
-      if (!renew(system, state, step, E::jacobian(all))) return false;
-      d = all;
+      const TwoSidedOf<Sys> d = two_sided(system, step.arrow, step.multipliers);
+      if (!renew(system, state, step, E::jacobian(d))) return false;
+      residual = E::residual(d, state.momentum);
     } else {
       ++chord_.age;
-      d = gradients(system, step.arrow, step.multipliers);
+      const GradientsOf<Sys> d = gradients(system, step.arrow, step.multipliers);
+      residual = E::residual(d, state.momentum);
     }
-    Residual residual = E::residual(d, state.momentum);
     double excess = excess_of(residual);
     chord_.first = excess;
     double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * excess) : chord_.rate;
     double remains = excess;
     for (int iteration = 1; iteration <= longest_chord; ++iteration) {
-      move(system, step, -inverse_.apply(residual));
+      move(system, step, inverse_.correction(residual));
       const GradientsOf<Sys> there = gradients(system, step.arrow, step.multipliers);
       residual = E::residual(there, state.momentum);
       const double next = excess_of(residual);
@@ -90,7 +89,8 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
       excess = next;
       if (excess <= 1 && remains <= leftover) {
         chord_.rate = rate;
-        const Residual correction = -inverse_.apply(residual);
+        solution.step = step;
+        const Residual correction = inverse_.correction(residual);
         solution.remainder = correction.template head<Sys::dimension>();
         solution.momentum_change = there.source_gradient + there.target_gradient;
         report.iterations = iteration;
@@ -116,10 +116,10 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
     return iterations(kept) > iterations(std::min(0.1, 10 * epsilon * chord_.first)) + renewal_price;
   }
   static constexpr int longest_chord = 12;
-  static constexpr int renewal_price = E::size > 4 ? 4 : 1;
+  static constexpr int renewal_price = E::size > 4 ? 2 : 1;
 
   /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
-  bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step, const typename E::Jacobian& jacobian) {
+  [[gnu::flatten]] bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step, const typename E::Jacobian& jacobian) {
     chord_.floor = round_off_level(system, state, step, jacobian).cwiseInverse();
     chord_.age = 0;
     return inverse_.invert(jacobian);
@@ -197,7 +197,10 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   // ---- both
 
   static void move(const Sys& system, Step<Sys>& step, const Residual& correction) {
-    step.arrow = system.groupoid.extend(step.arrow, AlgebroidVector<G>(correction.template head<Sys::dimension>()));
+    // Copied, not moved or constructed: Eigen moves its storage in pieces larger than the stores they must wait for.
+    const ArrowOf<G> there =
+        system.groupoid.extend(step.arrow, AlgebroidVector<G>(correction.template head<Sys::dimension>()));
+    step.arrow = there;
     step.multipliers += correction.template tail<Sys::constraints>();
   }
   static Step<Sys> moved(const Sys& system, Step<Sys> step, const Residual& correction) {

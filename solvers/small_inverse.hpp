@@ -19,7 +19,7 @@ namespace lagroid {
 template <int Size> class SmallInverse {
  public:
   using Square = Matrix<double, Size, Size>;
-  using Column = Vector<double, Size>;
+  using Column = Eigen::Matrix<double, Size, 1, Eigen::DontAlign>;
 
   /// Chooses scales and permutation that serve matrices near `a`.
   void choose_pivots(const Square& a, const Scaling<Size>& scaling) {
@@ -48,16 +48,16 @@ template <int Size> class SmallInverse {
     return inverse.cwiseAbs().maxCoeff() < largest_entry;
   }
 
-  /// a^{-1} b.
-  Column apply(const Column& b) const {
+  /// -a^{-1} b.
+  Column correction(const Column& b) const {
     // Two sums, for two chains of additions instead of one.
     Lanes<double, Size> sum[2] = {{}, {}};
     unrolled<Size>([&]<int J>() {
       sum[J % 2] = sum[J % 2] + (b(row_of_[J]) * row_scale_(J)) * columns_[J];
     });
-    const Column x = (sum[0] + sum[1]).vector();
+    const Lanes<double, Size> x = sum[0] + sum[1];
     Column out;
-    for (int i = 0; i < Size; ++i) out(column_of_[std::size_t(i)]) = x(i) * column_scale_(i);
+    unrolled<Size>([&]<int I>() { out(column_of_[I]) = x[I] * -column_scale_(I); });
     return out;
   }
 
