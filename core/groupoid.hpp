@@ -59,8 +59,8 @@ concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
 /// and, only when arrows (objects) are not Eigen matrices, `arrow_size`, `coordinates(g)`, `arrow<S>(coordinates)`
 /// (`object_size`, `object_coordinates(q)`, `object<S>(coordinates)`).
 /// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and, for speed,
-/// `seed` (the translations in closed form), a frame, `extend`, `nudge`, `chart` and `arrow_in_chart` (see below). Everything
-/// else is deduced.
+/// `seed` (the translations in closed form), a frame, `extend`, `nudge`, `chart` and `arrow_in_chart` (see below).
+/// Everything else is deduced.
 ///
 /// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
 template <class Derived, int Dimension> class LieGroupoid {
@@ -90,8 +90,8 @@ template <class Derived, int Dimension> class LieGroupoid {
   }
 
   /// The arrow tau(a)^{-1} g tau(b) with infinitesimals a, b: the `left` infinitesimals of the scalar M (Mixed or Jet),
-  /// from number LeftOffset on, displace the end First; its `right` ones, from RightOffset on, the end Second. Derived by
-  /// composition; a groupoid that knows its translations in closed form supplies its own `seed` with this signature
+  /// from number LeftOffset on, displace the end First; its `right` ones, from RightOffset on, the end Second. Derived
+  /// by composition; a groupoid that knows its translations in closed form supplies its own `seed` with this signature
   /// (the law suites compare the two).
   template <class M, End First, End Second, int LeftOffset, int RightOffset, class A>
   auto seed_by_composition(const A& g) const {

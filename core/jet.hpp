@@ -88,11 +88,9 @@ template <class T, int N> constexpr T value_of(const Jet<T, N>& x) { return x.va
 
 template <class T, int N>
 struct Eigen::NumTraits<lagroid::Jet<T, N>> : lagroid::detail::DerivativeTraits<lagroid::Jet<T, N>> {};
-template <class T, int N, class Operation>
-struct Eigen::ScalarBinaryOpTraits<lagroid::Jet<T, N>, T, Operation> {
+template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<lagroid::Jet<T, N>, T, Operation> {
   using ReturnType = lagroid::Jet<T, N>;
 };
-template <class T, int N, class Operation>
-struct Eigen::ScalarBinaryOpTraits<T, lagroid::Jet<T, N>, Operation> {
+template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<T, lagroid::Jet<T, N>, Operation> {
   using ReturnType = lagroid::Jet<T, N>;
 };

@@ -30,7 +30,7 @@ template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimensio
 /// The gradients by first-order dual numbers: one pass through L, phi and C along the groupoid's frame.
 template <DiscreteSystem Sys>
 [[gnu::flatten]] GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
-                                     const typename Sys::Multipliers& lambda) {
+                                                      const typename Sys::Multipliers& lambda) {
   using J = JetOf<Sys>;
   const auto& groupoid = system.groupoid;
   const auto gj = groupoid.template seed_frame<J>(g);
@@ -61,7 +61,7 @@ template <DiscreteSystem Sys>
 /// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
 template <DiscreteSystem Sys>
 [[gnu::flatten]] TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
-                                    const typename Sys::Multipliers& lambda) {
+                                                     const typename Sys::Multipliers& lambda) {
   using M = MixedOf<Sys>;
   const auto gm = system.groupoid.template seed<M, End::source, End::target>(g);
   TwoSidedOf<Sys> out;

@@ -156,7 +156,8 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
 
  private:
   /// g hat(w).
-  template <class T> [[gnu::always_inline]] static Matrix<T, N, N> times_hat(const Matrix<T, N, N>& g, const Algebra<T>& w) {
+  template <class T>
+  [[gnu::always_inline]] static Matrix<T, N, N> times_hat(const Matrix<T, N, N>& g, const Algebra<T>& w) {
     return by_entry<T>([&]<int R, int C>() {
       T sum = -T(0);
       unrolled<N>([&]<int S>() {

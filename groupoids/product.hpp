@@ -85,14 +85,17 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class... As>
   [[gnu::always_inline]] Arrow<M> seed(const std::tuple<As...>& g) const {
     return [&]<std::size_t... I>(std::index_sequence<I...>)->Arrow<M> {
-      return {std::get<I>(factor).template seed<M, First, Second, LeftOffset + start(dimensions, I), RightOffset + start(dimensions, I)>(std::get<I>(g))...};
+      return {
+          std::get<I>(factor)
+              .template seed<M, First, Second, LeftOffset + start(dimensions, I), RightOffset + start(dimensions, I)>(
+                  std::get<I>(g))...};
     }
     (std::make_index_sequence<factors>{});
   }
   static constexpr int frame_size = (Gs::frame_size + ...);
   template <class J, int Offset = 0, class... As>
   [[gnu::always_inline]] Arrow<J> seed_frame(const std::tuple<As...>& g) const {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) -> Arrow<J> {
+    return [&]<std::size_t... I>(std::index_sequence<I...>)->Arrow<J> {
       return {std::get<I>(factor).template seed_frame<J, Offset + start(frame_sizes, I)>(std::get<I>(g))...};
     }
     (std::make_index_sequence<factors>{});

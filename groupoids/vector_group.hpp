@@ -25,8 +25,9 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
     constexpr T by_first = First == End::source ? -1 : 1;
     constexpr T by_second = Second == End::source ? -1 : 1;
     Vector<M, N> out;
-    unrolled<N>(
-        [&]<int I>() { out(I) = M(g(I), by_first * M::left_unit(LeftOffset + I), by_second * M::right_unit(RightOffset + I)); });
+    unrolled<N>([&]<int I>() {
+      out(I) = M(g(I), by_first * M::left_unit(LeftOffset + I), by_second * M::right_unit(RightOffset + I));
+    });
     return out;
   }
 

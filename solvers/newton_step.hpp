@@ -61,7 +61,8 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   // ---- the short way
 
-  [[gnu::flatten]] bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report) {
+  [[gnu::flatten]] bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
+                                  StepReport& report) {
     Step<Sys> step;
     step = solution.step;
     Residual residual;
@@ -119,7 +120,8 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   static constexpr int renewal_price = E::size > 4 ? 2 : 1;
 
   /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
-  [[gnu::flatten]] bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step, const typename E::Jacobian& jacobian) {
+  [[gnu::flatten]] bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step,
+                              const typename E::Jacobian& jacobian) {
     chord_.floor = round_off_level(system, state, step, jacobian).cwiseInverse();
     chord_.age = 0;
     return inverse_.invert(jacobian);

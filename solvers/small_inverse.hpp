@@ -14,8 +14,8 @@ namespace lagroid {
 /// Inverts the matrices of a slowly varying family, in scaled and permuted rows and columns.
 ///
 /// Up to size four by cofactors; up to size eight by elimination of a leading 4 x 4 block, itself inverted by
-/// cofactors, after a permutation that full pivoting chose once (`choose_pivots`) and that later calls keep; beyond by LU
-/// with partial pivoting.
+/// cofactors, after a permutation that full pivoting chose once (`choose_pivots`) and that later calls keep; beyond by
+/// LU with partial pivoting.
 template <int Size> class SmallInverse {
  public:
   using Square = Matrix<double, Size, Size>;
@@ -52,9 +52,7 @@ template <int Size> class SmallInverse {
   Column correction(const Column& b) const {
     // Two sums, for two chains of additions instead of one.
     Lanes<double, Size> sum[2] = {{}, {}};
-    unrolled<Size>([&]<int J>() {
-      sum[J % 2] = sum[J % 2] + (b(row_of_[J]) * row_scale_(J)) * columns_[J];
-    });
+    unrolled<Size>([&]<int J>() { sum[J % 2] = sum[J % 2] + (b(row_of_[J]) * row_scale_(J)) * columns_[J]; });
     const Lanes<double, Size> x = sum[0] + sum[1];
     Column out;
     unrolled<Size>([&]<int I>() { out(column_of_[I]) = x[I] * -column_scale_(I); });

@@ -155,11 +155,12 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
       const auto first_order = groupoid.coordinates_of_arrow(groupoid.template seed<J, First, Second, 0, n>(g));
       double largest = 0;
       for (int i = 0; i < fast.size(); ++i)
-        largest = worst(
-            {largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left(), slow(i).left()),
-             relative_defect(fast(i).right(), slow(i).right()), relative_defect(fast(i).mixed(), slow(i).mixed()),
-             std::abs(first_order(i).value - slow(i).value), relative_defect(first_order(i).gradient().template head<n>().eval(), slow(i).left()),
-                         relative_defect(first_order(i).gradient().template tail<n>().eval(), slow(i).right())});
+        largest =
+            worst({largest, std::abs(fast(i).value - slow(i).value), relative_defect(fast(i).left(), slow(i).left()),
+                   relative_defect(fast(i).right(), slow(i).right()), relative_defect(fast(i).mixed(), slow(i).mixed()),
+                   std::abs(first_order(i).value - slow(i).value),
+                   relative_defect(first_order(i).gradient().template head<n>().eval(), slow(i).left()),
+                   relative_defect(first_order(i).gradient().template tail<n>().eval(), slow(i).right())});
       return largest;
     };
     return worst({defect.template operator()<End::source, End::target>(),
