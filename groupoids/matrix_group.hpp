@@ -78,6 +78,53 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// The i-th basis matrix of the Lie algebra.
   static Matrix<double, N, N> generator(int i) { return Derived::hat(Algebra<double>(Algebra<double>::Unit(i))); }
 
+  /// Ad_g xi = vee(g hat(xi) g^{-1}), as a matrix.
+  template <class T> static Matrix<T, Dimension, Dimension> adjoint(const Matrix<T, N, N>& g) {
+    const Matrix<T, N, N> inverse = Derived::inverse(g);
+    return columns<T>([&](const Matrix<T, N, N>& e) -> Matrix<T, N, N> { return g * e * inverse; });
+  }
+
+  /// The arrow frame: g tau(u). The source displacement v is the frame's -Ad_{g^{-1}} v, because both retractions satisfy
+  /// tau(v)^{-1} g = g tau(-Ad_{g^{-1}} v); and tau(u) tau(w) = tau(u + w + [u, w] / 2 + ...).
+  static constexpr int arrow_dimension = Dimension;
+  template <class J, class T> static Matrix<J, N, N> frame_jet(const Matrix<T, N, N>& g, int offset = 0) {
+    struct Generators {
+      std::array<Matrix<T, N, N>, Dimension> first;
+      std::array<Matrix<T, N, N>, Dimension*(Dimension + 1) / 2> second;  // symmetrised products, row by row
+    };
+    static const auto basis = [] {
+      Generators e;
+      for (int i = 0, at = 0; i < Dimension; ++i) {
+        e.first[i] = generator(i).template cast<T>();
+        for (int j = 0; j <= i; ++j)
+          e.second[at++] = (e.first[i] * e.first[j] + e.first[j] * e.first[i]).eval() / T(2);
+      }
+      return e;
+    }();
+    Matrix<J, N, N> out;
+    for (int k = 0; k < g.size(); ++k) out(k) = J(g(k));
+    for (int i = 0, at = 0; i < Dimension; ++i) {
+      const Matrix<T, N, N> first = g * basis.first[i];
+      for (int k = 0; k < g.size(); ++k) out(k).gradient(offset + i) = first(k);
+      for (int j = 0; j <= i; ++j) {
+        const Matrix<T, N, N> second = g * basis.second[at++];
+        for (int k = 0; k < g.size(); ++k) out(k).hessian(offset + i, offset + j) = second(k);
+      }
+    }
+    return out;
+  }
+  template <class T, int K>
+  static Matrix<T, Dimension, K> frame_to_end(End end, const Matrix<T, N, N>& g, const Matrix<T, Dimension, K>& rows) {
+    if (end == End::target) return rows;
+    return -Derived::adjoint(Derived::inverse(g)).transpose() * rows;
+  }
+  template <class T> static Matrix<T, Dimension, Dimension> frame_bracket(const Vector<T, Dimension>& p) {
+    Matrix<T, Dimension, Dimension> c;
+    for (int i = 0; i < Dimension; ++i)
+      c.row(i) = p.transpose() * Derived::template ad<T>(Algebra<T>(Algebra<T>::Unit(i)));
+    return c;
+  }
+
   /// Both retractions are tau(xi) = I + X + X^2/2 + O(X^3) with tau(xi)^{-1} = tau(-xi), X = hat(xi); hence the exact
   /// first and second derivatives of tau(a)^{-1} g tau(b) at a = b = 0.
   template <class M, class T>

@@ -47,6 +47,24 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
     return out;
   }
 
+  /// The arrow frame: the ends move independently, first the source, then the target.
+  static constexpr int arrow_dimension = 2 * N;
+  template <class J, class T> static Arrow<J> frame_jet(const PairArrow<T, N>& g, int offset = 0) {
+    Arrow<J> out;
+    for (int i = 0; i < N; ++i) {
+      out.source(i) = J::variable(g.source(i), offset + i);
+      out.target(i) = J::variable(g.target(i), offset + N + i);
+    }
+    return out;
+  }
+  template <class T, int K>
+  static Matrix<T, N, K> frame_to_end(End end, const PairArrow<T, N>&, const Matrix<T, 2 * N, K>& rows) {
+    return end == End::source ? rows.template topRows<N>() : rows.template bottomRows<N>();
+  }
+  template <class T> static Matrix<T, 2 * N, 2 * N> frame_bracket(const Vector<T, 2 * N>&) {
+    return Matrix<T, 2 * N, 2 * N>::Zero();
+  }
+
   static std::string name() { return "Pair<" + std::to_string(N) + ">"; }
 };
 

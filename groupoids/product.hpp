@@ -1,7 +1,7 @@
 #pragma once
 /// The product of two or more groupoids.
 
-#include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/arrow_frame.hpp>
 
 #include <array>
 #include <string>
@@ -74,6 +74,34 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
     });
   }
 
+  /// The arrow frame: those of the factors, side by side, if all have one.
+  static constexpr int arrow_dimension =
+      ((arrow_dimension_of<Gs>() > 0) && ...) ? (arrow_dimension_of<Gs>() + ...) : 0;
+  template <class J, class... As> Arrow<J> frame_jet(const std::tuple<As...>& g, int offset = 0) const {
+    return indexed([&]<std::size_t I>() {
+      return std::get<I>(factor).template frame_jet<J>(std::get<I>(g), offset + start(frames, I));
+    });
+  }
+  template <class... As, class T, int K>
+  Matrix<T, rank, K> frame_to_end(End end, const std::tuple<As...>& g, const Matrix<T, arrow_dimension, K>& rows) const {
+    Matrix<T, rank, K> out;
+    each([&]<std::size_t I>() {
+      const Matrix<T, frames[I], K> part = rows.template middleRows<frames[I]>(start(frames, I));
+      out.template middleRows<dimensions[I]>(start(dimensions, I)) =
+          std::get<I>(factor).frame_to_end(end, std::get<I>(g), part);
+    });
+    return out;
+  }
+  template <class T>
+  Matrix<T, arrow_dimension, arrow_dimension> frame_bracket(const Vector<T, arrow_dimension>& p) const {
+    Matrix<T, arrow_dimension, arrow_dimension> out = Matrix<T, arrow_dimension, arrow_dimension>::Zero();
+    each([&]<std::size_t I>() {
+      out.template block<frames[I], frames[I]>(start(frames, I), start(frames, I)) =
+          std::get<I>(factor).frame_bracket(segment<frames, I>(p));
+    });
+    return out;
+  }
+
   static std::string name() {
     std::string out;
     ((out += (out.empty() ? "" : " x ") + Gs::name()), ...);
@@ -82,6 +110,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
 
  private:
   static constexpr std::array<int, factors> dimensions{Gs::dimension...};
+  static constexpr std::array<int, factors> frames{arrow_dimension_of<Gs>()...};
   static constexpr std::array<int, factors> arrow_sizes{Gs::arrow_coordinate_count()...};
   static constexpr std::array<int, factors> object_sizes{Gs::object_coordinate_count()...};
 
@@ -96,6 +125,10 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
 
   template <class F> static auto indexed(const F& f) {
     return [&]<std::size_t... I>(std::index_sequence<I...>) { return std::make_tuple(f.template operator()<I>()...); }
+    (std::make_index_sequence<factors>{});
+  }
+  template <class F> static void each(const F& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (f.template operator()<I>(), ...); }
     (std::make_index_sequence<factors>{});
   }
   template <class F, class... Tuples> auto map(const F& f, const Tuples&... tuples) const {

@@ -79,6 +79,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   }
 
   template <class S> static Matrix<S, 3, 3> ad(const Vector<S, 3>& w) { return hat(w); }
+  template <class S> static Matrix<S, 3, 3> adjoint(const Matrix<S, 3, 3>& g) { return g; }
   template <class S> static Matrix<S, 3, 3> dexp(const Vector<S, 3>& w) {
     return dexp_from_ad<S, 3>(hat(w), w.squaredNorm());
   }

@@ -30,6 +30,19 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
     return out;
   }
 
+  /// The arrow frame: the target's displacements.
+  static constexpr int arrow_dimension = N;
+  template <class J, class T> static Vector<J, N> frame_jet(const Vector<T, N>& g, int offset = 0) {
+    Vector<J, N> out;
+    for (int i = 0; i < N; ++i) out(i) = J::variable(g(i), offset + i);
+    return out;
+  }
+  template <class T, int K>
+  static Matrix<T, N, K> frame_to_end(End end, const Vector<T, N>&, const Matrix<T, N, K>& rows) {
+    return end == End::source ? Matrix<T, N, K>(-rows) : rows;
+  }
+  template <class T> static Matrix<T, N, N> frame_bracket(const Vector<T, N>&) { return Matrix<T, N, N>::Zero(); }
+
   static std::string name() { return "R^" + std::to_string(N); }
 };
 

@@ -1,0 +1,223 @@
+#pragma once
+/// The second-order jet: value, gradient and symmetric Hessian of a function of N variables.
+
+#include <lagroid/core/mixed.hpp>
+#include <lagroid/core/types.hpp>
+
+#include <array>
+#include <cmath>
+#include <ostream>
+#include <type_traits>
+
+namespace lagroid {
+
+/// x + g.v + v^T H v / 2 in N infinitesimals v with v v v = 0: a Taylor polynomial. H is symmetric and stored as the rows
+/// of its lower triangle, so that a jet has 1 + N + N (N + 1) / 2 numbers where Mixed<T, N, N> has (N + 1)^2.
+///
+/// Functions of one variable get their derivatives from the same functions of Mixed<T, 1, 1>.
+template <class T, int N> struct SecondJet {
+  using Real = T;
+  static constexpr int variables = N;
+  static constexpr int parts = N + N * (N + 1) / 2;
+
+  T value;
+  std::array<T, std::size_t(parts)> part;  ///< g, then H(0,0), H(1,0), H(1,1), H(2,0), ...
+
+  /// As for a double: `SecondJet x;` is uninitialised, `SecondJet()` is zero.
+  SecondJet() = default;
+  /// A constant. Implicit, so that formulas may contain plain numbers.
+  template <class A>
+  requires std::is_arithmetic_v<A> SecondJet(A x) : value(T(x)), part{} {}  // NOLINT(google-explicit-constructor)
+
+  /// The i-th variable, of value x.
+  static SecondJet variable(T x, int i) {
+    SecondJet out(x);
+    out.gradient(i) = 1;
+    return out;
+  }
+
+  T& gradient(int i) { return part[std::size_t(i)]; }
+  T gradient(int i) const { return part[std::size_t(i)]; }
+  /// H(i, j), i >= j.
+  T& hessian(int i, int j) { return part[std::size_t(row(i) + j)]; }
+  T hessian(int i, int j) const { return part[std::size_t(row(i) + j)]; }
+
+  Vector<T, N> gradient() const {
+    Vector<T, N> g;
+    for (int i = 0; i < N; ++i) g(i) = gradient(i);
+    return g;
+  }
+  Matrix<T, N, N> hessian() const {
+    Matrix<T, N, N> h;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j <= i; ++j) h(i, j) = h(j, i) = hessian(i, j);
+    return h;
+  }
+
+  /// The composition with a function of one variable, given its value and two derivatives at `value`.
+  SecondJet chain(T f, T f1, T f2) const {
+    SecondJet out;
+    out.value = f;
+    for (int k = 0; k < parts; ++k) out.part[k] = f1 * part[k];
+    for (int i = 0; i < N; ++i) {
+      const T slope = f2 * part[i];
+      for (int j = 0; j <= i; ++j) out.part[row(i) + j] += slope * part[j];
+    }
+    return out;
+  }
+  /// The composition with a function that accepts Mixed<T, 1, 1>.
+  template <class F> SecondJet compose(const F& function) const {
+    using M = Mixed<T, 1, 1>;
+    M x(value);
+    x.left(0) = 1;
+    x.right(0) = 1;
+    const M f = function(x);
+    return chain(f.value, f.left(0), f.mixed(0, 0));
+  }
+
+  SecondJet& operator+=(const SecondJet& b) {
+    value += b.value;
+    for (int k = 0; k < parts; ++k) part[k] += b.part[k];
+    return *this;
+  }
+  SecondJet& operator-=(const SecondJet& b) {
+    value -= b.value;
+    for (int k = 0; k < parts; ++k) part[k] -= b.part[k];
+    return *this;
+  }
+  SecondJet& operator*=(const SecondJet& b) { return *this = *this * b; }
+  SecondJet& operator/=(const SecondJet& b) { return *this = *this / b; }
+
+  friend SecondJet operator+(const SecondJet& a) { return a; }
+  friend SecondJet operator-(const SecondJet& a) { return a * T(-1); }
+  friend SecondJet operator+(const SecondJet& a, const SecondJet& b) {
+    SecondJet out;
+    out.value = a.value + b.value;
+    for (int k = 0; k < parts; ++k) out.part[k] = a.part[k] + b.part[k];
+    return out;
+  }
+  friend SecondJet operator-(const SecondJet& a, const SecondJet& b) {
+    SecondJet out;
+    out.value = a.value - b.value;
+    for (int k = 0; k < parts; ++k) out.part[k] = a.part[k] - b.part[k];
+    return out;
+  }
+  friend SecondJet operator*(const SecondJet& a, const SecondJet& b) {
+    SecondJet out;
+    out.value = a.value * b.value;
+    for (int k = 0; k < parts; ++k) out.part[k] = a.value * b.part[k] + b.value * a.part[k];
+    for (int i = 0; i < N; ++i) {
+      const T ai = a.part[i];
+      const T bi = b.part[i];
+      for (int j = 0; j <= i; ++j) out.part[row(i) + j] += ai * b.part[j] + bi * a.part[j];
+    }
+    return out;
+  }
+  friend SecondJet operator/(const SecondJet& a, const SecondJet& b) { return a * (T(1) / b); }
+
+  friend SecondJet operator+(SecondJet a, T b) {
+    a.value += b;
+    return a;
+  }
+  friend SecondJet operator+(T a, const SecondJet& b) { return b + a; }
+  friend SecondJet operator-(SecondJet a, T b) {
+    a.value -= b;
+    return a;
+  }
+  friend SecondJet operator-(T a, const SecondJet& b) { return -b + a; }
+  friend SecondJet operator*(const SecondJet& a, T b) {
+    SecondJet out;
+    out.value = a.value * b;
+    for (int k = 0; k < parts; ++k) out.part[k] = a.part[k] * b;
+    return out;
+  }
+  friend SecondJet operator*(T a, const SecondJet& b) { return b * a; }
+  friend SecondJet operator/(const SecondJet& a, T b) { return a * (1 / b); }
+  friend SecondJet operator/(T a, const SecondJet& b) {
+    const T inverse = 1 / b.value;
+    return b.chain(a * inverse, -a * inverse * inverse, 2 * a * inverse * inverse * inverse);
+  }
+
+  friend bool operator==(const SecondJet& a, const SecondJet& b) { return a.value == b.value; }
+  friend auto operator<=>(const SecondJet& a, const SecondJet& b) { return a.value <=> b.value; }
+  friend std::ostream& operator<<(std::ostream& out, const SecondJet& a) { return out << a.value; }
+
+ private:
+  /// Where row i of the lower triangle starts.
+  static constexpr int row(int i) { return N + i * (i + 1) / 2; }
+};
+
+template <class T, int N> constexpr T value_of(const SecondJet<T, N>& x) { return x.value; }
+
+template <class T, int N> SecondJet<T, N> sqrt(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return sqrt(s); });
+}
+template <class T, int N> SecondJet<T, N> exp(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return exp(s); });
+}
+template <class T, int N> SecondJet<T, N> log(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return log(s); });
+}
+template <class T, int N> SecondJet<T, N> sin(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return sin(s); });
+}
+template <class T, int N> SecondJet<T, N> cos(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return cos(s); });
+}
+template <class T, int N> SecondJet<T, N> tan(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return tan(s); });
+}
+template <class T, int N> SecondJet<T, N> asin(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return asin(s); });
+}
+template <class T, int N> SecondJet<T, N> acos(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return acos(s); });
+}
+template <class T, int N> SecondJet<T, N> atan(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return atan(s); });
+}
+template <class T, int N> SecondJet<T, N> sinh(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return sinh(s); });
+}
+template <class T, int N> SecondJet<T, N> cosh(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return cosh(s); });
+}
+template <class T, int N> SecondJet<T, N> tanh(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return tanh(s); });
+}
+template <class T, int N> SecondJet<T, N> pow(const SecondJet<T, N>& x, std::type_identity_t<T> p) {
+  return x.compose([p](const auto& s) { return pow(s, p); });
+}
+template <class T, int N> SecondJet<T, N> abs(const SecondJet<T, N>& x) { return x.value < 0 ? -x : x; }
+/// The angle of the point (x, y); the derivative is that of the smooth function away from the origin.
+template <class T, int N> SecondJet<T, N> atan2(const SecondJet<T, N>& y, const SecondJet<T, N>& x) {
+  SecondJet<T, N> angle = std::abs(x.value) > std::abs(y.value) ? atan(y / x) : -atan(x / y);  // up to a constant
+  angle.value = std::atan2(y.value, x.value);
+  return angle;
+}
+
+template <int K, class T, int N> SecondJet<T, N> stumpff(const SecondJet<T, N>& x) {
+  return x.compose([](const auto& s) { return stumpff<K>(s); });
+}
+template <int Order, class T, int N> SecondJet<T, N> angle_ratio(const SecondJet<T, N>& w) {
+  return w.compose([](const auto& s) { return angle_ratio<Order>(s); });
+}
+
+}  // namespace lagroid
+
+template <class T, int N> struct Eigen::NumTraits<lagroid::SecondJet<T, N>> : Eigen::NumTraits<T> {
+  using Real = lagroid::SecondJet<T, N>;
+  using NonInteger = Real;
+  using Nested = Real;
+  using Literal = T;
+  enum { IsComplex = 0, RequireInitialization = 1, ReadCost = N * N / 2, AddCost = N * N / 2, MulCost = 2 * N * N };
+};
+
+template <class T, int N, class Operation>
+struct Eigen::ScalarBinaryOpTraits<lagroid::SecondJet<T, N>, T, Operation> {
+  using ReturnType = lagroid::SecondJet<T, N>;
+};
+template <class T, int N, class Operation>
+struct Eigen::ScalarBinaryOpTraits<T, lagroid::SecondJet<T, N>, Operation> {
+  using ReturnType = lagroid::SecondJet<T, N>;
+};
