@@ -78,11 +78,12 @@ second_derivatives_in_one_pass(const Sys& system, const ArrowOf<typename Sys::Gr
   return out;
 }
 
-/// Every second derivative, the cheapest way there is.
+/// Every second derivative: in one pass where the ends of an arrow share displacements (d < 2n), else in three.
 template <DiscreteSystem Sys>
 SecondDerivativesOf<Sys> second_derivatives(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                             const typename Sys::Multipliers& lambda) {
-  if constexpr (HasArrowFrame<typename Sys::GroupoidType> && !HasAnalyticDerivatives<Sys>) {
+  constexpr int d = arrow_dimension_of<typename Sys::GroupoidType>();
+  if constexpr (d > 0 && d < 2 * Sys::dimension && !HasAnalyticDerivatives<Sys>) {
     return second_derivatives_in_one_pass(system, g, lambda);
   } else {
     return second_derivatives_in_three_passes(system, g, lambda);

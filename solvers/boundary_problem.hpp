@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace lagroid {
@@ -19,6 +20,12 @@ template <DiscreteSystem Sys> struct BoundaryProblem {
   ArrowOf<typename Sys::GroupoidType> boundary;
 };
 
+/// A boundary-value problem together with its number of arrows.
+template <DiscreteSystem Sys> struct BoundaryStage {
+  BoundaryProblem<Sys> problem;
+  std::size_t steps = 0;
+};
+
 /// A candidate: N composable arrows whose product is the boundary arrow, with a multiplier each.
 template <DiscreteSystem Sys> using Path = std::vector<Step<Sys>>;
 
@@ -29,29 +36,46 @@ template <DiscreteSystem Sys> double action(const Sys& system, const Path<Sys>& 
   return sum;
 }
 
-/// The path with node k (the target of g_k, k = 1 ... N-1) displaced by v_k in A_{q_k}G:
-/// g_k -> tau(v_{k-1})^{-1} g_k tau(v_k), v_0 = v_N = 0, which leaves the product as it is; and multipliers
-/// lambda + dlambda. The last arrow is recomputed from the product, so that round-off does not add up.
+/// Displacements of a path's inner nodes and multipliers.
+template <DiscreteSystem Sys> struct Variation {
+  std::vector<Vector<double, Sys::dimension>> nodes;     ///< v_k in A_{q_k}G, q_k the target of arrow k = 0 ... N-1
+  std::vector<typename Sys::Multipliers> multipliers;  ///< added to those of arrow k
+
+  Variation() = default;
+  explicit Variation(std::size_t count)
+      : nodes(count, Vector<double, Sys::dimension>::Zero()), multipliers(count, Sys::Multipliers::Zero()) {}
+};
+
+/// Writes to `out` the path with node k (the target of g_k) displaced by fraction * v_k: g_k -> tau(v_{k-1})^{-1} g_k
+/// tau(v_k), where the ends stay, which leaves the product as it is; and multipliers lambda + fraction * dlambda. The last
+/// arrow is recomputed from the product, so that round-off does not add up. `out` must not be `path`.
 template <DiscreteSystem Sys>
-Path<Sys> displaced(const BoundaryProblem<Sys>& problem, const Path<Sys>& path,
-                    const std::vector<Vector<double, Sys::dimension>>& nodes,
-                    const std::vector<typename Sys::Multipliers>& multipliers, double fraction) {
+void displace(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, const Variation<Sys>& by, double fraction,
+              Path<Sys>& out) {
   using G = typename Sys::GroupoidType;
   const G& groupoid = problem.system.groupoid;
   const std::size_t count = path.size();
-  Path<Sys> out(count);
+  out.resize(count);
   ArrowOf<G> product = groupoid.unit(groupoid.source(problem.boundary));
+  ArrowOf<G> back = product;  // tau(v_{k-1})^{-1}
   for (std::size_t k = 0; k < count; ++k) {
-    out[k].multipliers = path[k].multipliers + fraction * multipliers[k];
+    out[k].multipliers = path[k].multipliers + fraction * by.multipliers[k];
     if (k + 1 == count) {
       out[k].arrow = groupoid.project(groupoid.compose(groupoid.inverse(product), problem.boundary));
       break;
     }
-    const AlgebroidVector<G> before = k == 0 ? AlgebroidVector<G>::Zero().eval() : (fraction * nodes[k - 1]).eval();
-    const AlgebroidVector<G> after = fraction * nodes[k];
-    out[k].arrow = groupoid.project(groupoid.translate(before, path[k].arrow, after));
+    const AlgebroidVector<G> v = fraction * by.nodes[k];
+    const ArrowOf<G> forth = groupoid.tau(groupoid.target(path[k].arrow), v);
+    out[k].arrow = groupoid.project(groupoid.compose(groupoid.compose(back, path[k].arrow), forth));
     product = groupoid.project(groupoid.compose(product, out[k].arrow));
+    back = groupoid.inverse(forth);
   }
+}
+template <DiscreteSystem Sys>
+Path<Sys> displaced(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, const Variation<Sys>& by,
+                    double fraction) {
+  Path<Sys> out;
+  displace(problem, path, by, fraction, out);
   return out;
 }
 
@@ -103,6 +127,7 @@ template <DiscreteSystem Sys> struct BoundarySolution {
   double cost = 0;                                            ///< sum_k L(g_k)
   Classification kind;
   Path<Sys> path;
+  std::string message;  ///< of a failure, where more can be said than its status
   bool converged() const { return status == SolveStatus::converged; }
 };
 

@@ -15,12 +15,6 @@
 
 namespace lagroid {
 
-/// A boundary-value problem together with its number of arrows.
-template <DiscreteSystem Sys> struct BoundaryStage {
-  BoundaryProblem<Sys> problem;
-  std::size_t steps = 0;
-};
-
 /// What a multistart found.
 template <DiscreteSystem Sys> struct MultistartResult {
   std::vector<BoundarySolution<Sys>> solutions;  ///< distinct stationary points, cheapest first
@@ -48,15 +42,14 @@ bool same_solution(const Sys& system, const BoundarySolution<Sys>& a, const Boun
 template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int attempt) {
   std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
   std::normal_distribution<double> normal(0, 0.01 * std::exp2(attempt));
-  std::vector<Vector<double, Sys::dimension>> nodes(path.size(), Vector<double, Sys::dimension>::Zero());
+  Variation<Sys> variation(path.size());
   for (int mode = 1; mode <= 3; ++mode) {
     Vector<double, Sys::dimension> amplitude;
     for (int i = 0; i < Sys::dimension; ++i) amplitude(i) = normal(generator) / mode;
     for (std::size_t k = 0; k + 1 < path.size(); ++k)
-      nodes[k] += amplitude * std::sin(mode * std::numbers::pi * double(k + 1) / double(path.size()));
+      variation.nodes[k] += amplitude * std::sin(mode * std::numbers::pi * double(k + 1) / double(path.size()));
   }
-  const std::vector<typename Sys::Multipliers> same(path.size(), Sys::Multipliers::Zero());
-  return displaced(problem, path, nodes, same, 1.0);
+  return displaced(problem, path, variation, 1.0);
 }
 
 template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
