@@ -34,7 +34,8 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   /// Which second derivatives stand in the (v, v) blocks.
   enum class Hessian {
     exact,
-    identity  ///< over the time step where there is one; the system then yields least-squares multipliers
+    identity,   ///< over the time step where there is one
+    stiffness,  ///< of sum_k |v_k - v_{k-1}|^2 / 2, the same: steps of least norm are then smooth, whatever N
   };
 
   void evaluate(const Sys& system, const Path<Sys>& path, Hessian hessian = Hessian::exact) {
@@ -54,7 +55,12 @@ template <DiscreteSystem Sys> class BoundaryKkt {
         if (k > 0) diagonal_[k - 1].template bottomRightCorner<n, n>() += d.source_hessian;
       } else {
         add_equations(k, two_sided(system, path[k].arrow, path[k].multipliers), path[k].multipliers);
-        diagonal_[k].template bottomRightCorner<n, n>() += metric * Matrix<double, n, n>::Identity();
+        const Matrix<double, n, n> unit = metric * Matrix<double, n, n>::Identity();
+        diagonal_[k].template bottomRightCorner<n, n>() += unit;
+        if (hessian == Hessian::stiffness && k > 0) {
+          diagonal_[k - 1].template bottomRightCorner<n, n>() += unit;
+          coupling_[k].template bottomRows<n>() = -unit;
+        }
       }
     }
     // The end node does not move: its unknowns are decoupled and kept at zero.
@@ -84,8 +90,9 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     double smallest = std::numeric_limits<double>::infinity();  ///< |pivot|, scaled
   };
 
-  /// Factors with `primal` added to the (v, v) and `dual` subtracted from the multipliers' diagonal (scaled).
-  Inertia factor(double primal, double dual) {
+  /// Factors with `primal` added to the (v, v) and `dual` subtracted from the multipliers' diagonal, and `stiffness` times
+  /// the matrix of sum_k |v_k - v_{k-1}|^2 / 4 added to the (v, v) part (all scaled).
+  Inertia factor(double primal, double dual, double stiffness = 0) {
     const std::size_t count = diagonal_.size();
     factors_.resize(count);
     scaled_coupling_.resize(count);
@@ -93,11 +100,12 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     for (std::size_t k = 0; k < count; ++k) {
       Block s = scale_.asDiagonal() * diagonal_[k] * scale_.asDiagonal();
       s.diagonal().template head<m>().array() -= dual;
-      s.diagonal().template tail<n>().array() += primal;
+      s.diagonal().template tail<n>().array() += primal + stiffness;
       if (k + 1 == count) s.template bottomRightCorner<fixed, fixed>().setIdentity();
       if (k > 0) {
         Coupling& c = scaled_coupling_[k];
         c = scale_.asDiagonal() * coupling_[k] * scale_.template tail<n>().asDiagonal();
+        if (k + 1 < count) c.template bottomRows<n>().diagonal().array() -= 0.5 * stiffness;
         Block right = Block::Zero();
         right.template bottomRows<n>() = c.transpose();
         factors_[k - 1].subtract_from(s, right);

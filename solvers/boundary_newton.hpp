@@ -113,7 +113,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     const Sys& system = problem.system;
     Kkt& kkt = work.kkt;
     for (; out.iterations < options_.max_iterations; ++out.iterations) {
-      kkt.evaluate(system, path, Kkt::Hessian::identity);
+      kkt.evaluate(system, path, Kkt::Hessian::stiffness);
       if (!std::isfinite(kkt.residual_norm())) return fail(out, SolveStatus::not_finite);
       kkt.choose_scale();
       const double violation = kkt.constraint_side(system, path, work.side);
@@ -140,7 +140,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
                                  BoundarySolution<Sys>& out) const {
     if constexpr (m > 0) {
       for (auto& step : path) step.multipliers.setZero();
-      work.kkt.evaluate(problem.system, path, Kkt::Hessian::identity);
+      work.kkt.evaluate(problem.system, path, Kkt::Hessian::stiffness);
       if (!std::isfinite(work.kkt.residual_norm())) return fail(out, SolveStatus::not_finite);
       work.kkt.choose_scale();
       work.kkt.factor(0, 1e-8);
@@ -158,7 +158,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     while (out.iterations < options_.max_iterations) {
       if (!least_squares_multipliers(problem, work, path, out)) return;
       work.kkt.evaluate(problem.system, path);
-      if (work.kkt.residual_norm() < 0.1) {
+      if (work.kkt.residual_norm() < 2.0 / double(path.size())) {
         if (polish(problem, work, path, out)) return;
         work.kkt.evaluate(problem.system, path);
       }
@@ -230,8 +230,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     kkt.choose_scale();
     kkt.newton_side(work.side);
     const double cost = action(system, path);
-    // Curvatures of a smooth path shrink like N^-2 in scaled unknowns.
-    const double smallest = 0.4 / (double(path.size()) * double(path.size()));
+    constexpr double smallest = 1e-3;
     constexpr double largest = 1e8;
     shift = shift / 3 < smallest ? 0 : shift / 3;
     for (; shift < largest; shift = std::max(smallest, 3 * shift)) {
@@ -358,8 +357,8 @@ template <DiscreteSystem Sys> class BoundaryNewton {
   /// Factors with the given shift; true when as many eigenvalues are negative as there are constraints, as at a minimum
   /// on the tangent space.
   static bool right_inertia(Kkt& kkt, double shift) {
-    auto inertia = kkt.factor(shift, 0);
-    if (inertia.smallest < tiny_pivot) inertia = kkt.factor(shift, dual_shift);
+    auto inertia = kkt.factor(0, 0, shift);
+    if (inertia.smallest < tiny_pivot) inertia = kkt.factor(0, dual_shift, shift);
     return inertia.negative == kkt.constraint_count();
   }
 
