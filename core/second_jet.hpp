@@ -11,8 +11,8 @@
 
 namespace lagroid {
 
-/// x + g.v + v^T H v / 2 in N infinitesimals v with v v v = 0: a Taylor polynomial. H is symmetric and stored as the rows
-/// of its lower triangle, so that a jet has 1 + N + N (N + 1) / 2 numbers where Mixed<T, N, N> has (N + 1)^2.
+/// x + g.v + v^T H v / 2 in N infinitesimals v with v v v = 0: a Taylor polynomial. H is symmetric and stored as the
+/// rows of its lower triangle, so that a jet has 1 + N + N (N + 1) / 2 numbers where Mixed<T, N, N> has (N + 1)^2.
 ///
 /// Functions of one variable get their derivatives from the same functions of Mixed<T, 1, 1>.
 template <class T, int N> struct SecondJet {
@@ -213,11 +213,9 @@ template <class T, int N> struct Eigen::NumTraits<lagroid::SecondJet<T, N>> : Ei
   enum { IsComplex = 0, RequireInitialization = 1, ReadCost = N * N / 2, AddCost = N * N / 2, MulCost = 2 * N * N };
 };
 
-template <class T, int N, class Operation>
-struct Eigen::ScalarBinaryOpTraits<lagroid::SecondJet<T, N>, T, Operation> {
+template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<lagroid::SecondJet<T, N>, T, Operation> {
   using ReturnType = lagroid::SecondJet<T, N>;
 };
-template <class T, int N, class Operation>
-struct Eigen::ScalarBinaryOpTraits<T, lagroid::SecondJet<T, N>, Operation> {
+template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<T, lagroid::SecondJet<T, N>, Operation> {
   using ReturnType = lagroid::SecondJet<T, N>;
 };

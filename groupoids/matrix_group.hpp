@@ -84,8 +84,8 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return columns<T>([&](const Matrix<T, N, N>& e) -> Matrix<T, N, N> { return g * e * inverse; });
   }
 
-  /// The arrow frame: g tau(u). The source displacement v is the frame's -Ad_{g^{-1}} v, because both retractions satisfy
-  /// tau(v)^{-1} g = g tau(-Ad_{g^{-1}} v); and tau(u) tau(w) = tau(u + w + [u, w] / 2 + ...).
+  /// The arrow frame: g tau(u). The source displacement v is the frame's -Ad_{g^{-1}} v, because both retractions
+  /// satisfy tau(v)^{-1} g = g tau(-Ad_{g^{-1}} v); and tau(u) tau(w) = tau(u + w + [u, w] / 2 + ...).
   static constexpr int arrow_dimension = Dimension;
   template <class J, class T> static Matrix<J, N, N> frame_jet(const Matrix<T, N, N>& g, int offset = 0) {
     struct Generators {
@@ -96,8 +96,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
       Generators e;
       for (int i = 0, at = 0; i < Dimension; ++i) {
         e.first[i] = generator(i).template cast<T>();
-        for (int j = 0; j <= i; ++j)
-          e.second[at++] = (e.first[i] * e.first[j] + e.first[j] * e.first[i]).eval() / T(2);
+        for (int j = 0; j <= i; ++j) e.second[at++] = (e.first[i] * e.first[j] + e.first[j] * e.first[i]).eval() / T(2);
       }
       return e;
     }();

@@ -75,15 +75,15 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   }
 
   /// The arrow frame: those of the factors, side by side, if all have one.
-  static constexpr int arrow_dimension =
-      ((arrow_dimension_of<Gs>() > 0) && ...) ? (arrow_dimension_of<Gs>() + ...) : 0;
+  static constexpr int arrow_dimension = ((arrow_dimension_of<Gs>() > 0) && ...) ? (arrow_dimension_of<Gs>() + ...) : 0;
   template <class J, class... As> Arrow<J> frame_jet(const std::tuple<As...>& g, int offset = 0) const {
     return indexed([&]<std::size_t I>() {
       return std::get<I>(factor).template frame_jet<J>(std::get<I>(g), offset + start(frames, I));
     });
   }
   template <class... As, class T, int K>
-  Matrix<T, rank, K> frame_to_end(End end, const std::tuple<As...>& g, const Matrix<T, arrow_dimension, K>& rows) const {
+  Matrix<T, rank, K> frame_to_end(End end, const std::tuple<As...>& g,
+                                  const Matrix<T, arrow_dimension, K>& rows) const {
     Matrix<T, rank, K> out;
     each([&]<std::size_t I>() {
       const Matrix<T, frames[I], K> part = rows.template middleRows<frames[I]>(start(frames, I));

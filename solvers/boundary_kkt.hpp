@@ -14,13 +14,13 @@
 namespace lagroid {
 
 /// Unknowns z_k = (lambda_k, kappa_k, v_k), k = 1 ... N: the multipliers of arrow k's own constraints phi, those of the
-/// object constraints C at its target node q_k, and the displacement of that node; at the last node, which is fixed, lambda
-/// alone. Equations: phi(g_k) = 0, C(q_k) = 0 and F+(g_k) - F-(g_{k+1}) = 0, the discrete constrained Euler-Lagrange
-/// equations. (In a Path kappa_k belongs to arrow k + 1, of which q_k is the source.)
+/// object constraints C at its target node q_k, and the displacement of that node; at the last node, which is fixed,
+/// lambda alone. Equations: phi(g_k) = 0, C(q_k) = 0 and F+(g_k) - F-(g_{k+1}) = 0, the discrete constrained
+/// Euler-Lagrange equations. (In a Path kappa_k belongs to arrow k + 1, of which q_k is the source.)
 ///
 /// Everything is kept in scaled unknowns, z = scale * z', so that regularisation and round-off mean the same in each.
-/// The elimination runs along the path with one Bunch-Kaufman factorisation a node: linear in N, without allocation once
-/// the vectors have their size.
+/// The elimination runs along the path with one Bunch-Kaufman factorisation a node: linear in N, without allocation
+/// once the vectors have their size.
 template <DiscreteSystem Sys> class BoundaryKkt {
  public:
   static constexpr int n = Sys::dimension;
@@ -90,8 +90,8 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     double smallest = std::numeric_limits<double>::infinity();  ///< |pivot|, scaled
   };
 
-  /// Factors with `primal` added to the (v, v) and `dual` subtracted from the multipliers' diagonal, and `stiffness` times
-  /// the matrix of sum_k |v_k - v_{k-1}|^2 / 4 added to the (v, v) part (all scaled).
+  /// Factors with `primal` added to the (v, v) and `dual` subtracted from the multipliers' diagonal, and `stiffness`
+  /// times the matrix of sum_k |v_k - v_{k-1}|^2 / 4 added to the (v, v) part (all scaled).
   Inertia factor(double primal, double dual, double stiffness = 0) {
     const std::size_t count = diagonal_.size();
     factors_.resize(count);
@@ -156,8 +156,8 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     out.resize(residual_.size());
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = -scale_.cwiseProduct(residual_[k]);
   }
-  /// The right-hand side of a step back to the constraints at `path`: their scaled values, negated. Returns the largest,
-  /// or whatever is not finite.
+  /// The right-hand side of a step back to the constraints at `path`: their scaled values, negated. Returns the
+  /// largest, or whatever is not finite.
   double constraint_side(const Sys& system, const Path<Sys>& path, Columns& out) const {
     out.assign(path.size(), Column::Zero());
     double violation = 0;
@@ -265,8 +265,8 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     diagonal_[k].template bottomLeftCorner<n, m>() = d.constraint_target.transpose();
     coupling_[k].template topRows<phis>() = d.constraint_source.template leftCols<phis>().transpose();
     residual_[k].template tail<n>() += d.target_gradient;
-    gradient_[k] += d.target_gradient -
-                    d.constraint_target.template topRows<phis>().transpose() * lambda.template head<phis>();
+    gradient_[k] +=
+        d.target_gradient - d.constraint_target.template topRows<phis>().transpose() * lambda.template head<phis>();
     if (k > 0) {
       residual_[k - 1].template tail<n>() += d.source_gradient;
       gradient_[k - 1] += d.source_gradient - d.constraint_source * lambda;

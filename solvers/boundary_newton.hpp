@@ -8,17 +8,6 @@
 
 namespace lagroid {
 
-/// What a boundary-value solver looks for.
-enum class Seek {
-  minima,      ///< of the action: descends it, and stops at saddles only where it cannot tell them from minima
-  stationary,  ///< points of any kind: lowers the residual of the equations
-};
-
-/// Optimal control, with its arrow constraints, asks for minima of the cost. The action of a mechanical system has none in
-/// general: its trajectories are stationary, and minimise only up to the first conjugate point.
-template <DiscreteSystem Sys>
-inline constexpr Seek natural_seek = Sys::arrow_constraints > 0 ? Seek::minima : Seek::stationary;
-
 struct BoundaryOptions {
   int max_iterations = 200;
   double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; iterates on until it no longer falls
@@ -31,10 +20,11 @@ struct BoundaryOptions {
 ///
 /// First the path is brought onto that manifold by Gauss-Newton steps of least norm. Then, looking for minima, at each
 /// iteration the KKT matrix with exact second derivatives gets just enough of the identity on its Hessian block to have
-/// the inertia of a minimum on the tangent space (section 5.1's space of variations), a step along its solution is pulled
-/// back to the manifold with the same matrix, and the action itself decides how far to go; looking for stationary points,
-/// the step is Newton's, damped until the residual or the next Newton correction falls. Near a solution plain Newton on
-/// the full KKT system takes over and is iterated to round-off. Vectors are allocated once per solve.
+/// the inertia of a minimum on the tangent space (section 5.1's space of variations), a step along its solution is
+/// pulled back to the manifold with the same matrix, and the action itself decides how far to go; looking for
+/// stationary points, the step is Newton's, damped until the residual or the next Newton correction falls. Near a
+/// solution plain Newton on the full KKT system takes over and is iterated to round-off. Vectors are allocated once per
+/// solve.
 template <DiscreteSystem Sys> class BoundaryNewton {
  public:
   static constexpr int n = Sys::dimension;
@@ -42,6 +32,7 @@ template <DiscreteSystem Sys> class BoundaryNewton {
 
   explicit BoundaryNewton(BoundaryOptions options = {}, Seek seek = natural_seek<Sys>)
       : options_(options), seek_(seek) {}
+  Seek seek() const { return seek_; }
 
   /// Starts from `path`, whose product must be the boundary arrow and whose ends must satisfy the object constraints.
   /// Multipliers are found from the arrows unless `keep_multipliers` says that those of `path` are worth starting from.
@@ -170,8 +161,9 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     out.status = SolveStatus::not_converged;
   }
 
-  /// Newton's iteration, damped: a step is taken as far as it lowers the residual or, in the spirit of Deuflhard's natural
-  /// monotonicity test, the correction the same matrix would make next, which is small also where scales differ.
+  /// Newton's iteration, damped: a step is taken as far as it lowers the residual or, in the spirit of Deuflhard's
+  /// natural monotonicity test, the correction the same matrix would make next, which is small also where scales
+  /// differ.
   void find_stationary(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path,
                        BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;
@@ -220,8 +212,8 @@ template <DiscreteSystem Sys> class BoundaryNewton {
   }
 
   /// One step of descent of the action along the manifold, by the least shift (of the right inertia) whose step stays
-  /// in reach, comes back to the constraints and lowers the action. On entry the KKT system is evaluated at `path`; `shift`
-  /// is the one that served last.
+  /// in reach, comes back to the constraints and lowers the action. On entry the KKT system is evaluated at `path`;
+  /// `shift` is the one that served last.
   bool descend(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path, double& shift,
                BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +40,7 @@ template <DiscreteSystem Sys> double action(const Sys& system, const Path<Sys>& 
 
 /// Displacements of a path's inner nodes and multipliers.
 template <DiscreteSystem Sys> struct Variation {
-  std::vector<Vector<double, Sys::dimension>> nodes;     ///< v_k in A_{q_k}G, q_k the target of arrow k = 0 ... N-1
+  std::vector<Vector<double, Sys::dimension>> nodes;   ///< v_k in A_{q_k}G, q_k the target of arrow k = 0 ... N-1
   std::vector<typename Sys::Multipliers> multipliers;  ///< added to those of arrow k
 
   Variation() = default;
@@ -47,8 +49,8 @@ template <DiscreteSystem Sys> struct Variation {
 };
 
 /// Writes to `out` the path with node k (the target of g_k) displaced by fraction * v_k: g_k -> tau(v_{k-1})^{-1} g_k
-/// tau(v_k), where the ends stay, which leaves the product as it is; and multipliers lambda + fraction * dlambda. The last
-/// arrow is recomputed from the product, so that round-off does not add up. `out` must not be `path`.
+/// tau(v_k), where the ends stay, which leaves the product as it is; and multipliers lambda + fraction * dlambda. The
+/// last arrow is recomputed from the product, so that round-off does not add up. `out` must not be `path`.
 template <DiscreteSystem Sys>
 void displace(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, const Variation<Sys>& by, double fraction,
               Path<Sys>& out) {
@@ -79,8 +81,21 @@ Path<Sys> displaced(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, 
   return out;
 }
 
-/// The same path with another number of arrows: nodes interpolated along tau, multipliers linearly between the
-/// midpoints of the arrows. A starting guess for continuation in N.
+/// v_k = sum_j a_j sin(j pi k / N) with a_j of components draw() / j, j = 1 ... modes.
+template <DiscreteSystem Sys, class Draw> Variation<Sys> sine_modes(std::size_t count, int modes, const Draw& draw) {
+  Variation<Sys> out(count);
+  for (int mode = 1; mode <= modes; ++mode) {
+    Vector<double, Sys::dimension> amplitude;
+    for (int i = 0; i < Sys::dimension; ++i) amplitude(i) = draw() / mode;
+    for (std::size_t k = 0; k + 1 < count; ++k)
+      out.nodes[k] += amplitude * std::sin(mode * std::numbers::pi * double(k + 1) / double(count));
+  }
+  return out;
+}
+
+/// The same path with another number of arrows: nodes interpolated along tau, multipliers of arrow constraints linearly
+/// between the midpoints of the arrows, those of object constraints between the nodes and in proportion to the step,
+/// being impulses. A starting guess for continuation in N.
 template <DiscreteSystem Sys>
 Path<Sys> resampled(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, std::size_t count) {
   using G = typename Sys::GroupoidType;
@@ -101,13 +116,38 @@ Path<Sys> resampled(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, 
     const ArrowOf<G> after = k + 1 == count ? problem.boundary : node(k + 1);
     out[k].arrow = groupoid.project(groupoid.compose(groupoid.inverse(before), after));
     before = after;
-    const double at =
-        std::clamp((double(k) + 0.5) * double(old_count) / double(count) - 0.5, 0.0, double(old_count - 1));
-    const std::size_t i = std::min(std::size_t(at), old_count - 1);
-    const double t = at - double(i);
-    out[k].multipliers = (1 - t) * path[i].multipliers + t * path[std::min(i + 1, old_count - 1)].multipliers;
+    const double ratio = double(old_count) / double(count);
+    const auto multipliers = [&](double at) -> typename Sys::Multipliers {
+      const std::size_t i = std::min(std::size_t(at), old_count - 1);
+      const double t = at - double(i);
+      return (1 - t) * path[i].multipliers + t * path[std::min(i + 1, old_count - 1)].multipliers;
+    };
+    out[k].multipliers = multipliers(std::clamp((double(k) + 0.5) * ratio - 0.5, 0.0, double(old_count - 1)));
+    // The multiplier at the first object is no unknown, and zero.
+    if constexpr (Sys::object_constraints > 0)
+      out[k].multipliers.template tail<Sys::object_constraints>() =
+          k == 0 ? Vector<double, Sys::object_constraints>::Zero().eval()
+                 : (ratio * multipliers(std::clamp(double(k) * ratio, 1.0, double(old_count - 1)))
+                                .template tail<Sys::object_constraints>())
+                       .eval();
   }
   return out;
+}
+
+/// Why the ends of a problem admit no path, or nothing: what is not finite or off the object constraints by more than
+/// 1e-9 of their natural size.
+template <DiscreteSystem Sys> std::optional<std::string> inadmissible_ends(const BoundaryProblem<Sys>& problem) {
+  const auto& groupoid = problem.system.groupoid;
+  if (!groupoid.coordinates_of_arrow(problem.boundary).allFinite()) return "the boundary arrow is not finite";
+  if constexpr (Sys::object_constraints > 0) {
+    for (const bool at_end : {false, true}) {
+      const auto q = at_end ? groupoid.target(problem.boundary) : groupoid.source(problem.boundary);
+      const auto c = problem.system.object_constraint(q);
+      if (!(c.cwiseAbs().maxCoeff() <= 1e-9 * (1 + groupoid.coordinates_of_object(q).squaredNorm())))
+        return std::string(at_end ? "the last" : "the first") + " object does not satisfy the object constraint";
+    }
+  }
+  return std::nullopt;
 }
 
 /// How a stationary point sits among its neighbours.
@@ -118,6 +158,17 @@ struct Classification {
   bool normal = true;    ///< false: abnormal, the constraints lose rank and the multipliers are not unique
   long negative_directions = 0;  ///< negative eigenvalues of that Hessian
 };
+
+/// What a boundary-value solver looks for.
+enum class Seek {
+  minima,      ///< of the action: descends it, and stops at saddles only where it cannot tell them from minima
+  stationary,  ///< points of any kind: lowers the residual of the equations
+};
+
+/// Optimal control, with its arrow constraints, asks for minima of the cost. The action of a mechanical system has none
+/// in general: its trajectories are stationary, and minimise only up to the first conjugate point.
+template <DiscreteSystem Sys>
+inline constexpr Seek natural_seek = Sys::arrow_constraints > 0 ? Seek::minima : Seek::stationary;
 
 /// A solution of a boundary-value problem, or the best iterate of a solve that failed.
 template <DiscreteSystem Sys> struct BoundarySolution {

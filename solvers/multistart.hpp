@@ -1,15 +1,11 @@
 #pragma once
 /// Many starts, then continuation: how local minima of a boundary-value problem are found.
 
-#include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/continuation.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <map>
-#include <numbers>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -36,20 +32,6 @@ bool same_solution(const Sys& system, const BoundarySolution<Sys>& a, const Boun
   const auto p = initial_momentum(system, a.path);
   const auto q = initial_momentum(system, b.path);
   return (p - q).norm() <= 1e-5 * (1 + p.norm());
-}
-
-/// The path with its nodes displaced by random multiples of the first sine modes, the larger the later the attempt.
-template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int attempt) {
-  std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
-  std::normal_distribution<double> normal(0, 0.01 * std::exp2(attempt));
-  Variation<Sys> variation(path.size());
-  for (int mode = 1; mode <= 3; ++mode) {
-    Vector<double, Sys::dimension> amplitude;
-    for (int i = 0; i < Sys::dimension; ++i) amplitude(i) = normal(generator) / mode;
-    for (std::size_t k = 0; k + 1 < path.size(); ++k)
-      variation.nodes[k] += amplitude * std::sin(mode * std::numbers::pi * double(k + 1) / double(path.size()));
-  }
-  return displaced(problem, path, variation, 1.0);
 }
 
 template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
@@ -82,7 +64,8 @@ void descend_from_saddles(const Solver& solver, const BoundaryProblem<Sys>& prob
 }  // namespace detail
 
 /// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
-/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve; `guess(i)` is
+/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
+/// `solver.seek()`; `guess(i)` is
 /// the i-th starting path of the first stage; `report(i)` is called after each start.
 template <DiscreteSystem Sys, class Solver, class Guess, class Report>
 MultistartResult<Sys> multistart(const Solver& solver, const std::vector<BoundaryStage<Sys>>& stages, int starts,
@@ -102,19 +85,14 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
     }
     report(i + 1);
   }
-  detail::descend_from_saddles(solver, stages.front().problem, found, result);
+  const bool minima = solver.seek() == Seek::minima;
+  if (minima) detail::descend_from_saddles(solver, stages.front().problem, found, result);
   for (std::size_t s = 1; s < stages.size(); ++s) {
-    const auto& [problem, steps] = stages[s];
+    const BoundaryProblem<Sys>& problem = stages[s].problem;
     std::vector<BoundarySolution<Sys>> carried;
     for (const auto& solution : found) {
-      const Path<Sys> path = solution.path.size() == steps ? solution.path : resampled(problem, solution.path, steps);
-      auto next = solver.solve(problem, path, /*keep_multipliers=*/true);
+      auto next = carry(solver, stages[s], solution, solution.path);
       result.iterations += next.iterations;
-      // At an abnormal extremal the path may have to bend to reach its ends at all: try a few bent ones.
-      for (int bend = 1; bend <= 6 && !next.converged() && !solution.kind.normal; ++bend) {
-        next = solver.solve(problem, detail::bent(problem, path, bend), /*keep_multipliers=*/false);
-        result.iterations += next.iterations;
-      }
       if (next.converged()) {
         detail::keep_if_new(carried, problem.system, std::move(next));
       } else {
@@ -124,7 +102,7 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
     }
     found = std::move(carried);
   }
-  if (stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, found, result);
+  if (minima && stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, found, result);
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   result.solutions = std::move(found);
   return result;

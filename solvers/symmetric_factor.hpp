@@ -12,8 +12,8 @@
 namespace lagroid {
 
 /// P A P^T = L D L^T with unit lower triangular L and D of 1 x 1 and 2 x 2 blocks (Bunch and Kaufman, Math. Comp. 31
-/// (1977)): stable for any symmetric A, definite or not; by Sylvester's law of inertia D has as many negative eigenvalues
-/// as A. Fixed size, no allocation.
+/// (1977)): stable for any symmetric A, definite or not; by Sylvester's law of inertia D has as many negative
+/// eigenvalues as A. Fixed size, no allocation.
 template <int N> class SymmetricFactor {
  public:
   using Square = Eigen::Matrix<double, N, N, Eigen::RowMajor>;
@@ -65,8 +65,8 @@ template <int N> class SymmetricFactor {
   }
 
  private:
-  /// Eliminates one or two unknowns and says how many. Before step k rows k ... N-1 of l_ hold L in columns 0 ... k-1 and
-  /// the rest of the matrix in the others.
+  /// Eliminates one or two unknowns and says how many. Before step k rows k ... N-1 of l_ hold L in columns 0 ... k-1
+  /// and the rest of the matrix in the others.
   int pivot(int k) {
     constexpr double growth = 0.6403882032022076;  // (1 + sqrt 17) / 8
     const double diagonal = std::abs(l_(k, k));
