@@ -41,18 +41,17 @@ Matrix<double, Sys::dimension, Sys::dimension> gradient_derivative(const Sys& sy
 /// number, so that on very long paths it stalls above the tolerance: that is told from a problem without a solution by
 /// one Newton step, and reported as `ill_conditioned`. What Ceres says of its own success is not believed: the status
 /// follows from the residual, evaluated anew.
-template <DiscreteSystem Sys> class BoundaryCeres {
+template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
   static constexpr int n = Sys::dimension;
   static constexpr int m = Sys::constraints;
   static constexpr int phis = Sys::arrow_constraints;
 
-  explicit BoundaryCeres(BoundaryOptions options = {}, Seek seek = natural_seek<Sys>)
-      : options_(options), seek_(seek) {}
-  Seek seek() const { return seek_; }
+  using BoundarySolver<Sys>::BoundarySolver;
 
-  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path, bool keep_multipliers) const {
+  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                              bool keep_multipliers) const override {
     BoundarySolution<Sys> out;
     const Sys& system = problem.system;
     BoundaryKkt<Sys> kkt;
@@ -97,6 +96,8 @@ template <DiscreteSystem Sys> class BoundaryCeres {
   }
 
  private:
+  using BoundarySolver<Sys>::options_;
+  using BoundarySolver<Sys>::seek_;
   static constexpr int ambient = AlphaFibreManifold<G>::ambient;
 
   /// Levenberg-Marquardt from `path`, which becomes what it found.
@@ -204,8 +205,10 @@ template <DiscreteSystem Sys> class BoundaryCeres {
         r.template tail<n>() += e.source_gradient;
       }
       const int rows = num_residuals();
-      if (!r.head(rows).allFinite()) return false;
-      Eigen::Map<Eigen::VectorXd>(residuals, rows) = r.head(rows).cwiseProduct(scale_.head(rows));
+      for (int i = 0; i < rows; ++i) {
+        if (!std::isfinite(r(i))) return false;
+        residuals[i] = scale_(i) * r(i);
+      }
       if (jacobians == nullptr) return true;
 
       const auto put = [&](int block, const Matrix<double, m + n, n>& derivative, const ArrowOf<G>& at) {
@@ -250,9 +253,6 @@ template <DiscreteSystem Sys> class BoundaryCeres {
     Vector<double, n + m> scale_;
     bool last_;
   };
-
-  BoundaryOptions options_;
-  Seek seek_;
 };
 
 }  // namespace lagroid

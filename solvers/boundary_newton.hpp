@@ -2,18 +2,12 @@
 /// Boundary-value problems by Newton's method on the full KKT system, globalised.
 
 #include <lagroid/solvers/boundary_kkt.hpp>
+#include <lagroid/solvers/boundary_solver.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace lagroid {
-
-struct BoundaryOptions {
-  int max_iterations = 200;
-  double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; iterates on until it no longer falls
-  double feasibility = 1e-9;  ///< largest scaled constraint value at which a path counts as admissible on the way
-  double largest_displacement = 1.0;  ///< bound on a node displacement in one iteration, in coordinates of AG
-};
 
 /// Newton's method on the manifold of admissible trajectories ([G] 5.1): composable arrows in the constraint set with
 /// the given product.
@@ -25,18 +19,14 @@ struct BoundaryOptions {
 /// stationary points, the step is Newton's, damped until the residual or the next Newton correction falls. Near a
 /// solution plain Newton on the full KKT system takes over and is iterated to round-off. Vectors are allocated once per
 /// solve.
-template <DiscreteSystem Sys> class BoundaryNewton {
+template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver<Sys> {
  public:
   static constexpr int n = Sys::dimension;
   static constexpr int m = Sys::constraints;
+  using BoundarySolver<Sys>::BoundarySolver;
 
-  explicit BoundaryNewton(BoundaryOptions options = {}, Seek seek = natural_seek<Sys>)
-      : options_(options), seek_(seek) {}
-  Seek seek() const { return seek_; }
-
-  /// Starts from `path`, whose product must be the boundary arrow and whose ends must satisfy the object constraints.
-  /// Multipliers are found from the arrows unless `keep_multipliers` says that those of `path` are worth starting from.
-  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path, bool keep_multipliers) const {
+  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                              bool keep_multipliers) const override {
     Work work;
     BoundarySolution<Sys> out;
     const Sys& system = problem.system;
@@ -71,6 +61,8 @@ template <DiscreteSystem Sys> class BoundaryNewton {
   }
 
  private:
+  using BoundarySolver<Sys>::options_;
+  using BoundarySolver<Sys>::seek_;
   using Kkt = BoundaryKkt<Sys>;
   using Columns = typename Kkt::Columns;
 
@@ -368,9 +360,6 @@ template <DiscreteSystem Sys> class BoundaryNewton {
       return true;
     }
   }
-
-  BoundaryOptions options_;
-  Seek seek_;
 };
 
 }  // namespace lagroid

@@ -159,17 +159,6 @@ struct Classification {
   long negative_directions = 0;  ///< negative eigenvalues of that Hessian
 };
 
-/// What a boundary-value solver looks for.
-enum class Seek {
-  minima,      ///< of the action: descends it, and stops at saddles only where it cannot tell them from minima
-  stationary,  ///< points of any kind: lowers the residual of the equations
-};
-
-/// Optimal control, with its arrow constraints, asks for minima of the cost. The action of a mechanical system has none
-/// in general: its trajectories are stationary, and minimise only up to the first conjugate point.
-template <DiscreteSystem Sys>
-inline constexpr Seek natural_seek = Sys::arrow_constraints > 0 ? Seek::minima : Seek::stationary;
-
 /// A solution of a boundary-value problem, or the best iterate of a solve that failed.
 template <DiscreteSystem Sys> struct BoundarySolution {
   SolveStatus status = SolveStatus::not_converged;

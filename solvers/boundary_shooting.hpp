@@ -55,16 +55,15 @@ Matrix<double, Sys::dimension, Sys::dimension> end_sensitivity(const Sys& system
 /// until the miss at the end falls. With object constraints the momentum is determined up to their normals, and the
 /// least change is taken. Good where trajectories depend mildly on their start; elsewhere sensitivities grow like the
 /// flow's own and it fails, with a status that says so, where BoundaryNewton, which holds the whole path, does not.
-template <DiscreteSystem Sys> class BoundaryShooting {
+template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
 
-  explicit BoundaryShooting(BoundaryOptions options = {}, Seek seek = natural_seek<Sys>)
-      : options_(options), seek_(seek) {}
-  Seek seek() const { return seek_; }
+  using BoundarySolver<Sys>::BoundarySolver;
 
   /// The initial momentum to start from is F- of the path's first arrow.
-  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path, bool keep_multipliers) const {
+  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                              bool keep_multipliers) const override {
     const Sys& system = problem.system;
     BoundarySolution<Sys> out;
     if (!keep_multipliers) {
@@ -82,9 +81,7 @@ template <DiscreteSystem Sys> class BoundaryShooting {
         break;
       }
       const auto sensitivity = end_sensitivity(system, shot.path);
-      const AlgebroidVector<G> change =
-          Eigen::CompleteOrthogonalDecomposition<Matrix<double, Sys::dimension, Sys::dimension>>(sensitivity)
-              .solve(shot.miss);
+      const AlgebroidVector<G> change = least_change(sensitivity, shot.miss);
       Shot next;
       bool advanced = false;
       double fraction = 1;
@@ -120,12 +117,25 @@ template <DiscreteSystem Sys> class BoundaryShooting {
   }
 
  private:
+  using BoundarySolver<Sys>::options_;
+  using BoundarySolver<Sys>::seek_;
+
   /// A trajectory from a momentum, and the displacement of its end that would reach the boundary.
   struct Shot {
     SolveStatus status = SolveStatus::not_converged;
     Path<Sys> path;
     AlgebroidVector<G> miss = AlgebroidVector<G>::Constant(std::numeric_limits<double>::infinity());
   };
+
+  /// dmu with S dmu = miss; of least norm, in the sense of least squares, where object constraints make S singular.
+  static AlgebroidVector<G> least_change(const Matrix<double, Sys::dimension, Sys::dimension>& sensitivity,
+                                         const AlgebroidVector<G>& miss) {
+    if constexpr (Sys::object_constraints == 0) {
+      return sensitivity.partialPivLu().solve(miss);
+    } else {
+      return sensitivity.completeOrthogonalDecomposition().solve(miss);
+    }
+  }
 
   static Shot shoot(const BoundaryProblem<Sys>& problem, std::size_t count, const AlgebroidVector<G>& momentum) {
     const G& groupoid = problem.system.groupoid;
@@ -152,9 +162,6 @@ template <DiscreteSystem Sys> class BoundaryShooting {
     path.front().multipliers.template tail<Sys::object_constraints>().setZero();
     return displaced(problem, path, Variation<Sys>(path.size()), 0.0);
   }
-
-  BoundaryOptions options_;
-  Seek seek_;
 };
 
 }  // namespace lagroid

@@ -38,9 +38,9 @@ template <DiscreteSystem Sys> Path<Sys> geodesic_path(const BoundaryProblem<Sys>
 /// `coarse_steps` arrows over the same time, then continuation in their number. A system without a time step is solved
 /// as it is. Where the coarse problem led nowhere, the problem asked for gets starts of its own. Needs nothing of the
 /// system but what every system has. Throws std::invalid_argument where `inadmissible_ends` has a reason.
-template <DiscreteSystem Sys, class Solver>
-MultistartResult<Sys> solve_boundary(const Solver& solver, const BoundaryProblem<Sys>& problem, std::size_t steps,
-                                     const MultistartOptions& options = {}) {
+template <DiscreteSystem Sys>
+MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem,
+                                     std::size_t steps, const MultistartOptions& options = {}) {
   if (const auto why = inadmissible_ends(problem)) throw std::invalid_argument(*why);
   if (steps < 2) throw std::invalid_argument("a boundary-value problem needs at least 2 steps");
   std::vector<BoundaryStage<Sys>> stages{{problem, steps}};

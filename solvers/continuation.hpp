@@ -1,9 +1,9 @@
 #pragma once
 /// Solutions carried from one boundary-value problem to the next: along stages, or along a homotopy.
 
-#include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/boundary_solver.hpp>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,10 @@ std::optional<AlgebroidVector<G>> displacement_between(const G& groupoid, const 
       Matrix<double, G::object_coordinate_count(), G::dimension> anchor;
       for (int i = 0; i < G::dimension; ++i)
         anchor.col(i) = groupoid.anchor(here, AlgebroidVector<G>(AlgebroidVector<G>::Unit(i)));
-      a += anchor.completeOrthogonalDecomposition().solve(gap);
+      // The anchor need not be one to one: a trace of the identity picks the least displacement.
+      Matrix<double, G::dimension, G::dimension> normal = anchor.transpose() * anchor;
+      normal.diagonal().array() += 1e-12 * normal.trace();
+      a += normal.ldlt().solve(anchor.transpose() * gap);
     }
     const auto reached = groupoid.target(groupoid.tau(q, a));
     if (!((goal - groupoid.coordinates_of_object(reached)).norm() <= 1e-9 * size)) return std::nullopt;
@@ -142,9 +145,9 @@ template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem
 /// The solution of a neighbouring problem as a start for this stage: its path (or a better `prediction` of the new one)
 /// brought to the stage's number of arrows and boundary, and solved from there. At an abnormal extremal the path may
 /// have to bend to reach its ends at all: a few bent ones are tried.
-template <DiscreteSystem Sys, class Solver>
-BoundarySolution<Sys> carry(const Solver& solver, const BoundaryStage<Sys>& stage, const BoundarySolution<Sys>& from,
-                            const Path<Sys>& prediction) {
+template <DiscreteSystem Sys>
+BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage,
+                            const BoundarySolution<Sys>& from, const Path<Sys>& prediction) {
   const auto& [problem, steps] = stage;
   BoundarySolution<Sys> out;
   const auto based = detail::rebased(problem, prediction);
@@ -186,8 +189,8 @@ template <DiscreteSystem Sys> struct HomotopyResult {
 /// step sizes. The predictor is the secant through the last two solutions. A step that fails, or whose solution lies
 /// too far from its prediction to be believed on the same sheet (`left_domain`), is halved; where solutions end or turn
 /// back (a fold) the homotopy gives up, with the last solution and how far it came.
-template <DiscreteSystem Sys, class Solver, class Stage>
-HomotopyResult<Sys> follow(const Solver& solver, const Stage& stage, BoundarySolution<Sys> start,
+template <DiscreteSystem Sys, class Stage>
+HomotopyResult<Sys> follow(const BoundarySolver<Sys>& solver, const Stage& stage, BoundarySolution<Sys> start,
                            const HomotopyOptions& options = {}) {
   HomotopyResult<Sys> out;
   out.solution = std::move(start);

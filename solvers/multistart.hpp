@@ -47,8 +47,8 @@ void keep_if_new(std::vector<BoundarySolution<Sys>>& found, const Sys& system, B
 }
 
 /// A saddle has a way down: solves again from paths bent a little away from each, and keeps what is new.
-template <DiscreteSystem Sys, class Solver>
-void descend_from_saddles(const Solver& solver, const BoundaryProblem<Sys>& problem,
+template <DiscreteSystem Sys>
+void descend_from_saddles(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem,
                           std::vector<BoundarySolution<Sys>>& found, MultistartResult<Sys>& result) {
   std::vector<Path<Sys>> saddles;
   for (const auto& solution : found)
@@ -67,9 +67,9 @@ void descend_from_saddles(const Solver& solver, const BoundaryProblem<Sys>& prob
 /// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
 /// `solver.seek()`; `guess(i)` is
 /// the i-th starting path of the first stage; `report(i)` is called after each start.
-template <DiscreteSystem Sys, class Solver, class Guess, class Report>
-MultistartResult<Sys> multistart(const Solver& solver, const std::vector<BoundaryStage<Sys>>& stages, int starts,
-                                 const Guess& guess, const Report& report) {
+template <DiscreteSystem Sys, class Guess, class Report>
+MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
+                                 int starts, const Guess& guess, const Report& report) {
   MultistartResult<Sys> result;
   std::vector<BoundarySolution<Sys>> found;
   for (int i = 0; i < starts; ++i) {

@@ -68,6 +68,7 @@ template <int N> class SymmetricFactor {
   /// Eliminates one or two unknowns and says how many. Before step k rows k ... N-1 of l_ hold L in columns 0 ... k-1
   /// and the rest of the matrix in the others.
   int pivot(int k) {
+    if constexpr (N == 1) return eliminate_one(k);
     constexpr double growth = 0.6403882032022076;  // (1 + sqrt 17) / 8
     const double diagonal = std::abs(l_(k, k));
     int r = k;

@@ -2,3 +2,6 @@
 
 template lagroid::TwoSidedOf<lagroid::Pendulum> lagroid::automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
                                                                              const Pendulum::Multipliers&);
+template lagroid::SecondDerivativesOf<lagroid::Pendulum> lagroid::second_derivatives(const Pendulum&,
+                                                                                     const ArrowOf<Pair<1>>&,
+                                                                                     const Pendulum::Multipliers&);

@@ -1,7 +1,7 @@
 #pragma once
 /// The spherical pendulum, as R^3 with an object constraint.
 
-#include <lagroid/core/two_sided.hpp>
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 namespace lagroid {
@@ -40,5 +40,8 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
 
 extern template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
                                                                   const SphericalPendulum::Multipliers&);
+extern template SecondDerivativesOf<SphericalPendulum> second_derivatives(const SphericalPendulum&,
+                                                                          const ArrowOf<Pair<3>>&,
+                                                                          const SphericalPendulum::Multipliers&);
 
 }  // namespace lagroid

@@ -28,9 +28,9 @@ MultistartResult<PlateBall> solve(const PlateBall& system, const ArrowOf<G>& end
                                   std::uint64_t seed = 1) {
   PlateBallBoundaryOptions options;
   options.steps = steps;
-  options.ceres = ceres;
   options.seed = seed;
-  return solve_plate_ball(system, ends, options);
+  if (ceres) return solve_plate_ball(BoundaryCeres<PlateBall>(), system, ends, options);
+  return solve_plate_ball(BoundaryNewton<PlateBall>(), system, ends, options);
 }
 
 double end_defect(const PlateBall& system, const ArrowOf<G>& ends, const Path<PlateBall>& path) {
