@@ -113,7 +113,18 @@ template <class T, int N> struct SecondJet {
     }
     return out;
   }
-  friend SecondJet operator/(const SecondJet& a, const SecondJet& b) { return a * (T(1) / b); }
+  friend SecondJet operator/(const SecondJet& a, const SecondJet& b) {
+    const T inverse = 1 / b.value;
+    SecondJet out;
+    out.value = a.value * inverse;
+    for (int k = 0; k < parts; ++k) out.part[k] = (a.part[k] - out.value * b.part[k]) * inverse;
+    for (int i = 0; i < N; ++i) {
+      const T qi = out.part[i] * inverse;
+      const T bi = b.part[i] * inverse;
+      for (int j = 0; j <= i; ++j) out.part[row(i) + j] -= qi * b.part[j] + bi * out.part[j];
+    }
+    return out;
+  }
 
   friend SecondJet operator+(SecondJet a, T b) {
     a.value += b;

@@ -6,6 +6,7 @@
 #include "plate_ball_cases.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include <numbers>
 
