@@ -86,8 +86,8 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
           "Ceres stalls at residual {:.1e}, above the tolerance {:.1e}, though a solution is near: its normal "
           "equations "
           "square the condition number, which {} steps make too large for double precision; use solver.method = "
-          "\"newton\" or fewer steps",
-          out.residual, options_.tolerance, path.size());
+          "\"newton\" or fewer steps (iterations: {})",
+          out.residual, options_.tolerance, path.size(), summary.iterations.size());
     } else {
       out.status = SolveStatus::stagnated;
     }

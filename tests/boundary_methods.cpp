@@ -42,8 +42,6 @@ template <class Sys> void expect_found_by_all(const Known<Sys>& k, int starts) {
 TEST(EveryMethod, Pendulum) {
   expect_found_by_all(known(pendulum(), {Vector<double, 1>(0.4), Vector<double, 1>(0.9)}, 40), 4);
 }
-TEST(EveryMethod, KeplerIsLambertsProblem) { expect_found_by_all(known(kepler(), {{1, 0}, {0.1, 0.9}}, 80), 12); }
-TEST(EveryMethod, RigidBody) { expect_found_by_all(known(rigid_body(), {{}, {0.5, 0.6, -0.7}}, 40), 3); }
 TEST(EveryMethod, ObjectConstraints) {
   expect_found_by_all(known(spherical_pendulum(), {{0.6, 0, -0.8}, {0.2, 0.9, 0.15}}, 40), 6);
 }
@@ -102,18 +100,20 @@ TEST(Shooting, AnEndOutOfReachIsATypedFailure) {
 }
 
 TEST(Ceres, ItsStallIsTypedAndExplained) {
-  // Normal equations square the condition number: on a path this long Ceres cannot reach the tolerance, Newton can.
-  const std::size_t steps = 10000;
-  const PlateBall system = plate_ball(steps);
-  const BoundaryProblem<PlateBall> problem{system, plate_ball_ends()};
-  const auto newton = BoundaryNewton<PlateBall>().solve(problem, straight(system, steps), false);
-  ASSERT_TRUE(newton.converged());
-  auto path = newton.path;
-  for (auto& step : path) step.multipliers *= 1.0001;
-  const auto ceres = BoundaryCeres<PlateBall>().solve(problem, path, true);
+  // Normal equations square the condition number: on a path this long Ceres does not reach the tolerance, Newton does.
+  const std::size_t steps = 50000;
+  Pendulum system;
+  system.h = 2 / double(steps);
+  const BoundaryProblem<Pendulum> problem{system, {Vector<double, 1>(0.3), Vector<double, 1>(1.2)}};
+  const Path<Pendulum> path = geodesic_path(problem, steps);
+  BoundaryOptions options;
+  options.max_iterations = 60;
+  const auto ceres = BoundaryCeres<Pendulum>(options).solve(problem, path, false);
   EXPECT_EQ(ceres.status, SolveStatus::ill_conditioned) << ceres.residual;
   EXPECT_NE(ceres.message.find("solver.method = \"newton\""), std::string::npos);
-  EXPECT_TRUE(BoundaryNewton<PlateBall>().solve(problem, path, true).converged());
+  const auto newton = BoundaryNewton<Pendulum>(options).solve(problem, path, false);
+  EXPECT_TRUE(newton.converged());
+  EXPECT_LE(newton.residual, 1e-10);
 }
 
 }  // namespace
