@@ -196,6 +196,9 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
   if (const auto why = inadmissible_ends(problem.stage.problem)) scene.section_or_empty("boundary").fail("", *why);
   if (problem.stage.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
 
+  const BoundaryStage<Sys> first = along ? read(scene.with(along->parameter, along->from)).stage : problem.stage;
+  if (const auto why = inadmissible_ends(first.problem)) scene.section("continuation", "").fail("from", *why);
+
   const auto clock = std::chrono::steady_clock::now();
   const auto solver = make_boundary_solver<Sys>(choice);
   const long starts = choice.multistart.starts;
@@ -203,8 +206,7 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
   {
     Progress progress("starts", starts, context.progress);
     choice.multistart.report = [&](int done) { progress.update(done); };
-    found = search(*solver, along ? read(scene.with(along->parameter, along->from)).stage : problem.stage,
-                   choice.multistart);
+    found = search(*solver, first, choice.multistart);
   }
   RunResult result;
   result.system = presentation.name;
