@@ -146,6 +146,51 @@ std::string Section::choice_or(std::string_view key, const std::string& fallback
   return find(key) ? choice(key, words) : fallback;
 }
 
+std::string Section::text(std::string_view key, std::string_view what) const {
+  const toml::node& node = require(key, what);
+  if (!node.is_string()) fail(key, fmt::format("expected {}, got {}", what, type_name(node)));
+  return *node.value<std::string>();
+}
+
+bool Section::is_number(std::string_view key) const {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_number();
+}
+
+std::vector<double> Section::numbers_at(std::string_view path) const {
+  std::vector<double> out;
+  if (path.find('[') != std::string_view::npos) return out;
+  const auto node = source_->root.at_path(path);
+  const auto take = [&](const toml::node& entry) {
+    const auto value = entry.value<double>();
+    if (entry.is_number() && value && std::isfinite(*value)) out.push_back(*value);
+  };
+  if (node.is_number()) take(*node.node());
+  if (const toml::array* array = node.as_array()) {
+    for (const auto& entry : *array) take(entry);
+    if (out.size() != array->size()) out.clear();
+  }
+  return out;
+}
+
+Section Section::with(std::string_view path, const std::vector<double>& values) const {
+  Section out = *this;
+  out.source_ = std::make_shared<Source>(*source_);
+  out.table_ = &out.source_->root;
+  const auto dot = path.rfind('.');
+  toml::table* parent =
+      dot == std::string_view::npos ? &out.source_->root : out.source_->root.at_path(path.substr(0, dot)).as_table();
+  const std::string_view key = dot == std::string_view::npos ? path : path.substr(dot + 1);
+  if (parent->get_as<toml::array>(key) != nullptr) {
+    toml::array array;
+    for (const double x : values) array.push_back(x);
+    parent->insert_or_assign(key, array);
+  } else {
+    parent->insert_or_assign(key, values.front());
+  }
+  return out;
+}
+
 std::vector<double> Section::numbers(std::string_view key, std::size_t size, std::string_view meaning) const {
   const toml::node& node = require(key, fmt::format("{} numbers: {}", size, meaning));
   const toml::array* array = node.as_array();

@@ -42,6 +42,9 @@ class Section {
   /// One of the given words.
   std::string choice(std::string_view key, const std::vector<std::string>& words) const;
   std::string choice_or(std::string_view key, const std::string& fallback, const std::vector<std::string>& words) const;
+  /// Any string; `what` says which in messages.
+  std::string text(std::string_view key, std::string_view what) const;
+  bool is_number(std::string_view key) const;
   /// An array of exactly `size` finite numbers; `meaning` names its entries in messages.
   std::vector<double> numbers(std::string_view key, std::size_t size, std::string_view meaning) const;
   /// A rotation as a unit quaternion (w, x, y, z) or a rotation vector: four or three numbers. Returns a unit
@@ -51,6 +54,11 @@ class Section {
   /// A table that must be there (`purpose` says what for), or may be missing (then empty).
   Section section(std::string_view key, std::string_view purpose) const;
   Section section_or_empty(std::string_view key) const;
+
+  /// Of a whole scene: the finite numbers at a dotted path, one or an array of them; none if something else is there.
+  std::vector<double> numbers_at(std::string_view path) const;
+  /// A copy of a whole scene with other numbers at such a path, to be read like any scene.
+  Section with(std::string_view path, const std::vector<double>& values) const;
 
   /// Refuses every key that nobody asked for, in this table and the tables below it.
   void finish() const;

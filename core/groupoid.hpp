@@ -59,8 +59,8 @@ concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
 /// and, only when arrows (objects) are not Eigen matrices, `arrow_size`, `coordinates(g)`, `arrow<S>(coordinates)`
 /// (`object_size`, `object_coordinates(q)`, `object<S>(coordinates)`).
 /// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and, for speed,
-/// `seed` (the translations in closed form), a frame, `extend`, `nudge`, `chart` and `arrow_in_chart` (see below).
-/// Everything else is deduced.
+/// `seed` (the translations in closed form), a frame of the whole arrow (arrow_frame.hpp), `extend`, `nudge`, `chart`
+/// and `arrow_in_chart` (see below). Everything else is deduced.
 ///
 /// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
 template <class Derived, int Dimension> class LieGroupoid {
@@ -106,21 +106,6 @@ template <class Derived, int Dimension> class LieGroupoid {
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class A>
   auto seed(const A& g) const {
     return seed_by_composition<M, First, Second, LeftOffset, RightOffset>(g);
-  }
-
-  /// Directions that span the tangent space of G at an arrow, for gradients: the displacements of the source, then
-  /// those of the target, unless the groupoid knows a smaller frame (on a Lie group either end alone spans).
-  /// `seed_frame` gives the arrow with one infinitesimal of a Jet along each, from number Offset on; from the
-  /// derivatives c along the frame, `source_part` and `target_part` give those along v and w of tau(v)^{-1} g tau(w).
-  static constexpr int frame_size = 2 * Dimension;
-  template <class J, int Offset = 0, class A> auto seed_frame(const A& g) const {
-    return self().template seed<J, End::source, End::target, Offset, Offset + Dimension>(g);
-  }
-  template <class A, class V> Vector<typename V::Scalar, Dimension> source_part(const A&, const V& c) const {
-    return c.template head<Dimension>();
-  }
-  template <class A, class V> Vector<typename V::Scalar, Dimension> target_part(const A&, const V& c) const {
-    return c.template tail<Dimension>();
   }
 
   /// g tau(w): the arrow with its target displaced by w. Derived by composition; a groupoid that knows a cheaper way

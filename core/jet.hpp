@@ -29,6 +29,9 @@ template <class T, int N> class Jet {
   [[gnu::always_inline]] Jet(T x, const Left& v, const Right& w) : value(x), gradient_(v + w) {}
   [[gnu::always_inline]] Jet(T x, const Left& gradient) : value(x), gradient_(gradient) {}
 
+  /// The i-th variable, of value x.
+  [[gnu::always_inline]] static Jet variable(T x, int i) { return {x, Left::unit(i)}; }
+  static Left unit(int i) { return Left::unit(i); }
   static Left left_unit(int i) { return Left::unit(i); }
   static Right right_unit(int i) { return Right::unit(i); }
 

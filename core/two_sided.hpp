@@ -1,6 +1,7 @@
 #pragma once
 /// The two-sided derivative: every first and second derivative the dynamics needs, in one evaluation.
 
+#include <lagroid/core/arrow_frame.hpp>
 #include <lagroid/core/system.hpp>
 
 namespace lagroid {
@@ -24,16 +25,24 @@ S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multip
 
 }  // namespace detail
 
-template <class Sys> using JetOf = Jet<double, Sys::GroupoidType::frame_size>;
 template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
 
-/// The gradients by first-order dual numbers: one pass through L, phi and C along the groupoid's frame.
+/// The gradients by first-order dual numbers: one pass through L, phi and C, along the arrow's frame or, where the
+/// groupoid supplies none, along the displacements of both ends.
 template <DiscreteSystem Sys>
 [[gnu::flatten]] GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                                       const typename Sys::Multipliers& lambda) {
-  using J = JetOf<Sys>;
+  constexpr int n = Sys::dimension;
+  constexpr bool framed = HasArrowFrame<typename Sys::GroupoidType>;
+  using J = Jet<double, framed ? arrow_dimension_of<typename Sys::GroupoidType>() : 2 * n>;
   const auto& groupoid = system.groupoid;
-  const auto gj = groupoid.template seed_frame<J>(g);
+  const auto gj = [&] {
+    if constexpr (framed) {
+      return groupoid.template frame_jet<J>(g);
+    } else {
+      return groupoid.template seed<J, End::source, End::target, 0, n>(g);
+    }
+  }();
   GradientsOf<Sys> out;
   J f = system.lagrangian(gj);
   if constexpr (Sys::arrow_constraints > 0) {
@@ -51,10 +60,15 @@ template <DiscreteSystem Sys>
       out.constraint(Sys::arrow_constraints + a) = at_target(a);
     }
   }
-  const Vector<double, J::size> gradient = f.gradient();
   out.value = f.value;
-  out.source_gradient = groupoid.source_part(g, gradient);
-  out.target_gradient = groupoid.target_part(g, gradient);
+  const auto gradient = f.gradient();
+  if constexpr (framed) {
+    out.source_gradient = groupoid.template frame_to_end<End::source>(g, gradient);
+    out.target_gradient = groupoid.template frame_to_end<End::target>(g, gradient);
+  } else {
+    out.source_gradient = gradient.template head<n>();
+    out.target_gradient = gradient.template tail<n>();
+  }
   return out;
 }
 

@@ -88,6 +88,49 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return e;
   }
 
+  /// Ad_g xi = vee(g hat(xi) g^{-1}), as a matrix.
+  template <class T> static Matrix<T, Dimension, Dimension> adjoint(const Matrix<T, N, N>& g) {
+    const Matrix<T, N, N> inverse = Derived::inverse(g);
+    return columns<T>([&](const Matrix<T, N, N>& e) -> Matrix<T, N, N> { return g * e * inverse; });
+  }
+
+  /// The arrow frame: g tau(u). The source displacement v is the frame's -Ad_{g^{-1}} v, because both retractions
+  /// satisfy tau(v)^{-1} g = g tau(-Ad_{g^{-1}} v); and tau(u) tau(w) = tau(u + w + [u, w] / 2 + ...).
+  static constexpr int arrow_dimension = Dimension;
+  template <class J, int Offset = 0, class T>
+  [[gnu::always_inline]] static Matrix<J, N, N> frame_jet(const Matrix<T, N, N>& g) {
+    Matrix<J, N, N> out;
+    unrolled<N>([&]<int C>() {
+      unrolled<N>([&]<int R>() {
+        if constexpr (J::order == 1) {
+          out(R, C) = J(g(R, C), side_by_side<End::target, R, C>(g, [](int i) { return J::unit(Offset + i); }));
+        } else {
+          out(R, C) = J(g(R, C));
+          unrolled<Dimension>([&]<int I>() {
+            out(R, C).gradient(Offset + I) = displaced<End::target, R, C, I>(g);
+            unrolled<I + 1>(
+                [&]<int K>() { out(R, C).hessian(Offset + I, Offset + K) = squared<End::target, R, C>(g, I, K); });
+          });
+        }
+      });
+    });
+    return out;
+  }
+  template <End Which, class T, int K>
+  static Matrix<T, Dimension, K> frame_to_end(const Matrix<T, N, N>& g, const Matrix<T, Dimension, K>& rows) {
+    if constexpr (Which == End::target) {
+      return rows.template topRows<Dimension>();  // entry by entry, see by_entry
+    } else {
+      return -Derived::adjoint(Derived::inverse(g)).transpose() * rows;
+    }
+  }
+  template <class T> static Matrix<T, Dimension, Dimension> frame_bracket(const Vector<T, Dimension>& p) {
+    Matrix<T, Dimension, Dimension> c;
+    for (int i = 0; i < Dimension; ++i)
+      c.row(i) = p.transpose() * Derived::template ad<T>(Algebra<T>(Algebra<T>::Unit(i)));
+    return c;
+  }
+
   /// Both retractions are tau(xi) = I + X + X^2/2 + O(X^3) with tau(xi)^{-1} = tau(-xi), X = hat(xi); hence the exact
   /// first and second derivatives of tau(a)^{-1} g tau(b) at a = b = 0. The loops run at compile time, so that zeros of
   /// the basis matrices cost nothing.
@@ -99,37 +142,14 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
         const auto left = side_by_side<First, R, C>(g, [](int i) { return M::left_unit(LeftOffset + i); });
         const auto right = side_by_side<Second, R, C>(g, [](int j) { return M::right_unit(RightOffset + j); });
         out(R, C) = M(g(R, C), left, right);
-        if constexpr (M::order == 2 && First == Second) seed_square<First, R, C, LeftOffset, RightOffset>(g, out(R, C));
+        if constexpr (M::order == 2 && First == Second)
+          for (int i = 0; i < Dimension; ++i)
+            for (int j = 0; j < Dimension; ++j)
+              out(R, C).set_mixed(LeftOffset + i, RightOffset + j, squared<First, R, C>(g, i, j));
       });
       if constexpr (M::order == 2 && First != Second) seed_mixed<Second, C, LeftOffset, RightOffset>(g, out);
     });
     return out;
-  }
-
-  /// The frame of the target's displacements: df(tau(v)^{-1} g) = -Ad*_{g^{-1}} df(g tau(w)).
-  static constexpr int frame_size = Dimension;
-  template <class J, int Offset = 0, class T>
-  [[gnu::always_inline]] static Matrix<J, N, N> seed_frame(const Matrix<T, N, N>& g) {
-    Matrix<J, N, N> out;
-    unrolled<N>([&]<int C>() {
-      unrolled<N>([&]<int R>() {
-        const auto along = side_by_side<End::target, R, C>(g, [](int i) { return J::right_unit(Offset + i); });
-        out(R, C) = J(g(R, C), along);
-      });
-    });
-    return out;
-  }
-  template <class T> static Algebra<T> source_part(const Matrix<T, N, N>& g, const Algebra<T>& c) {
-    return -(Derived::adjoint(Derived::inverse(g)).transpose() * c);
-  }
-  template <class T> static Algebra<T> target_part(const Matrix<T, N, N>&, const Algebra<T>& c) {
-    return c.template head<Dimension>();  // entry by entry, see by_entry
-  }
-
-  /// The matrix of Ad_g: hat(Ad_g xi) = g hat(xi) g^{-1}.
-  template <class S> static Matrix<S, Dimension, Dimension> adjoint(const Matrix<S, N, N>& g) {
-    const Matrix<S, N, N> inverse = Derived::inverse(g);
-    return columns<S>([&](const Matrix<S, N, N>& e) -> Matrix<S, N, N> { return g * e * inverse; });
   }
 
   /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
@@ -228,22 +248,18 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     }
   }
 
-  /// The second derivatives where both infinitesimals displace the same end: (E_i E_j + E_j E_i) / 2 beside g.
-  template <End Which, int R, int C, int LeftOffset, int RightOffset, class M, class T>
-  static void seed_square(const Matrix<T, N, N>& g, M& out) {
-    for (int i = 0; i < Dimension; ++i)
-      for (int j = 0; j < Dimension; ++j) {
-        const auto square = [&](int r, int c) {
-          int sum = 0;
-          for (int s = 0; s < N; ++s)
-            sum +=
-                Derived::basis(i, r, s) * Derived::basis(j, s, c) + Derived::basis(j, r, s) * Derived::basis(i, s, c);
-          return T(sum) / T(2);
-        };
-        T sum(0);
-        for (int s = 0; s < N; ++s) sum += Which == End::source ? square(R, s) * g(s, C) : g(R, s) * square(s, C);
-        out.set_mixed(LeftOffset + i, RightOffset + j, sum);
-      }
+  /// The second derivatives where both infinitesimals displace the same end: entry (r, c) of g with
+  /// (E_i E_j + E_j E_i) / 2 beside it.
+  template <End Which, int R, int C, class T> static T squared(const Matrix<T, N, N>& g, int i, int j) {
+    const auto square = [&](int r, int c) {
+      int sum = 0;
+      for (int s = 0; s < N; ++s)
+        sum += Derived::basis(i, r, s) * Derived::basis(j, s, c) + Derived::basis(j, r, s) * Derived::basis(i, s, c);
+      return T(sum) / T(2);
+    };
+    T sum(0);
+    for (int s = 0; s < N; ++s) sum += Which == End::source ? square(R, s) * g(s, C) : g(R, s) * square(s, C);
+    return sum;
   }
 
   template <class S, class F> static Matrix<S, Dimension, Dimension> columns(const F& conjugate) {

@@ -60,6 +60,25 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
     return w - taken;
   }
 
+  /// The arrow frame: the ends move independently, first the source, then the target.
+  static constexpr int arrow_dimension = 2 * N;
+  template <class J, int Offset = 0, class T>
+  [[gnu::always_inline]] static Arrow<J> frame_jet(const PairArrow<T, N>& g) {
+    Arrow<J> out;
+    unrolled<N>([&]<int I>() {
+      out.source(I) = J::variable(g.source(I), Offset + I);
+      out.target(I) = J::variable(g.target(I), Offset + N + I);
+    });
+    return out;
+  }
+  template <End Which, class T, int K>
+  static Matrix<T, N, K> frame_to_end(const PairArrow<T, N>&, const Matrix<T, 2 * N, K>& rows) {
+    return rows.template middleRows<N>(Which == End::source ? 0 : N);
+  }
+  template <class T> static Matrix<T, 2 * N, 2 * N> frame_bracket(const Vector<T, 2 * N>&) {
+    return Matrix<T, 2 * N, 2 * N>::Zero();
+  }
+
   static std::string name() { return "Pair<" + std::to_string(N) + ">"; }
 };
 

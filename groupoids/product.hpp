@@ -1,7 +1,7 @@
 #pragma once
 /// The product of two or more groupoids.
 
-#include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/arrow_frame.hpp>
 
 #include <array>
 #include <string>
@@ -92,21 +92,34 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
     }
     (std::make_index_sequence<factors>{});
   }
-  static constexpr int frame_size = (Gs::frame_size + ...);
+
+  /// The arrow frame: those of the factors, side by side, if all have one.
+  static constexpr int arrow_dimension = ((arrow_dimension_of<Gs>() > 0) && ...) ? (arrow_dimension_of<Gs>() + ...) : 0;
   template <class J, int Offset = 0, class... As>
-  [[gnu::always_inline]] Arrow<J> seed_frame(const std::tuple<As...>& g) const {
+  [[gnu::always_inline]] Arrow<J> frame_jet(const std::tuple<As...>& g) const {
     return [&]<std::size_t... I>(std::index_sequence<I...>)->Arrow<J> {
-      return {std::get<I>(factor).template seed_frame<J, Offset + start(frame_sizes, I)>(std::get<I>(g))...};
+      return {std::get<I>(factor).template frame_jet<J, Offset + start(frames, I)>(std::get<I>(g))...};
     }
     (std::make_index_sequence<factors>{});
   }
-  template <class... As, class V> auto source_part(const std::tuple<As...>& g, const V& c) const {
-    return concatenate<rank>(indexed(
-        [&]<std::size_t I>() { return std::get<I>(factor).source_part(std::get<I>(g), segment<frame_sizes, I>(c)); }));
+  template <End Which, class... As, class T, int K>
+  Matrix<T, rank, K> frame_to_end(const std::tuple<As...>& g, const Matrix<T, arrow_dimension, K>& rows) const {
+    Matrix<T, rank, K> out;
+    each([&]<std::size_t I>() {
+      const Matrix<T, frames[I], K> part = rows.template middleRows<frames[I]>(start(frames, I));
+      out.template middleRows<dimensions[I]>(start(dimensions, I)) =
+          std::get<I>(factor).template frame_to_end<Which>(std::get<I>(g), part);
+    });
+    return out;
   }
-  template <class... As, class V> auto target_part(const std::tuple<As...>& g, const V& c) const {
-    return concatenate<rank>(indexed(
-        [&]<std::size_t I>() { return std::get<I>(factor).target_part(std::get<I>(g), segment<frame_sizes, I>(c)); }));
+  template <class T>
+  Matrix<T, arrow_dimension, arrow_dimension> frame_bracket(const Vector<T, arrow_dimension>& p) const {
+    Matrix<T, arrow_dimension, arrow_dimension> out = Matrix<T, arrow_dimension, arrow_dimension>::Zero();
+    each([&]<std::size_t I>() {
+      out.template block<frames[I], frames[I]>(start(frames, I), start(frames, I)) =
+          std::get<I>(factor).frame_bracket(segment<frames, I>(p));
+    });
+    return out;
   }
 
   static std::string name() {
@@ -117,7 +130,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
 
  private:
   static constexpr std::array<int, factors> dimensions{Gs::dimension...};
-  static constexpr std::array<int, factors> frame_sizes{Gs::frame_size...};
+  static constexpr std::array<int, factors> frames{arrow_dimension_of<Gs>()...};
   static constexpr std::array<int, factors> arrow_sizes{Gs::arrow_coordinate_count()...};
   static constexpr std::array<int, factors> object_sizes{Gs::object_coordinate_count()...};
 
@@ -132,6 +145,10 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
 
   template <class F> static auto indexed(const F& f) {
     return [&]<std::size_t... I>(std::index_sequence<I...>) { return std::make_tuple(f.template operator()<I>()...); }
+    (std::make_index_sequence<factors>{});
+  }
+  template <class F> static void each(const F& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (f.template operator()<I>(), ...); }
     (std::make_index_sequence<factors>{});
   }
   template <class F, class... Tuples> auto map(const F& f, const Tuples&... tuples) const {

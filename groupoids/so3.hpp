@@ -91,8 +91,8 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     return {(g(2, 1) - g(1, 2)) * scale, (g(0, 2) - g(2, 0)) * scale, (g(1, 0) - g(0, 1)) * scale};
   }
 
-  template <class S> static const Matrix<S, 3, 3>& adjoint(const Matrix<S, 3, 3>& g) { return g; }
   template <class S> static Matrix<S, 3, 3> ad(const Vector<S, 3>& w) { return hat(w); }
+  template <class S> static Matrix<S, 3, 3> adjoint(const Matrix<S, 3, 3>& g) { return g; }
   template <class S> static Matrix<S, 3, 3> dexp(const Vector<S, 3>& w) {
     return dexp_from_ad<S, 3>(hat(w), w.squaredNorm());
   }
@@ -117,9 +117,15 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     });
     return out;
   }
-  template <class T> static Vector<T, 3> source_part(const Matrix<T, 3, 3>& g, const Vector<T, 3>& c) {
-    const auto row = [&](int r) { return -(g(r, 0) * c(0) + g(r, 1) * c(1) + g(r, 2) * c(2)); };
-    return {row(0), row(1), row(2)};
+  template <End Which, class T, int K>
+  static Matrix<T, 3, K> frame_to_end(const Matrix<T, 3, 3>& g, const Matrix<T, 3, K>& rows) {
+    Matrix<T, 3, K> out;
+    for (int k = 0; k < K; ++k)
+      unrolled<3>([&]<int R>() {
+        out(R, k) =
+            Which == End::target ? rows(R, k) : -(g(R, 0) * rows(0, k) + g(R, 1) * rows(1, k) + g(R, 2) * rows(2, k));
+      });
+    return out;
   }
 
   /// The Cayley coordinates: no trigonometric functions.

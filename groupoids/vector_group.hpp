@@ -31,6 +31,20 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
     return out;
   }
 
+  /// The arrow frame: the target's displacements.
+  static constexpr int arrow_dimension = N;
+  template <class J, int Offset = 0, class T>
+  [[gnu::always_inline]] static Vector<J, N> frame_jet(const Vector<T, N>& g) {
+    Vector<J, N> out;
+    unrolled<N>([&]<int I>() { out(I) = J::variable(g(I), Offset + I); });
+    return out;
+  }
+  template <End Which, class T, int K>
+  static Matrix<T, N, K> frame_to_end(const Vector<T, N>&, const Matrix<T, N, K>& rows) {
+    return (Which == End::source ? T(-1) : T(1)) * rows;
+  }
+  template <class T> static Matrix<T, N, N> frame_bracket(const Vector<T, N>&) { return Matrix<T, N, N>::Zero(); }
+
   static std::string name() { return "R^" + std::to_string(N); }
 };
 

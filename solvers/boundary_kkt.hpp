@@ -1,29 +1,32 @@
 #pragma once
 /// The KKT system of a boundary-value problem, as a symmetric block-tridiagonal matrix along the path.
 
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/symmetric_factor.hpp>
 
-#include <Eigen/Eigenvalues>
-
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
 namespace lagroid {
 
-/// Unknowns z_k = (lambda_k, v_k), k = 1 ... N (v_N = 0): the multiplier of arrow k and the displacement of its target
-/// node. Equations: phi(g_k) = 0 and F+(g_k) - F-(g_{k+1}) = 0, the discrete constrained Euler-Lagrange equations.
+/// Unknowns z_k = (lambda_k, kappa_k, v_k), k = 1 ... N: the multipliers of arrow k's own constraints phi, those of the
+/// object constraints C at its target node q_k, and the displacement of that node; at the last node, which is fixed,
+/// lambda alone. Equations: phi(g_k) = 0, C(q_k) = 0 and F+(g_k) - F-(g_{k+1}) = 0, the discrete constrained
+/// Euler-Lagrange equations. (In a Path kappa_k belongs to arrow k + 1, of which q_k is the source.)
 ///
 /// Everything is kept in scaled unknowns, z = scale * z', so that regularisation and round-off mean the same in each.
+/// The elimination runs along the path with one Bunch-Kaufman factorisation a node: linear in N, without allocation
+/// once the vectors have their size.
 template <DiscreteSystem Sys> class BoundaryKkt {
-  static_assert(Sys::object_constraints == 0, "boundary-value problems take arrow constraints only");
-  static_assert(HasTimeStep<Sys>, "the metric of least-norm steps needs the time step h");
-
  public:
   static constexpr int n = Sys::dimension;
   static constexpr int m = Sys::constraints;
   static constexpr int size = n + m;
-  using Block = Matrix<double, size, size>;
+  using Block = typename SymmetricFactor<size>::Square;
   using Coupling = Matrix<double, size, n>;
   using Column = Vector<double, size>;
   using Columns = std::vector<Column>;
@@ -31,7 +34,8 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   /// Which second derivatives stand in the (v, v) blocks.
   enum class Hessian {
     exact,
-    identity  ///< the system then yields least-squares multipliers
+    identity,   ///< over the time step where there is one
+    stiffness,  ///< of sum_k |v_k - v_{k-1}|^2 / 2, the same: steps of least norm are then smooth, whatever N
   };
 
   void evaluate(const Sys& system, const Path<Sys>& path, Hessian hessian = Hessian::exact) {
@@ -40,34 +44,31 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     coupling_.assign(count, Coupling::Zero());
     residual_.assign(count, Column::Zero());
     gradient_.assign(count, Vector<double, n>::Zero());
+    double metric = 1;
+    if constexpr (HasTimeStep<Sys>) metric = 1 / system.h;
     for (std::size_t k = 0; k < count; ++k) {
-      const auto& [arrow, lambda] = path[k];
-      const auto d = two_sided(system, arrow, lambda);
-      residual_[k].template head<m>() = d.constraint;
-      diagonal_[k].template topRightCorner<m, n>() = d.constraint_target;
-      diagonal_[k].template bottomLeftCorner<n, m>() = d.constraint_target.transpose();
-      coupling_[k].template topRows<m>() = d.constraint_source.transpose();
-      residual_[k].template tail<n>() += d.target_gradient;
-      gradient_[k] += d.target_gradient - d.constraint_target.transpose() * lambda;
-      if (k > 0) {
-        residual_[k - 1].template tail<n>() += d.source_gradient;
-        gradient_[k - 1] += d.source_gradient - d.constraint_source * lambda;
-      }
       if (hessian == Hessian::exact) {
+        const auto d = second_derivatives(system, path[k].arrow, path[k].multipliers);
+        add_equations(k, d, path[k].multipliers);
         coupling_[k].template bottomRows<n>() = d.mixed.transpose();
-        diagonal_[k].template bottomRightCorner<n, n>() += one_sided_hessian(system, arrow, lambda, End::target);
-        if (k > 0)
-          diagonal_[k - 1].template bottomRightCorner<n, n>() += one_sided_hessian(system, arrow, lambda, End::source);
+        diagonal_[k].template bottomRightCorner<n, n>() += d.target_hessian;
+        if (k > 0) diagonal_[k - 1].template bottomRightCorner<n, n>() += d.source_hessian;
       } else {
-        diagonal_[k].template bottomRightCorner<n, n>() += Matrix<double, n, n>::Identity() / system.h;
+        add_equations(k, two_sided(system, path[k].arrow, path[k].multipliers), path[k].multipliers);
+        const Matrix<double, n, n> unit = metric * Matrix<double, n, n>::Identity();
+        diagonal_[k].template bottomRightCorner<n, n>() += unit;
+        if (hessian == Hessian::stiffness && k > 0) {
+          diagonal_[k - 1].template bottomRightCorner<n, n>() += unit;
+          coupling_[k].template bottomRows<n>() = -unit;
+        }
       }
     }
-    // The end node does not move: its unknown is decoupled and kept at zero.
-    residual_.back().template tail<n>().setZero();
+    // The end node does not move: its unknowns are decoupled and kept at zero.
+    residual_.back().template tail<fixed>().setZero();
     gradient_.back().setZero();
-    diagonal_.back().template rightCols<n>().setZero();
-    diagonal_.back().template bottomRows<n>().setZero();
-    coupling_.back().template bottomRows<n>().setZero();
+    diagonal_.back().template rightCols<fixed>().setZero();
+    diagonal_.back().template bottomRows<fixed>().setZero();
+    coupling_.back().template bottomRows<fixed>().setZero();
   }
 
   /// Chooses the scale from the blocks: symmetric equilibration of their entrywise maximum over the path.
@@ -86,84 +87,90 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   /// What a factorisation says of the matrix.
   struct Inertia {
     long negative = 0;
-    double smallest = std::numeric_limits<double>::infinity();  ///< |eigenvalue| of a pivot block, scaled
+    double smallest = std::numeric_limits<double>::infinity();  ///< |pivot|, scaled
   };
 
-  /// Factors with `primal` added to the (v, v) and `dual` subtracted from the (lambda, lambda) diagonal (scaled).
-  Inertia factor(double primal, double dual) {
+  /// Factors with `primal` added to the (v, v) and `dual` subtracted from the multipliers' diagonal, and `stiffness`
+  /// times the matrix of sum_k |v_k - v_{k-1}|^2 / 4 added to the (v, v) part (all scaled).
+  Inertia factor(double primal, double dual, double stiffness = 0) {
     const std::size_t count = diagonal_.size();
-    vectors_.resize(count);
-    inverse_values_.resize(count);
+    factors_.resize(count);
+    scaled_coupling_.resize(count);
     Inertia inertia;
-    const auto scaled_coupling = [&](std::size_t k) -> Coupling {
-      return scale_.asDiagonal() * coupling_[k] * scale_.template tail<n>().asDiagonal();
-    };
     for (std::size_t k = 0; k < count; ++k) {
       Block s = scale_.asDiagonal() * diagonal_[k] * scale_.asDiagonal();
       s.diagonal().template head<m>().array() -= dual;
-      s.diagonal().template tail<n>().array() += primal;
-      if (k + 1 == count) s.template bottomRightCorner<n, n>().setIdentity();
+      s.diagonal().template tail<n>().array() += primal + stiffness;
+      if (k + 1 == count) s.template bottomRightCorner<fixed, fixed>().setIdentity();
       if (k > 0) {
-        const Matrix<double, n, size> v = vectors_[k - 1].template bottomRows<n>();
-        const Matrix<double, n, n> inverse = v * inverse_values_[k - 1].asDiagonal() * v.transpose();
-        const Coupling c = scaled_coupling(k);
-        s -= c * inverse * c.transpose();
+        Coupling& c = scaled_coupling_[k];
+        c = scale_.asDiagonal() * coupling_[k] * scale_.template tail<n>().asDiagonal();
+        if (k + 1 < count) c.template bottomRows<n>().diagonal().array() -= 0.5 * stiffness;
+        Block right = Block::Zero();
+        right.template bottomRows<n>() = c.transpose();
+        factors_[k - 1].subtract_from(s, right);
       }
-      const Eigen::SelfAdjointEigenSolver<Block> eigen(s);
-      vectors_[k] = eigen.eigenvectors();
-      for (int i = 0; i < size; ++i) {
-        const double value = eigen.eigenvalues()(i);
-        inertia.negative += value < 0;
-        inertia.smallest = std::min(inertia.smallest, std::abs(value));
-        const double safe = std::abs(value) < 1e-300 ? 1e-300 : value;
-        inverse_values_[k](i) = 1 / safe;
-      }
+      factors_[k].compute(s);
+      inertia.negative += factors_[k].negative();
+      inertia.smallest = std::min(inertia.smallest, factors_[k].smallest());
     }
     return inertia;
   }
 
-  /// Solves the factored system for a right-hand side in scaled unknowns.
-  Columns solve(Columns b) const {
+  /// Solves the factored system in place; right-hand side and solution in scaled unknowns.
+  void solve_in_place(Columns& b) const {
     const std::size_t count = b.size();
-    const auto apply_inverse = [&](std::size_t k, const Column& x) -> Column {
-      return vectors_[k] * inverse_values_[k].cwiseProduct(vectors_[k].transpose() * x);
-    };
-    const auto tail_scale = scale_.template tail<n>();
-    for (std::size_t k = 1; k < count; ++k) {
-      const Vector<double, n> y = apply_inverse(k - 1, b[k - 1]).template tail<n>().cwiseProduct(tail_scale);
-      b[k] -= scale_.cwiseProduct(coupling_[k] * y);
-    }
+    for (std::size_t k = 1; k < count; ++k)
+      b[k].noalias() -= scaled_coupling_[k] * factors_[k - 1].solve(b[k - 1]).template tail<n>();
     for (std::size_t k = count; k-- > 0;) {
-      Column rhs = b[k];
-      if (k + 1 < count) {
-        const Column z = scale_.cwiseProduct(b[k + 1]);
-        rhs.template tail<n>() -= tail_scale.cwiseProduct(coupling_[k + 1].transpose() * z);
-      }
-      b[k] = apply_inverse(k, rhs);
+      if (k + 1 < count) b[k].template tail<n>().noalias() -= scaled_coupling_[k + 1].transpose() * b[k + 1];
+      b[k] = factors_[k].solve(b[k]);
     }
+  }
+  Columns solve(Columns b) const {
+    solve_in_place(b);
     return b;
   }
 
   /// The matrix (without regularisation) times a vector, in scaled unknowns.
   Columns multiply(const Columns& z) const {
-    const std::size_t count = z.size();
-    Columns out(count);
-    for (std::size_t k = 0; k < count; ++k) {
-      Column sum = diagonal_[k] * scale_.cwiseProduct(z[k]);
-      if (k > 0) sum += coupling_[k] * scale_.cwiseProduct(z[k - 1]).template tail<n>();
-      if (k + 1 < count) sum.template tail<n>() += coupling_[k + 1].transpose() * scale_.cwiseProduct(z[k + 1]);
-      out[k] = scale_.cwiseProduct(sum);
-    }
-    out.back().template tail<n>() += z.back().template tail<n>();
+    Columns out(z.size(), Column::Zero());
+    add_product(1, z, out);
     return out;
+  }
+  /// out += factor * (the matrix times z).
+  void add_product(double factor, const Columns& z, Columns& out) const {
+    const std::size_t count = z.size();
+    const auto unscaled = [&](std::size_t k) -> Column { return scale_.cwiseProduct(z[k]); };
+    for (std::size_t k = 0; k < count; ++k) {
+      Column sum = diagonal_[k] * unscaled(k);
+      if (k > 0) sum += coupling_[k] * unscaled(k - 1).template tail<n>();
+      if (k + 1 < count) sum.template tail<n>() += coupling_[k + 1].transpose() * unscaled(k + 1);
+      out[k] += factor * scale_.cwiseProduct(sum);
+    }
+    out.back().template tail<fixed>() += factor * z.back().template tail<fixed>();
   }
 
-  /// The equations' residual in scaled form.
-  Columns scaled_residual() const {
-    Columns out = residual_;
-    for (Column& c : out) c = scale_.cwiseProduct(c);
-    return out;
+  /// The equations' residual in scaled form, negated: the right-hand side of a Newton step.
+  void newton_side(Columns& out) const {
+    out.resize(residual_.size());
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = -scale_.cwiseProduct(residual_[k]);
   }
+  /// The right-hand side of a step back to the constraints at `path`: their scaled values, negated. Returns the
+  /// largest, or whatever is not finite.
+  double constraint_side(const Sys& system, const Path<Sys>& path, Columns& out) const {
+    out.assign(path.size(), Column::Zero());
+    double violation = 0;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      out[k].template head<m>() = -scale_.template head<m>().cwiseProduct(constraint_values(system, path[k].arrow));
+      if (k + 1 == path.size()) out[k].template tail<fixed>().setZero();
+      const double largest = out[k].cwiseAbs().maxCoeff();
+      if (!out[k].allFinite()) return std::numeric_limits<double>::quiet_NaN();
+      violation = std::max(violation, largest);
+    }
+    return violation;
+  }
+  /// The largest scaled residual; a NaN where anything is not finite.
   double residual_norm() const {
     double norm = 0;
     for (const Column& c : residual_) {
@@ -173,10 +180,24 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     return norm;
   }
 
+  /// Scaled unknowns as a variation of the path.
+  void unscale(const Columns& z, Variation<Sys>& out) const {
+    const std::size_t count = z.size();
+    out.nodes.resize(count);
+    out.multipliers.resize(count);
+    if constexpr (m > 0) out.multipliers.front().setZero();
+    for (std::size_t k = 0; k < count; ++k) {
+      const Column x = scale_.cwiseProduct(z[k]);
+      out.nodes[k] = x.template tail<n>();
+      out.multipliers[k].template head<phis>() = x.template head<phis>();
+      if (k + 1 < count) out.multipliers[k + 1].template tail<m - phis>() = x.template segment<m - phis>(phis);
+    }
+  }
+
   const std::vector<Vector<double, n>>& cost_gradient() const { return gradient_; }
   const Columns& residual() const { return residual_; }
   const Column& scale() const { return scale_; }
-  long constraint_count() const { return long(diagonal_.size()) * m; }
+  long constraint_count() const { return long(diagonal_.size()) * m - (m - phis); }
 
   /// The second-order type of a stationary point: the inertia of the matrix with null directions counted as positive,
   /// and a search for null vectors by inverse iteration. `*this` must be evaluated at the point, with exact Hessians;
@@ -194,6 +215,7 @@ template <DiscreteSystem Sys> class BoundaryKkt {
       for (const Column& c : z) primal += c.template tail<n>().squaredNorm();
       if (primal > 1e-3) kind.isolated = false;
     }
+    if constexpr (m == 0) return kind;
     // With the identity for a Hessian the null vectors are the multipliers that annihilate the constraint gradients.
     evaluate(system, path, Hessian::identity);
     factor(0, null);
@@ -216,9 +238,9 @@ template <DiscreteSystem Sys> class BoundaryKkt {
       Columns z(diagonal_.size());
       for (Column& c : z)
         for (int i = 0; i < size; ++i) c(i) = uniform(generator);
-      z.back().template tail<n>().setZero();
+      z.back().template tail<fixed>().setZero();
       for (int iteration = 0; iteration < 5; ++iteration) {
-        z = solve(z);
+        solve_in_place(z);
         for (const Columns& f : found) {
           const double overlap = dot(z, f);
           for (std::size_t k = 0; k < z.size(); ++k) z[k] -= overlap * f[k];
@@ -233,13 +255,31 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     return found;
   }
 
+  static constexpr int phis = Sys::arrow_constraints;
+  static constexpr int fixed = size - phis;  // unknowns of a node that cannot move
+
+  /// The equations of arrow k and their derivatives in the multipliers.
+  void add_equations(std::size_t k, const TwoSidedOf<Sys>& d, const typename Sys::Multipliers& lambda) {
+    residual_[k].template head<m>() = d.constraint;
+    diagonal_[k].template topRightCorner<m, n>() = d.constraint_target;
+    diagonal_[k].template bottomLeftCorner<n, m>() = d.constraint_target.transpose();
+    coupling_[k].template topRows<phis>() = d.constraint_source.template leftCols<phis>().transpose();
+    residual_[k].template tail<n>() += d.target_gradient;
+    gradient_[k] +=
+        d.target_gradient - d.constraint_target.template topRows<phis>().transpose() * lambda.template head<phis>();
+    if (k > 0) {
+      residual_[k - 1].template tail<n>() += d.source_gradient;
+      gradient_[k - 1] += d.source_gradient - d.constraint_source * lambda;
+    }
+  }
+
   std::vector<Block> diagonal_;     // k: rows and columns z_k
   std::vector<Coupling> coupling_;  // k: rows z_k, columns v_{k-1}
   Columns residual_;
   std::vector<Vector<double, n>> gradient_;  // of the cost alone
   Column scale_ = Column::Ones();
-  std::vector<Block> vectors_;
-  std::vector<Column> inverse_values_;
+  std::vector<Coupling> scaled_coupling_;
+  std::vector<SymmetricFactor<size>> factors_;
 };
 
 }  // namespace lagroid

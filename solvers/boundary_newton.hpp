@@ -2,234 +2,263 @@
 /// Boundary-value problems by Newton's method on the full KKT system, globalised.
 
 #include <lagroid/solvers/boundary_kkt.hpp>
+#include <lagroid/solvers/boundary_solver.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace lagroid {
 
-struct BoundaryOptions {
-  int max_iterations = 200;
-  double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; iterates on until it no longer falls
-  double feasibility = 1e-9;  ///< largest scaled constraint value at which a path counts as admissible on the way
-  double largest_displacement = 1.0;  ///< bound on a node displacement in one iteration, in coordinates of AG
-};
-
 /// Newton's method on the manifold of admissible trajectories ([G] 5.1): composable arrows in the constraint set with
 /// the given product.
 ///
-/// First the path is brought onto that manifold by Gauss-Newton steps of least norm. Then, at each iteration, the KKT
-/// matrix with exact second derivatives gets just enough of the identity on its Hessian block to have the inertia of a
-/// minimum on the tangent space (section 5.1's space of variations), a step along its solution is pulled back to the
-/// manifold with the same matrix, and the action itself decides how far to go. Near a solution plain Newton on the full
-/// KKT system takes over and is iterated to round-off.
-template <DiscreteSystem Sys> class BoundaryNewton {
+/// First the path is brought onto that manifold by Gauss-Newton steps of least norm. Then, looking for minima, at each
+/// iteration the KKT matrix with exact second derivatives gets just enough of the identity on its Hessian block to have
+/// the inertia of a minimum on the tangent space (section 5.1's space of variations), a step along its solution is
+/// pulled back to the manifold with the same matrix, and the action itself decides how far to go; looking for
+/// stationary points, the step is Newton's, damped until the residual or the next Newton correction falls. Near a
+/// solution plain Newton on the full KKT system takes over and is iterated to round-off. Vectors are allocated once per
+/// solve.
+template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver<Sys> {
  public:
   static constexpr int n = Sys::dimension;
   static constexpr int m = Sys::constraints;
+  using BoundarySolver<Sys>::BoundarySolver;
 
-  explicit BoundaryNewton(BoundaryOptions options = {}) : options_(options) {}
-
-  /// Starts from `path`, whose product must be the boundary arrow. Multipliers are found from the arrows unless
-  /// `keep_multipliers` says that those of `path` are worth starting from.
-  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path, bool keep_multipliers) const {
-    BoundaryKkt<Sys> kkt;
+  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                              bool keep_multipliers) const override {
+    Work work;
     BoundarySolution<Sys> out;
     const Sys& system = problem.system;
-    double shift = 0;
-    if (keep_multipliers) polish(problem, kkt, path, out);
-    if (!out.converged()) {
-      if (!restore(problem, kkt, path, out)) return out;
-      while (out.iterations < options_.max_iterations) {
-        if (!least_squares_multipliers(problem, kkt, path)) return fail(out, SolveStatus::not_finite, path);
-        kkt.evaluate(system, path);
-        if (kkt.residual_norm() < 0.1) {
-          if (polish(problem, kkt, path, out)) break;
-          kkt.evaluate(system, path);
-        }
-        if (!descend(problem, kkt, path, shift, out)) {
-          settle(problem, kkt, path, out);
-          break;
-        }
+    if (keep_multipliers) polish(problem, work, path, out);
+    if (!out.converged() && restore(problem, work, path, out)) {
+      if (seek_ == Seek::minima) {
+        find_minimum(problem, work, path, out);
+      } else {
+        find_stationary(problem, work, path, out);
       }
     }
-    if (!out.converged()) {
-      if (out.iterations >= options_.max_iterations) out.status = SolveStatus::not_converged;
-      kkt.evaluate(system, path);
-      kkt.choose_scale();
-      out.residual = kkt.residual_norm();
-      out.path = std::move(path);
-      return out;
+    work.kkt.evaluate(system, path);
+    work.kkt.choose_scale();
+    if (out.converged()) {
+      out.cost = action(system, path);
+      out.kind = work.kkt.classify(system, path);
+    } else {
+      out.residual = work.kkt.residual_norm();
     }
-    out.cost = action(system, path);
-    kkt.evaluate(system, path);
-    kkt.choose_scale();
-    out.kind = kkt.classify(system, path);
     out.path = std::move(path);
     return out;
   }
 
   /// The path brought onto the constraints, with its least-squares multipliers; `converged` if that succeeded.
   BoundarySolution<Sys> prepare(const BoundaryProblem<Sys>& problem, Path<Sys> path) const {
-    Kkt kkt;
+    Work work;
     BoundarySolution<Sys> out;
-    if (!restore(problem, kkt, path, out)) return out;
-    if (!least_squares_multipliers(problem, kkt, path)) return fail(out, SolveStatus::not_finite, path);
-    out.status = SolveStatus::converged;
+    if (restore(problem, work, path, out) && least_squares_multipliers(problem, work, path, out))
+      out.status = SolveStatus::converged;
     out.path = std::move(path);
     return out;
   }
 
  private:
+  using BoundarySolver<Sys>::options_;
+  using BoundarySolver<Sys>::seek_;
   using Kkt = BoundaryKkt<Sys>;
   using Columns = typename Kkt::Columns;
-  struct Direction {
-    std::vector<Vector<double, n>> nodes;
-    std::vector<typename Sys::Multipliers> multipliers;
+
+  /// Everything an iteration writes to.
+  struct Work {
+    Kkt kkt;
+    Columns side;
+    Columns step;
+    Columns defect;
+    Variation<Sys> variation;
+    Path<Sys> trial;
   };
 
-  static BoundarySolution<Sys>& fail(BoundarySolution<Sys>& out, SolveStatus status, const Path<Sys>& path) {
+  static bool fail(BoundarySolution<Sys>& out, SolveStatus status) {
     out.status = status;
-    out.path = path;
-    return out;
+    return false;
   }
 
-  static Columns negated(Columns c) {
-    for (auto& x : c) x = -x;
-    return c;
-  }
-
-  static Direction unscaled(const Kkt& kkt, const Columns& z) {
-    Direction d;
-    d.nodes.reserve(z.size());
-    d.multipliers.reserve(z.size());
-    for (const auto& c : z) {
-      const typename Kkt::Column x = kkt.scale().cwiseProduct(c);
-      d.multipliers.push_back(x.template head<m>());
-      d.nodes.push_back(x.template tail<n>());
-    }
-    return d;
-  }
-
-  /// The right-hand side (-phi, 0) of a step of least norm back to the constraints.
-  static Columns constraint_side(const Sys& system, const Kkt& kkt, const Path<Sys>& path, double& violation) {
-    Columns b(path.size(), Kkt::Column::Zero());
-    violation = 0;
-    for (std::size_t k = 0; k < path.size(); ++k) {
-      b[k].template head<m>() = -kkt.scale().template head<m>().cwiseProduct(constraint_values(system, path[k].arrow));
-      const double largest = b[k].cwiseAbs().maxCoeff();
-      violation = std::isfinite(largest) ? std::max(violation, largest) : largest;
-      if (!std::isfinite(largest)) break;
-    }
-    return b;
-  }
   static double square(const Columns& c) {
     double sum = 0;
     for (const auto& x : c) sum += x.squaredNorm();
     return sum;
   }
 
-  static Direction without_multipliers(Direction d) {
-    for (auto& l : d.multipliers) l.setZero();
-    return d;
+  static void without_multipliers(Variation<Sys>& v) {
+    for (auto& l : v.multipliers) l.setZero();
   }
 
   /// Damped Gauss-Newton steps of least norm until the path is admissible.
-  bool restore(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path, BoundarySolution<Sys>& out) const {
+  bool restore(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path, BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;
+    Kkt& kkt = work.kkt;
     for (; out.iterations < options_.max_iterations; ++out.iterations) {
-      kkt.evaluate(system, path, Kkt::Hessian::identity);
-      if (!std::isfinite(kkt.residual_norm())) {
-        fail(out, SolveStatus::not_finite, path);
-        return false;
-      }
+      kkt.evaluate(system, path, Kkt::Hessian::stiffness);
+      if (!std::isfinite(kkt.residual_norm())) return fail(out, SolveStatus::not_finite);
       kkt.choose_scale();
-      double violation = 0;
-      const Columns b = constraint_side(system, kkt, path, violation);
-      out.residual = violation;
+      const double violation = kkt.constraint_side(system, path, work.side);
       if (violation <= options_.feasibility && admissible(system, path)) return true;
       kkt.factor(0, 1e-10);
-      const Direction direction = without_multipliers(unscaled(kkt, kkt.solve(b)));
-      double fraction = std::min(1.0, options_.largest_displacement / reach(direction));
+      work.step = work.side;
+      kkt.solve_in_place(work.step);
+      kkt.unscale(work.step, work.variation);
+      without_multipliers(work.variation);
+      double fraction = std::min(1.0, options_.largest_displacement / reach(work.variation));
       bool advanced = false;
       for (int halving = 0; halving < 30 && !advanced; ++halving, fraction /= 2) {
-        Path<Sys> trial = displaced(problem, path, direction.nodes, direction.multipliers, fraction);
-        double unused = 0;
-        if (square(constraint_side(system, kkt, trial, unused)) < (1 - 0.1 * fraction) * square(b)) {
-          path = std::move(trial);
-          advanced = true;
-        }
+        displace(problem, path, work.variation, fraction, work.trial);
+        kkt.constraint_side(system, work.trial, work.step);
+        advanced = square(work.step) < (1 - 0.1 * fraction) * square(work.side);
       }
-      if (!advanced) {
-        fail(out, SolveStatus::stagnated, path);
-        return false;
-      }
+      if (!advanced) return fail(out, SolveStatus::stagnated);
+      std::swap(path, work.trial);
     }
-    fail(out, SolveStatus::not_converged, path);
-    return false;
+    return fail(out, SolveStatus::not_converged);
   }
 
-  static bool least_squares_multipliers(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path) {
-    for (auto& step : path) step.multipliers.setZero();
-    kkt.evaluate(problem.system, path, Kkt::Hessian::identity);
-    if (!std::isfinite(kkt.residual_norm())) return false;
-    kkt.choose_scale();
-    kkt.factor(0, 1e-8);
-    const Direction z = unscaled(kkt, kkt.solve(negated(kkt.scaled_residual())));
-    for (std::size_t k = 0; k < path.size(); ++k) path[k].multipliers = z.multipliers[k];
+  bool least_squares_multipliers(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path,
+                                 BoundarySolution<Sys>& out) const {
+    if constexpr (m > 0) {
+      for (auto& step : path) step.multipliers.setZero();
+      work.kkt.evaluate(problem.system, path, Kkt::Hessian::stiffness);
+      if (!std::isfinite(work.kkt.residual_norm())) return fail(out, SolveStatus::not_finite);
+      work.kkt.choose_scale();
+      work.kkt.factor(0, 1e-8);
+      work.kkt.newton_side(work.step);
+      work.kkt.solve_in_place(work.step);
+      work.kkt.unscale(work.step, work.variation);
+      for (std::size_t k = 0; k < path.size(); ++k) path[k].multipliers = work.variation.multipliers[k];
+    }
     return true;
   }
 
+  void find_minimum(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path,
+                    BoundarySolution<Sys>& out) const {
+    double shift = 0;
+    while (out.iterations < options_.max_iterations) {
+      if (!least_squares_multipliers(problem, work, path, out)) return;
+      work.kkt.evaluate(problem.system, path);
+      if (work.kkt.residual_norm() < 2.0 / double(path.size())) {
+        if (polish(problem, work, path, out)) return;
+        work.kkt.evaluate(problem.system, path);
+      }
+      if (!descend(problem, work, path, shift, out)) {
+        settle(problem, work, path, out);
+        return;
+      }
+    }
+    out.status = SolveStatus::not_converged;
+  }
+
+  /// Newton's iteration, damped: a step is taken as far as it lowers the residual or, in the spirit of Deuflhard's
+  /// natural monotonicity test, the correction the same matrix would make next, which is small also where scales
+  /// differ.
+  void find_stationary(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path,
+                       BoundarySolution<Sys>& out) const {
+    const Sys& system = problem.system;
+    Kkt& kkt = work.kkt;
+    if (!least_squares_multipliers(problem, work, path, out)) return;
+    for (; out.iterations < options_.max_iterations; ++out.iterations) {
+      kkt.evaluate(system, path);
+      kkt.choose_scale();
+      if (!std::isfinite(kkt.residual_norm())) {
+        out.status = SolveStatus::not_finite;
+        return;
+      }
+      if (kkt.residual_norm() < 1e-3) {
+        if (polish(problem, work, path, out)) return;
+        kkt.evaluate(system, path);
+        kkt.choose_scale();
+      }
+      kkt.newton_side(work.side);
+      factor_plainly(kkt);
+      work.step = work.side;
+      kkt.solve_in_place(work.step);
+      kkt.unscale(work.step, work.variation);
+      const double residual = square(work.side);
+      const double correction = square(work.step);
+      double fraction = std::min(1.0, options_.largest_displacement / reach(work.variation));
+      bool advanced = false;
+      for (int halving = 0; halving < 30 && !advanced; ++halving, fraction /= 2) {
+        displace(problem, path, work.variation, fraction, work.trial);
+        if (!admissible(system, work.trial)) continue;
+        kkt.evaluate(system, work.trial);
+        kkt.newton_side(work.defect);
+        const double next = square(work.defect);
+        if (!std::isfinite(next)) continue;
+        advanced = next < (1 - 0.1 * fraction) * residual;
+        if (advanced) break;
+        kkt.solve_in_place(work.defect);
+        advanced = square(work.defect) < (1 - 0.5 * fraction) * correction;
+      }
+      if (!advanced) {
+        out.status = SolveStatus::stagnated;
+        return;
+      }
+      std::swap(path, work.trial);
+    }
+    out.status = SolveStatus::not_converged;
+  }
+
   /// One step of descent of the action along the manifold, by the least shift (of the right inertia) whose step stays
-  /// in reach, comes back to the constraints and lowers the action. On entry `kkt` is evaluated at `path`; `shift` is
-  /// the one that served last.
-  bool descend(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path, double& shift,
+  /// in reach, comes back to the constraints and lowers the action. On entry the KKT system is evaluated at `path`;
+  /// `shift` is the one that served last.
+  bool descend(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path, double& shift,
                BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;
+    Kkt& kkt = work.kkt;
     ++out.iterations;
     kkt.choose_scale();
-    out.residual = kkt.residual_norm();
-    const Columns side = negated(kkt.scaled_residual());
+    kkt.newton_side(work.side);
     const double cost = action(system, path);
     constexpr double smallest = 1e-3;
     constexpr double largest = 1e8;
     shift = shift / 3 < smallest ? 0 : shift / 3;
     for (; shift < largest; shift = std::max(smallest, 3 * shift)) {
       if (!right_inertia(kkt, shift)) continue;
-      const Direction direction = without_multipliers(unscaled(kkt, kkt.solve(side)));
-      if (reach(direction) > options_.largest_displacement) continue;
+      work.step = work.side;
+      kkt.solve_in_place(work.step);
+      kkt.unscale(work.step, work.variation);
+      without_multipliers(work.variation);
+      if (reach(work.variation) > options_.largest_displacement) continue;
       double slope = 0;
-      for (std::size_t k = 0; k < path.size(); ++k) slope += kkt.cost_gradient()[k].dot(direction.nodes[k]);
-      Path<Sys> trial = displaced(problem, path, direction.nodes, direction.multipliers, 1.0);
-      if (pull_back(problem, kkt, trial) && action(system, trial) <= cost + 1e-4 * slope) {
+      for (std::size_t k = 0; k < path.size(); ++k) slope += kkt.cost_gradient()[k].dot(work.variation.nodes[k]);
+      Path<Sys> trial;
+      displace(problem, path, work.variation, 1.0, trial);
+      if (pull_back(problem, work, trial) && action(system, trial) <= cost + 1e-4 * slope) {
         path = std::move(trial);
         return true;
       }
     }
-    fail(out, SolveStatus::stagnated, path);
-    return false;
+    return fail(out, SolveStatus::stagnated);
   }
 
   /// Chord iterations with the factored matrix back to the constraints; false where they do not contract.
-  bool pull_back(const BoundaryProblem<Sys>& problem, const Kkt& kkt, Path<Sys>& path) const {
+  bool pull_back(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path) const {
     const Sys& system = problem.system;
-    double violation = 0;
-    Columns b = constraint_side(system, kkt, path, violation);
+    double violation = work.kkt.constraint_side(system, path, work.step);
     for (int iteration = 0; iteration < 20; ++iteration) {
       if (!std::isfinite(violation)) return false;
       if (violation <= options_.feasibility) return admissible(system, path);
-      const Direction d = without_multipliers(unscaled(kkt, kkt.solve(b)));
-      path = displaced(problem, path, d.nodes, d.multipliers, 1.0);
+      work.kkt.solve_in_place(work.step);
+      work.kkt.unscale(work.step, work.variation);
+      without_multipliers(work.variation);
+      displace(problem, path, work.variation, 1.0, work.trial);
+      std::swap(path, work.trial);
       const double before = violation;
-      b = constraint_side(system, kkt, path, violation);
+      violation = work.kkt.constraint_side(system, path, work.step);
       if (!(violation < 0.7 * before)) return false;
     }
     return false;
   }
 
-  /// Newton on the full KKT system while it contracts; converged, or everything as it was.
-  bool polish(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path, BoundarySolution<Sys>& out) const {
+  /// Newton on the full KKT system while it contracts; converged, or the path as it was.
+  bool polish(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path, BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;
+    Kkt& kkt = work.kkt;
     Path<Sys> best = path;
     kkt.evaluate(system, best);
     kkt.choose_scale();
@@ -237,14 +266,16 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     int iterations = 0;
     for (bool contracts = true; contracts && std::isfinite(norm) && iterations < 30; ++iterations) {
       factor_plainly(kkt);
-      const Direction d = unscaled(kkt, refined(kkt, negated(kkt.scaled_residual())));
-      if (reach(d) > options_.largest_displacement) break;
-      Path<Sys> trial = displaced(problem, best, d.nodes, d.multipliers, 1.0);
-      kkt.evaluate(system, trial);
+      kkt.newton_side(work.side);
+      refined_solve(work);
+      kkt.unscale(work.step, work.variation);
+      if (reach(work.variation) > options_.largest_displacement) break;
+      displace(problem, best, work.variation, 1.0, work.trial);
+      kkt.evaluate(system, work.trial);
       const double next = kkt.residual_norm();
-      contracts = next < 0.5 * norm && admissible(system, trial);
+      contracts = next < 0.5 * norm && admissible(system, work.trial);
       if (contracts) {
-        best = std::move(trial);
+        std::swap(best, work.trial);
         norm = next;
       }
     }
@@ -258,8 +289,9 @@ template <DiscreteSystem Sys> class BoundaryNewton {
 
   /// Where the constraints lose rank (an abnormal extremal), paths cannot be pulled back to them: Newton on the KKT
   /// system with both blocks regularised in proportion to the residual, then plainly.
-  void settle(const BoundaryProblem<Sys>& problem, Kkt& kkt, Path<Sys>& path, BoundarySolution<Sys>& out) const {
+  void settle(const BoundaryProblem<Sys>& problem, Work& work, Path<Sys>& path, BoundarySolution<Sys>& out) const {
     const Sys& system = problem.system;
+    Kkt& kkt = work.kkt;
     kkt.evaluate(system, path);
     kkt.choose_scale();
     double norm = kkt.residual_norm();
@@ -268,14 +300,16 @@ template <DiscreteSystem Sys> class BoundaryNewton {
       const double regularisation = std::pow(4.0, failures) * 0.1 * norm;
       double primal = regularisation;
       while (kkt.factor(primal, regularisation).negative != kkt.constraint_count() && primal < 1e6) primal *= 4;
-      const Direction d = unscaled(kkt, kkt.solve(negated(kkt.scaled_residual())));
-      Path<Sys> trial = displaced(problem, path, d.nodes, d.multipliers,
-                                  std::min(1.0, options_.largest_displacement / std::max(1e-300, reach(d))));
+      kkt.newton_side(work.step);
+      kkt.solve_in_place(work.step);
+      kkt.unscale(work.step, work.variation);
+      displace(problem, path, work.variation,
+               std::min(1.0, options_.largest_displacement / std::max(1e-300, reach(work.variation))), work.trial);
       Kkt there = kkt;
-      there.evaluate(system, trial);
+      there.evaluate(system, work.trial);
       const double next = there.residual_norm();
-      if (next < norm && admissible(system, trial)) {
-        path = std::move(trial);
+      if (next < norm && admissible(system, work.trial)) {
+        std::swap(path, work.trial);
         kkt = std::move(there);
         norm = next;
         failures = 0;
@@ -283,19 +317,18 @@ template <DiscreteSystem Sys> class BoundaryNewton {
         ++failures;
       }
     }
-    out.residual = norm;
-    out.status = SolveStatus::stagnated;
-    polish(problem, kkt, path, out);
+    out.status = out.iterations < options_.max_iterations ? SolveStatus::stagnated : SolveStatus::not_converged;
+    polish(problem, work, path, out);
   }
 
-  /// Solves with the factored matrix and refines once.
-  static Columns refined(const Kkt& kkt, const Columns& b) {
-    Columns z = kkt.solve(b);
-    Columns defect = kkt.multiply(z);
-    for (std::size_t k = 0; k < b.size(); ++k) defect[k] = b[k] - defect[k];
-    const Columns correction = kkt.solve(defect);
-    for (std::size_t k = 0; k < b.size(); ++k) z[k] += correction[k];
-    return z;
+  /// Solves for `side` with the factored matrix and refines once; the solution is left in `step`.
+  static void refined_solve(Work& work) {
+    work.step = work.side;
+    work.kkt.solve_in_place(work.step);
+    work.defect = work.side;
+    work.kkt.add_product(-1, work.step, work.defect);
+    work.kkt.solve_in_place(work.defect);
+    for (std::size_t k = 0; k < work.step.size(); ++k) work.step[k] += work.defect[k];
   }
 
   static constexpr double tiny_pivot = 1e-11;
@@ -305,17 +338,18 @@ template <DiscreteSystem Sys> class BoundaryNewton {
     if (kkt.factor(0, 0).smallest < tiny_pivot) kkt.factor(dual_shift, dual_shift);
   }
 
-  /// Factors with the given shift; true when m N eigenvalues are negative, as at a minimum on the tangent space.
+  /// Factors with the given shift; true when as many eigenvalues are negative as there are constraints, as at a minimum
+  /// on the tangent space.
   static bool right_inertia(Kkt& kkt, double shift) {
-    auto inertia = kkt.factor(shift, 0);
-    if (inertia.smallest < tiny_pivot) inertia = kkt.factor(shift, dual_shift);
+    auto inertia = kkt.factor(0, 0, shift);
+    if (inertia.smallest < tiny_pivot) inertia = kkt.factor(0, dual_shift, shift);
     return inertia.negative == kkt.constraint_count();
   }
 
   /// How far the node that moves most moves.
-  static double reach(const Direction& direction) {
+  static double reach(const Variation<Sys>& variation) {
     double largest = 0;
-    for (const auto& v : direction.nodes) largest = std::max(largest, v.norm());
+    for (const auto& v : variation.nodes) largest = std::max(largest, v.norm());
     return largest;
   }
 
@@ -326,8 +360,6 @@ template <DiscreteSystem Sys> class BoundaryNewton {
       return true;
     }
   }
-
-  BoundaryOptions options_;
 };
 
 }  // namespace lagroid

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace lagroid {
@@ -19,6 +22,12 @@ template <DiscreteSystem Sys> struct BoundaryProblem {
   ArrowOf<typename Sys::GroupoidType> boundary;
 };
 
+/// A boundary-value problem together with its number of arrows.
+template <DiscreteSystem Sys> struct BoundaryStage {
+  BoundaryProblem<Sys> problem;
+  std::size_t steps = 0;
+};
+
 /// A candidate: N composable arrows whose product is the boundary arrow, with a multiplier each.
 template <DiscreteSystem Sys> using Path = std::vector<Step<Sys>>;
 
@@ -29,34 +38,64 @@ template <DiscreteSystem Sys> double action(const Sys& system, const Path<Sys>& 
   return sum;
 }
 
-/// The path with node k (the target of g_k, k = 1 ... N-1) displaced by v_k in A_{q_k}G:
-/// g_k -> tau(v_{k-1})^{-1} g_k tau(v_k), v_0 = v_N = 0, which leaves the product as it is; and multipliers
-/// lambda + dlambda. The last arrow is recomputed from the product, so that round-off does not add up.
+/// Displacements of a path's inner nodes and multipliers.
+template <DiscreteSystem Sys> struct Variation {
+  std::vector<Vector<double, Sys::dimension>> nodes;   ///< v_k in A_{q_k}G, q_k the target of arrow k = 0 ... N-1
+  std::vector<typename Sys::Multipliers> multipliers;  ///< added to those of arrow k
+
+  Variation() = default;
+  explicit Variation(std::size_t count)
+      : nodes(count, Vector<double, Sys::dimension>::Zero()), multipliers(count, Sys::Multipliers::Zero()) {}
+};
+
+/// Writes to `out` the path with node k (the target of g_k) displaced by fraction * v_k: g_k -> tau(v_{k-1})^{-1} g_k
+/// tau(v_k), where the ends stay, which leaves the product as it is; and multipliers lambda + fraction * dlambda. The
+/// last arrow is recomputed from the product, so that round-off does not add up. `out` must not be `path`.
 template <DiscreteSystem Sys>
-Path<Sys> displaced(const BoundaryProblem<Sys>& problem, const Path<Sys>& path,
-                    const std::vector<Vector<double, Sys::dimension>>& nodes,
-                    const std::vector<typename Sys::Multipliers>& multipliers, double fraction) {
+void displace(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, const Variation<Sys>& by, double fraction,
+              Path<Sys>& out) {
   using G = typename Sys::GroupoidType;
   const G& groupoid = problem.system.groupoid;
   const std::size_t count = path.size();
-  Path<Sys> out(count);
+  out.resize(count);
   ArrowOf<G> product = groupoid.unit(groupoid.source(problem.boundary));
+  ArrowOf<G> back = product;  // tau(v_{k-1})^{-1}
   for (std::size_t k = 0; k < count; ++k) {
-    out[k].multipliers = path[k].multipliers + fraction * multipliers[k];
+    out[k].multipliers = path[k].multipliers + fraction * by.multipliers[k];
     if (k + 1 == count) {
       out[k].arrow = groupoid.project(groupoid.compose(groupoid.inverse(product), problem.boundary));
       break;
     }
-    const AlgebroidVector<G> before = k == 0 ? AlgebroidVector<G>::Zero().eval() : (fraction * nodes[k - 1]).eval();
-    const AlgebroidVector<G> after = fraction * nodes[k];
-    out[k].arrow = groupoid.project(groupoid.translate(before, path[k].arrow, after));
+    const AlgebroidVector<G> v = fraction * by.nodes[k];
+    const ArrowOf<G> forth = groupoid.tau(groupoid.target(path[k].arrow), v);
+    out[k].arrow = groupoid.project(groupoid.compose(groupoid.compose(back, path[k].arrow), forth));
     product = groupoid.project(groupoid.compose(product, out[k].arrow));
+    back = groupoid.inverse(forth);
+  }
+}
+template <DiscreteSystem Sys>
+Path<Sys> displaced(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, const Variation<Sys>& by,
+                    double fraction) {
+  Path<Sys> out;
+  displace(problem, path, by, fraction, out);
+  return out;
+}
+
+/// v_k = sum_j a_j sin(j pi k / N) with a_j of components draw() / j, j = 1 ... modes.
+template <DiscreteSystem Sys, class Draw> Variation<Sys> sine_modes(std::size_t count, int modes, const Draw& draw) {
+  Variation<Sys> out(count);
+  for (int mode = 1; mode <= modes; ++mode) {
+    Vector<double, Sys::dimension> amplitude;
+    for (int i = 0; i < Sys::dimension; ++i) amplitude(i) = draw() / mode;
+    for (std::size_t k = 0; k + 1 < count; ++k)
+      out.nodes[k] += amplitude * std::sin(mode * std::numbers::pi * double(k + 1) / double(count));
   }
   return out;
 }
 
-/// The same path with another number of arrows: nodes interpolated along tau, multipliers linearly between the
-/// midpoints of the arrows. A starting guess for continuation in N.
+/// The same path with another number of arrows: nodes interpolated along tau, multipliers of arrow constraints linearly
+/// between the midpoints of the arrows, those of object constraints between the nodes and in proportion to the step,
+/// being impulses. A starting guess for continuation in N.
 template <DiscreteSystem Sys>
 Path<Sys> resampled(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, std::size_t count) {
   using G = typename Sys::GroupoidType;
@@ -77,13 +116,38 @@ Path<Sys> resampled(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, 
     const ArrowOf<G> after = k + 1 == count ? problem.boundary : node(k + 1);
     out[k].arrow = groupoid.project(groupoid.compose(groupoid.inverse(before), after));
     before = after;
-    const double at =
-        std::clamp((double(k) + 0.5) * double(old_count) / double(count) - 0.5, 0.0, double(old_count - 1));
-    const std::size_t i = std::min(std::size_t(at), old_count - 1);
-    const double t = at - double(i);
-    out[k].multipliers = (1 - t) * path[i].multipliers + t * path[std::min(i + 1, old_count - 1)].multipliers;
+    const double ratio = double(old_count) / double(count);
+    const auto multipliers = [&](double at) -> typename Sys::Multipliers {
+      const std::size_t i = std::min(std::size_t(at), old_count - 1);
+      const double t = at - double(i);
+      return (1 - t) * path[i].multipliers + t * path[std::min(i + 1, old_count - 1)].multipliers;
+    };
+    out[k].multipliers = multipliers(std::clamp((double(k) + 0.5) * ratio - 0.5, 0.0, double(old_count - 1)));
+    // The multiplier at the first object is no unknown, and zero.
+    if constexpr (Sys::object_constraints > 0)
+      out[k].multipliers.template tail<Sys::object_constraints>() =
+          k == 0 ? Vector<double, Sys::object_constraints>::Zero().eval()
+                 : (ratio * multipliers(std::clamp(double(k) * ratio, 1.0, double(old_count - 1)))
+                                .template tail<Sys::object_constraints>())
+                       .eval();
   }
   return out;
+}
+
+/// Why the ends of a problem admit no path, or nothing: what is not finite or off the object constraints by more than
+/// 1e-9 of their natural size.
+template <DiscreteSystem Sys> std::optional<std::string> inadmissible_ends(const BoundaryProblem<Sys>& problem) {
+  const auto& groupoid = problem.system.groupoid;
+  if (!groupoid.coordinates_of_arrow(problem.boundary).allFinite()) return "the boundary arrow is not finite";
+  if constexpr (Sys::object_constraints > 0) {
+    for (const bool at_end : {false, true}) {
+      const auto q = at_end ? groupoid.target(problem.boundary) : groupoid.source(problem.boundary);
+      const auto c = problem.system.object_constraint(q);
+      if (!(c.cwiseAbs().maxCoeff() <= 1e-9 * (1 + groupoid.coordinates_of_object(q).squaredNorm())))
+        return std::string(at_end ? "the last" : "the first") + " object does not satisfy the object constraint";
+    }
+  }
+  return std::nullopt;
 }
 
 /// How a stationary point sits among its neighbours.
@@ -103,6 +167,7 @@ template <DiscreteSystem Sys> struct BoundarySolution {
   double cost = 0;                                            ///< sum_k L(g_k)
   Classification kind;
   Path<Sys> path;
+  std::string message;  ///< of a failure, where more can be said than its status
   bool converged() const { return status == SolveStatus::converged; }
 };
 

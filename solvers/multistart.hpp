@@ -1,25 +1,15 @@
 #pragma once
 /// Many starts, then continuation: how local minima of a boundary-value problem are found.
 
-#include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/continuation.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <map>
-#include <numbers>
-#include <random>
 #include <utility>
 #include <vector>
 
 namespace lagroid {
-
-/// A boundary-value problem together with its number of arrows.
-template <DiscreteSystem Sys> struct BoundaryStage {
-  BoundaryProblem<Sys> problem;
-  std::size_t steps = 0;
-};
 
 /// What a multistart found.
 template <DiscreteSystem Sys> struct MultistartResult {
@@ -44,21 +34,6 @@ bool same_solution(const Sys& system, const BoundarySolution<Sys>& a, const Boun
   return (p - q).norm() <= 1e-5 * (1 + p.norm());
 }
 
-/// The path with its nodes displaced by random multiples of the first sine modes, the larger the later the attempt.
-template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int attempt) {
-  std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
-  std::normal_distribution<double> normal(0, 0.01 * std::exp2(attempt));
-  std::vector<Vector<double, Sys::dimension>> nodes(path.size(), Vector<double, Sys::dimension>::Zero());
-  for (int mode = 1; mode <= 3; ++mode) {
-    Vector<double, Sys::dimension> amplitude;
-    for (int i = 0; i < Sys::dimension; ++i) amplitude(i) = normal(generator) / mode;
-    for (std::size_t k = 0; k + 1 < path.size(); ++k)
-      nodes[k] += amplitude * std::sin(mode * std::numbers::pi * double(k + 1) / double(path.size()));
-  }
-  const std::vector<typename Sys::Multipliers> same(path.size(), Sys::Multipliers::Zero());
-  return displaced(problem, path, nodes, same, 1.0);
-}
-
 template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
   const double best = result.best_failure.residual;
   if (result.best_failure.path.empty() || failure.residual < best) result.best_failure = std::move(failure);
@@ -72,8 +47,8 @@ void keep_if_new(std::vector<BoundarySolution<Sys>>& found, const Sys& system, B
 }
 
 /// A saddle has a way down: solves again from paths bent a little away from each, and keeps what is new.
-template <DiscreteSystem Sys, class Solver>
-void descend_from_saddles(const Solver& solver, const BoundaryProblem<Sys>& problem,
+template <DiscreteSystem Sys>
+void descend_from_saddles(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem,
                           std::vector<BoundarySolution<Sys>>& found, MultistartResult<Sys>& result) {
   std::vector<Path<Sys>> saddles;
   for (const auto& solution : found)
@@ -89,11 +64,12 @@ void descend_from_saddles(const Solver& solver, const BoundaryProblem<Sys>& prob
 }  // namespace detail
 
 /// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
-/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve; `guess(i)` is
+/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
+/// `solver.seek()`; `guess(i)` is
 /// the i-th starting path of the first stage; `report(i)` is called after each start.
-template <DiscreteSystem Sys, class Solver, class Guess, class Report>
-MultistartResult<Sys> multistart(const Solver& solver, const std::vector<BoundaryStage<Sys>>& stages, int starts,
-                                 const Guess& guess, const Report& report) {
+template <DiscreteSystem Sys, class Guess, class Report>
+MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
+                                 int starts, const Guess& guess, const Report& report) {
   MultistartResult<Sys> result;
   std::vector<BoundarySolution<Sys>> found;
   for (int i = 0; i < starts; ++i) {
@@ -109,19 +85,14 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
     }
     report(i + 1);
   }
-  detail::descend_from_saddles(solver, stages.front().problem, found, result);
+  const bool minima = solver.seek() == Seek::minima;
+  if (minima) detail::descend_from_saddles(solver, stages.front().problem, found, result);
   for (std::size_t s = 1; s < stages.size(); ++s) {
-    const auto& [problem, steps] = stages[s];
+    const BoundaryProblem<Sys>& problem = stages[s].problem;
     std::vector<BoundarySolution<Sys>> carried;
     for (const auto& solution : found) {
-      const Path<Sys> path = solution.path.size() == steps ? solution.path : resampled(problem, solution.path, steps);
-      auto next = solver.solve(problem, path, /*keep_multipliers=*/true);
+      auto next = carry(solver, stages[s], solution, solution.path);
       result.iterations += next.iterations;
-      // At an abnormal extremal the path may have to bend to reach its ends at all: try a few bent ones.
-      for (int bend = 1; bend <= 6 && !next.converged() && !solution.kind.normal; ++bend) {
-        next = solver.solve(problem, detail::bent(problem, path, bend), /*keep_multipliers=*/false);
-        result.iterations += next.iterations;
-      }
       if (next.converged()) {
         detail::keep_if_new(carried, problem.system, std::move(next));
       } else {
@@ -131,7 +102,7 @@ MultistartResult<Sys> multistart(const Solver& solver, const std::vector<Boundar
     }
     found = std::move(carried);
   }
-  if (stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, found, result);
+  if (minima && stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, found, result);
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   result.solutions = std::move(found);
   return result;

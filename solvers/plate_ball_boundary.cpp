@@ -1,5 +1,3 @@
-#include <lagroid/solvers/boundary_ceres.hpp>
-#include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/plate_ball_boundary.hpp>
 
 #include <fmt/format.h>
@@ -23,8 +21,7 @@ namespace {
 constexpr long coarse_steps = 20;
 constexpr int modes = 3;
 
-template <class Solver>
-MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
+MultistartResult<PlateBall> run(const BoundarySolver<PlateBall>& solver, const PlateBall& system,
                                 const ArrowOf<PlateBall::GroupoidType>& boundary,
                                 const PlateBallBoundaryOptions& options) {
   const double horizon = system.h * double(options.steps);
@@ -83,15 +80,12 @@ MultistartResult<PlateBall> run(const Solver& solver, const PlateBall& system,
 
 }  // namespace
 
-MultistartResult<PlateBall> solve_plate_ball(const PlateBall& system, const ArrowOf<PlateBall::GroupoidType>& boundary,
+MultistartResult<PlateBall> solve_plate_ball(const BoundarySolver<PlateBall>& solver, const PlateBall& system,
+                                             const ArrowOf<PlateBall::GroupoidType>& boundary,
                                              const PlateBallBoundaryOptions& options) {
   if (const auto why = unreachable(system, options.steps)) throw std::invalid_argument(*why);
   if (!system.groupoid.coordinates_of_arrow(boundary).allFinite())
     throw std::invalid_argument("the boundary arrow is not finite");
-  BoundaryOptions solver_options;
-  solver_options.tolerance = options.tolerance;
-  solver_options.max_iterations = options.max_iterations;
-
   // Solved with the radius as the unit of length: lengths scale by r, the cost and M by r^2, and so multiply
   // lambda1, lambda2 by r and lambda3 by r^2.
   const double r = system.radius;
@@ -100,8 +94,7 @@ MultistartResult<PlateBall> solve_plate_ball(const PlateBall& system, const Arro
   ArrowOf<PlateBall::GroupoidType> scaled = boundary;
   std::get<0>(scaled).source /= r;
   std::get<0>(scaled).target /= r;
-  auto result = options.ceres ? run(BoundaryCeres<PlateBall>(solver_options), unit, scaled, options)
-                              : run(BoundaryNewton<PlateBall>(solver_options), unit, scaled, options);
+  auto result = run(solver, unit, scaled, options);
   const auto restore = [&](BoundarySolution<PlateBall>& solution) {
     solution.cost *= r * r;
     for (auto& [arrow, lambda] : solution.path) {

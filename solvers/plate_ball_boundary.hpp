@@ -10,12 +10,9 @@
 namespace lagroid {
 
 struct PlateBallBoundaryOptions {
-  long steps = 0;          ///< N, at least 3
-  int starts = 40;         ///< the straight line, then straight lines with random sine modes
-  std::uint64_t seed = 1;  ///< of the random modes
-  bool ceres = false;      ///< Ceres in place of Newton
-  double tolerance = 1e-10;
-  int max_iterations = 200;
+  long steps = 0;                                ///< N, at least 3
+  int starts = 40;                               ///< the straight line, then straight lines with random sine modes
+  std::uint64_t seed = 1;                        ///< of the random modes
   std::function<void(int)> report = [](int) {};  ///< called with the number of starts done
 };
 
@@ -25,7 +22,8 @@ std::optional<std::string> unreachable(const PlateBall& system, long steps);
 /// Minima of the cost between the ends of `boundary`: multistart in the exp form with at most 20 arrows, then
 /// continuation in the number of arrows and in the form of the rotation. `system.h` must be horizon / steps.
 /// Throws std::invalid_argument where `unreachable` has a reason or the boundary is not finite.
-MultistartResult<PlateBall> solve_plate_ball(const PlateBall& system, const ArrowOf<PlateBall::GroupoidType>& boundary,
+MultistartResult<PlateBall> solve_plate_ball(const BoundarySolver<PlateBall>& solver, const PlateBall& system,
+                                             const ArrowOf<PlateBall::GroupoidType>& boundary,
                                              const PlateBallBoundaryOptions& options);
 
 }  // namespace lagroid

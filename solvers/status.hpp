@@ -7,12 +7,13 @@ namespace lagroid {
 
 /// Only `converged` lets a caller go on; whoever marches a trajectory keeps its last state on every other outcome.
 enum class SolveStatus {
-  converged,      ///< residual as small as the solver promises (its options say how small)
-  stagnated,      ///< the residual stopped falling above that floor
-  singular,       ///< the matrix of the step is singular: the system is not regular here ([G] Def. 3.5)
-  left_domain,    ///< converged, but on another branch of the discretisation or outside the retraction's domain
-  not_finite,     ///< a NaN or an infinity appeared
-  not_converged,  ///< the iteration limit was reached
+  converged,        ///< residual as small as the solver promises (its options say how small)
+  stagnated,        ///< the residual stopped falling above that floor
+  singular,         ///< the matrix of the step is singular: the system is not regular here ([G] Def. 3.5)
+  left_domain,      ///< converged, but on another branch of the discretisation or outside the retraction's domain
+  not_finite,       ///< a NaN or an infinity appeared
+  not_converged,    ///< the iteration limit was reached
+  ill_conditioned,  ///< near a solution, but the method's own arithmetic cannot come closer; another method can
 };
 
 constexpr std::string_view to_string(SolveStatus status) {
@@ -29,6 +30,8 @@ constexpr std::string_view to_string(SolveStatus status) {
       return "not_finite";
     case SolveStatus::not_converged:
       return "not_converged";
+    case SolveStatus::ill_conditioned:
+      return "ill_conditioned";
   }
   return "unknown";
 }

@@ -4,3 +4,6 @@ template lagroid::GradientsOf<lagroid::Kepler> lagroid::automatic_gradients(cons
                                                                             const Kepler::Multipliers&);
 template lagroid::TwoSidedOf<lagroid::Kepler> lagroid::automatic_two_sided(const Kepler&, const ArrowOf<Pair<2>>&,
                                                                            const Kepler::Multipliers&);
+template lagroid::SecondDerivativesOf<lagroid::Kepler> lagroid::second_derivatives(const Kepler&,
+                                                                                   const ArrowOf<Pair<2>>&,
+                                                                                   const Kepler::Multipliers&);

@@ -1,7 +1,7 @@
 #pragma once
 /// The planar Kepler problem.
 
-#include <lagroid/core/two_sided.hpp>
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 #include <cmath>
@@ -36,5 +36,7 @@ extern template GradientsOf<Kepler> automatic_gradients(const Kepler&, const Arr
                                                         const Kepler::Multipliers&);
 extern template TwoSidedOf<Kepler> automatic_two_sided(const Kepler&, const ArrowOf<Pair<2>>&,
                                                        const Kepler::Multipliers&);
+extern template SecondDerivativesOf<Kepler> second_derivatives(const Kepler&, const ArrowOf<Pair<2>>&,
+                                                               const Kepler::Multipliers&);
 
 }  // namespace lagroid

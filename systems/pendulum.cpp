@@ -4,3 +4,6 @@ template lagroid::GradientsOf<lagroid::Pendulum> lagroid::automatic_gradients(co
                                                                               const Pendulum::Multipliers&);
 template lagroid::TwoSidedOf<lagroid::Pendulum> lagroid::automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
                                                                              const Pendulum::Multipliers&);
+template lagroid::SecondDerivativesOf<lagroid::Pendulum> lagroid::second_derivatives(const Pendulum&,
+                                                                                     const ArrowOf<Pair<1>>&,
+                                                                                     const Pendulum::Multipliers&);

@@ -1,7 +1,7 @@
 #pragma once
 /// The planar pendulum.
 
-#include <lagroid/core/two_sided.hpp>
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 #include <cmath>
@@ -29,5 +29,7 @@ extern template GradientsOf<Pendulum> automatic_gradients(const Pendulum&, const
                                                           const Pendulum::Multipliers&);
 extern template TwoSidedOf<Pendulum> automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
                                                          const Pendulum::Multipliers&);
+extern template SecondDerivativesOf<Pendulum> second_derivatives(const Pendulum&, const ArrowOf<Pair<1>>&,
+                                                                 const Pendulum::Multipliers&);
 
 }  // namespace lagroid

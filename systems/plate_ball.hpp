@@ -2,7 +2,7 @@
 /// Optimal control of a ball that rolls on a rotating plate. [G] 6.2
 
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/core/two_sided.hpp>
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/so3.hpp>
@@ -101,5 +101,8 @@ extern template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, cons
                                                           const PlateBall::Multipliers&);
 extern template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
                                                        const PlateBall::Multipliers&, End);
+extern template SecondDerivativesOf<PlateBall> second_derivatives(const PlateBall&,
+                                                                  const ArrowOf<PlateBall::GroupoidType>&,
+                                                                  const PlateBall::Multipliers&);
 
 }  // namespace lagroid

@@ -2,7 +2,7 @@
 /// The free rigid body.
 
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/core/two_sided.hpp>
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/groupoids/so3.hpp>
 
 namespace lagroid {
@@ -53,5 +53,7 @@ extern template GradientsOf<RigidBody> automatic_gradients(const RigidBody&, con
                                                            const RigidBody::Multipliers&);
 extern template TwoSidedOf<RigidBody> automatic_two_sided(const RigidBody&, const ArrowOf<SO3>&,
                                                           const RigidBody::Multipliers&);
+extern template SecondDerivativesOf<RigidBody> second_derivatives(const RigidBody&, const ArrowOf<SO3>&,
+                                                                  const RigidBody::Multipliers&);
 
 }  // namespace lagroid

@@ -6,6 +6,8 @@ template GradientsOf<SphericalPendulum> automatic_gradients(const SphericalPendu
                                                             const SphericalPendulum::Multipliers&);
 template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
                                                            const SphericalPendulum::Multipliers&);
+template SecondDerivativesOf<SphericalPendulum> second_derivatives(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
+                                                                   const SphericalPendulum::Multipliers&);
 
 State<Pair<3>> SphericalPendulum::reference(const State<Pair<3>>& start, double t) const {
   Eigen::VectorXd y(6);

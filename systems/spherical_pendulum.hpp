@@ -1,7 +1,7 @@
 #pragma once
 /// The spherical pendulum, as R^3 with an object constraint.
 
-#include <lagroid/core/two_sided.hpp>
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 namespace lagroid {
@@ -42,5 +42,8 @@ extern template GradientsOf<SphericalPendulum> automatic_gradients(const Spheric
                                                                    const SphericalPendulum::Multipliers&);
 extern template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
                                                                   const SphericalPendulum::Multipliers&);
+extern template SecondDerivativesOf<SphericalPendulum> second_derivatives(const SphericalPendulum&,
+                                                                          const ArrowOf<Pair<3>>&,
+                                                                          const SphericalPendulum::Multipliers&);
 
 }  // namespace lagroid

@@ -73,6 +73,52 @@ TEST_F(CommandLine, BoundaryValueJson) {
   EXPECT_NEAR(json.at("final").at("position").at(0).get<double>(), 1.0, 1e-14);
 }
 
+TEST_F(CommandLine, EveryMethodSolvesTheSameBoundaryValues) {
+  for (const char* scene : {"kepler_boundary", "rigid_body_boundary"}) {
+    std::vector<double> costs;
+    for (const char* method : {"newton", "shooting", "ceres"}) {
+      const Outcome r = run("run " + example(scene) +
+                            " --json --set time.steps=60 --set solver.starts=4 --set solver.method=" + method);
+      ASSERT_EQ(r.code, 0) << r.err;
+      costs.push_back(nlohmann::json::parse(r.out).at("cost"));
+    }
+    EXPECT_NEAR(costs[0], costs[1], 1e-9) << scene;
+    EXPECT_NEAR(costs[0], costs[2], 1e-9) << scene;
+  }
+}
+
+TEST_F(CommandLine, ContinuationArrivesWhereTheDirectSolveDoes) {
+  const std::string scene = "run " + example("rigid_body_boundary") + " --json";
+  const auto direct = nlohmann::json::parse(run(scene).out);
+  const Outcome r = run(scene +
+                        " --set continuation.parameter=parameters.inertia --set continuation.from=[2,2,2] "
+                        "--set continuation.steps=4");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto carried = nlohmann::json::parse(r.out);
+  EXPECT_NEAR(carried.at("cost").get<double>(), direct.at("cost").get<double>(), 1e-9);
+  EXPECT_NE(carried.at("notes").dump().find("arrived"), std::string::npos);
+}
+
+TEST_F(CommandLine, BadBoundaryValuesExitTwo) {
+  const std::string sphere = "run " + example("spherical_pendulum") + " --set boundary.start.position=[1,0,0] ";
+  for (const std::string& arguments : std::vector<std::string>{
+           sphere + "--set boundary.end.position=[0,1,0]",  // [initial] as well
+           "run " + example("kepler_boundary") + " --set boundary.end.position=[0,0]",
+           "run " + example("kepler_boundary") + " --set time.steps=1",
+           "run " + example("kepler_boundary") + " --set solver.method=shoot",
+           "run " + example("kepler_boundary") + " --set solver.seek=maxima",
+           "run " + example("kepler_boundary") + " --set boundary.end.attitude=[0,0,1]",
+           "run " + example("kepler_boundary") +
+               " --set continuation.parameter=parameters.mass --set continuation.from=1",
+           "run " + example("plate_ball_continuation") + " --set continuation.parameter=boundary.end.position",
+           "run " + example("plate_ball_continuation") + " --set continuation.step=4"}) {
+    const Outcome r = run(arguments + " --json");
+    EXPECT_EQ(r.code, 2) << arguments << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_EQ(nlohmann::json::parse(r.out).at("status"), "invalid_scene");
+  }
+}
+
 TEST_F(CommandLine, CeresGivesTheSameTrajectory) {
   const std::string scene = example("plate_ball_initial_value");
   const auto newton = nlohmann::json::parse(run("run " + scene + " --json").out);

@@ -3,6 +3,9 @@
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/derivative_laws.hpp>
+#include <lagroid/groupoids/se2.hpp>
+#include <lagroid/groupoids/se3.hpp>
+#include <lagroid/groupoids/vector_group.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/plate_ball.hpp>
@@ -114,6 +117,42 @@ TEST(Derivatives, OneSidedHessiansAreSecondDerivativesOfTheRetraction) {
       }
     EXPECT_LT((hessian - hessian.transpose()).norm(), 1e-12);
   }
+}
+
+/// One pass along the arrow's frame gives what three passes give.
+template <class Sys> void expect_one_pass(const Sys& system) {
+  const auto law = laws::second_derivative_law(system, [&] { return draw_step(system, 0.4); });
+  EXPECT_TRUE(law.holds()) << law;
+}
+
+/// A Lagrangian without any symmetry on an arbitrary groupoid.
+template <class G> struct Generic : System<Generic<G>, G, 1> {
+  template <class S> S lagrangian(const typename G::template Arrow<S>& g) const {
+    using std::cos;
+    const auto x = this->groupoid.coordinates_of_arrow(g);
+    S sum(0);
+    for (int i = 0; i < x.size(); ++i) sum += cos(x(i) * S(1.0 + 0.3 * i)) * x((i + 1) % x.size());
+    return sum;
+  }
+  template <class S> Vector<S, 1> constraint(const typename G::template Arrow<S>& g) const {
+    const auto x = this->groupoid.coordinates_of_arrow(g);
+    return Vector<S, 1>(x(0) * x(x.size() - 1));
+  }
+};
+
+TEST(SecondDerivatives, OnePassIsThreePasses) {
+  PlateBall plate;
+  plate.plate_rate = 0.8;
+  for (const auto form : {RotationForm::trace, RotationForm::exponential, RotationForm::cayley}) {
+    plate.rotation = form;
+    expect_one_pass(plate);
+  }
+  expect_one_pass(RigidBody());
+  expect_one_pass(Kepler());
+  expect_one_pass(SphericalPendulum());
+  expect_one_pass(Generic<SE2>());
+  expect_one_pass(Generic<SpecialEuclidean3<Retraction::cayley>>());
+  expect_one_pass(Generic<Product<SE2, VectorGroup<2>, Pair<1>>>());
 }
 
 TEST(Noether, DefectVanishesForSymmetriesAndOnlyForThem) {

@@ -1,6 +1,7 @@
 // Runs of many minutes: millions of steps, and boundary values over many seeds.
 #include "run_watch.hpp"
 
+#include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/plate_ball_boundary.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/plate_ball.hpp>
@@ -62,7 +63,7 @@ TEST(Nightly, EverySeedFindsTheBestMinimum) {
       PlateBallBoundaryOptions options;
       options.steps = 30;
       options.seed = seed;
-      const auto found = solve_plate_ball(system, ends, options);
+      const auto found = solve_plate_ball(BoundaryNewton<PlateBall>(), system, ends, options);
       ASSERT_FALSE(found.solutions.empty());
       if (seed == 1) best = found.solutions.front().cost;
       EXPECT_NEAR(found.solutions.front().cost, best, 1e-9 * best) << rate << ' ' << seed;

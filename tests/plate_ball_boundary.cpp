@@ -6,6 +6,7 @@
 #include "plate_ball_cases.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include <numbers>
 
@@ -28,9 +29,9 @@ MultistartResult<PlateBall> solve(const PlateBall& system, const ArrowOf<G>& end
                                   std::uint64_t seed = 1) {
   PlateBallBoundaryOptions options;
   options.steps = steps;
-  options.ceres = ceres;
   options.seed = seed;
-  return solve_plate_ball(system, ends, options);
+  if (ceres) return solve_plate_ball(BoundaryCeres<PlateBall>(), system, ends, options);
+  return solve_plate_ball(BoundaryNewton<PlateBall>(), system, ends, options);
 }
 
 double end_defect(const PlateBall& system, const ArrowOf<G>& ends, const Path<PlateBall>& path) {
@@ -226,20 +227,19 @@ TEST(Kkt, MatrixIsTheDerivativeOfTheEquationsAtASolution) {
   BoundaryKkt<PlateBall> kkt;
   kkt.evaluate(system, path);
   BoundaryKkt<PlateBall>::Columns z(8, Vector<double, 8>::Zero());
-  std::vector<Vector<double, 5>> nodes(8, Vector<double, 5>::Zero());
-  std::vector<Vector<double, 3>> multipliers(8, Vector<double, 3>::Zero());
+  Variation<PlateBall> variation(8);
   std::srand(1);
   for (int k = 0; k < 8; ++k) {
-    multipliers[k].setRandom();
-    if (k < 7) nodes[k].setRandom();
-    z[k] << multipliers[k], nodes[k];
+    variation.multipliers[k].setRandom();
+    if (k < 7) variation.nodes[k].setRandom();
+    z[k] << variation.multipliers[k], variation.nodes[k];
   }
   const auto product = kkt.multiply(z);
   const double e = 1e-6;
   BoundaryKkt<PlateBall> plus;
-  plus.evaluate(system, displaced(problem, path, nodes, multipliers, e));
+  plus.evaluate(system, displaced(problem, path, variation, e));
   BoundaryKkt<PlateBall> minus;
-  minus.evaluate(system, displaced(problem, path, nodes, multipliers, -e));
+  minus.evaluate(system, displaced(problem, path, variation, -e));
   for (int k = 0; k < 8; ++k) {
     const auto difference = ((plus.residual()[k] - minus.residual()[k]) / (2 * e)).eval();
     EXPECT_LT((difference - product[k]).norm(), 1e-6 * (1 + product[k].norm())) << k;

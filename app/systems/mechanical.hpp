@@ -1,6 +1,7 @@
 #pragma once
 /// What the scenes of point masses on R^n have in common.
 
+#include "../boundary_value.hpp"
 #include "../registry.hpp"
 
 #include <lagroid/systems/mechanical.hpp>
@@ -40,10 +41,38 @@ Presentation<Sys> vector_presentation(std::string name, std::vector<std::string>
   return p;
 }
 
-/// Reads what is left of the scene, refuses unknown keys, and runs.
-template <class Sys, int N>
-RunResult run_mechanical(const Section& scene, const RunContext& context, Sys system, const Presentation<Sys>& p,
-                         const State<Pair<N>>& initial) {
+/// [boundary] start and end, each a position that `check(section, q)` refuses or returns, and the time between them.
+template <class Sys, int N, class Check>
+BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::string_view position,
+                                        const Check& check) {
+  const TimeGrid grid = read_time(scene);
+  system.h = grid.step;
+  const Section boundary = scene.section("boundary", "start and end");
+  const auto end = [&](std::string_view key) {
+    const Section section = boundary.section(key, "position");
+    return check(section, Vector<double, N>(
+                              Eigen::Map<const Vector<double, N>>(section.numbers("position", N, position).data())));
+  };
+  const Vector<double, N> from = end("start");
+  return {{{system, PairArrow<double, N>{from, end("end")}}, std::size_t(grid.steps)},
+          PairArrow<double, N>{from, from}};
+}
+
+/// Runs [initial] or [boundary]. `system(scene)` reads the parameters; `check(section, q)` refuses a position or
+/// returns it.
+template <class Sys, int N, class ReadSystem, class Check, class CheckState>
+RunResult run_mechanical(const Section& scene, const RunContext& context, const Presentation<Sys>& p,
+                         std::string_view position, std::string_view momentum, const ReadSystem& read_system,
+                         const Check& check, const CheckState& check_state) {
+  Sys system = read_system(scene);
+  if (is_boundary_value(scene, "position and momentum"))
+    return run_boundary_value<Sys>(scene, context, p, [&](const Section& s) {
+      return read_vector_boundary<Sys, N>(s, read_system(s), position, check);
+    });
+  const Section section = scene.section("initial", "position and momentum");
+  auto initial = read_vector_state<N>(section, position, momentum);
+  initial.object = check(section, initial.object);
+  check_state(section, initial);
   const TimeGrid grid = read_time(scene);
   system.h = grid.step;
   const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
@@ -52,5 +81,9 @@ RunResult run_mechanical(const Section& scene, const RunContext& context, Sys sy
   return simulate(system, p, initial, PairArrow<double, N>{initial.object, initial.object}, grid.steps, choice, every,
                   context);
 }
+
+/// Any position, any state.
+inline constexpr auto any_position = [](const Section&, const auto& q) { return q; };
+inline constexpr auto any_state = [](const Section&, const auto&) {};
 
 }  // namespace lagroid::app

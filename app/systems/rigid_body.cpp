@@ -1,3 +1,4 @@
+#include "../boundary_value.hpp"
 #include "../registry.hpp"
 #include "attitude.hpp"
 
@@ -5,7 +6,9 @@
 
 namespace lagroid::app {
 
-RunResult run_rigid_body(const Section& scene, const RunContext& context) {
+namespace {
+
+RigidBody read_system(const Section& scene) {
   const Section parameters = scene.section("parameters", "inertia, the three principal moments");
   RigidBody system;
   const auto inertia = parameters.numbers("inertia", 3, "principal moments");
@@ -14,6 +17,22 @@ RunResult run_rigid_body(const Section& scene, const RunContext& context) {
   system.inertia = Eigen::Map<const Vector<double, 3>>(inertia.data());
   system.rotation = parameters.choice_or("rotation", "exp", {"exp", "cayley"}) == "exp" ? RotationMap::exponential
                                                                                         : RotationMap::cayley;
+  system.h = read_time(scene).step;
+  return system;
+}
+
+BoundaryScene<RigidBody> read_boundary(const Section& scene) {
+  const Section boundary = scene.section("boundary", "start and end");
+  const Matrix<double, 3, 3> start = read_rotation(boundary.section("start", "attitude"));
+  const Matrix<double, 3, 3> end = read_rotation(boundary.section("end", "attitude"));
+  return {{{read_system(scene), SO3::project(Matrix<double, 3, 3>(start.transpose() * end))},
+           std::size_t(read_time(scene).steps)},
+          start};
+}
+
+}  // namespace
+
+RunResult run_rigid_body(const Section& scene, const RunContext& context) {
   Presentation<RigidBody> p;
   p.name = "rigid_body";
   p.has_attitude = true;
@@ -26,16 +45,18 @@ RunResult run_rigid_body(const Section& scene, const RunContext& context) {
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"spatial momentum error", "t", "|A M - (A M)_0|", "t", {"drift spatial momentum A M"}}};
 
+  const RigidBody system = read_system(scene);
+  if (is_boundary_value(scene, "attitude and momentum"))
+    return run_boundary_value<RigidBody>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");
   State<SO3> state;
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
-  const auto attitude = initial.has("attitude") ? initial.attitude("attitude") : std::array<double, 4>{1, 0, 0, 0};
-  const TimeGrid grid = read_time(scene);
-  system.h = grid.step;
+  const Matrix<double, 3, 3> attitude = read_rotation(initial);
+  const long steps = read_time(scene).steps;
   const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
   const long every = read_every(scene, context);
   scene.finish();
-  return simulate(system, p, state, rotation_from(attitude), grid.steps, choice, every, context);
+  return simulate(system, p, state, attitude, steps, choice, every, context);
 }
 
 }  // namespace lagroid::app

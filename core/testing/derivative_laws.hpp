@@ -1,8 +1,8 @@
 #pragma once
 /// The two-sided derivative against two independent ways of computing it.
 
+#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/core/testing/property.hpp>
-#include <lagroid/core/two_sided.hpp>
 
 namespace lagroid::laws {
 
@@ -99,6 +99,23 @@ LawReport derivative_laws(const Sys& system, const Draw& draw, double tolerance 
                                nested_two_sided(system, s.arrow, s.multipliers));
     }));
   return report;
+}
+
+/// For a groupoid that supplies an arrow frame: second derivatives in one pass along it are those of three passes.
+template <DiscreteSystem Sys, class Draw>
+requires HasArrowFrame<typename Sys::GroupoidType> LawReport second_derivative_law(const Sys& system, const Draw& draw,
+                                                                                   double tolerance = 1e-9) {
+  return {
+      "second derivatives", {check_law("one pass is three", tolerance, [&] {
+        const Step<Sys> s = draw();
+        const auto one = second_derivatives_in_one_pass(system, s.arrow, s.multipliers);
+        const auto three = second_derivatives_in_three_passes(system, s.arrow, s.multipliers);
+        const auto gap = [](const auto& a, const auto& b) {
+          return (a - b).cwiseAbs().maxCoeff() / (1 + b.cwiseAbs().maxCoeff());
+        };
+        return worst({derivative_defect<Sys::dimension, Sys::constraints>(one, three),
+                      gap(one.source_hessian, three.source_hessian), gap(one.target_hessian, three.target_hessian)});
+      })}};
 }
 
 }  // namespace lagroid::laws

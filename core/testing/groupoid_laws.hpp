@@ -6,6 +6,7 @@
 /// Arrows are drawn as products of retractions of random algebroid vectors (zero, tiny, moderate, large) over random
 /// objects. A groupoid whose objects are not vectors of R^n passes `draw_object`.
 
+#include <lagroid/core/arrow_frame.hpp>
 #include <lagroid/core/groupoid.hpp>
 #include <lagroid/core/testing/property.hpp>
 
@@ -168,23 +169,27 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
                   defect.template operator()<End::source, End::source>(),
                   defect.template operator()<End::target, End::target>()});
   });
-  law("frame", options.derivative, [&] {
-    // A random linear function of the arrow's coordinates, differentiated along the frame and along both ends.
-    const A g = arrow();
-    using F = Jet<double, G::frame_size>;
-    using J = Jet<double, 2 * n>;
-    const auto along_frame = groupoid.coordinates_of_arrow(groupoid.template seed_frame<F>(g));
-    const auto along_ends = groupoid.coordinates_of_arrow(groupoid.template seed<J, End::source, End::target, 0, n>(g));
-    Vector<double, G::frame_size> c = Vector<double, G::frame_size>::Zero();
-    Vector<double, 2 * n> ends = Vector<double, 2 * n>::Zero();
-    for (int i = 0; i < along_frame.size(); ++i) {
-      const double weight = vector()(0);
-      c += weight * along_frame(i).gradient();
-      ends += weight * along_ends(i).gradient();
-    }
-    return worst({relative_defect(groupoid.source_part(g, c), ends.template head<n>().eval()),
-                  relative_defect(groupoid.target_part(g, c), ends.template tail<n>().eval())});
-  });
+  if constexpr (HasArrowFrame<G>) {
+    law("arrow frame", options.derivative, [&] {
+      // A random linear function of the arrow's coordinates, differentiated along the frame and along both ends.
+      constexpr int d = arrow_dimension_of<G>();
+      const A g = arrow();
+      const auto framed = groupoid.coordinates_of_arrow(groupoid.template frame_jet<Jet<double, d>>(g));
+      const auto ends = groupoid.coordinates_of_arrow(
+          groupoid.template seed_by_composition<Jet<double, 2 * n>, End::source, End::target, 0, n>(g));
+      Vector<double, d> along_frame = Vector<double, d>::Zero();
+      Vector<double, 2 * n> along_ends = Vector<double, 2 * n>::Zero();
+      for (int i = 0; i < framed.size(); ++i) {
+        const double weight = vector()(0);
+        along_frame += weight * framed(i).gradient();
+        along_ends += weight * ends(i).gradient();
+      }
+      return worst({relative_defect(groupoid.template frame_to_end<End::source>(g, along_frame),
+                                    along_ends.template head<n>().eval()),
+                    relative_defect(groupoid.template frame_to_end<End::target>(g, along_frame),
+                                    along_ends.template tail<n>().eval())});
+    });
+  }
   law("extending an arrow", options.tolerance, [&] {
     const A g = arrow();
     V w = vector();

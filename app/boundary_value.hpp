@@ -1,0 +1,241 @@
+#pragma once
+/// Boundary-value runs of any system.
+
+#include "progress.hpp"
+#include "recorder.hpp"
+#include "scene_reader.hpp"
+#include "simulation.hpp"
+
+#include <lagroid/solvers/boundary_ceres.hpp>
+#include <lagroid/solvers/boundary_newton.hpp>
+#include <lagroid/solvers/boundary_shooting.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+/// [solver] of a boundary-value run.
+struct BoundaryChoice {
+  std::string method;  ///< newton, shooting or ceres
+  std::optional<Seek> seek;
+  BoundaryOptions options;
+  MultistartOptions multistart;
+};
+BoundaryChoice read_boundary_solver(const Section& solver);
+
+/// [solver] starts and seed. Initial-value runs read them too, so that a scene may switch between the two.
+MultistartOptions read_multistart(const Section& solver);
+
+/// [continuation]: a key of the scene that is carried from other numbers to those that stand there.
+struct ContinuationChoice {
+  std::string parameter;
+  std::vector<double> from;
+  std::vector<double> to;
+  long steps = 10;  ///< of equal size, to begin with
+
+  std::vector<double> at(double s) const;
+  std::string value(double s) const;  ///< in words
+};
+std::optional<ContinuationChoice> read_continuation(const Section& scene);
+
+/// True for [boundary], false for [initial]; refuses both and neither. `initial` says what [initial] holds.
+bool is_boundary_value(const Section& scene, const std::string& initial);
+
+/// A boundary-value problem as a scene states it: the configuration at the start, and the arrow from there to the end.
+template <DiscreteSystem Sys> struct BoundaryScene {
+  BoundaryStage<Sys> stage;
+  ArrowOf<typename Sys::GroupoidType> start;
+};
+
+template <DiscreteSystem Sys> std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(const BoundaryChoice& choice) {
+  const Seek seek = choice.seek.value_or(natural_seek<Sys>);
+  if (choice.method == "shooting") return std::make_unique<BoundaryShooting<Sys>>(choice.options, seek);
+  if (choice.method == "ceres") return std::make_unique<BoundaryCeres<Sys>>(choice.options, seek);
+  return std::make_unique<BoundaryNewton<Sys>>(choice.options, seek);
+}
+
+/// Replays a solved path through the recorder.
+template <DiscreteSystem Sys>
+void record_path(const Sys& system, const Presentation<Sys>& presentation, const Path<Sys>& path,
+                 const ArrowOf<typename Sys::GroupoidType>& start, long every, RunResult& result) {
+  Recorder<Sys> recorder(system, presentation, every);
+  TrajectoryPoint<Sys> point;
+  point.configuration = start;
+  point.state = legendre_minus(system, path.front());
+  recorder.observe(reported(system, point));
+  for (const auto& step : path) {
+    ++point.index;
+    if constexpr (HasTimeStep<Sys>) point.time = double(point.index) * system.h;
+    point.step = step;
+    point.configuration = system.groupoid.project(system.groupoid.compose(point.configuration, step.arrow));
+    point.state = legendre_plus(system, step);
+    recorder.observe(reported(system, point));
+  }
+  recorder.finish(result);
+}
+
+/// Carries every solution found at the beginning of a continuation to its end.
+template <DiscreteSystem Sys, class Read>
+void continue_solutions(const BoundarySolver<Sys>& solver, const Section& scene, const ContinuationChoice& along,
+                        const Read& read, const RunContext& context, MultistartResult<Sys>& found, RunResult& result) {
+  const auto stage = [&](double s) { return read(scene.with(along.parameter, along.at(s))).stage; };
+  HomotopyOptions options;
+  options.first_step = 1 / double(along.steps);
+  std::vector<BoundarySolution<Sys>> arrived;
+  std::optional<std::pair<double, SolveStatus>> farthest;
+  Progress progress("solutions", long(found.solutions.size()), context.progress);
+  const std::size_t count = found.solutions.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    auto followed = follow(solver, stage, std::move(found.solutions[i]), options);
+    found.iterations += followed.iterations;
+    if (followed.converged()) {
+      detail::keep_if_new(arrived, stage(1).problem.system, std::move(followed.solution));
+    } else if (!farthest || followed.reached > farthest->first) {
+      farthest = {followed.reached, followed.status};
+      if (arrived.empty()) found.best_failure = std::move(followed.solution);
+    }
+    progress.update(long(i) + 1);
+  }
+  result.notes.push_back(fmt::format("continuation of {} from {} to {}: {} of {} solution(s) arrived", along.parameter,
+                                     along.value(0), along.value(1), arrived.size(), count));
+  if (farthest) {
+    result.notes.push_back(fmt::format("continuation: of those lost, the last came to {} = {} ({})", along.parameter,
+                                       along.value(farthest->first), to_string(farthest->second)));
+    if (arrived.empty()) {
+      result.status = std::string(to_string(farthest->second));
+      result.message = fmt::format(
+          "continuation: no solution could be followed beyond {} = {}; a path of solutions may turn back there: use "
+          "more continuation.steps or another parameter",
+          along.parameter, along.value(farthest->first));
+    }
+  }
+  std::sort(arrived.begin(), arrived.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  found.solutions = std::move(arrived);
+}
+
+/// Says which path was chosen, and records it; or why there is none.
+template <DiscreteSystem Sys>
+void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, Seek seek,
+                      const MultistartResult<Sys>& found, long starts, long every, RunResult& result) {
+  const Sys& system = problem.stage.problem.system;
+  for (const auto& s : found.solutions) {
+    const auto momentum = tangent_momentum(system, legendre_minus(system, s.path.front()));
+    result.minima.push_back({s.cost,
+                             {momentum.data(), momentum.data() + momentum.size()},
+                             s.kind.is_minimum,
+                             s.kind.isolated,
+                             s.kind.normal,
+                             s.kind.negative_directions});
+  }
+  const auto best = std::find_if(found.solutions.begin(), found.solutions.end(),
+                                 [&](const auto& s) { return seek == Seek::stationary || s.kind.is_minimum; });
+  if (best != found.solutions.end()) {
+    record_path(system, presentation, best->path, problem.start, every, result);
+    result.cost = best->cost;
+    result.steps = long(best->path.size());
+    if (best != found.solutions.begin())
+      result.notes.push_back(
+          fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
+                      "beside it and were not reached; try more starts or another number of steps",
+                      found.solutions.front().cost));
+    if (!best->kind.is_minimum)
+      result.notes.push_back(fmt::format(
+          "the path given is stationary but no minimum of the action: {} direction(s) lower it, as for every motion "
+          "past a conjugate point",
+          best->kind.negative_directions));
+    if (!best->kind.normal)
+      result.notes.push_back(
+          "the best path is abnormal: its constraints lose rank there, multipliers and momentum are not "
+          "unique (the smallest are given)");
+    if (!best->kind.isolated)
+      result.notes.push_back("the best path is one of a continuous family of equal cost; its momentum is one of many");
+    return;
+  }
+  const auto& failure = found.best_failure;
+  if (!found.solutions.empty()) {
+    result.status = "no_minimum";
+    result.message =
+        fmt::format("boundary value: {} stationary point(s) found, none of them a minimum; use more starts",
+                    found.solutions.size());
+  } else if (result.message.empty()) {
+    result.status = std::string(to_string(failure.status));
+    result.message =
+        failure.message.empty()
+            ? fmt::format(
+                  "boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
+                  "more starts or a longer duration",
+                  starts, failure.residual)
+            : fmt::format("boundary value: none of {} starts converged; the best of them: {}", starts, failure.message);
+  }
+  const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
+  if (!path.empty()) {
+    record_path(system, presentation, path, problem.start, every, result);
+    for (auto& entry : result.ledger.entries) entry.verdict = "unjudged";
+  }
+}
+
+/// A boundary-value run. `read(scene)` gives the BoundaryScene of a scene, with every check of its data;
+/// `search(solver, stage, options)` its multistart.
+template <DiscreteSystem Sys, class Read, class Search>
+RunResult run_boundary_value(const Section& scene, const RunContext& context, const Presentation<Sys>& presentation,
+                             const Read& read, const Search& search) {
+  const BoundaryScene<Sys> problem = read(scene);
+  BoundaryChoice choice = read_boundary_solver(scene.section_or_empty("solver"));
+  const auto along = read_continuation(scene);
+  const long every = read_every(scene, context);
+  scene.finish();
+  if (const auto why = inadmissible_ends(problem.stage.problem)) scene.section_or_empty("boundary").fail("", *why);
+  if (problem.stage.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
+
+  const BoundaryStage<Sys> first = along ? read(scene.with(along->parameter, along->from)).stage : problem.stage;
+  if (const auto why = inadmissible_ends(first.problem)) scene.section("continuation", "").fail("from", *why);
+
+  const auto clock = std::chrono::steady_clock::now();
+  const auto solver = make_boundary_solver<Sys>(choice);
+  const long starts = choice.multistart.starts;
+  MultistartResult<Sys> found;
+  {
+    Progress progress("starts", starts, context.progress);
+    choice.multistart.report = [&](int done) { progress.update(done); };
+    found = search(*solver, first, choice.multistart);
+  }
+  RunResult result;
+  result.system = presentation.name;
+  result.steps_asked = long(problem.stage.steps);
+  std::string counted;
+  for (const auto& [status, count] : found.outcomes)
+    counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", count, to_string(status));
+  result.notes.push_back(fmt::format("{} starts: {}", starts, counted));
+  if (found.lost > 0)
+    result.notes.push_back(
+        fmt::format("{} solution(s) of the coarse problem could not be continued to this one", found.lost));
+  if (along && !found.solutions.empty()) continue_solutions(*solver, scene, *along, read, context, found, result);
+  result.iterations = found.iterations;
+  report_solutions(problem, presentation, solver->seek(), found, starts, every, result);
+  result.ledger.mean_iterations = double(found.start_iterations) / double(starts);
+  result.ledger.most_iterations = found.most_iterations;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return result;
+}
+
+/// The same with the multistart that serves any system.
+template <DiscreteSystem Sys, class Read>
+RunResult run_boundary_value(const Section& scene, const RunContext& context, const Presentation<Sys>& presentation,
+                             const Read& read) {
+  return run_boundary_value<Sys>(
+      scene, context, presentation, read,
+      [](const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage, const MultistartOptions& options) {
+        return solve_boundary(solver, stage.problem, stage.steps, options);
+      });
+}
+
+}  // namespace lagroid::app

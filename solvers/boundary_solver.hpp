@@ -1,0 +1,44 @@
+#pragma once
+/// The interface of everything that solves one boundary-value problem.
+
+#include <lagroid/solvers/boundary_problem.hpp>
+
+namespace lagroid {
+
+/// What a boundary-value solver looks for.
+enum class Seek {
+  minima,      ///< of the action: descends it, and stops at saddles only where it cannot tell them from minima
+  stationary,  ///< points of any kind: lowers the residual of the equations
+};
+
+/// Optimal control, with its arrow constraints, asks for minima of the cost. The action of a mechanical system has none
+/// in general: its trajectories are stationary, and minimise only up to the first conjugate point.
+template <DiscreteSystem Sys>
+inline constexpr Seek natural_seek = Sys::arrow_constraints > 0 ? Seek::minima : Seek::stationary;
+
+struct BoundaryOptions {
+  int max_iterations = 200;
+  double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; iterates on until it no longer falls
+  double feasibility = 1e-9;  ///< largest scaled constraint value at which a path counts as admissible on the way
+  double largest_displacement = 1.0;  ///< bound on a node displacement in one iteration, in coordinates of AG
+};
+
+/// Finds a stationary path near a given one. Virtual: one call per solve.
+template <DiscreteSystem Sys> class BoundarySolver {
+ public:
+  explicit BoundarySolver(BoundaryOptions options = {}, Seek seek = natural_seek<Sys>)
+      : options_(options), seek_(seek) {}
+  virtual ~BoundarySolver() = default;
+
+  /// Starts from `path`, whose product must be the boundary arrow and whose ends must satisfy the object constraints.
+  /// Multipliers are found from the arrows unless `keep_multipliers` says that those of `path` are worth starting from.
+  virtual BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                                      bool keep_multipliers) const = 0;
+  Seek seek() const { return seek_; }
+
+ protected:
+  BoundaryOptions options_;
+  Seek seek_;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,119 @@
+// Newton, shooting and Ceres on the same boundary values.
+#include <lagroid/solvers/boundary_ceres.hpp>
+#include <lagroid/solvers/boundary_newton.hpp>
+#include <lagroid/solvers/boundary_shooting.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
+
+#include "boundary_cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+using namespace lagroid;
+
+namespace {
+
+/// All three methods find the known trajectory among their solutions, and agree on its cost.
+template <class Sys> void expect_found_by_all(const Known<Sys>& k, int starts) {
+  const Sys& system = k.problem.system;
+  const double cost = action(system, k.path);
+  const auto momentum = tangent_momentum(system, k.start);
+  std::vector<std::unique_ptr<BoundarySolver<Sys>>> solvers;
+  solvers.push_back(std::make_unique<BoundaryNewton<Sys>>());
+  solvers.push_back(std::make_unique<BoundaryShooting<Sys>>());
+  solvers.push_back(std::make_unique<BoundaryCeres<Sys>>());
+  for (std::size_t i = 0; i < solvers.size(); ++i) {
+    MultistartOptions options;
+    options.starts = starts;
+    const auto found = solve_boundary(*solvers[i], k.problem, k.path.size(), options);
+    const bool met = std::any_of(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
+      const auto mu = tangent_momentum(system, legendre_minus(system, s.path.front()));
+      return std::abs(s.cost - cost) < 1e-9 * (1 + std::abs(cost)) && (mu - momentum).norm() < 1e-8 &&
+             s.residual < 1e-11;
+    });
+    EXPECT_TRUE(met) << "method " << i;
+  }
+}
+
+TEST(EveryMethod, Pendulum) {
+  expect_found_by_all(known(pendulum(), {Vector<double, 1>(0.4), Vector<double, 1>(0.9)}, 40), 4);
+}
+TEST(EveryMethod, ObjectConstraints) {
+  expect_found_by_all(known(spherical_pendulum(), {{0.6, 0, -0.8}, {0.2, 0.9, 0.15}}, 40), 6);
+}
+
+TEST(EveryMethod, PlateBallFromAWarmStart) {
+  const PlateBall system = plate_ball(30);
+  const BoundaryProblem<PlateBall> problem{system, plate_ball_ends()};
+  const auto newton = BoundaryNewton<PlateBall>().solve(problem, straight(system, 30), false);
+  ASSERT_TRUE(newton.converged());
+  // Away from it, and back.
+  auto path = newton.path;
+  for (auto& step : path) step.multipliers *= 1.001;
+  const auto shooting = BoundaryShooting<PlateBall>().solve(problem, path, true);
+  ASSERT_TRUE(shooting.converged()) << shooting.residual;
+  EXPECT_GT(shooting.iterations, 1);
+  EXPECT_NEAR(shooting.cost, newton.cost, 1e-10 * newton.cost);
+  EXPECT_LT((initial_momentum(system, shooting.path) - initial_momentum(system, newton.path)).norm(), 1e-8);
+  EXPECT_TRUE(shooting.kind.is_minimum);
+  const auto ceres = BoundaryCeres<PlateBall>().solve(problem, path, true);
+  ASSERT_TRUE(ceres.converged()) << ceres.residual;
+  EXPECT_NEAR(ceres.cost, newton.cost, 1e-10 * newton.cost);
+}
+
+TEST(Shooting, SensitivityIsTheDerivativeOfTheEnd) {
+  const PlateBall system = plate_ball(30);
+  State<PlateBall::GroupoidType> start;
+  std::get<0>(start.object) << 0.2, -0.1;
+  start.momentum << 0.9, 0.2, 0.6, -0.4, 0.8;
+  const auto middle = known(system, start, 30);
+  const auto sensitivity = end_sensitivity(system, middle.path);
+  const auto& groupoid = system.groupoid;
+  const auto back = groupoid.inverse(middle.problem.boundary);
+  const double e = 1e-6;
+  for (int j = 0; j < 5; ++j) {
+    auto plus = start;
+    plus.momentum(j) += e;
+    auto minus = start;
+    minus.momentum(j) -= e;
+    const Vector<double, 5> difference =
+        (groupoid.tau_inverse(groupoid.compose(back, known(system, plus, 30).problem.boundary)) -
+         groupoid.tau_inverse(groupoid.compose(back, known(system, minus, 30).problem.boundary))) /
+        (2 * e);
+    EXPECT_LT((difference - sensitivity.col(j)).norm(), 1e-7 * (1 + difference.norm())) << j;
+  }
+}
+
+TEST(Shooting, AnEndOutOfReachIsATypedFailure) {
+  // The trace form's steps turn by less than pi/2: this end cannot be reached.
+  PlateBall system = plate_ball(3);
+  system.rotation = RotationForm::trace;
+  const BoundaryProblem<PlateBall> problem{system,
+                                           {PairArrow<double, 2>{{0, 0}, {100, 0}}, Matrix<double, 3, 3>::Identity()}};
+  const auto out = BoundaryShooting<PlateBall>().solve(problem, geodesic_path(problem, 3), true);
+  EXPECT_FALSE(out.converged());
+  EXPECT_FALSE(out.path.empty());
+}
+
+TEST(Ceres, ItsStallIsTypedAndExplained) {
+  // Normal equations square the condition number: on a path this long Ceres does not reach the tolerance, Newton does.
+  const std::size_t steps = 50000;
+  Pendulum system;
+  system.h = 2 / double(steps);
+  const BoundaryProblem<Pendulum> problem{system, {Vector<double, 1>(0.3), Vector<double, 1>(1.2)}};
+  const Path<Pendulum> path = geodesic_path(problem, steps);
+  BoundaryOptions options;
+  options.max_iterations = 60;
+  const auto ceres = BoundaryCeres<Pendulum>(options).solve(problem, path, false);
+  EXPECT_EQ(ceres.status, SolveStatus::ill_conditioned) << ceres.residual;
+  EXPECT_NE(ceres.message.find("solver.method = \"newton\""), std::string::npos);
+  const auto newton = BoundaryNewton<Pendulum>(options).solve(problem, path, false);
+  EXPECT_TRUE(newton.converged());
+  EXPECT_LE(newton.residual, 1e-10);
+}
+
+}  // namespace
