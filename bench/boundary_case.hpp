@@ -43,12 +43,11 @@ inline BoundaryCase boundary_case(bool rotating, std::size_t count, double size 
   if (!solution.converged()) throw std::runtime_error("the coarse problem was not solved");
   problem.system.h = 1.0 / double(count);
   problem.system.rotation = RotationForm::trace;
-  std::vector<Vector<double, 5>> wave(count);
+  Variation<PlateBall> wave(count);
   for (std::size_t k = 0; k < count; ++k)
-    wave[k] =
+    wave.nodes[k] =
         size * std::sin(2 * std::numbers::pi * double(k + 1) / double(count)) * Vector<double, 5>(1, -1, 1, 1, -1);
-  const std::vector<Vector<double, 3>> same(count, Vector<double, 3>::Zero());
-  return {problem, displaced(problem, resampled(problem, solution.path, count), wave, same, 1.0)};
+  return {problem, displaced(problem, resampled(problem, solution.path, count), wave, 1.0)};
 }
 
 /// The path in the terms of the peers.

@@ -42,7 +42,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     work.kkt.choose_scale();
     if (out.converged()) {
       out.cost = action(system, path);
-      out.kind = work.kkt.classify(system, path);
+      if (options_.classify) out.kind = work.kkt.classify(system, path);
     } else {
       out.residual = work.kkt.residual_norm();
     }

@@ -21,6 +21,7 @@ struct BoundaryOptions {
   double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; iterates on until it no longer falls
   double feasibility = 1e-9;  ///< largest scaled constraint value at which a path counts as admissible on the way
   double largest_displacement = 1.0;  ///< bound on a node displacement in one iteration, in coordinates of AG
+  bool classify = true;               ///< find out what kind of stationary point the solution is
 };
 
 /// Finds a stationary path near a given one. Virtual: one call per solve.

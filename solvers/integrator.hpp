@@ -83,7 +83,7 @@ template <DiscreteSystem Sys> class Integrator {
 
   /// A step without predecessor, or one whose solve failed or ended far from the predicted arrow: the solution that is
   /// continuous in the step size; if there is none, what the solve before found.
-  StepReport restart(StepSolution<Sys>& found, const StepReport& before) {
+  [[gnu::cold, gnu::noinline]] StepReport restart(StepSolution<Sys>& found, const StepReport& before) {
     past_.clear();
     StepSolution<Sys> solution;
     StepReport report = first_step(solution);

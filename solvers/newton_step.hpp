@@ -120,8 +120,8 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   static constexpr int renewal_price = E::size > 4 ? 2 : 1;
 
   /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
-  [[gnu::flatten]] bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step,
-                              const typename E::Jacobian& jacobian) {
+  [[gnu::noinline]] bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step,
+                               const typename E::Jacobian& jacobian) {
     chord_.floor = round_off_level(system, state, step, jacobian).cwiseInverse();
     chord_.age = 0;
     return inverse_.invert(jacobian);
@@ -130,7 +130,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   double excess_of(const Residual& residual) const { return residual.cwiseProduct(chord_.floor).cwiseAbs().maxCoeff(); }
 
   /// After a full solve: the matrix there, for the steps that follow.
-  void keep(const Sys& system, const State<G>& state, const Step<Sys>& step) {
+  [[gnu::cold, gnu::noinline]] void keep(const Sys& system, const State<G>& state, const Step<Sys>& step) {
     const typename E::Jacobian jacobian = E::jacobian(two_sided(system, step.arrow, step.multipliers));
     inverse_.choose_pivots(jacobian, scaling_);
     chord_.kept = renew(system, state, step, jacobian);
@@ -141,7 +141,8 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   // ---- the long way
 
-  void by_newton(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report) {
+  [[gnu::cold, gnu::noinline]] void by_newton(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
+                                              StepReport& report) {
     Step<Sys>& step = solution.step;
     auto derivative = two_sided(system, step.arrow, step.multipliers);
     ScaledResidual<Sys> current(system, state, step, derivative, scaling_, /*rescale=*/true);

@@ -1,0 +1,60 @@
+#pragma once
+/// Benchmarks grouped for comparison, and their table.
+
+#include <benchmark/benchmark.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+/// One subject of a group. `reference`: the others' times are given as multiples of this one's.
+struct Subject {
+  std::string group;
+  std::string name;
+  std::function<void(benchmark::State&)> run;
+  bool reference = false;
+};
+
+/// A ratio the project has promised itself: `numerator` over `denominator`, subjects of one group, at most (or, where
+/// `at_least`, at least) `bound`.
+struct Goal {
+  std::string group;
+  std::string numerator;
+  std::string denominator;
+  double bound = 0;
+  bool at_least = false;
+};
+
+/// Times each subject took: median over the repetitions and spread (quartiles' distance over the median).
+struct Measured {
+  double median = 0;  ///< ns
+  double spread = 0;
+  double instructions = 0;  ///< 0 where the machine does not tell
+};
+using Results = std::map<std::string, Measured>;  ///< by key_of
+
+std::string key_of(const std::string& group, const std::string& name);
+
+/// Registers the subjects with Google Benchmark and runs them, repetitions interleaved at random. `filter` is its
+/// regular expression.
+Results run(const std::vector<Subject>& subjects, int repetitions, double min_time, const std::string& filter);
+
+/// Markdown: one table per group, and the goals with what was reached.
+std::string table(const std::vector<Subject>& subjects, const Results& results);
+std::string goals_table(const std::vector<Goal>& goals, const Results& results);
+
+/// Runs `step` in the timed loop, and counts its instructions where the machine has a counter.
+void timed(benchmark::State& state, const std::function<void(long)>& steps);
+
+/// What each file contributes.
+std::vector<Subject> step_subjects();
+std::vector<Goal> step_goals();
+std::vector<Subject> boundary_subjects();
+std::vector<Goal> boundary_goals();
+/// Markdown: seconds to compile the files of bench/user and examples/my_system.cpp, with the build's own command.
+std::string compile_times();
+
+}  // namespace bench
