@@ -10,6 +10,7 @@
 #include "kernels/plate_ball.hpp"
 #include "kernels/plate_ball_derivatives.hpp"
 #include "kernels/plate_ball_ipopt.hpp"
+#include "kernels/plate_ball_newton.hpp"
 #include "kernels/rigid_body_derivatives.hpp"
 #include "kernels/so3_cayley.hpp"
 #include "kernels/spherical_pendulum.hpp"
@@ -106,7 +107,9 @@ TEST(RigidBodyDerivatives, AreTheAutomaticOnes) {
 }
 
 template <class Kernel> class PlateBallKernel : public ::testing::Test {};
-using PlateBallKernels = ::testing::Types<kernels::PlateBall<0>, kernels::PlateBall<2>, kernels::PlateBall<4>>;
+using PlateBallKernels =
+    ::testing::Types<kernels::PlateBall<0>, kernels::PlateBall<2>, kernels::PlateBall<4>, kernels::PlateBallNewton<0>,
+                     kernels::PlateBallNewton<2>, kernels::PlateBallNewton<4>>;
 TYPED_TEST_SUITE(PlateBallKernel, PlateBallKernels);
 
 TYPED_TEST(PlateBallKernel, IsTheFramework) {
@@ -263,12 +266,15 @@ TEST(Kernels, DoNotAllocate) {
   if (allocation_count() < 0) GTEST_SKIP() << "allocations cannot be counted here";
   kernels::So3Cayley<3> body(0.01, {1, 2, 3}, {0.4, 1.9, -1.1}, Matrix3d::Identity());
   kernels::PlateBall<3> ball({0.02, 1, 0.7, 0.4}, {{0.3, -0.2}, {0.9, 0.2}, {0.6, -0.4, 0.8}, Matrix3d::Identity()});
+  kernels::PlateBallNewton<3> same_ball({0.02, 1, 0.7, 0.4},
+                                        {{0.3, -0.2}, {0.9, 0.2}, {0.6, -0.4, 0.8}, Matrix3d::Identity()});
   kernels::Kepler<3> planet(0.01, 1, {0.8, 0}, {0, 1.2});
   kernels::SphericalPendulum pendulum(0.01, 1, 1, 1, {0.6, 0, -0.8}, {0.4, 0.9, 0.3});
   const BoundaryCase c = boundary_case(true, 20);
   kernels::PlateBallBoundary boundary(parameters(c.problem.system), nodes(c.start));
   EXPECT_EQ(allocations([&] { body.step(); }), 0);
   EXPECT_EQ(allocations([&] { ball.step(); }), 0);
+  EXPECT_EQ(allocations([&] { same_ball.step(); }), 0);
   EXPECT_EQ(allocations([&] { planet.step(); }), 0);
   EXPECT_EQ(allocations([&] { pendulum.step(); }), 0);
   EXPECT_EQ(allocations([&] { boundary.iterate(); }), 0);

@@ -10,24 +10,26 @@
 
 namespace kernels {
 
-/// The step of `PlateBall`, without its closed inverse of the momentum equation: Newton's method on the unknowns of the
-/// framework, (u, v, theta, l1, l2, l3) with g <- g cay(theta), its linear equations eliminated by hand. The residuals
-/// are, in the notation of `PlateBall`, with K = (tr(g) I - g^T) / 2 and sigma = h Omega / 2,
+/// The step of `PlateBall` without its closed inverse of the momentum equation: Newton's method on the unknowns of the
+/// framework, (u, v, theta, l1, l2, l3) with g <- g cay(theta), its linear equations solved by elimination by hand. The
+/// equations are, in the notation of `PlateBall`, with K = (tr(g) I - g^T) / 2 and sigma = h Omega / 2,
 ///
-///     u + l2 + sigma l1 - px,   v + l1 - sigma l2 - py,   R = K nu - M,
-///     phi1 = h v + r w1 - h Omega xb,   phi2 = h u - r w2 + h Omega yb,   phi3 = h c - w3.
+///     u + l2 + sigma l1 - px = 0      v + l1 - sigma l2 - py = 0      R = K nu - M = 0
+///     phi1 = h v + r w1 - h Omega xb = 0      phi2 = h u - r w2 + h Omega yb = 0      phi3 = h c - w3 = 0.
 ///
-/// Along g cay(theta) w changes by K theta and K nu by -(nu w^T + hat(b) / 2) theta, b = g^T nu. The first two equations
-/// are linear and hold at every iterate: they give u and v. What they leave of the constraints is
+/// The first two are linear, so that they hold at every iterate and give u and v. What they leave of the constraints is
 ///
-///     s = w - a - kappa nu = (phi1, -phi2, -phi3) / (r, r, 1),   kappa = ( k1 k2 0 ; -k2 k1 0 ; 0 0 0 ),   a3 = h c,
+///     s = w - a - kappa nu = (phi1 / r, -phi2 / r, -phi3),   kappa = ( k1 k2 0 ; -k2 k1 0 ; 0 0 0 ),   a3 = h c.
 ///
-/// so that K theta = kappa dnu - s. The inverse of K is Y / D with the polynomials D = C (1 + C) = 2 det K and
-/// Y = D I - C hat(w) + w w^T, for which w^T Y = (1 + C) w^T. That eliminates theta:
+/// Along g cay(theta) w changes by K theta, and K at fixed nu by -(nu w^T + hat(b) / 2) theta with b = g^T nu:
 ///
-///     (2 D K - T kappa) dnu = -2 D R - T s,   T = 2 (1 + C) nu w^T + hat(b) Y,
+///     K theta = kappa dnu - s,      K dnu - (nu w^T + hat(b) / 2) theta = -R.
 ///
-/// three equations, solved by Cramer's rule: dnu = n / E. With z = Y (kappa n - E s) and e = E D then theta = z / e, and
+/// With the polynomials D = C (1 + C) and Y = D I - C hat(w) + w w^T, K^{-1} = Y / D and w^T Y = (1 + C) w^T. Hence
+///
+///     (2 D K - T kappa) dnu = -2 D R - T s,      T = 2 (1 + C) nu w^T + hat(b) Y,
+///
+/// three equations, solved by Cramer's rule: dnu = n / E. Then theta = z / e with z = Y (kappa n - E s), e = E D, and
 /// cay(theta) = I + (e hat(z) + hat(z)^2 / 2) / (e^2 + |z|^2 / 4).
 ///
 /// The iteration starts from the extrapolated nu (Degree 0: that of the last step) and the w that solves the
@@ -60,10 +62,8 @@ template <int Degree = 0> class PlateBallNewton {
     double cosine = std::sqrt(1 - dot(w, w));
     Columns g = rotation(w, cosine);
     for (int iteration = 0;; ++iteration) {
-      const double trace = g.x.x + g.y.y + g.z.z;
+      const double trace = 1 + 2 * cosine;
       const Triple b(dot(g.x, nu), dot(g.y, nu), dot(g.z, nu));
-      w = {0.5 * (g.y.z - g.z.y), 0.5 * (g.z.x - g.x.z), 0.5 * (g.x.y - g.y.x)};
-      cosine = 0.5 * (trace - 1);
       const Triple r = 0.5 * (trace * nu - b) - body_;
       const Triple s = w - a - kappa(nu);
       if ((within(r, momentum_tolerance_) && within(s, tolerance)) || iteration == max_iterations) break;
@@ -76,22 +76,25 @@ template <int Degree = 0> class PlateBallNewton {
       const Columns y{{d + w.x * w.x, xy - q.z, zx + q.y},
                       {xy + q.z, d + w.y * w.y, yz - q.x},
                       {zx - q.y, yz + q.x, d + w.z * w.z}};
+      const Triple y1 = k1_ * y.x - k2_ * y.y;
+      const Triple y2 = k2_ * y.x + k1_ * y.y;
+      const Triple ys = s.x * y.x + s.y * y.y + s.z * y.z;
       const Triple twice = (2 + 2 * cosine) * nu;
-      const Triple t1 = w.x * twice + cross(b, y.x);
-      const Triple t2 = w.y * twice + cross(b, y.y);
-      const Triple t3 = w.z * twice + cross(b, y.z);
-      const Triple m1 = Triple(d * (trace - g.x.x), -d * g.y.x, -d * g.z.x) - k1_ * t1 + k2_ * t2;
-      const Triple m2 = Triple(-d * g.x.y, d * (trace - g.y.y), -d * g.z.y) - k2_ * t1 - k1_ * t2;
+      const Triple m1 =
+          Triple(d * (trace - g.x.x), -d * g.y.x, -d * g.z.x) - (k1_ * w.x - k2_ * w.y) * twice - cross(b, y1);
+      const Triple m2 =
+          Triple(-d * g.x.y, d * (trace - g.y.y), -d * g.z.y) - (k2_ * w.x + k1_ * w.y) * twice - cross(b, y2);
       const Triple m3(-d * g.x.z, -d * g.y.z, d * (trace - g.z.z));
-      const Triple right = (-2 * d) * r - s.x * t1 - s.y * t2 - s.z * t3;
+      const Triple right = (-2 * d) * r - dot(w, s) * twice - cross(b, ys);
       const Triple m23 = cross(m2, m3);
       const double determinant = dot(m1, m23);
       const Triple n(dot(right, m23), dot(right, cross(m3, m1)), dot(right, cross(m1, m2)));
       nu = nu + (1 / determinant) * n;
 
-      const Triple change = kappa(n) - determinant * s;
-      const Triple z = change.x * y.x + change.y * y.y + change.z * y.z;
+      const Triple z = n.x * y1 + n.y * y2 - determinant * ys;
       g = turned(g, z, determinant * d);
+      w = {0.5 * (g.y.z - g.z.y), 0.5 * (g.z.x - g.x.z), 0.5 * (g.x.y - g.y.x)};
+      cosine = 0.5 * (g.x.x + g.y.y + g.z.z - 1);
     }
     nu_.record(nu);
     multipliers_ = {inverse_radius_ * nu.x, -inverse_radius_ * nu.y, -nu.z};
@@ -137,20 +140,18 @@ template <int Degree = 0> class PlateBallNewton {
 
   /// g cay(z / e).
   static Columns turned(const Columns& g, Triple z, double e) {
-    const double square = 0.25 * dot(z, z);
-    const double scale = 1 / (e * e + square);
-    const double half = 0.5 * scale;
-    const Triple odd = (scale * e) * z;
-    const Triple even = half * z;
-    const double xx = -even.y * z.y - even.z * z.z;
-    const double yy = -even.x * z.x - even.z * z.z;
-    const double zz = -even.x * z.x - even.y * z.y;
+    const double scale = 1 / (e * e + 0.25 * dot(z, z));
+    const Triple odd = e * z;
+    const Triple even = 0.5 * z;
+    const double xx = even.x * z.x;
+    const double yy = even.y * z.y;
+    const double zz = even.z * z.z;
     const double xy = even.x * z.y;
     const double yz = even.y * z.z;
     const double zx = even.z * z.x;
-    return {g.x + xx * g.x + (xy + odd.z) * g.y + (zx - odd.y) * g.z,
-            g.y + (xy - odd.z) * g.x + yy * g.y + (yz + odd.x) * g.z,
-            g.z + (zx + odd.y) * g.x + (yz - odd.x) * g.y + zz * g.z};
+    return {g.x + scale * ((xy + odd.z) * g.y + (zx - odd.y) * g.z - (yy + zz) * g.x),
+            g.y + scale * ((xy - odd.z) * g.x + (yz + odd.x) * g.z - (xx + zz) * g.y),
+            g.z + scale * ((zx + odd.y) * g.x + (yz - odd.x) * g.y - (xx + yy) * g.z)};
   }
 
   double h_;
