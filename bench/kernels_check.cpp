@@ -61,11 +61,9 @@ template <int N, int M> double largest(const TwoSided<N, M>& derivative) {
 }
 
 template <int N, int M> TwoSided<N, M> difference(const TwoSided<N, M>& a, const TwoSided<N, M>& b) {
-  return {a.value - b.value,
-          a.source_gradient - b.source_gradient,
-          a.target_gradient - b.target_gradient,
+  return {{a.value - b.value, a.source_gradient - b.source_gradient, a.target_gradient - b.target_gradient,
+           a.constraint - b.constraint},
           a.mixed - b.mixed,
-          a.constraint - b.constraint,
           a.constraint_source - b.constraint_source,
           a.constraint_target - b.constraint_target};
 }

@@ -21,11 +21,11 @@
 namespace bench {
 
 using namespace lagroid;
-using kernels::HandPlateBall;
-using kernels::HandRigidBody;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using kernels::HandPlateBall;
+using kernels::HandRigidBody;
 
 namespace {
 

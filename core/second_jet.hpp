@@ -2,7 +2,7 @@
 /// The second-order jet: value, gradient and symmetric Hessian of a function of N variables.
 
 #include <lagroid/core/elementary.hpp>
-#include <lagroid/core/types.hpp>
+#include <lagroid/core/lanes.hpp>
 
 #include <array>
 #include <ostream>
@@ -10,125 +10,81 @@
 
 namespace lagroid {
 
-/// x + g.v + v^T H v / 2 in N infinitesimals v with v v v = 0: a Taylor polynomial. H is symmetric and stored as the
-/// rows of its lower triangle, so that a jet has 1 + N + N (N + 1) / 2 numbers where Mixed<T, N, N> has (N + 1)^2.
-template <class T, int N> struct SecondJet {
+/// x + g.v + v^T H v / 2 in N infinitesimals v with v v v = 0: a Taylor polynomial. The rows of H lie side by side in
+/// registers; all of them are kept, since half of a row saves nothing there. Like a double, indeterminate until given a
+/// value.
+template <class T, int N> class SecondJet {
+ public:
   using Real = T;
+  using Row = Lanes<T, N>;
   static constexpr int variables = N;
   static constexpr int order = 2;
-  static constexpr int parts = N + N * (N + 1) / 2;
 
   T value;
-  std::array<T, std::size_t(parts)> part;  ///< g, then H(0,0), H(1,0), H(1,1), H(2,0), ...
 
-  /// As for a double: `SecondJet x;` is uninitialised, `SecondJet()` is zero.
   SecondJet() = default;
   /// A constant. Implicit, so that formulas may contain plain numbers.
   template <class A>
-  requires std::is_arithmetic_v<A> SecondJet(A x) : value(T(x)), part{} {}  // NOLINT(google-explicit-constructor)
+  requires std::is_arithmetic_v<A> SecondJet(A x)  // NOLINT(google-explicit-constructor)
+      : value(T(x)), gradient_{}, rows_{} {}
+  [[gnu::always_inline]] SecondJet(T x, const Row& gradient) : value(x), gradient_(gradient), rows_{} {}
 
   /// The i-th variable, of value x.
-  static SecondJet variable(T x, int i) {
-    SecondJet out(x);
-    out.gradient(i) = 1;
-    return out;
-  }
+  static SecondJet variable(T x, int i) { return {x, Row::unit(i)}; }
+  static Row unit(int i) { return Row::unit(i); }
 
-  T& gradient(int i) { return part[std::size_t(i)]; }
-  T gradient(int i) const { return part[std::size_t(i)]; }
-  /// H(i, j), i >= j.
-  T& hessian(int i, int j) { return part[std::size_t(row(i) + j)]; }
-  T hessian(int i, int j) const { return part[std::size_t(row(i) + j)]; }
-
-  Vector<T, N> gradient() const {
-    Vector<T, N> g;
-    for (int i = 0; i < N; ++i) g(i) = gradient(i);
-    return g;
-  }
+  T gradient(int i) const { return gradient_[i]; }
+  T hessian(int i, int j) const { return rows_[i][j]; }
+  Vector<T, N> gradient() const { return gradient_.vector(); }
   Matrix<T, N, N> hessian() const {
     Matrix<T, N, N> h;
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j <= i; ++j) h(i, j) = h(j, i) = hessian(i, j);
+    for (int i = 0; i < N; ++i) h.row(i) = rows_[i].vector().transpose();
     return h;
   }
+  /// Row i of H; the caller sets them all, symmetric.
+  void set_row(int i, const Row& row) { rows_[i] = row; }
 
   /// The composition with a function of one variable, given its value and two derivatives at `value`.
-  SecondJet chain(T f, T f1, T f2) const {
-    SecondJet out;
-    out.value = f;
-    for (int k = 0; k < parts; ++k) out.part[k] = f1 * part[k];
-    for (int i = 0; i < N; ++i) {
-      const T slope = f2 * part[i];
-      for (int j = 0; j <= i; ++j) out.part[row(i) + j] += slope * part[j];
-    }
-    return out;
+  [[gnu::always_inline]] SecondJet chain(T f, T f1, T f2) const {
+    const Row curved = f2 * gradient_;
+    return with_rows(f, f1 * gradient_, [&](int i) { return f1 * rows_[i] + curved[i] * gradient_; });
   }
-  SecondJet& operator+=(const SecondJet& b) {
-    value += b.value;
-    for (int k = 0; k < parts; ++k) part[k] += b.part[k];
-    return *this;
-  }
-  SecondJet& operator-=(const SecondJet& b) {
-    value -= b.value;
-    for (int k = 0; k < parts; ++k) part[k] -= b.part[k];
-    return *this;
-  }
+
+  SecondJet& operator+=(const SecondJet& b) { return *this = *this + b; }
+  SecondJet& operator-=(const SecondJet& b) { return *this = *this - b; }
   SecondJet& operator*=(const SecondJet& b) { return *this = *this * b; }
   SecondJet& operator/=(const SecondJet& b) { return *this = *this / b; }
 
   friend SecondJet operator+(const SecondJet& a) { return a; }
-  friend SecondJet operator-(const SecondJet& a) { return a * T(-1); }
-  friend SecondJet operator+(const SecondJet& a, const SecondJet& b) {
-    SecondJet out;
-    out.value = a.value + b.value;
-    for (int k = 0; k < parts; ++k) out.part[k] = a.part[k] + b.part[k];
-    return out;
+  [[gnu::always_inline]] friend SecondJet operator-(const SecondJet& a) {
+    return with_rows(-a.value, -a.gradient_, [&](int i) { return -a.rows_[i]; });
   }
-  friend SecondJet operator-(const SecondJet& a, const SecondJet& b) {
-    SecondJet out;
-    out.value = a.value - b.value;
-    for (int k = 0; k < parts; ++k) out.part[k] = a.part[k] - b.part[k];
-    return out;
+  [[gnu::always_inline]] friend SecondJet operator+(const SecondJet& a, const SecondJet& b) {
+    return with_rows(a.value + b.value, a.gradient_ + b.gradient_, [&](int i) { return a.rows_[i] + b.rows_[i]; });
   }
-  friend SecondJet operator*(const SecondJet& a, const SecondJet& b) {
-    SecondJet out;
-    out.value = a.value * b.value;
-    for (int k = 0; k < parts; ++k) out.part[k] = a.value * b.part[k] + b.value * a.part[k];
-    for (int i = 0; i < N; ++i) {
-      const T ai = a.part[i];
-      const T bi = b.part[i];
-      for (int j = 0; j <= i; ++j) out.part[row(i) + j] += ai * b.part[j] + bi * a.part[j];
-    }
-    return out;
+  [[gnu::always_inline]] friend SecondJet operator-(const SecondJet& a, const SecondJet& b) {
+    return with_rows(a.value - b.value, a.gradient_ - b.gradient_, [&](int i) { return a.rows_[i] - b.rows_[i]; });
+  }
+  [[gnu::always_inline]] friend SecondJet operator*(const SecondJet& a, const SecondJet& b) {
+    return with_rows(a.value * b.value, a.value * b.gradient_ + b.value * a.gradient_, [&](int i) {
+      return a.value * b.rows_[i] + b.value * a.rows_[i] + a.gradient_[i] * b.gradient_ + b.gradient_[i] * a.gradient_;
+    });
   }
   friend SecondJet operator/(const SecondJet& a, const SecondJet& b) {
     const T inverse = 1 / b.value;
-    SecondJet out;
-    out.value = a.value * inverse;
-    for (int k = 0; k < parts; ++k) out.part[k] = (a.part[k] - out.value * b.part[k]) * inverse;
-    for (int i = 0; i < N; ++i) {
-      const T qi = out.part[i] * inverse;
-      const T bi = b.part[i] * inverse;
-      for (int j = 0; j <= i; ++j) out.part[row(i) + j] -= qi * b.part[j] + bi * out.part[j];
-    }
-    return out;
+    return a * b.chain(inverse, -inverse * inverse, 2 * inverse * inverse * inverse);
   }
 
-  friend SecondJet operator+(SecondJet a, T b) {
-    a.value += b;
-    return a;
+  friend SecondJet operator+(const SecondJet& a, T b) {
+    SecondJet out = a;
+    out.value += b;
+    return out;
   }
   friend SecondJet operator+(T a, const SecondJet& b) { return b + a; }
-  friend SecondJet operator-(SecondJet a, T b) {
-    a.value -= b;
-    return a;
-  }
+  friend SecondJet operator-(const SecondJet& a, T b) { return a + (-b); }
   friend SecondJet operator-(T a, const SecondJet& b) { return -b + a; }
-  friend SecondJet operator*(const SecondJet& a, T b) {
-    SecondJet out;
-    out.value = a.value * b;
-    for (int k = 0; k < parts; ++k) out.part[k] = a.part[k] * b;
-    return out;
+  [[gnu::always_inline]] friend SecondJet operator*(const SecondJet& a, T b) {
+    return with_rows(a.value * b, b * a.gradient_, [&](int i) { return b * a.rows_[i]; });
   }
   friend SecondJet operator*(T a, const SecondJet& b) { return b * a; }
   friend SecondJet operator/(const SecondJet& a, T b) { return a * (1 / b); }
@@ -142,8 +98,16 @@ template <class T, int N> struct SecondJet {
   friend std::ostream& operator<<(std::ostream& out, const SecondJet& a) { return out << a.value; }
 
  private:
-  /// Where row i of the lower triangle starts.
-  static constexpr int row(int i) { return N + i * (i + 1) / 2; }
+  template <class F> [[gnu::always_inline]] static SecondJet with_rows(T x, const Row& gradient, const F& row) {
+    SecondJet out;
+    out.value = x;
+    out.gradient_ = gradient;
+    for (int i = 0; i < N; ++i) out.rows_[i] = row(i);
+    return out;
+  }
+
+  Row gradient_;
+  std::array<Row, std::size_t(N)> rows_;
 };
 
 template <class T, int N> constexpr T value_of(const SecondJet<T, N>& x) { return x.value; }
@@ -152,7 +116,6 @@ template <class T, int N> constexpr T value_of(const SecondJet<T, N>& x) { retur
 
 template <class T, int N>
 struct Eigen::NumTraits<lagroid::SecondJet<T, N>> : lagroid::detail::DerivativeTraits<lagroid::SecondJet<T, N>> {};
-
 template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<lagroid::SecondJet<T, N>, T, Operation> {
   using ReturnType = lagroid::SecondJet<T, N>;
 };

@@ -102,16 +102,10 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     Matrix<J, N, N> out;
     unrolled<N>([&]<int C>() {
       unrolled<N>([&]<int R>() {
-        if constexpr (J::order == 1) {
-          out(R, C) = J(g(R, C), side_by_side<End::target, R, C>(g, [](int i) { return J::unit(Offset + i); }));
-        } else {
-          out(R, C) = J(g(R, C));
-          unrolled<Dimension>([&]<int I>() {
-            out(R, C).gradient(Offset + I) = displaced<End::target, R, C, I>(g);
-            unrolled<I + 1>(
-                [&]<int K>() { out(R, C).hessian(Offset + I, Offset + K) = squared<End::target, R, C>(g, I, K); });
-          });
-        }
+        const auto unit = [](int i) { return J::unit(Offset + i); };
+        out(R, C) = J(g(R, C), side_by_side<End::target, R, C>(g, unit));
+        if constexpr (J::order == 2)
+          unrolled<Dimension>([&]<int I>() { out(R, C).set_row(Offset + I, squares<R, C, I>(g, unit)); });
       });
     });
     return out;
@@ -251,14 +245,29 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// The second derivatives where both infinitesimals displace the same end: entry (r, c) of g with
   /// (E_i E_j + E_j E_i) / 2 beside it.
   template <End Which, int R, int C, class T> static T squared(const Matrix<T, N, N>& g, int i, int j) {
-    const auto square = [&](int r, int c) {
-      int sum = 0;
-      for (int s = 0; s < N; ++s)
-        sum += Derived::basis(i, r, s) * Derived::basis(j, s, c) + Derived::basis(j, r, s) * Derived::basis(i, s, c);
-      return T(sum) / T(2);
-    };
     T sum(0);
-    for (int s = 0; s < N; ++s) sum += Which == End::source ? square(R, s) * g(s, C) : g(R, s) * square(s, C);
+    for (int s = 0; s < N; ++s)
+      sum += Which == End::source ? T(doubled_square(i, j, R, s)) * g(s, C) : g(R, s) * T(doubled_square(i, j, s, C));
+    return sum / T(2);
+  }
+
+  /// Twice the symmetrised product (E_i E_j + E_j E_i) / 2, entry (r, c).
+  static constexpr int doubled_square(int i, int j, int r, int c) {
+    int sum = 0;
+    for (int s = 0; s < N; ++s)
+      sum += Derived::basis(i, r, s) * Derived::basis(j, s, c) + Derived::basis(j, r, s) * Derived::basis(i, s, c);
+    return sum;
+  }
+  /// Entry (r, c) of g (E_i E_j + E_j E_i) / 2 over j, each along its unit.
+  template <int R, int C, int I, class T, class Unit>
+  [[gnu::always_inline]] static auto squares(const Matrix<T, N, N>& g, const Unit& unit) {
+    decltype(unit(0)) sum{};
+    unrolled<Dimension>([&]<int J>() {
+      unrolled<N>([&]<int S>() {
+        if constexpr (doubled_square(I, J, S, C) != 0)
+          sum = sum + (g(R, S) * (T(doubled_square(I, J, S, C)) / T(2))) * unit(J);
+      });
+    });
     return sum;
   }
 

@@ -264,7 +264,10 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     kkt.choose_scale();
     double norm = kkt.residual_norm();
     int iterations = 0;
-    for (bool contracts = true; contracts && std::isfinite(norm) && iterations < 30; ++iterations) {
+    // Quadratic convergence: one iteration from the tolerance ends at round-off.
+    bool last = false;
+    for (bool contracts = true; contracts && !last && std::isfinite(norm) && iterations < 30; ++iterations) {
+      last = norm <= options_.tolerance;
       factor_plainly(kkt);
       kkt.newton_side(work.side);
       refined_solve(work);
