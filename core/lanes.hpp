@@ -80,6 +80,7 @@ template <class T, int N> class Lanes {
     std::memcpy(&out.part_, x, N * sizeof(T));
     return out;
   }
+  [[gnu::always_inline]] void store(T* x) const { std::memcpy(x, &part_, N * sizeof(T)); }
   /// One in place i, zero elsewhere.
   [[gnu::always_inline]] static Lanes unit(int i) {
     Lanes out;

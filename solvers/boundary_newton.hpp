@@ -38,8 +38,10 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
         find_stationary(problem, work, path, out);
       }
     }
-    work.kkt.evaluate(system, path);
-    work.kkt.choose_scale();
+    if (!out.converged() || options_.classify) {
+      work.kkt.evaluate(system, path);
+      work.kkt.choose_scale();
+    }
     if (out.converged()) {
       out.cost = action(system, path);
       if (options_.classify) out.kind = work.kkt.classify(system, path);
@@ -270,7 +272,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
       last = norm <= options_.tolerance;
       factor_plainly(kkt);
       kkt.newton_side(work.side);
-      refined_solve(work);
+      solve_side(work, /*refine=*/last);
       kkt.unscale(work.step, work.variation);
       if (reach(work.variation) > options_.largest_displacement) break;
       displace(problem, best, work.variation, 1.0, work.trial);
@@ -324,10 +326,11 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     polish(problem, work, path, out);
   }
 
-  /// Solves for `side` with the factored matrix and refines once; the solution is left in `step`.
-  static void refined_solve(Work& work) {
+  /// Solves for `side` with the factored matrix; the solution is left in `step`.
+  static void solve_side(Work& work, bool refine) {
     work.step = work.side;
     work.kkt.solve_in_place(work.step);
+    if (!refine) return;
     work.defect = work.side;
     work.kkt.add_product(-1, work.step, work.defect);
     work.kkt.solve_in_place(work.defect);

@@ -1,6 +1,7 @@
 #pragma once
 /// Bunch and Kaufman's factorisation of a small symmetric indefinite matrix.
 
+#include <lagroid/core/lanes.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <algorithm>
@@ -52,16 +53,21 @@ template <int N> class SymmetricFactor {
 
   /// s -= R^T A^{-1} R, symmetric in exact arithmetic and here.
   void subtract_from(Square& s, const Square& r) const {
-    Square y;
-    for (int i = 0; i < N; ++i) y.row(i) = r.row(order_[i]);
-    for (int j = 0; j < N; ++j)
-      for (int i = j + 1; i < N; ++i) y.row(i) -= l_(i, j) * y.row(j);
-    for (int k = 0; k < N; ++k) {
-      Eigen::Matrix<double, 1, N> z = inverse_(k) * y.row(k);
-      if (k + 1 < N) z += off_(k) * y.row(k + 1);
-      if (k > 0) z += off_(k - 1) * y.row(k - 1);
-      for (int i = 0; i < N; ++i) s.row(i) -= y(k, i) * z;
-    }
+    using Row = Lanes<double, N>;
+    std::array<Row, std::size_t(N)> y;  // L^{-1} P R
+    for (int i = 0; i < N; ++i) y[i] = Row::load(r.row(order_[i]).data());
+    unrolled<N>([&]<int J>() {
+      for (int i = J + 1; i < N; ++i) y[i] = y[i] - l_(i, J) * y[J];
+    });
+    std::array<Row, std::size_t(N)> rows;
+    for (int i = 0; i < N; ++i) rows[i] = Row::load(s.row(i).data());
+    unrolled<N>([&]<int K>() {
+      Row z = inverse_(K) * y[K];  // row k of D^{-1} y
+      if constexpr (K + 1 < N) z = z + off_(K) * y[K + 1];
+      if constexpr (K > 0) z = z + off_(K - 1) * y[K - 1];
+      unrolled<N>([&]<int I>() { rows[I] = rows[I] - y[K][I] * z; });
+    });
+    for (int i = 0; i < N; ++i) rows[i].store(s.row(i).data());
   }
 
  private:
@@ -110,7 +116,7 @@ template <int N> class SymmetricFactor {
     const double c = l_(k + 1, k + 1);
     // Bunch and Kaufman take such a block only where a c - b^2 < 0, safely: one eigenvalue of each sign.
     const double determinant = a * c - b * b;
-    const double large = 0.5 * (std::abs(a + c) + std::hypot(a - c, 2 * b));
+    const double large = 0.5 * (std::abs(a + c) + std::sqrt((a - c) * (a - c) + 4 * b * b));
     note(std::copysign(large, a + c));
     note(determinant / std::copysign(large, a + c));
     inverse_(k) = c / determinant;
