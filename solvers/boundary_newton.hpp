@@ -267,8 +267,9 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     double norm = kkt.residual_norm();
     int iterations = 0;
     // Quadratic convergence: one iteration from the tolerance ends at round-off.
+    const double finished = 1e-3 * options_.tolerance;
     bool last = false;
-    for (bool contracts = true; contracts && !last && std::isfinite(norm) && iterations < 30; ++iterations) {
+    for (bool contracts = true; contracts && !last && norm > finished && iterations < 30; ++iterations) {
       last = norm <= options_.tolerance;
       factor_plainly(kkt);
       kkt.newton_side(work.side);

@@ -18,7 +18,7 @@ inline constexpr Seek natural_seek = Sys::arrow_constraints > 0 ? Seek::minima :
 
 struct BoundaryOptions {
   int max_iterations = 200;
-  double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; Newton then iterates once more, to round-off
+  double tolerance = 1e-10;   ///< on the scaled residual, for `converged`; Newton goes on to a thousandth of it
   double feasibility = 1e-9;  ///< largest scaled constraint value at which a path counts as admissible on the way
   double largest_displacement = 1.0;  ///< bound on a node displacement in one iteration, in coordinates of AG
   bool classify = true;               ///< find out what kind of stationary point the solution is
