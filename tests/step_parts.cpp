@@ -1,0 +1,167 @@
+// The parts of a step: small inverses, first guesses, and that the short way through a step is the long one.
+#include <lagroid/solvers/extrapolation.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/solvers/small_inverse.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+
+using namespace lagroid;
+
+namespace {
+
+/// Random, with a leading block of zeros (as multipliers make them) and rows of very different sizes.
+template <int N> Matrix<double, N, N> saddle(std::mt19937_64& generator) {
+  std::normal_distribution<double> normal;
+  Matrix<double, N, N> a;
+  for (int i = 0; i < a.size(); ++i) a(i) = normal(generator);
+  a.template topLeftCorner<N / 2, N / 2>().setZero();
+  for (int i = 0; i < N; ++i) a.row(i) *= std::exp2(3 * i);
+  return a;
+}
+
+template <int N> void expect_inverse() {
+  std::mt19937_64 generator(N);
+  std::normal_distribution<double> normal(0, 1e-3);
+  int tried = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    Matrix<double, N, N> a = saddle<N>(generator);
+    const auto scaling = Scaling<N>::equilibrate(a);
+    if (scaling.apply(a).eval().partialPivLu().rcond() < 1e-3) continue;
+    ++tried;
+    SmallInverse<N> inverse;
+    inverse.choose_pivots(a, scaling);
+    // The pivots chosen for `a` serve its neighbours too.
+    a.array() *= 1 + normal(generator);
+    typename SmallInverse<N>::Column b;
+    for (int i = 0; i < N; ++i) b(i) = a(i, i % N) + 1;
+    ASSERT_TRUE(inverse.invert(a));
+    const Vector<double, N> expected = -a.fullPivLu().solve(Vector<double, N>(b));
+    EXPECT_LT((Vector<double, N>(inverse.correction(b)) - expected).norm(), 1e-9 * (1 + expected.norm())) << N;
+  }
+  EXPECT_GT(tried, 50) << N;
+}
+
+TEST(SmallInverse, EverySize) {
+  expect_inverse<1>();
+  expect_inverse<2>();
+  expect_inverse<3>();
+  expect_inverse<4>();
+  expect_inverse<5>();
+  expect_inverse<7>();
+  expect_inverse<8>();
+  expect_inverse<11>();
+}
+
+template <int N> void expect_refusal() {
+  Matrix<double, N, N> a = Matrix<double, N, N>::Ones();  // rank one
+  SmallInverse<N> inverse;
+  inverse.choose_pivots(a, Scaling<N>::equilibrate(a));
+  EXPECT_FALSE(inverse.invert(a)) << N;
+  a.setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(inverse.invert(a)) << N;
+}
+TEST(SmallInverse, RefusesWhatHasNone) {
+  expect_refusal<2>();
+  expect_refusal<4>();
+  expect_refusal<8>();
+  expect_refusal<10>();
+}
+
+TEST(Extrapolation, ContinuesPolynomials) {
+  Extrapolation<1, 5> past;
+  const auto p = [](double t) { return Vector<double, 1>(1 + t * (0.3 - t * (0.02 + t * (0.001 - 1e-4 * t)))); };
+  for (int k = 0; k < 40; ++k) {
+    if (k > 10) {
+      EXPECT_NEAR(past.next()(0), p(0.1 * k)(0), 1e-12) << k;
+    }
+    past.push(p(0.1 * k));
+  }
+}
+
+TEST(Extrapolation, DoesNotAmplifyNoise) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> noise(-1, 1);
+  Extrapolation<1, 7> past;
+  for (int k = 0; k < 200; ++k) past.push(Vector<double, 1>(noise(generator)));
+  EXPECT_LE(std::abs(past.next()(0)), 3) << "degree 7 would reach 255";
+}
+
+TEST(Extrapolation, StartsWithWhatItHas) {
+  Extrapolation<1, 7> past;
+  past.push(Vector<double, 1>(2));
+  EXPECT_EQ(past.next()(0), 2);
+  past.push(Vector<double, 1>(3));
+  past.clear();
+  past.push(Vector<double, 1>(5));
+  EXPECT_EQ(past.next()(0), 5);
+}
+
+/// A solver that remembers nothing from step to step: every step goes the long way.
+template <DiscreteSystem Sys> class Forgetful final : public StepSolver<Sys> {
+ public:
+  StepReport solve(const Sys& system, const State<typename Sys::GroupoidType>& state,
+                   StepSolution<Sys>& solution) override {
+    return NewtonStep<Sys>().solve(system, state, solution);
+  }
+};
+
+template <class Sys>
+void expect_one_trajectory(const Sys& system, const State<typename Sys::GroupoidType>& state, int steps) {
+  const auto unit = system.groupoid.unit(state.object);
+  Integrator<Sys> quick(system, state, unit, std::make_unique<NewtonStep<Sys>>());
+  Integrator<Sys> slow(system, state, unit, std::make_unique<Forgetful<Sys>>());
+  for (int k = 0; k < steps; ++k) {
+    ASSERT_TRUE(quick.advance().converged()) << k;
+    ASSERT_TRUE(slow.advance().converged()) << k;
+    ASSERT_LT((quick.point().state.momentum - slow.point().state.momentum).norm(),
+              1e-11 * slow.point().state.momentum.norm())
+        << k;
+  }
+}
+
+TEST(NewtonStep, TheShortWayIsTheLongOne) {
+  State<PlateBall::GroupoidType> rolling;
+  std::get<0>(rolling.object) << 0.3, -0.2;
+  rolling.momentum << 0.9, 0.2, 0.6, -0.4, 0.8;
+  PlateBall ball;
+  ball.spin = 0.4;
+  for (const auto form : {RotationForm::trace, RotationForm::exponential}) {
+    ball.rotation = form;
+    expect_one_trajectory(ball, rolling, 300);
+  }
+  // Eccentric: the matrix changes by orders of magnitude along the orbit, and guesses are bad near the centre.
+  Kepler orbit;
+  orbit.h = 0.02;
+  expect_one_trajectory(orbit, State<Pair<2>>{{1.9, 0}, {0, 0.23}}, 600);
+}
+
+TEST(NewtonStep, AKeptMatrixDoesNotSpoilAnUnrelatedStep) {
+  PlateBall ball;
+  NewtonStep<PlateBall> kept;
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 100; ++k) {
+    State<PlateBall::GroupoidType> state;
+    std::get<0>(state.object) << normal(generator), normal(generator);
+    for (int i = 0; i < 5; ++i) state.momentum(i) = normal(generator);
+    StepSolution<PlateBall> a;
+    StepSolution<PlateBall> b;
+    a.step = b.step = ball.first_guess(state);
+    const auto with = kept.solve(ball, state, a);
+    const auto without = NewtonStep<PlateBall>().solve(ball, state, b);
+    ASSERT_EQ(with.converged(), without.converged()) << k;
+    if (with.converged()) {
+      EXPECT_LT((a.step.multipliers - b.step.multipliers).norm(), 1e-10);
+    }
+  }
+}
+
+}  // namespace
