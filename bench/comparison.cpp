@@ -107,6 +107,7 @@ Results run(const std::vector<Subject>& subjects, int repetitions, double min_ti
   for (auto& flag : flags) arguments.push_back(flag.data());
   int count = int(arguments.size());
   benchmark::Initialize(&count, arguments.data());
+  benchmark::ClearRegisteredBenchmarks();
   for (const Subject& s : subjects)
     benchmark::RegisterBenchmark(key_of(s.group, s.name).c_str(),
                                  [run = s.run](benchmark::State& state) { run(state); });

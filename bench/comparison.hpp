@@ -54,7 +54,7 @@ std::vector<Subject> step_subjects();
 std::vector<Goal> step_goals();
 std::vector<Subject> boundary_subjects();
 std::vector<Goal> boundary_goals();
-/// Markdown: seconds to compile the files of bench/user and examples/my_system.cpp, with the build's own command.
+/// Markdown: seconds to compile the files of bench/user, with the build's own command.
 std::string compile_times();
 
 }  // namespace bench

@@ -26,11 +26,11 @@ template <class T, int N> class Jet {
   /// A constant. Implicit, so that formulas may contain plain numbers.
   template <class A>
   requires std::is_arithmetic_v<A> Jet(A x) : value(T(x)), gradient_{} {}  // NOLINT(google-explicit-constructor)
-  [[gnu::always_inline]] Jet(T x, const Left& v, const Right& w) : value(x), gradient_(v + w) {}
-  [[gnu::always_inline]] Jet(T x, const Left& gradient) : value(x), gradient_(gradient) {}
+  LAGROID_INLINE Jet(T x, const Left& v, const Right& w) : value(x), gradient_(v + w) {}
+  LAGROID_INLINE Jet(T x, const Left& gradient) : value(x), gradient_(gradient) {}
 
   /// The i-th variable, of value x.
-  [[gnu::always_inline]] static Jet variable(T x, int i) { return {x, Left::unit(i)}; }
+  LAGROID_INLINE static Jet variable(T x, int i) { return {x, Left::unit(i)}; }
   static Left unit(int i) { return Left::unit(i); }
   static Left left_unit(int i) { return Left::unit(i); }
   static Right right_unit(int i) { return Right::unit(i); }
@@ -41,38 +41,38 @@ template <class T, int N> class Jet {
   void set_right(int i, T x) { gradient_.set(i, x); }
 
   /// The composition with a function of one variable, given its value and derivatives at `value`.
-  [[gnu::always_inline]] Jet chain(T f, T f1, T /*f2*/) const { return {f, f1 * gradient_}; }
+  LAGROID_INLINE Jet chain(T f, T f1, T /*f2*/) const { return {f, f1 * gradient_}; }
 
   Jet& operator+=(const Jet& b) { return *this = *this + b; }
   Jet& operator-=(const Jet& b) { return *this = *this - b; }
   Jet& operator*=(const Jet& b) { return *this = *this * b; }
   Jet& operator/=(const Jet& b) { return *this = *this / b; }
 
-  [[gnu::always_inline]] friend Jet operator+(const Jet& a) { return a; }
-  [[gnu::always_inline]] friend Jet operator-(const Jet& a) { return {-a.value, -a.gradient_}; }
-  [[gnu::always_inline]] friend Jet operator+(const Jet& a, const Jet& b) {
+  LAGROID_INLINE friend Jet operator+(const Jet& a) { return a; }
+  LAGROID_INLINE friend Jet operator-(const Jet& a) { return {-a.value, -a.gradient_}; }
+  LAGROID_INLINE friend Jet operator+(const Jet& a, const Jet& b) {
     return {a.value + b.value, a.gradient_ + b.gradient_};
   }
-  [[gnu::always_inline]] friend Jet operator-(const Jet& a, const Jet& b) {
+  LAGROID_INLINE friend Jet operator-(const Jet& a, const Jet& b) {
     return {a.value - b.value, a.gradient_ - b.gradient_};
   }
-  [[gnu::always_inline]] friend Jet operator*(const Jet& a, const Jet& b) {
+  LAGROID_INLINE friend Jet operator*(const Jet& a, const Jet& b) {
     return {a.value * b.value, a.value * b.gradient_ + b.value * a.gradient_};
   }
-  [[gnu::always_inline]] friend Jet operator/(const Jet& a, const Jet& b) {
+  LAGROID_INLINE friend Jet operator/(const Jet& a, const Jet& b) {
     const T inverse = 1 / b.value;
     const T quotient = a.value * inverse;
     return {quotient, inverse * (a.gradient_ - quotient * b.gradient_)};
   }
 
-  [[gnu::always_inline]] friend Jet operator+(const Jet& a, T b) { return {a.value + b, a.gradient_}; }
-  [[gnu::always_inline]] friend Jet operator+(T a, const Jet& b) { return b + a; }
-  [[gnu::always_inline]] friend Jet operator-(const Jet& a, T b) { return {a.value - b, a.gradient_}; }
-  [[gnu::always_inline]] friend Jet operator-(T a, const Jet& b) { return {a - b.value, -b.gradient_}; }
-  [[gnu::always_inline]] friend Jet operator*(const Jet& a, T b) { return {a.value * b, b * a.gradient_}; }
-  [[gnu::always_inline]] friend Jet operator*(T a, const Jet& b) { return b * a; }
-  [[gnu::always_inline]] friend Jet operator/(const Jet& a, T b) { return a * (1 / b); }
-  [[gnu::always_inline]] friend Jet operator/(T a, const Jet& b) {
+  LAGROID_INLINE friend Jet operator+(const Jet& a, T b) { return {a.value + b, a.gradient_}; }
+  LAGROID_INLINE friend Jet operator+(T a, const Jet& b) { return b + a; }
+  LAGROID_INLINE friend Jet operator-(const Jet& a, T b) { return {a.value - b, a.gradient_}; }
+  LAGROID_INLINE friend Jet operator-(T a, const Jet& b) { return {a - b.value, -b.gradient_}; }
+  LAGROID_INLINE friend Jet operator*(const Jet& a, T b) { return {a.value * b, b * a.gradient_}; }
+  LAGROID_INLINE friend Jet operator*(T a, const Jet& b) { return b * a; }
+  LAGROID_INLINE friend Jet operator/(const Jet& a, T b) { return a * (1 / b); }
+  LAGROID_INLINE friend Jet operator/(T a, const Jet& b) {
     const T inverse = 1 / b.value;
     return {a * inverse, (-a * inverse * inverse) * b.gradient_};
   }

@@ -46,10 +46,10 @@ template <class T, int N> class Lanes {
  public:
   Lanes() = default;
   // Register by register: a copy in larger pieces would wait for the smaller stores before it.
-  [[gnu::always_inline]] Lanes(const Lanes& a) {
+  LAGROID_INLINE Lanes(const Lanes& a) {
     unrolled<count>([&]<int K>() { part_[K] = a.part_[K]; });
   }
-  [[gnu::always_inline]] Lanes& operator=(const Lanes& a) {
+  LAGROID_INLINE Lanes& operator=(const Lanes& a) {
     unrolled<count>([&]<int K>() { part_[K] = a.part_[K]; });
     return *this;
   }
@@ -60,14 +60,14 @@ template <class T, int N> class Lanes {
     for (int i = 0; i < N; ++i) out(i) = (*this)[i];
     return out;
   }
-  [[gnu::always_inline]] T operator[](int i) const {
+  LAGROID_INLINE T operator[](int i) const {
     if constexpr (width == 1) {
       return part_[i];
     } else {
       return part_[i / width][i % width];
     }
   }
-  [[gnu::always_inline]] void set(int i, T x) {
+  LAGROID_INLINE void set(int i, T x) {
     if constexpr (width == 1) {
       part_[i] = x;
     } else {
@@ -75,34 +75,34 @@ template <class T, int N> class Lanes {
     }
   }
   /// The N numbers at `x`.
-  [[gnu::always_inline]] static Lanes load(const T* x) {
+  LAGROID_INLINE static Lanes load(const T* x) {
     Lanes out{};
     std::memcpy(&out.part_, x, N * sizeof(T));
     return out;
   }
-  [[gnu::always_inline]] void store(T* x) const { std::memcpy(x, &part_, N * sizeof(T)); }
+  LAGROID_INLINE void store(T* x) const { std::memcpy(x, &part_, N * sizeof(T)); }
   /// One in place i, zero elsewhere.
-  [[gnu::always_inline]] static Lanes unit(int i) {
+  LAGROID_INLINE static Lanes unit(int i) {
     Lanes out;
     std::memcpy(&out.part_, &units[i], sizeof out.part_);
     return out;
   }
 
-  [[gnu::always_inline]] friend Lanes operator+(const Lanes& a, const Lanes& b) {
+  LAGROID_INLINE friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return each([&](int k) -> Register { return a.part_[k] + b.part_[k]; });
   }
-  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a, const Lanes& b) {
+  LAGROID_INLINE friend Lanes operator-(const Lanes& a, const Lanes& b) {
     return each([&](int k) -> Register { return a.part_[k] - b.part_[k]; });
   }
-  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a) {
+  LAGROID_INLINE friend Lanes operator-(const Lanes& a) {
     return each([&](int k) -> Register { return -a.part_[k]; });
   }
-  [[gnu::always_inline]] friend Lanes operator*(T s, const Lanes& a) {
+  LAGROID_INLINE friend Lanes operator*(T s, const Lanes& a) {
     return each([&](int k) -> Register { return s * a.part_[k]; });
   }
 
  private:
-  template <class F> [[gnu::always_inline]] static Lanes each(const F& f) {
+  template <class F> LAGROID_INLINE static Lanes each(const F& f) {
     Lanes out;
     unrolled<count>([&]<int K>() { out.part_[K] = f(K); });
     return out;

@@ -33,7 +33,7 @@ template <class T, int L, int R> class Mixed {
   template <class A>
   requires std::is_arithmetic_v<A> Mixed(A x)
       : value(T(x)), left_{}, right_{}, row_{} {}  // NOLINT(google-explicit-constructor)
-  [[gnu::always_inline]] Mixed(T x, const Left& v, const Right& w) : value(x), left_(v), right_(w), row_{} {}
+  LAGROID_INLINE Mixed(T x, const Left& v, const Right& w) : value(x), left_(v), right_(w), row_{} {}
 
   static Left left_unit(int i) { return Left::unit(i); }
   static Right right_unit(int j) { return Right::unit(j); }
@@ -55,7 +55,7 @@ template <class T, int L, int R> class Mixed {
   void set_row(int i, const Right& row) { row_[i] = row; }
 
   /// The composition with a function of one variable, given its value and two derivatives at `value`.
-  [[gnu::always_inline]] Mixed chain(T f, T f1, T f2) const {
+  LAGROID_INLINE Mixed chain(T f, T f1, T f2) const {
     const Left curved = f2 * left_;
     return with_rows(f, f1 * left_, f1 * right_, [&](int i) { return f1 * row_[i] + curved[i] * right_; });
   }
@@ -65,43 +65,43 @@ template <class T, int L, int R> class Mixed {
   Mixed& operator*=(const Mixed& b) { return *this = *this * b; }
   Mixed& operator/=(const Mixed& b) { return *this = *this / b; }
 
-  [[gnu::always_inline]] friend Mixed operator+(const Mixed& a) { return a; }
-  [[gnu::always_inline]] friend Mixed operator-(const Mixed& a) {
+  LAGROID_INLINE friend Mixed operator+(const Mixed& a) { return a; }
+  LAGROID_INLINE friend Mixed operator-(const Mixed& a) {
     return with_rows(-a.value, -a.left_, -a.right_, [&](int i) { return -a.row_[i]; });
   }
-  [[gnu::always_inline]] friend Mixed operator+(const Mixed& a, const Mixed& b) {
+  LAGROID_INLINE friend Mixed operator+(const Mixed& a, const Mixed& b) {
     return with_rows(a.value + b.value, a.left_ + b.left_, a.right_ + b.right_,
                      [&](int i) { return a.row_[i] + b.row_[i]; });
   }
-  [[gnu::always_inline]] friend Mixed operator-(const Mixed& a, const Mixed& b) {
+  LAGROID_INLINE friend Mixed operator-(const Mixed& a, const Mixed& b) {
     return with_rows(a.value - b.value, a.left_ - b.left_, a.right_ - b.right_,
                      [&](int i) { return a.row_[i] - b.row_[i]; });
   }
-  [[gnu::always_inline]] friend Mixed operator*(const Mixed& a, const Mixed& b) {
+  LAGROID_INLINE friend Mixed operator*(const Mixed& a, const Mixed& b) {
     return with_rows(a.value * b.value, a.value * b.left_ + b.value * a.left_, a.value * b.right_ + b.value * a.right_,
                      [&](int i) {
                        return a.value * b.row_[i] + b.value * a.row_[i] + a.left_[i] * b.right_ + b.left_[i] * a.right_;
                      });
   }
-  [[gnu::always_inline]] friend Mixed operator/(const Mixed& a, const Mixed& b) {
+  LAGROID_INLINE friend Mixed operator/(const Mixed& a, const Mixed& b) {
     const T inverse = 1 / b.value;
     return a * b.chain(inverse, -inverse * inverse, 2 * inverse * inverse * inverse);
   }
 
-  [[gnu::always_inline]] friend Mixed operator+(const Mixed& a, T b) {
+  LAGROID_INLINE friend Mixed operator+(const Mixed& a, T b) {
     Mixed out = a;
     out.value += b;
     return out;
   }
-  [[gnu::always_inline]] friend Mixed operator+(T a, const Mixed& b) { return b + a; }
-  [[gnu::always_inline]] friend Mixed operator-(const Mixed& a, T b) { return a + (-b); }
-  [[gnu::always_inline]] friend Mixed operator-(T a, const Mixed& b) { return -b + a; }
-  [[gnu::always_inline]] friend Mixed operator*(const Mixed& a, T b) {
+  LAGROID_INLINE friend Mixed operator+(T a, const Mixed& b) { return b + a; }
+  LAGROID_INLINE friend Mixed operator-(const Mixed& a, T b) { return a + (-b); }
+  LAGROID_INLINE friend Mixed operator-(T a, const Mixed& b) { return -b + a; }
+  LAGROID_INLINE friend Mixed operator*(const Mixed& a, T b) {
     return with_rows(a.value * b, b * a.left_, b * a.right_, [&](int i) { return b * a.row_[i]; });
   }
-  [[gnu::always_inline]] friend Mixed operator*(T a, const Mixed& b) { return b * a; }
-  [[gnu::always_inline]] friend Mixed operator/(const Mixed& a, T b) { return a * (1 / b); }
-  [[gnu::always_inline]] friend Mixed operator/(T a, const Mixed& b) {
+  LAGROID_INLINE friend Mixed operator*(T a, const Mixed& b) { return b * a; }
+  LAGROID_INLINE friend Mixed operator/(const Mixed& a, T b) { return a * (1 / b); }
+  LAGROID_INLINE friend Mixed operator/(T a, const Mixed& b) {
     const T inverse = 1 / b.value;
     return b.chain(a * inverse, -a * inverse * inverse, 2 * a * inverse * inverse * inverse);
   }
@@ -111,7 +111,7 @@ template <class T, int L, int R> class Mixed {
   friend std::ostream& operator<<(std::ostream& out, const Mixed& a) { return out << a.value; }
 
  private:
-  template <class F> [[gnu::always_inline]] static Mixed with_rows(T x, const Left& v, const Right& w, const F& row) {
+  template <class F> LAGROID_INLINE static Mixed with_rows(T x, const Left& v, const Right& w, const F& row) {
     Mixed out;
     out.value = x;
     out.left_ = v;

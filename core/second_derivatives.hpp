@@ -26,10 +26,9 @@ SecondDerivativesOf<Sys> second_derivatives_in_three_passes(const Sys& system,
 
 /// In one pass along the arrow's frame, pushed to its ends.
 template <DiscreteSystem Sys>
-requires HasArrowFrame<typename Sys::GroupoidType>
-[[gnu::flatten]] SecondDerivativesOf<Sys> second_derivatives_in_one_pass(const Sys& system,
-                                                                         const ArrowOf<typename Sys::GroupoidType>& g,
-                                                                         const typename Sys::Multipliers& lambda) {
+requires HasArrowFrame<typename Sys::GroupoidType> LAGROID_FLATTEN SecondDerivativesOf<Sys>
+second_derivatives_in_one_pass(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                               const typename Sys::Multipliers& lambda) {
   constexpr int n = Sys::dimension;
   constexpr int d = Sys::GroupoidType::arrow_dimension;
   constexpr int phis = Sys::arrow_constraints;

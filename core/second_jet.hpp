@@ -27,7 +27,7 @@ template <class T, int N> class SecondJet {
   template <class A>
   requires std::is_arithmetic_v<A> SecondJet(A x)  // NOLINT(google-explicit-constructor)
       : value(T(x)), gradient_{}, rows_{} {}
-  [[gnu::always_inline]] SecondJet(T x, const Row& gradient) : value(x), gradient_(gradient), rows_{} {}
+  LAGROID_INLINE SecondJet(T x, const Row& gradient) : value(x), gradient_(gradient), rows_{} {}
 
   /// The i-th variable, of value x.
   static SecondJet variable(T x, int i) { return {x, Row::unit(i)}; }
@@ -45,7 +45,7 @@ template <class T, int N> class SecondJet {
   void set_row(int i, const Row& row) { rows_[i] = row; }
 
   /// The composition with a function of one variable, given its value and two derivatives at `value`.
-  [[gnu::always_inline]] SecondJet chain(T f, T f1, T f2) const {
+  LAGROID_INLINE SecondJet chain(T f, T f1, T f2) const {
     const Row curved = f2 * gradient_;
     return with_rows(f, f1 * gradient_, [&](int i) { return f1 * rows_[i] + curved[i] * gradient_; });
   }
@@ -56,16 +56,16 @@ template <class T, int N> class SecondJet {
   SecondJet& operator/=(const SecondJet& b) { return *this = *this / b; }
 
   friend SecondJet operator+(const SecondJet& a) { return a; }
-  [[gnu::always_inline]] friend SecondJet operator-(const SecondJet& a) {
+  LAGROID_INLINE friend SecondJet operator-(const SecondJet& a) {
     return with_rows(-a.value, -a.gradient_, [&](int i) { return -a.rows_[i]; });
   }
-  [[gnu::always_inline]] friend SecondJet operator+(const SecondJet& a, const SecondJet& b) {
+  LAGROID_INLINE friend SecondJet operator+(const SecondJet& a, const SecondJet& b) {
     return with_rows(a.value + b.value, a.gradient_ + b.gradient_, [&](int i) { return a.rows_[i] + b.rows_[i]; });
   }
-  [[gnu::always_inline]] friend SecondJet operator-(const SecondJet& a, const SecondJet& b) {
+  LAGROID_INLINE friend SecondJet operator-(const SecondJet& a, const SecondJet& b) {
     return with_rows(a.value - b.value, a.gradient_ - b.gradient_, [&](int i) { return a.rows_[i] - b.rows_[i]; });
   }
-  [[gnu::always_inline]] friend SecondJet operator*(const SecondJet& a, const SecondJet& b) {
+  LAGROID_INLINE friend SecondJet operator*(const SecondJet& a, const SecondJet& b) {
     return with_rows(a.value * b.value, a.value * b.gradient_ + b.value * a.gradient_, [&](int i) {
       return a.value * b.rows_[i] + b.value * a.rows_[i] + a.gradient_[i] * b.gradient_ + b.gradient_[i] * a.gradient_;
     });
@@ -83,7 +83,7 @@ template <class T, int N> class SecondJet {
   friend SecondJet operator+(T a, const SecondJet& b) { return b + a; }
   friend SecondJet operator-(const SecondJet& a, T b) { return a + (-b); }
   friend SecondJet operator-(T a, const SecondJet& b) { return -b + a; }
-  [[gnu::always_inline]] friend SecondJet operator*(const SecondJet& a, T b) {
+  LAGROID_INLINE friend SecondJet operator*(const SecondJet& a, T b) {
     return with_rows(a.value * b, b * a.gradient_, [&](int i) { return b * a.rows_[i]; });
   }
   friend SecondJet operator*(T a, const SecondJet& b) { return b * a; }
@@ -98,7 +98,7 @@ template <class T, int N> class SecondJet {
   friend std::ostream& operator<<(std::ostream& out, const SecondJet& a) { return out << a.value; }
 
  private:
-  template <class F> [[gnu::always_inline]] static SecondJet with_rows(T x, const Row& gradient, const F& row) {
+  template <class F> LAGROID_INLINE static SecondJet with_rows(T x, const Row& gradient, const F& row) {
     SecondJet out;
     out.value = x;
     out.gradient_ = gradient;

@@ -30,8 +30,8 @@ template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimensio
 /// The gradients by first-order dual numbers: one pass through L, phi and C, along the arrow's frame or, where the
 /// groupoid supplies none, along the displacements of both ends.
 template <DiscreteSystem Sys>
-[[gnu::flatten]] GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
-                                                      const typename Sys::Multipliers& lambda) {
+LAGROID_FLATTEN GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                                                     const typename Sys::Multipliers& lambda) {
   constexpr int n = Sys::dimension;
   constexpr bool framed = HasArrowFrame<typename Sys::GroupoidType>;
   using J = Jet<double, framed ? arrow_dimension_of<typename Sys::GroupoidType>() : 2 * n>;
@@ -74,8 +74,8 @@ template <DiscreteSystem Sys>
 
 /// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
 template <DiscreteSystem Sys>
-[[gnu::flatten]] TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
-                                                     const typename Sys::Multipliers& lambda) {
+LAGROID_FLATTEN TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                                                    const typename Sys::Multipliers& lambda) {
   using M = MixedOf<Sys>;
   const auto gm = system.groupoid.template seed<M, End::source, End::target>(g);
   TwoSidedOf<Sys> out;
@@ -107,12 +107,15 @@ template <DiscreteSystem Sys>
   return out;
 }
 
-/// The gradients: the system's analytic ones if it has them, else the automatic ones.
+/// The gradients: the system's analytic ones if it has them, alone or in its two-sided derivative; else the automatic
+/// ones.
 template <DiscreteSystem Sys>
 GradientsOf<Sys> gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                            const typename Sys::Multipliers& lambda) {
   if constexpr (HasAnalyticGradients<Sys>) {
     return system.gradients(g, lambda);
+  } else if constexpr (HasAnalyticDerivatives<Sys>) {
+    return system.two_sided(g, lambda);
   } else {
     return automatic_gradients(system, g, lambda);
   }

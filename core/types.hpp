@@ -5,6 +5,16 @@
 
 #include <utility>
 
+// Operations on derivatives must be inlined to stay in registers, and all that a step calls with them. Instrumented or
+// unoptimised code has nothing to gain, and would take minutes to compile.
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
+#define LAGROID_INLINE [[gnu::always_inline]]
+#define LAGROID_FLATTEN [[gnu::flatten]]
+#else
+#define LAGROID_INLINE
+#define LAGROID_FLATTEN
+#endif
+
 namespace lagroid {
 
 template <class S, int N> using Vector = Eigen::Matrix<S, N, 1>;
@@ -17,7 +27,7 @@ constexpr float value_of(float x) { return x; }
 constexpr long double value_of(long double x) { return x; }
 
 /// f<0>(), f<1>(), ..., f<N - 1>().
-template <int N, class F> [[gnu::always_inline]] constexpr void unrolled(const F& f) {
+template <int N, class F> LAGROID_INLINE constexpr void unrolled(const F& f) {
   [&]<int... I>(std::integer_sequence<int, I...>) { (f.template operator()<I>(), ...); }
   (std::make_integer_sequence<int, N>{});
 }

@@ -98,7 +98,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// satisfy tau(v)^{-1} g = g tau(-Ad_{g^{-1}} v); and tau(u) tau(w) = tau(u + w + [u, w] / 2 + ...).
   static constexpr int arrow_dimension = Dimension;
   template <class J, int Offset = 0, class T>
-  [[gnu::always_inline]] static Matrix<J, N, N> frame_jet(const Matrix<T, N, N>& g) {
+  LAGROID_INLINE static Matrix<J, N, N> frame_jet(const Matrix<T, N, N>& g) {
     Matrix<J, N, N> out;
     unrolled<N>([&]<int C>() {
       unrolled<N>([&]<int R>() {
@@ -129,7 +129,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// first and second derivatives of tau(a)^{-1} g tau(b) at a = b = 0. The loops run at compile time, so that zeros of
   /// the basis matrices cost nothing.
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
-  [[gnu::always_inline]] static Matrix<M, N, N> seed(const Matrix<T, N, N>& g) {
+  LAGROID_INLINE static Matrix<M, N, N> seed(const Matrix<T, N, N>& g) {
     Matrix<M, N, N> out;
     unrolled<N>([&]<int C>() {
       unrolled<N>([&]<int R>() {
@@ -147,8 +147,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
   /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
-  template <class T>
-  [[gnu::always_inline]] static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
+  template <class T> LAGROID_INLINE static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
     if (value_of(w.squaredNorm()) > 1e-11) return g * tau(Object<T>{}, w);
     const Matrix<T, N, N> gw = times_hat(g, w);
     const Matrix<T, N, N> gww = times_hat(gw, w);
@@ -162,7 +161,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
 
  protected:
   /// The matrix of entries f<r, c>(). (In registers, where Eigen's packet operations would go through memory.)
-  template <class S, class F> [[gnu::always_inline]] static Matrix<S, N, N> by_entry(const F& f) {
+  template <class S, class F> LAGROID_INLINE static Matrix<S, N, N> by_entry(const F& f) {
     Matrix<S, N, N> out;
     unrolled<N>([&]<int C>() { unrolled<N>([&]<int R>() { out(R, C) = f.template operator()<R, C>(); }); });
     return out;
@@ -170,8 +169,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
 
  private:
   /// g hat(w).
-  template <class T>
-  [[gnu::always_inline]] static Matrix<T, N, N> times_hat(const Matrix<T, N, N>& g, const Algebra<T>& w) {
+  template <class T> LAGROID_INLINE static Matrix<T, N, N> times_hat(const Matrix<T, N, N>& g, const Algebra<T>& w) {
     return by_entry<T>([&]<int R, int C>() {
       T sum = -T(0);
       unrolled<N>([&]<int S>() {
@@ -184,8 +182,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
   /// Entry (r, c) of the derivative of tau(a)^{-1} g or of g tau(b) along the i-th basis vector.
-  template <End Which, int R, int C, int I, class T>
-  [[gnu::always_inline]] static T displaced(const Matrix<T, N, N>& g) {
+  template <End Which, int R, int C, int I, class T> LAGROID_INLINE static T displaced(const Matrix<T, N, N>& g) {
     T sum = -T(0);  // the zero that adds without a trace
     unrolled<N>([&]<int S>() {
       if constexpr (Which == End::source && Derived::basis(I, R, S) != 0) sum -= T(Derived::basis(I, R, S)) * g(S, C);
@@ -202,7 +199,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
 
   /// These derivatives over i, each along its unit.
   template <End Which, int R, int C, class T, class Unit>
-  [[gnu::always_inline]] static auto side_by_side(const Matrix<T, N, N>& g, const Unit& unit) {
+  LAGROID_INLINE static auto side_by_side(const Matrix<T, N, N>& g, const Unit& unit) {
     decltype(unit(0)) sum{};
     unrolled<Dimension>([&]<int I>() {
       if constexpr (moves<Which>(R, C, I)) sum = sum + displaced<Which, R, C, I>(g) * unit(I);
@@ -213,7 +210,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// The mixed derivatives -E_i g E_j where the second infinitesimal displaces the other end than the first: row i of
   /// entry (r, c) is made of the derivatives of column c along j.
   template <End Second, int C, int LeftOffset, int RightOffset, class M, class T>
-  [[gnu::always_inline]] static void seed_mixed(const Matrix<T, N, N>& g, Matrix<M, N, N>& out) {
+  LAGROID_INLINE static void seed_mixed(const Matrix<T, N, N>& g, Matrix<M, N, N>& out) {
     using Right = typename M::Right;
     const auto unit = [](int j) { return M::right_unit(RightOffset + j); };
     if constexpr (Second == End::target) {
@@ -260,7 +257,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
   /// Entry (r, c) of g (E_i E_j + E_j E_i) / 2 over j, each along its unit.
   template <int R, int C, int I, class T, class Unit>
-  [[gnu::always_inline]] static auto squares(const Matrix<T, N, N>& g, const Unit& unit) {
+  LAGROID_INLINE static auto squares(const Matrix<T, N, N>& g, const Unit& unit) {
     decltype(unit(0)) sum{};
     unrolled<Dimension>([&]<int J>() {
       unrolled<N>([&]<int S>() {

@@ -37,7 +37,7 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
   template <class S, class V> static Arrow<S> arrow(const V& x) { return {x.template head<N>(), x.template tail<N>()}; }
 
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
-  [[gnu::always_inline]] static Arrow<M> seed(const PairArrow<T, N>& g) {
+  LAGROID_INLINE static Arrow<M> seed(const PairArrow<T, N>& g) {
     const auto moved = [](End end, T x, int i) {
       return M(x, First == end ? M::left_unit(LeftOffset + i) : typename M::Left{},
                Second == end ? M::right_unit(RightOffset + i) : typename M::Right{});
@@ -62,8 +62,7 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
 
   /// The arrow frame: the ends move independently, first the source, then the target.
   static constexpr int arrow_dimension = 2 * N;
-  template <class J, int Offset = 0, class T>
-  [[gnu::always_inline]] static Arrow<J> frame_jet(const PairArrow<T, N>& g) {
+  template <class J, int Offset = 0, class T> LAGROID_INLINE static Arrow<J> frame_jet(const PairArrow<T, N>& g) {
     Arrow<J> out;
     unrolled<N>([&]<int I>() {
       out.source(I) = J::variable(g.source(I), Offset + I);

@@ -83,7 +83,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   }
 
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class... As>
-  [[gnu::always_inline]] Arrow<M> seed(const std::tuple<As...>& g) const {
+  LAGROID_INLINE Arrow<M> seed(const std::tuple<As...>& g) const {
     return [&]<std::size_t... I>(std::index_sequence<I...>)->Arrow<M> {
       return {
           std::get<I>(factor)
@@ -95,8 +95,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
 
   /// The arrow frame: those of the factors, side by side, if all have one.
   static constexpr int arrow_dimension = ((arrow_dimension_of<Gs>() > 0) && ...) ? (arrow_dimension_of<Gs>() + ...) : 0;
-  template <class J, int Offset = 0, class... As>
-  [[gnu::always_inline]] Arrow<J> frame_jet(const std::tuple<As...>& g) const {
+  template <class J, int Offset = 0, class... As> LAGROID_INLINE Arrow<J> frame_jet(const std::tuple<As...>& g) const {
     return [&]<std::size_t... I>(std::index_sequence<I...>)->Arrow<J> {
       return {std::get<I>(factor).template frame_jet<J, Offset + start(frames, I)>(std::get<I>(g))...};
     }

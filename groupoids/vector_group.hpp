@@ -21,7 +21,7 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
   template <class S> static Vector<S, N> tau(const Vector<S, 0>&, const Vector<S, N>& v) { return v; }
   template <class S> static Vector<S, N> tau_inverse(const Vector<S, N>& g) { return g; }
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
-  [[gnu::always_inline]] static Vector<M, N> seed(const Vector<T, N>& g) {
+  LAGROID_INLINE static Vector<M, N> seed(const Vector<T, N>& g) {
     constexpr T by_first = First == End::source ? -1 : 1;
     constexpr T by_second = Second == End::source ? -1 : 1;
     Vector<M, N> out;
@@ -33,8 +33,7 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
 
   /// The arrow frame: the target's displacements.
   static constexpr int arrow_dimension = N;
-  template <class J, int Offset = 0, class T>
-  [[gnu::always_inline]] static Vector<J, N> frame_jet(const Vector<T, N>& g) {
+  template <class J, int Offset = 0, class T> LAGROID_INLINE static Vector<J, N> frame_jet(const Vector<T, N>& g) {
     Vector<J, N> out;
     unrolled<N>([&]<int I>() { out(I) = J::variable(g(I), Offset + I); });
     return out;

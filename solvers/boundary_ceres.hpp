@@ -80,6 +80,8 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
       out.status = SolveStatus::converged;
       out.cost = action(system, path);
       out.kind = kkt.classify(system, path);
+    } else if (summary.termination_type == ceres::NO_CONVERGENCE && still_falling(summary)) {
+      out.status = SolveStatus::not_converged;
     } else if (newton_contracts(problem, kkt, path)) {
       out.status = SolveStatus::ill_conditioned;
       out.message = fmt::format(
@@ -151,6 +153,14 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
       path[k].multipliers = multipliers[k].template head<m>();
     }
     return summary;
+  }
+
+  /// Whether the last ten iterations lowered the cost by more than a stall does, or there were no ten.
+  static bool still_falling(const ceres::Solver::Summary& summary) {
+    constexpr std::size_t window = 10;
+    const auto& iterations = summary.iterations;
+    const std::size_t count = iterations.size();
+    return count <= window || iterations.back().cost < 0.25 * iterations[count - 1 - window].cost;
   }
 
   /// Whether one Newton step from `path`, where `kkt` is evaluated, lowers the residual to a tenth.

@@ -52,7 +52,7 @@ template <DiscreteSystem Sys> class Integrator {
   const TrajectoryPoint<Sys>& point() const { return point_; }
   const Sys& system() const { return system_; }
 
-  [[gnu::flatten]] StepReport advance() {
+  LAGROID_FLATTEN StepReport advance() {
     StepSolution<Sys> solution;
     if (point_.index == 0) return restart(solution, {});
     const Unknowns predicted = past_.next();
@@ -84,7 +84,6 @@ template <DiscreteSystem Sys> class Integrator {
   /// A step without predecessor, or one whose solve failed or ended far from the predicted arrow: the solution that is
   /// continuous in the step size; if there is none, what the solve before found.
   [[gnu::cold, gnu::noinline]] StepReport restart(StepSolution<Sys>& found, const StepReport& before) {
-    past_.clear();
     StepSolution<Sys> solution;
     StepReport report = first_step(solution);
     report.iterations += before.iterations;
@@ -92,7 +91,10 @@ template <DiscreteSystem Sys> class Integrator {
       report = before;
       solution = found;
     }
-    if (report.converged()) accept(solution, system_.groupoid.chart(solution.step.arrow));
+    if (report.converged()) {
+      past_.clear();
+      accept(solution, system_.groupoid.chart(solution.step.arrow));
+    }
     return report;
   }
 

@@ -36,7 +36,8 @@ bool same_solution(const Sys& system, const BoundarySolution<Sys>& a, const Boun
 
 template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, BoundarySolution<Sys>&& failure) {
   const double best = result.best_failure.residual;
-  if (result.best_failure.path.empty() || failure.residual < best) result.best_failure = std::move(failure);
+  if (result.best_failure.path.empty() || std::isnan(best) || failure.residual < best)
+    result.best_failure = std::move(failure);
 }
 
 template <DiscreteSystem Sys>

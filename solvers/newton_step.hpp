@@ -40,7 +40,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
       chord_.kept = false;
     }
     by_newton(system, state, solution, report);
-    if (report.converged()) keep(system, state, solution.step);
+    if (report.converged()) keep(system, solution.step);
     return report;
   }
 
@@ -52,34 +52,38 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   /// What is known of the convergence of chord iterations.
   struct Chord {
-    bool kept = false;  ///< there is an inverse to iterate with
-    Residual floor;     ///< reciprocal round-off level of each equation
-    double first = 0;   ///< excess at the guess of the last solve
-    double rate = 0;    ///< contraction of an iteration, as last seen
-    int age = 0;        ///< solves since the matrix was evaluated
+    bool kept = false;              ///< there is an inverse to iterate with
+    typename E::Jacobian jacobian;  ///< as evaluated; the inverse is NewtonStep::inverse_
+    Residual floor;                 ///< reciprocal round-off level of each equation, at this solve's guess
+    double first = 0;               ///< excess at the guess of the last solve
+    double rate = 0;                ///< contraction of an iteration, as last seen
+    int age = 0;                    ///< solves since the matrix was evaluated
   };
 
   // ---- the short way
 
-  [[gnu::flatten]] bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
-                                  StepReport& report) {
+  LAGROID_FLATTEN bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
+                                 StepReport& report) {
     Step<Sys> step;
     step = solution.step;
     Residual residual;
     if (renewal_pays()) {
       const TwoSidedOf<Sys> d = two_sided(system, step.arrow, step.multipliers);
-      if (!renew(system, state, step, E::jacobian(d))) return false;
+      if (!renew(E::jacobian(d))) return false;
       residual = E::residual(d, state.momentum);
     } else {
       ++chord_.age;
       const GradientsOf<Sys> d = gradients(system, step.arrow, step.multipliers);
       residual = E::residual(d, state.momentum);
     }
+    // The level follows the step even where the matrix does not: terms may shrink along the trajectory.
+    chord_.floor = round_off_level(system, state, step, chord_.jacobian).cwiseInverse();
     double excess = excess_of(residual);
     chord_.first = excess;
     double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * excess) : chord_.rate;
     double remains = excess;
-    for (int iteration = 1; iteration <= longest_chord; ++iteration) {
+    for (int iteration = 1; iteration <= std::min(longest_chord, options_.max_iterations); ++iteration) {
+      report.iterations = iteration;
       move(system, step, inverse_.correction(residual));
       const GradientsOf<Sys> there = gradients(system, step.arrow, step.multipliers);
       residual = E::residual(there, state.momentum);
@@ -88,17 +92,18 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
       if (next > 10) rate = std::max(next / excess, iteration == 1 ? 0 : rate);
       remains *= rate;
       excess = next;
-      if (excess <= 1 && remains <= leftover) {
+      const bool tolerated = options_.tolerance > 0 && norm_of(residual) <= options_.tolerance;
+      if ((excess <= 1 && remains <= leftover) || tolerated) {
+        finish(report, system, step);
+        if (!report.converged() || !residual.allFinite()) return false;
         chord_.rate = rate;
         solution.step = step;
         const Residual correction = inverse_.correction(residual);
         solution.remainder = correction.template head<Sys::dimension>();
         solution.momentum_change = there.source_gradient + there.target_gradient;
-        report.iterations = iteration;
-        report.residual = residual.cwiseProduct(scaling_.row).cwiseAbs().maxCoeff();
+        report.residual = norm_of(residual);
         report.excess = excess;
-        finish(report, system, step);
-        return report.converged();
+        return true;
       }
     }
     return false;
@@ -120,20 +125,20 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   static constexpr int renewal_price = E::size > 4 ? 2 : 1;
 
   /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
-  [[gnu::noinline]] bool renew(const Sys& system, const State<G>& state, const Step<Sys>& step,
-                               const typename E::Jacobian& jacobian) {
-    chord_.floor = round_off_level(system, state, step, jacobian).cwiseInverse();
+  [[gnu::noinline]] bool renew(const typename E::Jacobian& jacobian) {
+    chord_.jacobian = jacobian;
     chord_.age = 0;
     return inverse_.invert(jacobian);
   }
 
+  double norm_of(const Residual& residual) const { return residual.cwiseProduct(scaling_.row).cwiseAbs().maxCoeff(); }
   double excess_of(const Residual& residual) const { return residual.cwiseProduct(chord_.floor).cwiseAbs().maxCoeff(); }
 
   /// After a full solve: the matrix there, for the steps that follow.
-  [[gnu::cold, gnu::noinline]] void keep(const Sys& system, const State<G>& state, const Step<Sys>& step) {
+  [[gnu::cold, gnu::noinline]] void keep(const Sys& system, const Step<Sys>& step) {
     const typename E::Jacobian jacobian = E::jacobian(two_sided(system, step.arrow, step.multipliers));
     inverse_.choose_pivots(jacobian, scaling_);
-    chord_.kept = renew(system, state, step, jacobian);
+    chord_.kept = renew(jacobian);
     chord_.first = 1e12;
     chord_.rate = 0.1;
     chord_.age = 1;

@@ -45,7 +45,7 @@ template <int Size> class SmallInverse {
         m(i, j) = a(row_of_[std::size_t(i)], column_of_[std::size_t(j)]) * row_scale_(i) * column_scale_(j);
     const Square inverse = inverse_of(m);
     for (int j = 0; j < Size; ++j) columns_[std::size_t(j)] = Lanes<double, Size>::load(inverse.col(j).data());
-    return inverse.cwiseAbs().maxCoeff() < largest_entry;
+    return inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < largest_entry;
   }
 
   /// -a^{-1} b.

@@ -84,7 +84,8 @@ template <int N> class SymmetricFactor {
         below = x;
         r = i;
       }
-    if (diagonal >= growth * below) return eliminate_one(k);
+    // Written so that a NaN, which no pivot can mend, ends here too.
+    if (k + 1 == N || !(diagonal < growth * below)) return eliminate_one(k);
     double beside = 0;  // largest off the diagonal in row r
     for (int i = k; i < N; ++i)
       if (i != r) beside = std::max(beside, std::abs(l_(r, i)));
@@ -139,7 +140,7 @@ template <int N> class SymmetricFactor {
   /// Counts an eigenvalue of D; a zero one is nudged, so that the caller sees it in `smallest` and nothing overflows.
   double note(double eigenvalue) {
     negative_ += eigenvalue < 0;
-    smallest_ = std::min(smallest_, std::abs(eigenvalue));
+    smallest_ = std::isnan(eigenvalue) ? 0 : std::min(smallest_, std::abs(eigenvalue));
     return std::abs(eigenvalue) < 1e-300 ? 1e-300 : eigenvalue;
   }
 
