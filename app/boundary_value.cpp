@@ -15,7 +15,10 @@ MultistartOptions read_multistart(const Section& solver) {
 
 BoundaryChoice read_boundary_solver(const Section& solver) {
   BoundaryChoice choice;
-  choice.method = solver.choice_or("method", "newton", {"newton", "shooting", "ceres"});
+  const std::string method = solver.choice_or("method", "newton", {"newton", "shooting", "ceres"});
+  choice.method = method == "shooting" ? BoundaryMethod::shooting
+                  : method == "ceres"  ? BoundaryMethod::ceres
+                                       : BoundaryMethod::newton;
   if (solver.has("seek"))
     choice.seek = solver.choice("seek", {"minima", "stationary"}) == "minima" ? Seek::minima : Seek::stationary;
   choice.multistart = read_multistart(solver);

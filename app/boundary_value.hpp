@@ -6,9 +6,6 @@
 #include "scene_reader.hpp"
 #include "simulation.hpp"
 
-#include <lagroid/solvers/boundary_ceres.hpp>
-#include <lagroid/solvers/boundary_newton.hpp>
-#include <lagroid/solvers/boundary_shooting.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 
 #include <fmt/format.h>
@@ -25,7 +22,7 @@ namespace lagroid::app {
 
 /// [solver] of a boundary-value run.
 struct BoundaryChoice {
-  std::string method;  ///< newton, shooting or ceres
+  BoundaryMethod method = BoundaryMethod::newton;
   std::optional<Seek> seek;
   BoundaryOptions options;
   MultistartOptions multistart;
@@ -55,13 +52,6 @@ template <DiscreteSystem Sys> struct BoundaryScene {
   BoundaryStage<Sys> stage;
   ArrowOf<typename Sys::GroupoidType> start;
 };
-
-template <DiscreteSystem Sys> std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(const BoundaryChoice& choice) {
-  const Seek seek = choice.seek.value_or(natural_seek<Sys>);
-  if (choice.method == "shooting") return std::make_unique<BoundaryShooting<Sys>>(choice.options, seek);
-  if (choice.method == "ceres") return std::make_unique<BoundaryCeres<Sys>>(choice.options, seek);
-  return std::make_unique<BoundaryNewton<Sys>>(choice.options, seek);
-}
 
 /// Replays a solved path through the recorder.
 template <DiscreteSystem Sys>
@@ -200,7 +190,7 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
   if (const auto why = inadmissible_ends(first.problem)) scene.section("continuation", "").fail("from", *why);
 
   const auto clock = std::chrono::steady_clock::now();
-  const auto solver = make_boundary_solver<Sys>(choice);
+  const auto solver = make_boundary_solver<Sys>(choice.method, choice.options, choice.seek.value_or(natural_seek<Sys>));
   const long starts = choice.multistart.starts;
   MultistartResult<Sys> found;
   {

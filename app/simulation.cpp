@@ -16,9 +16,9 @@ TimeGrid read_time(const Section& scene) {
 
 StepperChoice read_stepper(const Section& solver) {
   StepperChoice choice;
-  choice.ceres = solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres";
-  choice.max_iterations = int(solver.integer_or("max_iterations", choice.ceres ? 100 : 60, 1, 100000));
-  choice.tolerance = solver.number_or("tolerance", 0, nonnegative);
+  if (solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres") choice.method = StepMethod::ceres;
+  if (solver.has("max_iterations")) choice.options.max_iterations = int(solver.integer("max_iterations", 1, 100000));
+  choice.options.tolerance = solver.number_or("tolerance", 0, nonnegative);
   return choice;
 }
 

@@ -5,9 +5,7 @@
 #include "recorder.hpp"
 #include "scene_reader.hpp"
 
-#include <lagroid/solvers/ceres_step.hpp>
 #include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
 
 #include <fmt/format.h>
 
@@ -32,9 +30,8 @@ TimeGrid read_time(const Section& scene);
 
 /// [solver] of an initial-value run.
 struct StepperChoice {
-  bool ceres = false;
-  int max_iterations = 60;
-  double tolerance = 0;  ///< on the scaled residual; 0: to round-off
+  StepMethod method = StepMethod::newton;
+  StepOptions options;
 };
 StepperChoice read_stepper(const Section& solver);
 
@@ -57,19 +54,10 @@ RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
                    const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const StepperChoice& choice,
                    long every, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
-  std::unique_ptr<StepSolver<Sys>> solver;
-  if (choice.ceres) {
-    solver = std::make_unique<CeresStep<Sys>>(choice.max_iterations, choice.tolerance, system.groupoid);
-  } else {
-    NewtonOptions options;
-    options.max_iterations = choice.max_iterations;
-    options.tolerance = choice.tolerance;
-    solver = std::make_unique<NewtonStep<Sys>>(options);
-  }
   RunResult result;
   result.steps_asked = steps;
   Recorder<Sys> recorder(system, presentation, every);
-  Integrator<Sys> integrator(system, initial, configuration, std::move(solver));
+  Integrator<Sys> integrator(system, initial, configuration, make_step_solver(system, choice.method, choice.options));
   recorder.observe(reported(system, integrator.point()));
   {
     Progress progress(presentation.name, steps, context.progress);

@@ -3,6 +3,8 @@
 
 #include <lagroid/solvers/boundary_problem.hpp>
 
+#include <memory>
+
 namespace lagroid {
 
 /// What a boundary-value solver looks for.
@@ -41,5 +43,14 @@ template <DiscreteSystem Sys> class BoundarySolver {
   BoundaryOptions options_;
   Seek seek_;
 };
+
+/// The solvers of a boundary-value problem that a user can name.
+enum class BoundaryMethod { newton, shooting, ceres };
+
+/// A solver of the named kind. Include `boundary_methods.hpp` for a system of your own; those of `systems/` are
+/// compiled.
+template <DiscreteSystem Sys>
+std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method = BoundaryMethod::newton,
+                                                          BoundaryOptions options = {}, Seek seek = natural_seek<Sys>);
 
 }  // namespace lagroid

@@ -52,24 +52,7 @@ template <DiscreteSystem Sys> class Integrator {
   const TrajectoryPoint<Sys>& point() const { return point_; }
   const Sys& system() const { return system_; }
 
-  LAGROID_FLATTEN StepReport advance() {
-    StepSolution<Sys> solution;
-    if (point_.index == 0) return restart(solution, {});
-    const Unknowns predicted = past_.next();
-    const AlgebroidVector<G> v = predicted.template head<Sys::dimension>();
-    const ArrowOf<G> arrow = system_.groupoid.arrow_in_chart(point_.state.object, v);
-    solution.step.arrow = arrow;
-    solution.step.multipliers = predicted.template tail<Sys::constraints>();
-    const StepReport report = solver_->solve(system_, point_.state, solution);
-    if (report.converged()) {
-      const AlgebroidVector<G> solved = system_.groupoid.chart(solution.step.arrow);
-      if (near(v, solved)) {
-        accept(solution, solved);
-        return report;
-      }
-    }
-    return restart(solution, report);
-  }
+  StepReport advance();
 
  private:
   /// A guess with no predecessor: the system's own, else the unit arrow.
@@ -81,100 +64,14 @@ template <DiscreteSystem Sys> class Integrator {
     }
   }
 
-  /// A step without predecessor, or one whose solve failed or ended far from the predicted arrow: the solution that is
-  /// continuous in the step size; if there is none, what the solve before found.
-  [[gnu::cold, gnu::noinline]] StepReport restart(StepSolution<Sys>& found, const StepReport& before) {
-    StepSolution<Sys> solution;
-    StepReport report = first_step(solution);
-    report.iterations += before.iterations;
-    if (!report.converged() && before.converged()) {
-      report = before;
-      solution = found;
-    }
-    if (report.converged()) {
-      past_.clear();
-      accept(solution, system_.groupoid.chart(solution.step.arrow));
-    }
-    return report;
-  }
-
-  StepReport first_step(StepSolution<Sys>& solution) {
-    int iterations = 0;
-    if constexpr (HasTimeStep<Sys>) {
-      const StepReport continued = continue_in_step_size(solution);
-      if (continued.converged()) return continued;
-      iterations = continued.iterations;
-    }
-    solution.step = guess(system_);
-    StepReport direct = solver_->solve(system_, point_.state, solution);
-    direct.iterations += iterations;
-    return direct;
-  }
-
-  /// The solution that is continuous in the step size: from a small h, where the guess is near it, up to h. (At a large
-  /// h an implicit step has several solutions, and the nearest to the guess may be another.)
-  StepReport continue_in_step_size(StepSolution<Sys>& solution) {
-    constexpr double start = 1.0 / 64;
-    constexpr double smallest_factor = 1.01;
-    const auto& groupoid = system_.groupoid;
-    Sys scaled = system_;
-    double fraction = start;
-    scaled.h = fraction * system_.h;
-    solution.step = guess(scaled);
-    StepReport report = solver_->solve(scaled, point_.state, solution);
-    int iterations = report.iterations;
-    double factor = 2;
-    while (report.converged() && fraction < 1) {
-      const double next = std::min(1.0, fraction * factor);
-      scaled.h = next == 1 ? system_.h : next * system_.h;
-      const AlgebroidVector<G> v = groupoid.chart(solution.step.arrow) * (next / fraction);
-      StepSolution<Sys> trial;
-      trial.step = {groupoid.arrow_in_chart(point_.state.object, v), solution.step.multipliers};
-      StepReport attempt = solver_->solve(scaled, point_.state, trial);
-      iterations += attempt.iterations;
-      if (attempt.converged() && near(v, groupoid.chart(trial.step.arrow))) {
-        report = attempt;
-        solution = trial;
-        fraction = next;
-        factor = std::min(2.0, factor * factor);
-      } else if (factor > smallest_factor) {
-        factor = std::sqrt(factor);
-      } else {
-        report = attempt;
-        if (attempt.converged()) report.status = SolveStatus::left_domain;
-      }
-    }
-    report.iterations = iterations;
-    return report;
-  }
+  StepReport restart(StepSolution<Sys>& found, const StepReport& before);
+  StepReport first_step(StepSolution<Sys>& solution);
+  StepReport continue_in_step_size(StepSolution<Sys>& solution);
+  void accept(const StepSolution<Sys>& solution, const AlgebroidVector<G>& chart);
 
   /// Whether a solve stayed on the branch it was continued along: the arrow within half its own size of its prediction.
   static bool near(const AlgebroidVector<G>& predicted, const AlgebroidVector<G>& solved) {
     return (solved - predicted).squaredNorm() <= 0.25 * std::max(solved.squaredNorm(), predicted.squaredNorm());
-  }
-
-  /// `chart` is the arrow in the groupoid's chart.
-  void accept(const StepSolution<Sys>& solution, const AlgebroidVector<G>& chart) {
-    const auto& groupoid = system_.groupoid;
-    const auto& arrow = solution.step.arrow;
-    point_.step = solution.step;
-
-    // Compensated accumulation: what rounding took so far is given back as soon as it can be stored.
-    momentum_carry_ += solution.momentum_change;
-    const AlgebroidVector<G> momentum = point_.state.momentum + momentum_carry_;
-    momentum_carry_ -= momentum - point_.state.momentum;
-    point_.state.momentum = momentum;
-    ArrowOf<G> reached = groupoid.compose(point_.configuration, arrow);
-    carry_ = groupoid.nudge(reached, AlgebroidVector<G>(carry_ + solution.remainder));
-    const ArrowOf<G> projected = groupoid.project(reached);
-    point_.configuration = projected;
-    const ObjectOf<G> object = groupoid.target(projected);
-    point_.state.object = object;
-    Unknowns unknowns;
-    unknowns << chart, solution.step.multipliers;
-    past_.push(unknowns);
-    ++point_.index;
-    if constexpr (HasTimeStep<Sys>) point_.time = double(point_.index) * system_.h;
   }
 
   using Unknowns = Vector<double, Sys::dimension + Sys::constraints>;
@@ -187,5 +84,117 @@ template <DiscreteSystem Sys> class Integrator {
   AlgebroidVector<G> carry_ = AlgebroidVector<G>::Zero();
   Extrapolation<Sys::dimension + Sys::constraints, extrapolation_degree> past_;
 };
+
+template <DiscreteSystem Sys> LAGROID_FLATTEN StepReport Integrator<Sys>::advance() {
+  StepSolution<Sys> solution;
+  if (point_.index == 0) return restart(solution, {});
+  const Unknowns predicted = past_.next();
+  const AlgebroidVector<G> v = predicted.template head<Sys::dimension>();
+  const ArrowOf<G> arrow = system_.groupoid.arrow_in_chart(point_.state.object, v);
+  solution.step.arrow = arrow;
+  solution.step.multipliers = predicted.template tail<Sys::constraints>();
+  const StepReport report = solver_->solve(system_, point_.state, solution);
+  if (report.converged()) {
+    const AlgebroidVector<G> solved = system_.groupoid.chart(solution.step.arrow);
+    if (near(v, solved)) {
+      accept(solution, solved);
+      return report;
+    }
+  }
+  return restart(solution, report);
+}
+
+/// A step without predecessor, or one whose solve failed or ended far from the predicted arrow: the solution that is
+/// continuous in the step size; if there is none, what the solve before found.
+template <DiscreteSystem Sys>
+[[gnu::cold, gnu::noinline]] StepReport Integrator<Sys>::restart(StepSolution<Sys>& found, const StepReport& before) {
+  StepSolution<Sys> solution;
+  StepReport report = first_step(solution);
+  report.iterations += before.iterations;
+  if (!report.converged() && before.converged()) {
+    report = before;
+    solution = found;
+  }
+  if (report.converged()) {
+    past_.clear();
+    accept(solution, system_.groupoid.chart(solution.step.arrow));
+  }
+  return report;
+}
+
+template <DiscreteSystem Sys> StepReport Integrator<Sys>::first_step(StepSolution<Sys>& solution) {
+  int iterations = 0;
+  if constexpr (HasTimeStep<Sys>) {
+    const StepReport continued = continue_in_step_size(solution);
+    if (continued.converged()) return continued;
+    iterations = continued.iterations;
+  }
+  solution.step = guess(system_);
+  StepReport direct = solver_->solve(system_, point_.state, solution);
+  direct.iterations += iterations;
+  return direct;
+}
+
+/// The solution that is continuous in the step size: from a small h, where the guess is near it, up to h. (At a large
+/// h an implicit step has several solutions, and the nearest to the guess may be another.)
+template <DiscreteSystem Sys> StepReport Integrator<Sys>::continue_in_step_size(StepSolution<Sys>& solution) {
+  constexpr double start = 1.0 / 64;
+  constexpr double smallest_factor = 1.01;
+  const auto& groupoid = system_.groupoid;
+  Sys scaled = system_;
+  double fraction = start;
+  scaled.h = fraction * system_.h;
+  solution.step = guess(scaled);
+  StepReport report = solver_->solve(scaled, point_.state, solution);
+  int iterations = report.iterations;
+  double factor = 2;
+  while (report.converged() && fraction < 1) {
+    const double next = std::min(1.0, fraction * factor);
+    scaled.h = next == 1 ? system_.h : next * system_.h;
+    const AlgebroidVector<G> v = groupoid.chart(solution.step.arrow) * (next / fraction);
+    StepSolution<Sys> trial;
+    trial.step = {groupoid.arrow_in_chart(point_.state.object, v), solution.step.multipliers};
+    StepReport attempt = solver_->solve(scaled, point_.state, trial);
+    iterations += attempt.iterations;
+    if (attempt.converged() && near(v, groupoid.chart(trial.step.arrow))) {
+      report = attempt;
+      solution = trial;
+      fraction = next;
+      factor = std::min(2.0, factor * factor);
+    } else if (factor > smallest_factor) {
+      factor = std::sqrt(factor);
+    } else {
+      report = attempt;
+      if (attempt.converged()) report.status = SolveStatus::left_domain;
+    }
+  }
+  report.iterations = iterations;
+  return report;
+}
+
+/// `chart` is the arrow in the groupoid's chart.
+template <DiscreteSystem Sys>
+void Integrator<Sys>::accept(const StepSolution<Sys>& solution, const AlgebroidVector<G>& chart) {
+  const auto& groupoid = system_.groupoid;
+  const auto& arrow = solution.step.arrow;
+  point_.step = solution.step;
+
+  // Compensated accumulation: what rounding took so far is given back as soon as it can be stored.
+  momentum_carry_ += solution.momentum_change;
+  const AlgebroidVector<G> momentum = point_.state.momentum + momentum_carry_;
+  momentum_carry_ -= momentum - point_.state.momentum;
+  point_.state.momentum = momentum;
+  ArrowOf<G> reached = groupoid.compose(point_.configuration, arrow);
+  carry_ = groupoid.nudge(reached, AlgebroidVector<G>(carry_ + solution.remainder));
+  const ArrowOf<G> projected = groupoid.project(reached);
+  point_.configuration = projected;
+  const ObjectOf<G> object = groupoid.target(projected);
+  point_.state.object = object;
+  Unknowns unknowns;
+  unknowns << chart, solution.step.multipliers;
+  past_.push(unknowns);
+  ++point_.index;
+  if constexpr (HasTimeStep<Sys>) point_.time = double(point_.index) * system_.h;
+}
 
 }  // namespace lagroid

@@ -33,22 +33,15 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   explicit NewtonStep(NewtonOptions options = {}) : options_(options) {}
 
-  StepReport solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) override {
-    StepReport report;
-    if (chord_.kept) {
-      if (by_chords(system, state, solution, report)) return report;
-      chord_.kept = false;
-    }
-    by_newton(system, state, solution, report);
-    if (report.converged()) keep(system, solution.step);
-    return report;
-  }
+  StepReport solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) override;
 
  private:
   using E = StepEquations<Sys>;
   using Residual = typename E::Residual;
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
   static constexpr double leftover = 0.1;  ///< of a round-off level: what the iteration may leave
+  static constexpr int longest_chord = 12;
+  static constexpr int renewal_price = E::size > 4 ? 2 : 1;
 
   /// What is known of the convergence of chord iterations.
   struct Chord {
@@ -60,149 +53,16 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
     int age = 0;                    ///< solves since the matrix was evaluated
   };
 
-  // ---- the short way
-
-  LAGROID_FLATTEN bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
-                                 StepReport& report) {
-    Step<Sys> step;
-    step = solution.step;
-    Residual residual;
-    if (renewal_pays()) {
-      const TwoSidedOf<Sys> d = two_sided(system, step.arrow, step.multipliers);
-      if (!renew(E::jacobian(d))) return false;
-      residual = E::residual(d, state.momentum);
-    } else {
-      ++chord_.age;
-      const GradientsOf<Sys> d = gradients(system, step.arrow, step.multipliers);
-      residual = E::residual(d, state.momentum);
-    }
-    // The level follows the step even where the matrix does not: terms may shrink along the trajectory.
-    chord_.floor = round_off_level(system, state, step, chord_.jacobian).cwiseInverse();
-    double excess = excess_of(residual);
-    chord_.first = excess;
-    double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * excess) : chord_.rate;
-    double remains = excess;
-    for (int iteration = 1; iteration <= std::min(longest_chord, options_.max_iterations); ++iteration) {
-      report.iterations = iteration;
-      move(system, step, inverse_.correction(residual));
-      const GradientsOf<Sys> there = gradients(system, step.arrow, step.multipliers);
-      residual = E::residual(there, state.momentum);
-      const double next = excess_of(residual);
-      if (!(next <= std::max(1.0, 0.3 * excess))) return false;
-      if (next > 10) rate = std::max(next / excess, iteration == 1 ? 0 : rate);
-      remains *= rate;
-      excess = next;
-      const bool tolerated = options_.tolerance > 0 && norm_of(residual) <= options_.tolerance;
-      if ((excess <= 1 && remains <= leftover) || tolerated) {
-        finish(report, system, step);
-        if (!report.converged() || !residual.allFinite()) return false;
-        chord_.rate = rate;
-        solution.step = step;
-        const Residual correction = inverse_.correction(residual);
-        solution.remainder = correction.template head<Sys::dimension>();
-        solution.momentum_change = there.source_gradient + there.target_gradient;
-        report.residual = norm_of(residual);
-        report.excess = excess;
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// Whether a new matrix costs less than the iterations it would save. One costs about as much as `renewal_price`
-  /// chord iterations.
-  bool renewal_pays() const {
-    const auto iterations = [&](double rate) {
-      int count = 0;
-      for (double e = chord_.first; e > leftover && count < longest_chord; e *= rate) ++count;
-      return count;
-    };
-    const double ageing = chord_.age == 0 ? 1 : double(chord_.age + 1) / chord_.age;
-    const double kept = std::max(chord_.rate * ageing, 1e-3);
-    return iterations(kept) > iterations(std::min(0.1, 10 * epsilon * chord_.first)) + renewal_price;
-  }
-  static constexpr int longest_chord = 12;
-  static constexpr int renewal_price = E::size > 4 ? 2 : 1;
-
-  /// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
-  [[gnu::noinline]] bool renew(const typename E::Jacobian& jacobian) {
-    chord_.jacobian = jacobian;
-    chord_.age = 0;
-    return inverse_.invert(jacobian);
-  }
+  bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report);
+  bool renewal_pays() const;
+  bool renew(const typename E::Jacobian& jacobian);
+  void keep(const typename E::Jacobian& jacobian);
+  typename E::Jacobian by_newton(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
+                                 StepReport& report);
+  Residual corrected(const ScaledResidual<Sys>& at) const;
 
   double norm_of(const Residual& residual) const { return residual.cwiseProduct(scaling_.row).cwiseAbs().maxCoeff(); }
   double excess_of(const Residual& residual) const { return residual.cwiseProduct(chord_.floor).cwiseAbs().maxCoeff(); }
-
-  /// After a full solve: the matrix there, for the steps that follow.
-  [[gnu::cold, gnu::noinline]] void keep(const Sys& system, const Step<Sys>& step) {
-    const typename E::Jacobian jacobian = E::jacobian(two_sided(system, step.arrow, step.multipliers));
-    inverse_.choose_pivots(jacobian, scaling_);
-    chord_.kept = renew(jacobian);
-    chord_.first = 1e12;
-    chord_.rate = 0.1;
-    chord_.age = 1;
-  }
-
-  // ---- the long way
-
-  [[gnu::cold, gnu::noinline]] void by_newton(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
-                                              StepReport& report) {
-    Step<Sys>& step = solution.step;
-    auto derivative = two_sided(system, step.arrow, step.multipliers);
-    ScaledResidual<Sys> current(system, state, step, derivative, scaling_, /*rescale=*/true);
-    const auto at = [&](SolveStatus status, const Residual& correction) {
-      solution.momentum_change = derivative.source_gradient + derivative.target_gradient;
-      solution.remainder = correction.template head<Sys::dimension>();
-      report.residual = current.norm;
-      report.excess = current.excess;
-      report.status = status;
-      if (status == SolveStatus::converged) finish(report, system, step);
-    };
-    const Residual none = Residual::Zero();
-    for (const int before = report.iterations;; ++report.iterations) {
-      if (!std::isfinite(current.norm)) return at(SolveStatus::not_finite, none);
-      lu_.compute(scaling_.apply(current.jacobian));
-      if (!(lu_.rcond() > 1e-15)) return at(SolveStatus::singular, none);
-      const Residual correction = corrected(current);
-      if (current.excess <= 1 || current.norm <= options_.tolerance) {
-        const Step<Sys> once_more = moved(system, step, correction);
-        const auto d = two_sided(system, once_more.arrow, once_more.multipliers);
-        const ScaledResidual<Sys> next(system, state, once_more, d, scaling_, /*rescale=*/false);
-        if (next.excess >= current.excess) return at(SolveStatus::converged, correction);
-        step = once_more;
-        derivative = d;
-        current = next;
-        return at(SolveStatus::converged, corrected(current));
-      }
-      if (report.iterations - before == options_.max_iterations) return at(SolveStatus::not_converged, none);
-
-      bool advanced = false;
-      double fraction = 1;
-      for (int halving = 0; halving <= options_.max_halvings && !advanced; ++halving, fraction /= 2) {
-        const Step<Sys> trial = moved(system, step, fraction * correction);
-        const auto d = two_sided(system, trial.arrow, trial.multipliers);
-        const ScaledResidual<Sys> next(system, state, trial, d, scaling_, /*rescale=*/false);
-        if (next.norm < current.norm || next.excess < current.excess) {
-          advanced = true;
-          step = trial;
-          derivative = d;
-          current = next;
-        } else if (current.excess <= options_.accept_excess) {
-          return at(SolveStatus::converged, correction);
-        }
-      }
-      if (!advanced) return at(SolveStatus::stagnated, none);
-    }
-  }
-
-  /// The Newton correction for a residual, with the factors at hand.
-  Residual corrected(const ScaledResidual<Sys>& at) const {
-    const Residual right = at.residual.cwiseProduct(scaling_.row);
-    return -lu_.solve(right).cwiseProduct(scaling_.column);
-  }
-
-  // ---- both
 
   static void move(const Sys& system, Step<Sys>& step, const Residual& correction) {
     // Copied, not moved or constructed: Eigen moves its storage in pieces larger than the stores they must wait for.
@@ -229,5 +89,158 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   Chord chord_;
   Eigen::PartialPivLU<typename E::Jacobian> lu_;
 };
+
+template <DiscreteSystem Sys>
+StepReport NewtonStep<Sys>::solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) {
+  StepReport report;
+  if (chord_.kept) {
+    if (by_chords(system, state, solution, report)) return report;
+    chord_.kept = false;
+  }
+  const typename E::Jacobian jacobian = by_newton(system, state, solution, report);
+  if (report.converged()) keep(jacobian);
+  return report;
+}
+
+// ---- the short way
+
+template <DiscreteSystem Sys>
+LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
+                                                StepReport& report) {
+  Step<Sys> step;
+  step = solution.step;
+  Residual residual;
+  if (renewal_pays()) {
+    const TwoSidedOf<Sys> d = two_sided(system, step.arrow, step.multipliers);
+    if (!renew(E::jacobian(d))) return false;
+    residual = E::residual(d, state.momentum);
+  } else {
+    ++chord_.age;
+    const GradientsOf<Sys> d = gradients(system, step.arrow, step.multipliers);
+    residual = E::residual(d, state.momentum);
+  }
+  // The level follows the step even where the matrix does not: terms may shrink along the trajectory.
+  chord_.floor = round_off_level(system, state, step, chord_.jacobian).cwiseInverse();
+  double excess = excess_of(residual);
+  chord_.first = excess;
+  double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * excess) : chord_.rate;
+  double remains = excess;
+  for (int iteration = 1; iteration <= std::min(longest_chord, options_.max_iterations); ++iteration) {
+    report.iterations = iteration;
+    move(system, step, inverse_.correction(residual));
+    const GradientsOf<Sys> there = gradients(system, step.arrow, step.multipliers);
+    residual = E::residual(there, state.momentum);
+    const double next = excess_of(residual);
+    if (!(next <= std::max(1.0, 0.3 * excess))) return false;
+    if (next > 10) rate = std::max(next / excess, iteration == 1 ? 0 : rate);
+    remains *= rate;
+    excess = next;
+    const bool tolerated = options_.tolerance > 0 && norm_of(residual) <= options_.tolerance;
+    if ((excess <= 1 && remains <= leftover) || tolerated) {
+      finish(report, system, step);
+      if (!report.converged() || !residual.allFinite()) return false;
+      chord_.rate = rate;
+      solution.step = step;
+      const Residual correction = inverse_.correction(residual);
+      solution.remainder = correction.template head<Sys::dimension>();
+      solution.momentum_change = there.source_gradient + there.target_gradient;
+      report.residual = norm_of(residual);
+      report.excess = excess;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether a new matrix costs less than the iterations it would save. One costs about as much as `renewal_price`
+/// chord iterations.
+template <DiscreteSystem Sys> bool NewtonStep<Sys>::renewal_pays() const {
+  const auto iterations = [&](double rate) {
+    int count = 0;
+    for (double e = chord_.first; e > leftover && count < longest_chord; e *= rate) ++count;
+    return count;
+  };
+  const double ageing = chord_.age == 0 ? 1 : double(chord_.age + 1) / chord_.age;
+  const double kept = std::max(chord_.rate * ageing, 1e-3);
+  return iterations(kept) > iterations(std::min(0.1, 10 * epsilon * chord_.first)) + renewal_price;
+}
+
+/// The inverse of the matrix at a step; false where scaling, pivots or the system itself are not good enough.
+template <DiscreteSystem Sys> [[gnu::noinline]] bool NewtonStep<Sys>::renew(const typename E::Jacobian& jacobian) {
+  chord_.jacobian = jacobian;
+  chord_.age = 0;
+  return inverse_.invert(jacobian);
+}
+
+/// After a full solve: the matrix there, for the steps that follow.
+template <DiscreteSystem Sys> [[gnu::cold]] void NewtonStep<Sys>::keep(const typename E::Jacobian& jacobian) {
+  inverse_.choose_pivots(jacobian, scaling_);
+  chord_.kept = renew(jacobian);
+  chord_.first = 1e12;
+  chord_.rate = 0.1;
+  chord_.age = 1;
+}
+
+// ---- the long way
+
+/// Returns the matrix at the step it ends at.
+template <DiscreteSystem Sys>
+[[gnu::cold, gnu::noinline]] auto NewtonStep<Sys>::by_newton(const Sys& system, const State<G>& state,
+                                                             StepSolution<Sys>& solution, StepReport& report) ->
+    typename E::Jacobian {
+  Step<Sys>& step = solution.step;
+  auto derivative = two_sided(system, step.arrow, step.multipliers);
+  ScaledResidual<Sys> current(system, state, step, derivative, scaling_, /*rescale=*/true);
+  const auto at = [&](SolveStatus status, const Residual& correction) {
+    solution.momentum_change = derivative.source_gradient + derivative.target_gradient;
+    solution.remainder = correction.template head<Sys::dimension>();
+    report.residual = current.norm;
+    report.excess = current.excess;
+    report.status = status;
+    if (status == SolveStatus::converged) finish(report, system, step);
+    return current.jacobian;
+  };
+  const Residual none = Residual::Zero();
+  for (const int before = report.iterations;; ++report.iterations) {
+    if (!std::isfinite(current.norm)) return at(SolveStatus::not_finite, none);
+    lu_.compute(scaling_.apply(current.jacobian));
+    if (!(lu_.rcond() > 1e-15)) return at(SolveStatus::singular, none);
+    const Residual correction = corrected(current);
+    if (current.excess <= 1 || current.norm <= options_.tolerance) {
+      const Step<Sys> once_more = moved(system, step, correction);
+      const auto d = two_sided(system, once_more.arrow, once_more.multipliers);
+      const ScaledResidual<Sys> next(system, state, once_more, d, scaling_, /*rescale=*/false);
+      if (next.excess >= current.excess) return at(SolveStatus::converged, correction);
+      step = once_more;
+      derivative = d;
+      current = next;
+      return at(SolveStatus::converged, corrected(current));
+    }
+    if (report.iterations - before == options_.max_iterations) return at(SolveStatus::not_converged, none);
+
+    bool advanced = false;
+    double fraction = 1;
+    for (int halving = 0; halving <= options_.max_halvings && !advanced; ++halving, fraction /= 2) {
+      const Step<Sys> trial = moved(system, step, fraction * correction);
+      const auto d = two_sided(system, trial.arrow, trial.multipliers);
+      const ScaledResidual<Sys> next(system, state, trial, d, scaling_, /*rescale=*/false);
+      if (next.norm < current.norm || next.excess < current.excess) {
+        advanced = true;
+        step = trial;
+        derivative = d;
+        current = next;
+      } else if (current.excess <= options_.accept_excess) {
+        return at(SolveStatus::converged, correction);
+      }
+    }
+    if (!advanced) return at(SolveStatus::stagnated, none);
+  }
+}
+
+/// The Newton correction for a residual, with the factors at hand.
+template <DiscreteSystem Sys> auto NewtonStep<Sys>::corrected(const ScaledResidual<Sys>& at) const -> Residual {
+  const Residual right = at.residual.cwiseProduct(scaling_.row);
+  return -lu_.solve(right).cwiseProduct(scaling_.column);
+}
 
 }  // namespace lagroid

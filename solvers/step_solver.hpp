@@ -5,6 +5,7 @@
 #include <lagroid/solvers/status.hpp>
 
 #include <limits>
+#include <memory>
 
 namespace lagroid {
 
@@ -37,6 +38,18 @@ template <DiscreteSystem Sys> class StepSolver {
   virtual StepReport solve(const Sys& system, const State<typename Sys::GroupoidType>& state,
                            StepSolution<Sys>& solution) = 0;
 };
+
+/// The solvers of a step that a user can name.
+enum class StepMethod { newton, ceres };
+
+struct StepOptions {
+  int max_iterations = 0;  ///< 0: the method's own
+  double tolerance = 0;    ///< a scaled residual this small is accepted; 0: iterate to round-off
+};
+
+/// A solver of the named kind. Include `step_methods.hpp` for a system of your own; those of `systems/` are compiled.
+template <DiscreteSystem Sys>
+std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys& system, StepMethod method, StepOptions options = {});
 
 /// What round-off in mu, in the products J_ij lambda_j and in the arrow puts into each step equation.
 template <DiscreteSystem Sys>

@@ -1,7 +1,7 @@
 #pragma once
 /// The planar Kepler problem.
 
-#include <lagroid/core/second_derivatives.hpp>
+#include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 #include <cmath>
@@ -32,11 +32,7 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   }
 };
 
-extern template GradientsOf<Kepler> automatic_gradients(const Kepler&, const ArrowOf<Pair<2>>&,
-                                                        const Kepler::Multipliers&);
-extern template TwoSidedOf<Kepler> automatic_two_sided(const Kepler&, const ArrowOf<Pair<2>>&,
-                                                       const Kepler::Multipliers&);
-extern template SecondDerivativesOf<Kepler> second_derivatives(const Kepler&, const ArrowOf<Pair<2>>&,
-                                                               const Kepler::Multipliers&);
+LAGROID_STEPS(extern template, Kepler);
+LAGROID_SOLVERS(extern template, Kepler);
 
 }  // namespace lagroid

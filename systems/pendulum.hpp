@@ -1,7 +1,7 @@
 #pragma once
 /// The planar pendulum.
 
-#include <lagroid/core/second_derivatives.hpp>
+#include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 #include <cmath>
@@ -25,11 +25,7 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
   std::vector<Quantity<Pendulum>> quantities() const { return {energy_quantity()}; }
 };
 
-extern template GradientsOf<Pendulum> automatic_gradients(const Pendulum&, const ArrowOf<Pair<1>>&,
-                                                          const Pendulum::Multipliers&);
-extern template TwoSidedOf<Pendulum> automatic_two_sided(const Pendulum&, const ArrowOf<Pair<1>>&,
-                                                         const Pendulum::Multipliers&);
-extern template SecondDerivativesOf<Pendulum> second_derivatives(const Pendulum&, const ArrowOf<Pair<1>>&,
-                                                                 const Pendulum::Multipliers&);
+LAGROID_STEPS(extern template, Pendulum);
+LAGROID_SOLVERS(extern template, Pendulum);
 
 }  // namespace lagroid

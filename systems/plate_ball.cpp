@@ -8,14 +8,7 @@
 
 namespace lagroid {
 
-template GradientsOf<PlateBall> automatic_gradients(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                    const PlateBall::Multipliers&);
-template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                   const PlateBall::Multipliers&);
-template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                const PlateBall::Multipliers&, End);
-template SecondDerivativesOf<PlateBall> second_derivatives(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                           const PlateBall::Multipliers&);
+LAGROID_STEPS(template, PlateBall);
 
 Matrix<double, 3, 3> PlateBall::rotation_of(const Vector<double, 3>& w) const {
   switch (rotation) {

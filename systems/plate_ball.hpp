@@ -2,10 +2,10 @@
 /// Optimal control of a ball that rolls on a rotating plate. [G] 6.2
 
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/so3.hpp>
+#include <lagroid/systems/instances.hpp>
 
 #include <optional>
 #include <string>
@@ -95,14 +95,7 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   std::vector<Quantity<PlateBall>> quantities() const;
 };
 
-extern template GradientsOf<PlateBall> automatic_gradients(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                           const PlateBall::Multipliers&);
-extern template TwoSidedOf<PlateBall> automatic_two_sided(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                          const PlateBall::Multipliers&);
-extern template Matrix<double, 5, 5> one_sided_hessian(const PlateBall&, const ArrowOf<PlateBall::GroupoidType>&,
-                                                       const PlateBall::Multipliers&, End);
-extern template SecondDerivativesOf<PlateBall> second_derivatives(const PlateBall&,
-                                                                  const ArrowOf<PlateBall::GroupoidType>&,
-                                                                  const PlateBall::Multipliers&);
+LAGROID_STEPS(extern template, PlateBall);
+LAGROID_SOLVERS(extern template, PlateBall);
 
 }  // namespace lagroid

@@ -3,12 +3,7 @@
 
 namespace lagroid {
 
-template GradientsOf<RigidBody> automatic_gradients(const RigidBody&, const ArrowOf<SO3>&,
-                                                    const RigidBody::Multipliers&);
-template TwoSidedOf<RigidBody> automatic_two_sided(const RigidBody&, const ArrowOf<SO3>&,
-                                                   const RigidBody::Multipliers&);
-template SecondDerivativesOf<RigidBody> second_derivatives(const RigidBody&, const ArrowOf<SO3>&,
-                                                           const RigidBody::Multipliers&);
+LAGROID_STEPS(template, RigidBody);
 
 State<SO3> RigidBody::reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const {
   Eigen::VectorXd y(12);

@@ -2,8 +2,8 @@
 /// The free rigid body.
 
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/groupoids/so3.hpp>
+#include <lagroid/systems/instances.hpp>
 
 namespace lagroid {
 
@@ -49,11 +49,7 @@ struct RigidBody : System<RigidBody, SO3> {
   }
 };
 
-extern template GradientsOf<RigidBody> automatic_gradients(const RigidBody&, const ArrowOf<SO3>&,
-                                                           const RigidBody::Multipliers&);
-extern template TwoSidedOf<RigidBody> automatic_two_sided(const RigidBody&, const ArrowOf<SO3>&,
-                                                          const RigidBody::Multipliers&);
-extern template SecondDerivativesOf<RigidBody> second_derivatives(const RigidBody&, const ArrowOf<SO3>&,
-                                                                  const RigidBody::Multipliers&);
+LAGROID_STEPS(extern template, RigidBody);
+LAGROID_SOLVERS(extern template, RigidBody);
 
 }  // namespace lagroid

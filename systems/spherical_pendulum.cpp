@@ -2,12 +2,7 @@
 
 namespace lagroid {
 
-template GradientsOf<SphericalPendulum> automatic_gradients(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
-                                                            const SphericalPendulum::Multipliers&);
-template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
-                                                           const SphericalPendulum::Multipliers&);
-template SecondDerivativesOf<SphericalPendulum> second_derivatives(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
-                                                                   const SphericalPendulum::Multipliers&);
+LAGROID_STEPS(template, SphericalPendulum);
 
 State<Pair<3>> SphericalPendulum::reference(const State<Pair<3>>& start, double t) const {
   Eigen::VectorXd y(6);

@@ -1,7 +1,7 @@
 #pragma once
 /// The spherical pendulum, as R^3 with an object constraint.
 
-#include <lagroid/core/second_derivatives.hpp>
+#include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 namespace lagroid {
@@ -38,12 +38,7 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   }
 };
 
-extern template GradientsOf<SphericalPendulum> automatic_gradients(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
-                                                                   const SphericalPendulum::Multipliers&);
-extern template TwoSidedOf<SphericalPendulum> automatic_two_sided(const SphericalPendulum&, const ArrowOf<Pair<3>>&,
-                                                                  const SphericalPendulum::Multipliers&);
-extern template SecondDerivativesOf<SphericalPendulum> second_derivatives(const SphericalPendulum&,
-                                                                          const ArrowOf<Pair<3>>&,
-                                                                          const SphericalPendulum::Multipliers&);
+LAGROID_STEPS(extern template, SphericalPendulum);
+LAGROID_SOLVERS(extern template, SphericalPendulum);
 
 }  // namespace lagroid

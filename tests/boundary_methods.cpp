@@ -1,6 +1,4 @@
 // Newton, shooting and Ceres on the same boundary values.
-#include <lagroid/solvers/boundary_ceres.hpp>
-#include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/boundary_shooting.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 
@@ -22,20 +20,16 @@ template <class Sys> void expect_found_by_all(const Known<Sys>& k, int starts) {
   const Sys& system = k.problem.system;
   const double cost = action(system, k.path);
   const auto momentum = tangent_momentum(system, k.start);
-  std::vector<std::unique_ptr<BoundarySolver<Sys>>> solvers;
-  solvers.push_back(std::make_unique<BoundaryNewton<Sys>>());
-  solvers.push_back(std::make_unique<BoundaryShooting<Sys>>());
-  solvers.push_back(std::make_unique<BoundaryCeres<Sys>>());
-  for (std::size_t i = 0; i < solvers.size(); ++i) {
+  for (const auto method : {BoundaryMethod::newton, BoundaryMethod::shooting, BoundaryMethod::ceres}) {
     MultistartOptions options;
     options.starts = starts;
-    const auto found = solve_boundary(*solvers[i], k.problem, k.path.size(), options);
+    const auto found = solve_boundary(*make_boundary_solver<Sys>(method), k.problem, k.path.size(), options);
     const bool met = std::any_of(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
       const auto mu = tangent_momentum(system, legendre_minus(system, s.path.front()));
       return std::abs(s.cost - cost) < 1e-9 * (1 + std::abs(cost)) && (mu - momentum).norm() < 1e-8 &&
              s.residual < 1e-11;
     });
-    EXPECT_TRUE(met) << "method " << i;
+    EXPECT_TRUE(met) << "method " << int(method);
   }
 }
 
@@ -49,18 +43,18 @@ TEST(EveryMethod, ObjectConstraints) {
 TEST(EveryMethod, PlateBallFromAWarmStart) {
   const PlateBall system = plate_ball(30);
   const BoundaryProblem<PlateBall> problem{system, plate_ball_ends()};
-  const auto newton = BoundaryNewton<PlateBall>().solve(problem, straight(system, 30), false);
+  const auto newton = make_boundary_solver<PlateBall>()->solve(problem, straight(system, 30), false);
   ASSERT_TRUE(newton.converged());
   // Away from it, and back.
   auto path = newton.path;
   for (auto& step : path) step.multipliers *= 1.001;
-  const auto shooting = BoundaryShooting<PlateBall>().solve(problem, path, true);
+  const auto shooting = make_boundary_solver<PlateBall>(BoundaryMethod::shooting)->solve(problem, path, true);
   ASSERT_TRUE(shooting.converged()) << shooting.residual;
   EXPECT_GT(shooting.iterations, 1);
   EXPECT_NEAR(shooting.cost, newton.cost, 1e-10 * newton.cost);
   EXPECT_LT((initial_momentum(system, shooting.path) - initial_momentum(system, newton.path)).norm(), 1e-8);
   EXPECT_TRUE(shooting.kind.is_minimum);
-  const auto ceres = BoundaryCeres<PlateBall>().solve(problem, path, true);
+  const auto ceres = make_boundary_solver<PlateBall>(BoundaryMethod::ceres)->solve(problem, path, true);
   ASSERT_TRUE(ceres.converged()) << ceres.residual;
   EXPECT_NEAR(ceres.cost, newton.cost, 1e-10 * newton.cost);
 }
@@ -94,7 +88,8 @@ TEST(Shooting, AnEndOutOfReachIsATypedFailure) {
   system.rotation = RotationForm::trace;
   const BoundaryProblem<PlateBall> problem{system,
                                            {PairArrow<double, 2>{{0, 0}, {100, 0}}, Matrix<double, 3, 3>::Identity()}};
-  const auto out = BoundaryShooting<PlateBall>().solve(problem, geodesic_path(problem, 3), true);
+  const auto out =
+      make_boundary_solver<PlateBall>(BoundaryMethod::shooting)->solve(problem, geodesic_path(problem, 3), true);
   EXPECT_FALSE(out.converged());
   EXPECT_FALSE(out.path.empty());
 }
@@ -108,10 +103,10 @@ TEST(Ceres, ItsStallIsTypedAndExplained) {
   const Path<Pendulum> path = geodesic_path(problem, steps);
   BoundaryOptions options;
   options.max_iterations = 60;
-  const auto ceres = BoundaryCeres<Pendulum>(options).solve(problem, path, false);
+  const auto ceres = make_boundary_solver<Pendulum>(BoundaryMethod::ceres, options)->solve(problem, path, false);
   EXPECT_EQ(ceres.status, SolveStatus::ill_conditioned) << ceres.residual;
   EXPECT_NE(ceres.message.find("solver.method = \"newton\""), std::string::npos);
-  const auto newton = BoundaryNewton<Pendulum>(options).solve(problem, path, false);
+  const auto newton = make_boundary_solver<Pendulum>(BoundaryMethod::newton, options)->solve(problem, path, false);
   EXPECT_TRUE(newton.converged());
   EXPECT_LE(newton.residual, 1e-10);
 }

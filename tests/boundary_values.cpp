@@ -22,7 +22,7 @@ TEST(Work, IterationsDoNotGrowWithTheNumberOfArrows) {
   for (const std::size_t steps : {100U, 1000U, 10000U}) {
     const PlateBall system = plate_ball(steps);
     const auto solution =
-        BoundaryNewton<PlateBall>().solve({system, plate_ball_ends()}, straight(system, steps), false);
+        make_boundary_solver<PlateBall>()->solve({system, plate_ball_ends()}, straight(system, steps), false);
     ASSERT_TRUE(solution.converged()) << steps;
     EXPECT_LE(solution.residual, 1e-10);
     EXPECT_TRUE(solution.kind.is_minimum);
@@ -60,9 +60,9 @@ TEST(Work, AWarmStartTakesAFewIterationsWhateverN) {
   for (const std::size_t steps : {100U, 1000U, 10000U}) {
     PlateBall system = plate_ball(steps);
     const BoundaryProblem<PlateBall> problem{system, plate_ball_ends()};
-    const auto first = BoundaryNewton<PlateBall>().solve(problem, straight(system, steps), false);
+    const auto first = make_boundary_solver<PlateBall>()->solve(problem, straight(system, steps), false);
     system.plate_rate = 1.01;
-    const auto next = BoundaryNewton<PlateBall>().solve({system, plate_ball_ends()}, first.path, true);
+    const auto next = make_boundary_solver<PlateBall>()->solve({system, plate_ball_ends()}, first.path, true);
     ASSERT_TRUE(next.converged());
     EXPECT_LE(next.iterations, 6) << steps;
   }
@@ -73,9 +73,9 @@ TEST(Stationary, MotionsPastAConjugatePointAreFoundAndNamed) {
   Pendulum system = pendulum();
   const std::size_t steps = 90;  // 4.5 s; the first conjugate point lies near pi
   const auto k = known(system, {Vector<double, 1>(0.05), Vector<double, 1>(0.1)}, steps);
-  const BoundaryNewton<Pendulum> stationary;
-  EXPECT_EQ(stationary.seek(), Seek::stationary);
-  const auto found = stationary.solve(k.problem, geodesic_path(k.problem, steps), false);
+  const auto stationary = make_boundary_solver<Pendulum>();
+  EXPECT_EQ(stationary->seek(), Seek::stationary);
+  const auto found = stationary->solve(k.problem, geodesic_path(k.problem, steps), false);
   ASSERT_TRUE(found.converged());
   EXPECT_NEAR(found.cost, action(system, k.path), 1e-12);
   EXPECT_FALSE(found.kind.is_minimum);
@@ -85,7 +85,7 @@ TEST(Stationary, MotionsPastAConjugatePointAreFoundAndNamed) {
 TEST(Stationary, PathsStayOnTheObjectConstraint) {
   const SphericalPendulum system = spherical_pendulum();
   const auto k = known(system, {{0.6, 0, -0.8}, {0.2, 0.9, 0.15}}, 40);
-  const auto found = BoundaryNewton<SphericalPendulum>().solve(k.problem, geodesic_path(k.problem, 40), false);
+  const auto found = make_boundary_solver<SphericalPendulum>()->solve(k.problem, geodesic_path(k.problem, 40), false);
   ASSERT_TRUE(found.converged());
   for (std::size_t i = 1; i < found.path.size(); ++i) {
     EXPECT_NEAR(found.path[i].multipliers(0), k.path[i].multipliers(0), 1e-9) << i;
@@ -97,7 +97,7 @@ TEST(Stationary, PathsStayOnTheObjectConstraint) {
 TEST(Stationary, EndsOffTheConstraintAreRefused) {
   const BoundaryProblem<SphericalPendulum> problem{spherical_pendulum(), {{0.6, 0, -0.8}, {0, 1.1, 0}}};
   ASSERT_TRUE(inadmissible_ends(problem).has_value());
-  EXPECT_THROW(solve_boundary(BoundaryNewton<SphericalPendulum>(), problem, 20), std::invalid_argument);
+  EXPECT_THROW(solve_boundary(*make_boundary_solver<SphericalPendulum>(), problem, 20), std::invalid_argument);
 }
 
 /// Negative eigenvalues of the whole scaled KKT matrix, dense, against those its elimination counts.
@@ -164,13 +164,13 @@ TEST(Continuation, CarriesASolutionAcrossAParameter) {
     system.plate_rate = 3 * s;
     return BoundaryStage<PlateBall>{{system, plate_ball_ends()}, 30};
   };
-  const BoundaryNewton<PlateBall> solver;
-  const auto start = solver.solve(stage(0).problem, straight(stage(0).problem.system, 30), false);
+  const auto solver = make_boundary_solver<PlateBall>();
+  const auto start = solver->solve(stage(0).problem, straight(stage(0).problem.system, 30), false);
   ASSERT_TRUE(start.converged());
-  const auto end = follow(solver, stage, start);
+  const auto end = follow(*solver, stage, start);
   ASSERT_TRUE(end.converged());
   EXPECT_EQ(end.reached, 1);
-  const auto again = solver.solve(stage(1).problem, end.solution.path, true);
+  const auto again = solver->solve(stage(1).problem, end.solution.path, true);
   EXPECT_NEAR(again.cost, end.solution.cost, 1e-12 * again.cost);
   EXPECT_TRUE(end.solution.kind.is_minimum);
 }
@@ -184,8 +184,8 @@ TEST(Continuation, MovesBothEndsAndChangesTheNumberOfArrows) {
     if (s >= 0.5) out.problem.system.h /= 2;
     return out;
   };
-  const BoundaryNewton<Kepler> solver;
-  const auto end = follow(solver, stage, solver.solve(k.problem, k.path, true));
+  const auto solver = make_boundary_solver<Kepler>();
+  const auto end = follow(*solver, stage, solver->solve(k.problem, k.path, true));
   ASSERT_TRUE(end.converged());
   EXPECT_EQ(end.solution.path.size(), 160U);
   EXPECT_EQ(end.solution.path.front().arrow.source, stage(1).problem.boundary.source);
@@ -200,12 +200,12 @@ TEST(Continuation, SaysHowFarItCameWhereSolutionsEnd) {
     system.spin = 60 * s;
     return BoundaryStage<PlateBall>{{system, plate_ball_ends()}, 30};
   };
-  const BoundaryNewton<PlateBall> solver;
-  const auto start = solver.solve(stage(0).problem, straight(plate_ball(30), 30), false);
+  const auto solver = make_boundary_solver<PlateBall>();
+  const auto start = solver->solve(stage(0).problem, straight(plate_ball(30), 30), false);
   ASSERT_TRUE(start.converged());
   HomotopyOptions options;
   options.smallest_step = 1e-2;
-  const auto end = follow(solver, stage, start, options);
+  const auto end = follow(*solver, stage, start, options);
   EXPECT_FALSE(end.converged());
   EXPECT_LT(end.reached, 0.5);
   EXPECT_GT(end.failures, 0);

@@ -2,9 +2,9 @@
 #include "run_watch.hpp"
 
 #include <lagroid/solvers/boundary_newton.hpp>
-#include <lagroid/solvers/plate_ball_boundary.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/plate_ball_boundary.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
@@ -63,7 +63,7 @@ TEST(Nightly, EverySeedFindsTheBestMinimum) {
       PlateBallBoundaryOptions options;
       options.steps = 30;
       options.seed = seed;
-      const auto found = solve_plate_ball(BoundaryNewton<PlateBall>(), system, ends, options);
+      const auto found = solve_plate_ball(*make_boundary_solver<PlateBall>(), system, ends, options);
       ASSERT_FALSE(found.solutions.empty());
       if (seed == 1) best = found.solutions.front().cost;
       EXPECT_NEAR(found.solutions.front().cost, best, 1e-9 * best) << rate << ' ' << seed;

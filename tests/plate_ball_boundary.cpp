@@ -1,7 +1,6 @@
 // Plate-ball boundary-value problems: reference minima, degenerate cases, Ceres, typed failures.
 #include <lagroid/solvers/boundary_ceres.hpp>
-#include <lagroid/solvers/boundary_newton.hpp>
-#include <lagroid/solvers/plate_ball_boundary.hpp>
+#include <lagroid/systems/plate_ball_boundary.hpp>
 
 #include "plate_ball_cases.hpp"
 
@@ -30,8 +29,8 @@ MultistartResult<PlateBall> solve(const PlateBall& system, const ArrowOf<G>& end
   PlateBallBoundaryOptions options;
   options.steps = steps;
   options.seed = seed;
-  if (ceres) return solve_plate_ball(BoundaryCeres<PlateBall>(), system, ends, options);
-  return solve_plate_ball(BoundaryNewton<PlateBall>(), system, ends, options);
+  const auto method = ceres ? BoundaryMethod::ceres : BoundaryMethod::newton;
+  return solve_plate_ball(*make_boundary_solver<PlateBall>(method), system, ends, options);
 }
 
 double end_defect(const PlateBall& system, const ArrowOf<G>& ends, const Path<PlateBall>& path) {

@@ -2,7 +2,7 @@
 #include "../registry.hpp"
 #include "attitude.hpp"
 
-#include <lagroid/solvers/plate_ball_boundary.hpp>
+#include <lagroid/systems/plate_ball_boundary.hpp>
 
 namespace lagroid::app {
 

@@ -1,4 +1,4 @@
-#include <lagroid/solvers/plate_ball_boundary.hpp>
+#include <lagroid/systems/plate_ball_boundary.hpp>
 
 #include <fmt/format.h>
 

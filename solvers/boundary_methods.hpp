@@ -1,0 +1,22 @@
+#pragma once
+/// Solvers of a boundary-value problem by name.
+
+#include <lagroid/solvers/boundary_ceres.hpp>
+#include <lagroid/solvers/boundary_newton.hpp>
+#include <lagroid/solvers/boundary_shooting.hpp>
+
+namespace lagroid {
+
+template <DiscreteSystem Sys>
+std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method, BoundaryOptions options, Seek seek) {
+  switch (method) {
+    case BoundaryMethod::shooting:
+      return std::make_unique<BoundaryShooting<Sys>>(options, seek);
+    case BoundaryMethod::ceres:
+      return std::make_unique<BoundaryCeres<Sys>>(options, seek);
+    default:
+      return std::make_unique<BoundaryNewton<Sys>>(options, seek);
+  }
+}
+
+}  // namespace lagroid

@@ -1,0 +1,25 @@
+#pragma once
+/// The templates of core and solvers for a system, compiled once.
+///
+/// A system's header ends with LAGROID_STEPS(extern template, Sys) and LAGROID_SOLVERS(extern template, Sys);
+/// its .cpp files hold the same lines without `extern`. Both stand in namespace lagroid. A system of your own needs
+/// neither: its templates are then compiled where they are used.
+
+#include <lagroid/core/second_derivatives.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+
+#define LAGROID_STEPS(prefix, Sys)                                                                                     \
+  prefix GradientsOf<Sys> automatic_gradients(const Sys&, const ArrowOf<Sys::GroupoidType>&, const Sys::Multipliers&); \
+  prefix TwoSidedOf<Sys> automatic_two_sided(const Sys&, const ArrowOf<Sys::GroupoidType>&, const Sys::Multipliers&);  \
+  prefix class NewtonStep<Sys>;                                                                                        \
+  prefix class Integrator<Sys>
+
+#define LAGROID_SOLVERS(prefix, Sys)                                                                        \
+  prefix SecondDerivativesOf<Sys> second_derivatives(const Sys&, const ArrowOf<Sys::GroupoidType>&,                 \
+                                                     const Sys::Multipliers&);                                      \
+  prefix std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys&, StepMethod, StepOptions);                    \
+  prefix std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod, BoundaryOptions, Seek);          \
+  prefix MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>&, const BoundaryProblem<Sys>&, std::size_t, \
+                                              const MultistartOptions&)
