@@ -10,7 +10,7 @@
 namespace lagroid {
 
 /// A scalar with derivatives in one or more directions: knows how to compose with a function of one variable
-/// (`Jet`, `Mixed`).
+/// (`Jet`, `Mixed`, `SecondJet`).
 template <class X>
 concept Differentiated = requires(const X& x, typename X::Real f) {
   { x.value } -> std::convertible_to<typename X::Real>;
@@ -104,19 +104,5 @@ template <int Order, Differentiated X> X angle_ratio(const X& w) {
   static_assert(Order <= 1);
   return w.chain(angle_ratio<Order>(w.value), angle_ratio<Order + 1>(w.value), angle_ratio<Order + 2>(w.value));
 }
-
-namespace detail {
-
-/// What Eigen needs to know of such a scalar.
-template <class X> struct DerivativeTraits : Eigen::NumTraits<typename X::Real> {
-  using Real = X;
-  using NonInteger = X;
-  using Nested = X;
-  using Literal = typename X::Real;
-  static constexpr int size = int(sizeof(X) / sizeof(Literal));
-  enum { IsComplex = 0, RequireInitialization = 1, ReadCost = size, AddCost = size, MulCost = 4 * size };
-};
-
-}  // namespace detail
 
 }  // namespace lagroid

@@ -1,10 +1,9 @@
 #pragma once
 /// The first-order dual number with several infinitesimals: the scalar behind gradients.
 
-#include <lagroid/core/elementary.hpp>
 #include <lagroid/core/lanes.hpp>
+#include <lagroid/core/scalar_operators.hpp>
 
-#include <ostream>
 #include <type_traits>
 
 namespace lagroid {
@@ -12,7 +11,7 @@ namespace lagroid {
 /// x + a.v with N infinitesimals v, v v = 0: `Mixed` without its second derivatives, at a fraction of the cost. Like a
 /// double, indeterminate until given a value. A groupoid's `seed` serves both; to it the left infinitesimals and the
 /// right ones are the same set.
-template <class T, int N> class Jet {
+template <class T, int N> class Jet : public ScalarOperators<Jet<T, N>, T> {
  public:
   using Real = T;
   static constexpr int size = N;
@@ -43,12 +42,6 @@ template <class T, int N> class Jet {
   /// The composition with a function of one variable, given its value and derivatives at `value`.
   LAGROID_INLINE Jet chain(T f, T f1, T /*f2*/) const { return {f, f1 * gradient_}; }
 
-  Jet& operator+=(const Jet& b) { return *this = *this + b; }
-  Jet& operator-=(const Jet& b) { return *this = *this - b; }
-  Jet& operator*=(const Jet& b) { return *this = *this * b; }
-  Jet& operator/=(const Jet& b) { return *this = *this / b; }
-
-  LAGROID_INLINE friend Jet operator+(const Jet& a) { return a; }
   LAGROID_INLINE friend Jet operator-(const Jet& a) { return {-a.value, -a.gradient_}; }
   LAGROID_INLINE friend Jet operator+(const Jet& a, const Jet& b) {
     return {a.value + b.value, a.gradient_ + b.gradient_};
@@ -66,20 +59,11 @@ template <class T, int N> class Jet {
   }
 
   LAGROID_INLINE friend Jet operator+(const Jet& a, T b) { return {a.value + b, a.gradient_}; }
-  LAGROID_INLINE friend Jet operator+(T a, const Jet& b) { return b + a; }
-  LAGROID_INLINE friend Jet operator-(const Jet& a, T b) { return {a.value - b, a.gradient_}; }
-  LAGROID_INLINE friend Jet operator-(T a, const Jet& b) { return {a - b.value, -b.gradient_}; }
   LAGROID_INLINE friend Jet operator*(const Jet& a, T b) { return {a.value * b, b * a.gradient_}; }
-  LAGROID_INLINE friend Jet operator*(T a, const Jet& b) { return b * a; }
-  LAGROID_INLINE friend Jet operator/(const Jet& a, T b) { return a * (1 / b); }
   LAGROID_INLINE friend Jet operator/(T a, const Jet& b) {
     const T inverse = 1 / b.value;
     return {a * inverse, (-a * inverse * inverse) * b.gradient_};
   }
-
-  friend bool operator==(const Jet& a, const Jet& b) { return a.value == b.value; }
-  friend auto operator<=>(const Jet& a, const Jet& b) { return a.value <=> b.value; }
-  friend std::ostream& operator<<(std::ostream& out, const Jet& a) { return out << a.value; }
 
  private:
   Lanes<T, N> gradient_;
@@ -88,12 +72,3 @@ template <class T, int N> class Jet {
 template <class T, int N> constexpr T value_of(const Jet<T, N>& x) { return x.value; }
 
 }  // namespace lagroid
-
-template <class T, int N>
-struct Eigen::NumTraits<lagroid::Jet<T, N>> : lagroid::detail::DerivativeTraits<lagroid::Jet<T, N>> {};
-template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<lagroid::Jet<T, N>, T, Operation> {
-  using ReturnType = lagroid::Jet<T, N>;
-};
-template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<T, lagroid::Jet<T, N>, Operation> {
-  using ReturnType = lagroid::Jet<T, N>;
-};

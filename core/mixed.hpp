@@ -1,11 +1,10 @@
 #pragma once
 /// The mixed second-order dual number: the scalar behind the two-sided derivative.
 
-#include <lagroid/core/elementary.hpp>
 #include <lagroid/core/lanes.hpp>
+#include <lagroid/core/scalar_operators.hpp>
 
 #include <array>
-#include <ostream>
 #include <type_traits>
 
 namespace lagroid {
@@ -16,11 +15,9 @@ namespace lagroid {
 /// are not carried; seed both sets with the same directions to obtain them. Constructible from a double, unlike nested
 /// first-order jets, so that formulas may contain plain constants. Each row of C lies in one register where the machine
 /// has them wide enough. Like a double, indeterminate until given a value.
-template <class T, int L, int R> class Mixed {
+template <class T, int L, int R> class Mixed : public ScalarOperators<Mixed<T, L, R>, T> {
  public:
   using Real = T;
-  static constexpr int left_size = L;
-  static constexpr int right_size = R;
   static constexpr int order = 2;
   using Left = Lanes<T, L>;
   using Right = Lanes<T, R>;
@@ -60,12 +57,6 @@ template <class T, int L, int R> class Mixed {
     return with_rows(f, f1 * left_, f1 * right_, [&](int i) { return f1 * row_[i] + curved[i] * right_; });
   }
 
-  Mixed& operator+=(const Mixed& b) { return *this = *this + b; }
-  Mixed& operator-=(const Mixed& b) { return *this = *this - b; }
-  Mixed& operator*=(const Mixed& b) { return *this = *this * b; }
-  Mixed& operator/=(const Mixed& b) { return *this = *this / b; }
-
-  LAGROID_INLINE friend Mixed operator+(const Mixed& a) { return a; }
   LAGROID_INLINE friend Mixed operator-(const Mixed& a) {
     return with_rows(-a.value, -a.left_, -a.right_, [&](int i) { return -a.row_[i]; });
   }
@@ -93,22 +84,13 @@ template <class T, int L, int R> class Mixed {
     out.value += b;
     return out;
   }
-  LAGROID_INLINE friend Mixed operator+(T a, const Mixed& b) { return b + a; }
-  LAGROID_INLINE friend Mixed operator-(const Mixed& a, T b) { return a + (-b); }
-  LAGROID_INLINE friend Mixed operator-(T a, const Mixed& b) { return -b + a; }
   LAGROID_INLINE friend Mixed operator*(const Mixed& a, T b) {
     return with_rows(a.value * b, b * a.left_, b * a.right_, [&](int i) { return b * a.row_[i]; });
   }
-  LAGROID_INLINE friend Mixed operator*(T a, const Mixed& b) { return b * a; }
-  LAGROID_INLINE friend Mixed operator/(const Mixed& a, T b) { return a * (1 / b); }
   LAGROID_INLINE friend Mixed operator/(T a, const Mixed& b) {
     const T inverse = 1 / b.value;
     return b.chain(a * inverse, -a * inverse * inverse, 2 * a * inverse * inverse * inverse);
   }
-
-  friend bool operator==(const Mixed& a, const Mixed& b) { return a.value == b.value; }
-  friend auto operator<=>(const Mixed& a, const Mixed& b) { return a.value <=> b.value; }
-  friend std::ostream& operator<<(std::ostream& out, const Mixed& a) { return out << a.value; }
 
  private:
   template <class F> LAGROID_INLINE static Mixed with_rows(T x, const Left& v, const Right& w, const F& row) {
@@ -128,14 +110,3 @@ template <class T, int L, int R> class Mixed {
 template <class T, int L, int R> constexpr T value_of(const Mixed<T, L, R>& x) { return x.value; }
 
 }  // namespace lagroid
-
-template <class T, int L, int R>
-struct Eigen::NumTraits<lagroid::Mixed<T, L, R>> : lagroid::detail::DerivativeTraits<lagroid::Mixed<T, L, R>> {};
-template <class T, int L, int R, class Operation>
-struct Eigen::ScalarBinaryOpTraits<lagroid::Mixed<T, L, R>, T, Operation> {
-  using ReturnType = lagroid::Mixed<T, L, R>;
-};
-template <class T, int L, int R, class Operation>
-struct Eigen::ScalarBinaryOpTraits<T, lagroid::Mixed<T, L, R>, Operation> {
-  using ReturnType = lagroid::Mixed<T, L, R>;
-};

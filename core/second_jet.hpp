@@ -1,11 +1,10 @@
 #pragma once
 /// The second-order jet: value, gradient and symmetric Hessian of a function of N variables.
 
-#include <lagroid/core/elementary.hpp>
 #include <lagroid/core/lanes.hpp>
+#include <lagroid/core/scalar_operators.hpp>
 
 #include <array>
-#include <ostream>
 #include <type_traits>
 
 namespace lagroid {
@@ -13,11 +12,10 @@ namespace lagroid {
 /// x + g.v + v^T H v / 2 in N infinitesimals v with v v v = 0: a Taylor polynomial. The rows of H lie side by side in
 /// registers; all of them are kept, since half of a row saves nothing there. Like a double, indeterminate until given a
 /// value.
-template <class T, int N> class SecondJet {
+template <class T, int N> class SecondJet : public ScalarOperators<SecondJet<T, N>, T> {
  public:
   using Real = T;
   using Row = Lanes<T, N>;
-  static constexpr int variables = N;
   static constexpr int order = 2;
 
   T value;
@@ -50,12 +48,6 @@ template <class T, int N> class SecondJet {
     return with_rows(f, f1 * gradient_, [&](int i) { return f1 * rows_[i] + curved[i] * gradient_; });
   }
 
-  SecondJet& operator+=(const SecondJet& b) { return *this = *this + b; }
-  SecondJet& operator-=(const SecondJet& b) { return *this = *this - b; }
-  SecondJet& operator*=(const SecondJet& b) { return *this = *this * b; }
-  SecondJet& operator/=(const SecondJet& b) { return *this = *this / b; }
-
-  friend SecondJet operator+(const SecondJet& a) { return a; }
   LAGROID_INLINE friend SecondJet operator-(const SecondJet& a) {
     return with_rows(-a.value, -a.gradient_, [&](int i) { return -a.rows_[i]; });
   }
@@ -80,22 +72,13 @@ template <class T, int N> class SecondJet {
     out.value += b;
     return out;
   }
-  friend SecondJet operator+(T a, const SecondJet& b) { return b + a; }
-  friend SecondJet operator-(const SecondJet& a, T b) { return a + (-b); }
-  friend SecondJet operator-(T a, const SecondJet& b) { return -b + a; }
   LAGROID_INLINE friend SecondJet operator*(const SecondJet& a, T b) {
     return with_rows(a.value * b, b * a.gradient_, [&](int i) { return b * a.rows_[i]; });
   }
-  friend SecondJet operator*(T a, const SecondJet& b) { return b * a; }
-  friend SecondJet operator/(const SecondJet& a, T b) { return a * (1 / b); }
   friend SecondJet operator/(T a, const SecondJet& b) {
     const T inverse = 1 / b.value;
     return b.chain(a * inverse, -a * inverse * inverse, 2 * a * inverse * inverse * inverse);
   }
-
-  friend bool operator==(const SecondJet& a, const SecondJet& b) { return a.value == b.value; }
-  friend auto operator<=>(const SecondJet& a, const SecondJet& b) { return a.value <=> b.value; }
-  friend std::ostream& operator<<(std::ostream& out, const SecondJet& a) { return out << a.value; }
 
  private:
   template <class F> LAGROID_INLINE static SecondJet with_rows(T x, const Row& gradient, const F& row) {
@@ -113,12 +96,3 @@ template <class T, int N> class SecondJet {
 template <class T, int N> constexpr T value_of(const SecondJet<T, N>& x) { return x.value; }
 
 }  // namespace lagroid
-
-template <class T, int N>
-struct Eigen::NumTraits<lagroid::SecondJet<T, N>> : lagroid::detail::DerivativeTraits<lagroid::SecondJet<T, N>> {};
-template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<lagroid::SecondJet<T, N>, T, Operation> {
-  using ReturnType = lagroid::SecondJet<T, N>;
-};
-template <class T, int N, class Operation> struct Eigen::ScalarBinaryOpTraits<T, lagroid::SecondJet<T, N>, Operation> {
-  using ReturnType = lagroid::SecondJet<T, N>;
-};
