@@ -39,11 +39,21 @@ std::string ContinuationChoice::value(double s) const {
   return v.size() == 1 ? fmt::format("{:.6g}", v[0]) : fmt::format("[{:.6g}]", fmt::join(v, ", "));
 }
 
+Section ContinuationChoice::scene_at(const Section& scene, double s) const {
+  return s == 0 || s == 1 ? scene.with(parameter, at(s)) : scene.between(parameter, at(s));
+}
+
 std::optional<ContinuationChoice> read_continuation(const Section& scene) {
   if (!scene.has("continuation")) return std::nullopt;
   const Section section = scene.section("continuation", "parameter, from and steps");
   ContinuationChoice choice;
   choice.parameter = section.text("parameter", "a key of this scene, as in \"parameters.plate_rate\"");
+  const bool continuable = choice.parameter.starts_with("parameters.") || choice.parameter.starts_with("boundary.") ||
+                           choice.parameter == "time.step" || choice.parameter == "time.duration";
+  if (!continuable)
+    section.fail("parameter", fmt::format("\"{}\" cannot be continued; name a key of [parameters] or [boundary], "
+                                          "\"time.step\" or \"time.duration\"",
+                                          choice.parameter));
   choice.to = scene.numbers_at(choice.parameter);
   if (choice.to.empty())
     section.fail("parameter", fmt::format("\"{}\" is no number or array of numbers in this scene; give it its final "

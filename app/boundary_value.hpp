@@ -41,6 +41,7 @@ struct ContinuationChoice {
 
   std::vector<double> at(double s) const;
   std::string value(double s) const;  ///< in words
+  Section scene_at(const Section& scene, double s) const;
 };
 std::optional<ContinuationChoice> read_continuation(const Section& scene);
 
@@ -73,11 +74,13 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
   recorder.finish(result);
 }
 
-/// Carries every solution found at the beginning of a continuation to its end.
+/// Carries every solution found at the beginning of a continuation to its end. Returns how far the best came: 1 where
+/// one arrived.
 template <DiscreteSystem Sys, class Read>
-void continue_solutions(const BoundarySolver<Sys>& solver, const Section& scene, const ContinuationChoice& along,
-                        const Read& read, const RunContext& context, MultistartResult<Sys>& found, RunResult& result) {
-  const auto stage = [&](double s) { return read(scene.with(along.parameter, along.at(s))).stage; };
+double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scene, const ContinuationChoice& along,
+                          const Read& read, const RunContext& context, MultistartResult<Sys>& found,
+                          RunResult& result) {
+  const auto stage = [&](double s) { return read(along.scene_at(scene, s)).stage; };
   HomotopyOptions options;
   options.first_step = 1 / double(along.steps);
   std::vector<BoundarySolution<Sys>> arrived;
@@ -110,6 +113,7 @@ void continue_solutions(const BoundarySolver<Sys>& solver, const Section& scene,
   }
   std::sort(arrived.begin(), arrived.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   found.solutions = std::move(arrived);
+  return found.solutions.empty() ? farthest->first : 1;
 }
 
 /// Says which path was chosen, and records it; or why there is none.
@@ -186,7 +190,7 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
   if (const auto why = inadmissible_ends(problem.stage.problem)) scene.section_or_empty("boundary").fail("", *why);
   if (problem.stage.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
 
-  const BoundaryStage<Sys> first = along ? read(scene.with(along->parameter, along->from)).stage : problem.stage;
+  const BoundaryStage<Sys> first = along ? read(along->scene_at(scene, 0)).stage : problem.stage;
   if (const auto why = inadmissible_ends(first.problem)) scene.section("continuation", "").fail("from", *why);
 
   const auto clock = std::chrono::steady_clock::now();
@@ -208,9 +212,13 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
   if (found.lost > 0)
     result.notes.push_back(
         fmt::format("{} solution(s) of the coarse problem could not be continued to this one", found.lost));
-  if (along && !found.solutions.empty()) continue_solutions(*solver, scene, *along, read, context, found, result);
+  double reached = 1;
+  if (along && !found.solutions.empty())
+    reached = continue_solutions(*solver, scene, *along, read, context, found, result);
   result.iterations = found.iterations;
-  report_solutions(problem, presentation, solver->seek(), found, starts, every, result);
+  // Where nothing arrived, the farthest path is one of the problem it was solved for.
+  report_solutions(reached < 1 ? read(along->scene_at(scene, reached)) : problem, presentation, solver->seek(), found,
+                   starts, every, result);
   result.ledger.mean_iterations = double(found.start_iterations) / double(starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

@@ -191,6 +191,12 @@ Section Section::with(std::string_view path, const std::vector<double>& values) 
   return out;
 }
 
+Section Section::between(std::string_view path, const std::vector<double>& values) const {
+  Section out = with(path, values);
+  out.source_->interpolated = true;
+  return out;
+}
+
 std::vector<double> Section::numbers(std::string_view key, std::size_t size, std::string_view meaning) const {
   const toml::node& node = require(key, fmt::format("{} numbers: {}", size, meaning));
   const toml::array* array = node.as_array();
@@ -216,7 +222,7 @@ std::array<double, 4> Section::attitude(std::string_view key) const {
     return {std::cos(angle / 2), scale * v[0], scale * v[1], scale * v[2]};
   }
   const double norm = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
-  if (std::abs(norm - 1) > 1e-6)
+  if (norm == 0 || (std::abs(norm - 1) > 1e-6 && !interpolated()))
     fail(key, norm > 0
                   ? fmt::format("not a unit quaternion (norm {:.8g}); divide by its norm: [{:.10g}, {:.10g}, {:.10g}, "
                                 "{:.10g}], or give a rotation vector of three numbers",

@@ -59,6 +59,10 @@ class Section {
   std::vector<double> numbers_at(std::string_view path) const;
   /// A copy of a whole scene with other numbers at such a path, to be read like any scene.
   Section with(std::string_view path, const std::vector<double>& values) const;
+  /// The same with numbers between two that a user wrote. What must lie on a sphere or have unit norm is then brought
+  /// there instead of refused.
+  Section between(std::string_view path, const std::vector<double>& values) const;
+  bool interpolated() const { return source_->interpolated; }
 
   /// Refuses every key that nobody asked for, in this table and the tables below it.
   void finish() const;
@@ -74,6 +78,7 @@ class Section {
     std::set<std::string, std::less<>> overridden;  ///< keys given by --set
     toml::table root;
     std::set<std::string, std::less<>> known;  ///< every key asked for
+    bool interpolated = false;
   };
 
   const toml::node* find(std::string_view key) const;

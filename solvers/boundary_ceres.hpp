@@ -71,29 +71,28 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
     }
     const ceres::Solver::Summary summary = minimise(problem, kkt.scale(), path);
     out.iterations += int(summary.iterations.size());
-    kkt.evaluate(system, path);
+    out.path = std::move(path);
+    kkt.evaluate(system, out.path);
     kkt.choose_scale();
     out.residual = kkt.residual_norm();
     if (!std::isfinite(out.residual) || !std::isfinite(summary.final_cost)) {
       out.status = SolveStatus::not_finite;
     } else if (out.residual <= options_.tolerance) {
       out.status = SolveStatus::converged;
-      out.cost = action(system, path);
-      out.kind = kkt.classify(system, path);
+      this->describe(system, kkt, out);
     } else if (summary.termination_type == ceres::NO_CONVERGENCE && still_falling(summary)) {
       out.status = SolveStatus::not_converged;
-    } else if (newton_contracts(problem, kkt, path)) {
+    } else if (newton_contracts(problem, kkt, out.path)) {
       out.status = SolveStatus::ill_conditioned;
       out.message = fmt::format(
           "Ceres stalls at residual {:.1e}, above the tolerance {:.1e}, though a solution is near: its normal "
           "equations "
           "square the condition number, which {} steps make too large for double precision; use solver.method = "
           "\"newton\" or fewer steps (iterations: {})",
-          out.residual, options_.tolerance, path.size(), summary.iterations.size());
+          out.residual, options_.tolerance, out.path.size(), summary.iterations.size());
     } else {
       out.status = SolveStatus::stagnated;
     }
-    out.path = std::move(path);
     return out;
   }
 

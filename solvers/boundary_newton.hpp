@@ -17,8 +17,7 @@ namespace lagroid {
 /// the inertia of a minimum on the tangent space (section 5.1's space of variations), a step along its solution is
 /// pulled back to the manifold with the same matrix, and the action itself decides how far to go; looking for
 /// stationary points, the step is Newton's, damped until the residual or the next Newton correction falls. Near a
-/// solution plain Newton on the full KKT system takes over and is iterated to round-off. Vectors are allocated once per
-/// solve.
+/// solution plain Newton on the full KKT system takes over, down to a thousandth of the tolerance.
 template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver<Sys> {
  public:
   static constexpr int n = Sys::dimension;
@@ -38,17 +37,12 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
         find_stationary(problem, work, path, out);
       }
     }
-    if (!out.converged() || options_.classify) {
-      work.kkt.evaluate(system, path);
-      work.kkt.choose_scale();
-    }
-    if (out.converged()) {
-      out.cost = action(system, path);
-      if (options_.classify) out.kind = work.kkt.classify(system, path);
-    } else {
-      out.residual = work.kkt.residual_norm();
-    }
     out.path = std::move(path);
+    if (out.converged()) {
+      this->describe(system, work.kkt, out);
+    } else {
+      evaluate_residual(system, work.kkt, out);
+    }
     return out;
   }
 
@@ -59,6 +53,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     if (restore(problem, work, path, out) && least_squares_multipliers(problem, work, path, out))
       out.status = SolveStatus::converged;
     out.path = std::move(path);
+    evaluate_residual(problem.system, work.kkt, out);
     return out;
   }
 
@@ -83,6 +78,12 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     return false;
   }
 
+  static void evaluate_residual(const Sys& system, Kkt& kkt, BoundarySolution<Sys>& out) {
+    kkt.evaluate(system, out.path);
+    kkt.choose_scale();
+    out.residual = kkt.residual_norm();
+  }
+
   static double square(const Columns& c) {
     double sum = 0;
     for (const auto& x : c) sum += x.squaredNorm();
@@ -104,9 +105,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
       const double violation = kkt.constraint_side(system, path, work.side);
       if (violation <= options_.feasibility && admissible(system, path)) return true;
       kkt.factor(0, 1e-10);
-      work.step = work.side;
-      kkt.solve_in_place(work.step);
-      kkt.unscale(work.step, work.variation);
+      solve_side(work);
       without_multipliers(work.variation);
       double fraction = std::min(1.0, options_.largest_displacement / reach(work.variation));
       bool advanced = false;
@@ -129,9 +128,8 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
       if (!std::isfinite(work.kkt.residual_norm())) return fail(out, SolveStatus::not_finite);
       work.kkt.choose_scale();
       work.kkt.factor(0, 1e-8);
-      work.kkt.newton_side(work.step);
-      work.kkt.solve_in_place(work.step);
-      work.kkt.unscale(work.step, work.variation);
+      work.kkt.newton_side(work.side);
+      solve_side(work);
       for (std::size_t k = 0; k < path.size(); ++k) path[k].multipliers = work.variation.multipliers[k];
     }
     return true;
@@ -177,9 +175,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
       }
       kkt.newton_side(work.side);
       factor_plainly(kkt);
-      work.step = work.side;
-      kkt.solve_in_place(work.step);
-      kkt.unscale(work.step, work.variation);
+      solve_side(work);
       const double residual = square(work.side);
       const double correction = square(work.step);
       double fraction = std::min(1.0, options_.largest_displacement / reach(work.variation));
@@ -221,9 +217,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     shift = shift / 3 < smallest ? 0 : shift / 3;
     for (; shift < largest; shift = std::max(smallest, 3 * shift)) {
       if (!right_inertia(kkt, shift)) continue;
-      work.step = work.side;
-      kkt.solve_in_place(work.step);
-      kkt.unscale(work.step, work.variation);
+      solve_side(work);
       without_multipliers(work.variation);
       if (reach(work.variation) > options_.largest_displacement) continue;
       double slope = 0;
@@ -274,7 +268,6 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
       factor_plainly(kkt);
       kkt.newton_side(work.side);
       solve_side(work, /*refine=*/last);
-      kkt.unscale(work.step, work.variation);
       if (reach(work.variation) > options_.largest_displacement) break;
       displace(problem, best, work.variation, 1.0, work.trial);
       kkt.evaluate(system, work.trial);
@@ -306,9 +299,8 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
       const double regularisation = std::pow(4.0, failures) * 0.1 * norm;
       double primal = regularisation;
       while (kkt.factor(primal, regularisation).negative != kkt.constraint_count() && primal < 1e6) primal *= 4;
-      kkt.newton_side(work.step);
-      kkt.solve_in_place(work.step);
-      kkt.unscale(work.step, work.variation);
+      kkt.newton_side(work.side);
+      solve_side(work);
       displace(problem, path, work.variation,
                std::min(1.0, options_.largest_displacement / std::max(1e-300, reach(work.variation))), work.trial);
       Kkt there = kkt;
@@ -327,15 +319,17 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     polish(problem, work, path, out);
   }
 
-  /// Solves for `side` with the factored matrix; the solution is left in `step`.
-  static void solve_side(Work& work, bool refine) {
+  /// Solves for `side` with the factored matrix; the solution is left in `step` and, unscaled, in `variation`.
+  static void solve_side(Work& work, bool refine = false) {
     work.step = work.side;
     work.kkt.solve_in_place(work.step);
-    if (!refine) return;
-    work.defect = work.side;
-    work.kkt.add_product(-1, work.step, work.defect);
-    work.kkt.solve_in_place(work.defect);
-    for (std::size_t k = 0; k < work.step.size(); ++k) work.step[k] += work.defect[k];
+    if (refine) {
+      work.defect = work.side;
+      work.kkt.add_product(-1, work.step, work.defect);
+      work.kkt.solve_in_place(work.defect);
+      for (std::size_t k = 0; k < work.step.size(); ++k) work.step[k] += work.defect[k];
+    }
+    work.kkt.unscale(work.step, work.variation);
   }
 
   static constexpr double tiny_pivot = 1e-11;

@@ -6,11 +6,13 @@
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 
+#include <fmt/format.h>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace lagroid {
 
@@ -107,11 +109,9 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
       out.status = SolveStatus::not_finite;
     } else if (out.residual <= options_.tolerance) {
       out.status = SolveStatus::converged;
-      out.cost = action(system, out.path);
-      out.kind = kkt.classify(system, out.path);
+      this->describe(system, kkt, out);
     } else {
-      out.message = "shooting: the end is missed by " + std::to_string(shot.miss.norm()) +
-                    " and no change of the initial momentum lowers that; use solver.method = \"newton\"";
+      out.message = failure(out.status, out.iterations, shot.miss.norm());
     }
     return out;
   }
@@ -126,6 +126,26 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
     Path<Sys> path;
     AlgebroidVector<G> miss = AlgebroidVector<G>::Constant(std::numeric_limits<double>::infinity());
   };
+
+  static std::string failure(SolveStatus status, int iterations, double miss) {
+    switch (status) {
+      case SolveStatus::not_converged:
+        return fmt::format(
+            "shooting: the end is still missed by {:.2e} after {} iterations; raise solver.max_iterations or use "
+            "solver.method = \"newton\"",
+            miss, iterations - 1);
+      case SolveStatus::stagnated:
+        return fmt::format(
+            "shooting: the end is missed by {:.2e} and no change of the initial momentum lowers that; use "
+            "solver.method = \"newton\"",
+            miss);
+      default:
+        return fmt::format(
+            "shooting: a step of the trajectory from the first guess failed ({}); use solver.method = \"newton\" or "
+            "more steps",
+            to_string(status));
+    }
+  }
 
   /// dmu with S dmu = miss; of least norm, in the sense of least squares, where object constraints make S singular.
   static AlgebroidVector<G> least_change(const Matrix<double, Sys::dimension, Sys::dimension>& sensitivity,

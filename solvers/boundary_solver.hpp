@@ -40,6 +40,15 @@ template <DiscreteSystem Sys> class BoundarySolver {
   Seek seek() const { return seek_; }
 
  protected:
+  /// Cost and, if asked for, kind of a converged solution.
+  template <class Kkt> void describe(const Sys& system, Kkt& kkt, BoundarySolution<Sys>& solution) const {
+    solution.cost = action(system, solution.path);
+    if (!options_.classify) return;
+    kkt.evaluate(system, solution.path);
+    kkt.choose_scale();
+    solution.kind = kkt.classify(system, solution.path);
+  }
+
   BoundaryOptions options_;
   Seek seek_;
 };

@@ -37,12 +37,15 @@ template <DiscreteSystem Sys> Path<Sys> geodesic_path(const BoundaryProblem<Sys>
 /// Stationary paths between the ends of the problem's boundary arrow, `steps` arrows long: multistart with at most
 /// `coarse_steps` arrows over the same time, then continuation in their number. A system without a time step is solved
 /// as it is. Where the coarse problem led nowhere, the problem asked for gets starts of its own. Needs nothing of the
-/// system but what every system has. Throws std::invalid_argument where `inadmissible_ends` has a reason.
+/// system but what every system has. Throws std::invalid_argument where `inadmissible_ends` has a reason or an option
+/// is out of range.
 template <DiscreteSystem Sys>
 MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem,
                                      std::size_t steps, const MultistartOptions& options = {}) {
   if (const auto why = inadmissible_ends(problem)) throw std::invalid_argument(*why);
   if (steps < 2) throw std::invalid_argument("a boundary-value problem needs at least 2 steps");
+  if (options.coarse_steps < 2) throw std::invalid_argument("coarse_steps must be at least 2");
+  if (options.starts < 1) throw std::invalid_argument("starts must be at least 1");
   std::vector<BoundaryStage<Sys>> stages{{problem, steps}};
   if constexpr (HasTimeStep<Sys>) {
     stages.clear();

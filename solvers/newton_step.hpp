@@ -51,6 +51,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
     double first = 0;               ///< excess at the guess of the last solve
     double rate = 0;                ///< contraction of an iteration, as last seen
     int age = 0;                    ///< solves since the matrix was evaluated
+    int iterations = 0;             ///< of the last solve
   };
 
   bool by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution, StepReport& report);
@@ -140,6 +141,7 @@ LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G
       finish(report, system, step);
       if (!report.converged() || !residual.allFinite()) return false;
       chord_.rate = rate;
+      chord_.iterations = iteration;
       solution.step = step;
       const Residual correction = inverse_.correction(residual);
       solution.remainder = correction.template head<Sys::dimension>();
@@ -155,6 +157,7 @@ LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G
 /// Whether a new matrix costs less than the iterations it would save. One costs about as much as `renewal_price`
 /// chord iterations.
 template <DiscreteSystem Sys> bool NewtonStep<Sys>::renewal_pays() const {
+  if (chord_.iterations <= 1 + renewal_price) return false;
   const auto iterations = [&](double rate) {
     int count = 0;
     for (double e = chord_.first; e > leftover && count < longest_chord; e *= rate) ++count;
@@ -179,6 +182,7 @@ template <DiscreteSystem Sys> [[gnu::cold]] void NewtonStep<Sys>::keep(const typ
   chord_.first = 1e12;
   chord_.rate = 0.1;
   chord_.age = 1;
+  chord_.iterations = longest_chord;
 }
 
 // ---- the long way

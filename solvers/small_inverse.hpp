@@ -44,7 +44,12 @@ template <int Size> class SmallInverse {
       for (int i = 0; i < Size; ++i)
         m(i, j) = a(row_of_[std::size_t(i)], column_of_[std::size_t(j)]) * row_scale_(i) * column_scale_(j);
     const Square inverse = inverse_of(m);
-    for (int j = 0; j < Size; ++j) columns_[std::size_t(j)] = Lanes<double, Size>::load(inverse.col(j).data());
+    Square negative;  // -a^{-1}, in the order and the units of a
+    for (int j = 0; j < Size; ++j)
+      for (int i = 0; i < Size; ++i)
+        negative(column_of_[std::size_t(i)], row_of_[std::size_t(j)]) =
+            -inverse(i, j) * column_scale_(i) * row_scale_(j);
+    for (int j = 0; j < Size; ++j) columns_[std::size_t(j)] = Lanes<double, Size>::load(negative.col(j).data());
     return inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < largest_entry;
   }
 
@@ -52,10 +57,10 @@ template <int Size> class SmallInverse {
   Column correction(const Column& b) const {
     // Two sums, for two chains of additions instead of one.
     Lanes<double, Size> sum[2] = {{}, {}};
-    unrolled<Size>([&]<int J>() { sum[J % 2] = sum[J % 2] + (b(row_of_[J]) * row_scale_(J)) * columns_[J]; });
+    unrolled<Size>([&]<int J>() { sum[J % 2] = sum[J % 2] + b(J) * columns_[J]; });
     const Lanes<double, Size> x = sum[0] + sum[1];
     Column out;
-    unrolled<Size>([&]<int I>() { out(column_of_[I]) = x[I] * -column_scale_(I); });
+    unrolled<Size>([&]<int I>() { out(I) = x[I]; });
     return out;
   }
 
@@ -99,7 +104,7 @@ template <int Size> class SmallInverse {
   Order column_of_ = in_order;  ///< ... and this column
   Column row_scale_ = Column::Ones();
   Column column_scale_ = Column::Ones();
-  std::array<Lanes<double, Size>, std::size_t(Size)> columns_;
+  std::array<Lanes<double, Size>, std::size_t(Size)> columns_;  ///< of -a^{-1}
 };
 
 }  // namespace lagroid

@@ -90,8 +90,47 @@ TEST(Shooting, AnEndOutOfReachIsATypedFailure) {
                                            {PairArrow<double, 2>{{0, 0}, {100, 0}}, Matrix<double, 3, 3>::Identity()}};
   const auto out =
       make_boundary_solver<PlateBall>(BoundaryMethod::shooting)->solve(problem, geodesic_path(problem, 3), true);
-  EXPECT_FALSE(out.converged());
+  EXPECT_EQ(out.status, SolveStatus::not_converged);
   EXPECT_FALSE(out.path.empty());
+  EXPECT_EQ(out.message.rfind("shooting: the end is still missed by ", 0), 0U) << out.message;
+}
+
+TEST(Shooting, SaysWhatItsIterationLimitLeft) {
+  const PlateBall system = plate_ball(30);
+  const BoundaryProblem<PlateBall> problem{system, plate_ball_ends()};
+  auto path = make_boundary_solver<PlateBall>()->solve(problem, straight(system, 30), false).path;
+  for (auto& step : path) step.multipliers *= 1.1;
+  BoundaryOptions options;
+  options.max_iterations = 1;
+  const auto out = make_boundary_solver<PlateBall>(BoundaryMethod::shooting, options)->solve(problem, path, true);
+  EXPECT_EQ(out.status, SolveStatus::not_converged);
+  EXPECT_NE(out.message.find("after 1 iterations"), std::string::npos) << out.message;
+}
+
+TEST(Ceres, ItsIterationLimitIsNoStall) {
+  const PlateBall system = plate_ball(30);
+  const BoundaryProblem<PlateBall> problem{system, plate_ball_ends()};
+  BoundaryOptions options;
+  options.max_iterations = 2;
+  const auto solver = make_boundary_solver<PlateBall>(BoundaryMethod::ceres, options);
+  const auto out = solver->solve(problem, straight(system, 30), true);
+  EXPECT_EQ(out.status, SolveStatus::not_converged);
+  EXPECT_TRUE(std::isfinite(out.residual));
+}
+
+TEST(EveryMethod, LeavesOutTheKindWhereItIsNotAskedFor) {
+  // A motion past a conjugate point is no minimum; unasked, nobody says so.
+  const auto k = known(pendulum(), {Vector<double, 1>(0.05), Vector<double, 1>(0.1)}, 90);
+  BoundaryOptions options;
+  options.classify = false;
+  for (const auto method : {BoundaryMethod::newton, BoundaryMethod::shooting, BoundaryMethod::ceres}) {
+    const auto with = make_boundary_solver<Pendulum>(method)->solve(k.problem, k.path, true);
+    const auto without = make_boundary_solver<Pendulum>(method, options)->solve(k.problem, k.path, true);
+    ASSERT_TRUE(with.converged() && without.converged()) << int(method);
+    EXPECT_EQ(with.kind.negative_directions, 1) << int(method);
+    EXPECT_EQ(without.kind.negative_directions, 0) << int(method);
+    EXPECT_EQ(with.cost, without.cost) << int(method);
+  }
 }
 
 TEST(Ceres, ItsStallIsTypedAndExplained) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -100,6 +101,19 @@ TEST(Stationary, EndsOffTheConstraintAreRefused) {
   EXPECT_THROW(solve_boundary(*make_boundary_solver<SphericalPendulum>(), problem, 20), std::invalid_argument);
 }
 
+TEST(Stationary, OptionsOutOfRangeAreRefused) {
+  const auto k = known(pendulum(), {Vector<double, 1>(0.1), Vector<double, 1>(0.1)}, 4);
+  const auto solver = make_boundary_solver<Pendulum>();
+  MultistartOptions options;
+  options.coarse_steps = 0;
+  EXPECT_THROW(solve_boundary(*solver, k.problem, 4, options), std::invalid_argument);
+  options.coarse_steps = 1;
+  EXPECT_THROW(solve_boundary(*solver, k.problem, 4, options), std::invalid_argument);
+  options = {};
+  options.starts = 0;
+  EXPECT_THROW(solve_boundary(*solver, k.problem, 4, options), std::invalid_argument);
+}
+
 /// Negative eigenvalues of the whole scaled KKT matrix, dense, against those its elimination counts.
 template <class Sys> void expect_inertia(const Sys& system, const Path<Sys>& path) {
   using Kkt = BoundaryKkt<Sys>;
@@ -155,6 +169,16 @@ TEST(SymmetricFactor, SolvesAndCountsWhereDiagonalsVanish) {
     factor.subtract_from(s, r);
     const Eigen::MatrixXd expected = -r.transpose() * Eigen::MatrixXd(a).inverse() * r;
     EXPECT_LT((s - expected).norm(), 1e-12 * condition * (1 + expected.norm()));
+  }
+}
+
+TEST(SymmetricFactor, DoesNotHideANaN) {
+  for (int place = 0; place < 4; ++place) {
+    SymmetricFactor<4>::Square a = SymmetricFactor<4>::Square::Identity();
+    a(place, 3) = a(3, place) = std::numeric_limits<double>::quiet_NaN();
+    SymmetricFactor<4> factor;
+    factor.compute(a);
+    EXPECT_FALSE(factor.solve(Vector<double, 4>::Ones()).allFinite()) << place;
   }
 }
 

@@ -99,6 +99,25 @@ TEST_F(CommandLine, ContinuationArrivesWhereTheDirectSolveDoes) {
   EXPECT_NE(carried.at("notes").dump().find("arrived"), std::string::npos);
 }
 
+TEST_F(CommandLine, ContinuationKeepsEndsWhereTheyMustLie) {
+  // Between the two ends given, positions are brought back to the sphere and quaternions to unit norm.
+  const std::string sphere = folder_.string() + "/sphere.toml";
+  std::ofstream(sphere) << "system = 'spherical_pendulum'\n[time]\nduration = 1.0\nsteps = 40\n"
+                           "[boundary]\nstart = { position = [0.6, 0, -0.8] }\nend = { position = [0, 0.6, -0.8] }\n"
+                           "[solver]\nstarts = 4\n[continuation]\nparameter = 'boundary.end.position'\n"
+                           "from = [0.8, 0, -0.6]\n";
+  const Outcome r = run("run " + sphere + " --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_NEAR(json.at("final").at("position").at(1).get<double>(), 0.6, 1e-12);
+  EXPECT_NE(json.at("notes").dump().find("arrived"), std::string::npos);
+  EXPECT_EQ(run("run " + sphere + " --set continuation.from=[0.8,0,-0.5]").code, 2) << "an end the user wrote";
+  const Outcome turned = run("run " + example("rigid_body_boundary") +
+                             " --json --set solver.starts=4 --set boundary.end.attitude=[0.6,0,0.8,0]"
+                             " --set continuation.parameter=boundary.end.attitude --set continuation.from=[1,0,0,0]");
+  EXPECT_EQ(turned.code, 0) << turned.err;
+}
+
 TEST_F(CommandLine, BadBoundaryValuesExitTwo) {
   const std::string sphere = "run " + example("spherical_pendulum") + " --set boundary.start.position=[1,0,0] ";
   for (const std::string& arguments : std::vector<std::string>{
@@ -111,6 +130,8 @@ TEST_F(CommandLine, BadBoundaryValuesExitTwo) {
            "run " + example("kepler_boundary") +
                " --set continuation.parameter=parameters.mass --set continuation.from=1",
            "run " + example("plate_ball_continuation") + " --set continuation.parameter=boundary.end.position",
+           "run " + example("plate_ball_continuation") + " --set continuation.parameter=time.steps",
+           "run " + example("plate_ball_continuation") + " --set continuation.parameter=solver.starts",
            "run " + example("plate_ball_continuation") + " --set continuation.step=4"}) {
     const Outcome r = run(arguments + " --json");
     EXPECT_EQ(r.code, 2) << arguments << r.err;

@@ -24,7 +24,7 @@ RunResult run_spherical_pendulum(const Section& scene, const RunContext& context
   const double length = read_system(scene).length;
   const auto on_sphere = [&](const Section& section, const Vector<double, 3>& q) -> Vector<double, 3> {
     const double norm = q.norm();
-    if (std::abs(norm - length) > 1e-6 * length)
+    if (norm == 0 || (std::abs(norm - length) > 1e-6 * length && !section.interpolated()))
       section.fail("position",
                    norm > 0
                        ? fmt::format("lies {:.8g} from the pivot, not at the length {:.8g}; scale it to "
