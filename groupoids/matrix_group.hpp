@@ -148,8 +148,10 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
 
   /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
   template <class T> LAGROID_INLINE static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
-    if (value_of(w.squaredNorm()) > 1e-11) return g * tau(Object<T>{}, w);
+    const auto square = value_of(w.squaredNorm());
+    if (square > 1e-11) return g * tau(Object<T>{}, w);
     const Matrix<T, N, N> gw = times_hat(g, w);
+    if (square < 1e-17) return by_entry<T>([&]<int R, int C>() { return g(R, C) + gw(R, C); });
     const Matrix<T, N, N> gww = times_hat(gw, w);
     return by_entry<T>([&]<int R, int C>() { return g(R, C) + (gw(R, C) + T(0.5) * gww(R, C)); });
   }
