@@ -69,7 +69,8 @@ template <int N, int M> TwoSided<N, M> difference(const TwoSided<N, M>& a, const
 }
 
 template <class Kernel> class RigidBodyKernel : public ::testing::Test {};
-using RigidBodyKernels = ::testing::Types<kernels::So3Cayley<0>, kernels::So3Cayley<2>, kernels::So3Cayley<4>>;
+using RigidBodyKernels =
+    ::testing::Types<kernels::So3Cayley<0>, kernels::So3Cayley<1>, kernels::So3Cayley<2>, kernels::So3Cayley<4>>;
 TYPED_TEST_SUITE(RigidBodyKernel, RigidBodyKernels);
 
 TYPED_TEST(RigidBodyKernel, IsTheFramework) {
@@ -172,7 +173,7 @@ TEST(PlateBallDerivatives, AreTheAutomaticOnes) {
 }
 
 template <class Kernel> class KeplerKernel : public ::testing::Test {};
-using KeplerKernels = ::testing::Types<kernels::Kepler<0>, kernels::Kepler<2>, kernels::Kepler<4>>;
+using KeplerKernels = ::testing::Types<kernels::Kepler<0>, kernels::Kepler<1>, kernels::Kepler<2>, kernels::Kepler<4>>;
 TYPED_TEST_SUITE(KeplerKernel, KeplerKernels);
 
 TYPED_TEST(KeplerKernel, IsTheFramework) {

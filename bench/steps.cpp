@@ -83,6 +83,7 @@ constexpr const char* pendulum = "spherical pendulum, SHAKE, h = 0.01";
 constexpr const char* body_derivatives = "SO(3), two-sided derivative alone";
 constexpr const char* ball_derivatives = "plate-ball, two-sided derivative alone";
 constexpr const char* by_hand = "by hand";
+constexpr const char* by_hand_on_paper = "by hand, the momentum relation inverted on paper";
 constexpr const char* by_hand_newton = "by hand, Newton on the same unknowns";
 
 void add_body(std::vector<Subject>& out) {
@@ -117,8 +118,7 @@ void add_ball(std::vector<Subject>& out) {
   start.momentum << at.linear_momentum, at.body_momentum;
   const ArrowOf<PlateBall::GroupoidType> configuration{PairArrow<double, 2>{at.position, at.position}, at.attitude};
   out.push_back(kernel(ball, by_hand_newton, kernels::PlateBallNewton<4>(parameters, at), /*reference=*/true));
-  out.push_back(
-      kernel(ball, "by hand, the momentum relation inverted on paper", kernels::PlateBall<4>(parameters, at)));
+  out.push_back(kernel(ball, by_hand_on_paper, kernels::PlateBall<4>(parameters, at)));
   out.push_back(steps<NewtonStep<PlateBall>>(ball, by_framework, system, start, configuration));
   out.push_back(steps<NewtonStep<HandPlateBall>>(ball, by_framework_with_hand, hand, start, configuration));
   out.push_back(steps<CeresStep<PlateBall>>(ball, by_ceres, system, start, configuration));
@@ -161,6 +161,7 @@ std::vector<Goal> step_goals() {
           {ball, by_framework, by_framework_with_hand, 1.2},
           {body, by_framework, by_hand, 2},
           {ball, by_framework, by_hand_newton, 2},
+          {ball, by_framework, by_hand_on_paper, 2},
           {pendulum, by_framework, by_hand, 3},
           {kepler_orbit, by_framework, by_hand, 1.5},
           {ball, by_ceres, by_framework, 40, /*at_least=*/true},

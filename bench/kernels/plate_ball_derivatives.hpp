@@ -13,13 +13,12 @@ namespace kernels {
 ///
 /// `rotation` must be RotationForm::trace.
 struct HandPlateBall : lagroid::PlateBall {
-  lagroid::TwoSidedOf<lagroid::PlateBall> two_sided(const Arrow<double>& arrow, const Multipliers& lambda) const {
-    using lagroid::SO3;
+  lagroid::GradientsOf<lagroid::PlateBall> gradients(const Arrow<double>& arrow, const Multipliers& lambda) const {
     const auto& [move, g] = arrow;
     const Eigen::Vector2d d = move.target - move.source;
     const Eigen::Vector2d sum = move.source + move.target;
-    const Eigen::Vector3d w = SO3::vee(g);
-    const Eigen::Vector3d nu(radius * lambda(0), -radius * lambda(1), -lambda(2));
+    const Eigen::Vector3d w = lagroid::SO3::vee(g);
+    const Eigen::Vector3d nu = rotation_multiplier(lambda);
     const Eigen::Vector3d back(g.col(0).dot(nu), g.col(1).dot(nu), g.col(2).dot(nu));
     const double trace = g.trace();
     const double rate = 1 / h;
@@ -27,11 +26,24 @@ struct HandPlateBall : lagroid::PlateBall {
     const Eigen::Vector2d common(half * lambda(0), -half * lambda(1));
     const Eigen::Vector2d opposite(rate * d(0) + lambda(1), rate * d(1) + lambda(0));
 
-    lagroid::TwoSidedOf<lagroid::PlateBall> out;
+    lagroid::GradientsOf<lagroid::PlateBall> out;
     out.constraint << d(1) + radius * w(0) - half * sum(0), d(0) - radius * w(1) + half * sum(1), h * spin - w(2);
     out.value = 0.5 * rate * d.squaredNorm() + lambda.dot(out.constraint);
     out.source_gradient << -common - opposite, 0.5 * (back - trace * nu);
     out.target_gradient << opposite - common, 0.5 * (trace * nu - g * nu);
+    return out;
+  }
+
+  lagroid::TwoSidedOf<lagroid::PlateBall> two_sided(const Arrow<double>& arrow, const Multipliers& lambda) const {
+    const auto& [move, g] = arrow;
+    const Eigen::Vector3d w = lagroid::SO3::vee(g);
+    const Eigen::Vector3d nu = rotation_multiplier(lambda);
+    const Eigen::Vector3d back(g.col(0).dot(nu), g.col(1).dot(nu), g.col(2).dot(nu));
+    const double trace = g.trace();
+    const double rate = 1 / h;
+    const double half = 0.5 * h * plate_rate;
+
+    lagroid::TwoSidedOf<lagroid::PlateBall> out{gradients(arrow, lambda), {}, {}, {}};
     out.mixed << -rate, 0, 0, 0, 0,                                                      //
         0, -rate, 0, 0, 0,                                                               //
         0, 0, nu(0) * w(0), nu(0) * w(1) - 0.5 * back(2), nu(0) * w(2) + 0.5 * back(1),  //
@@ -49,6 +61,11 @@ struct HandPlateBall : lagroid::PlateBall {
   lagroid::Step<HandPlateBall> first_guess(const lagroid::State<GroupoidType>& s) const {
     const auto guess = PlateBall::first_guess(s);
     return {guess.arrow, guess.multipliers};
+  }
+
+ private:
+  Eigen::Vector3d rotation_multiplier(const Multipliers& lambda) const {
+    return {radius * lambda(0), -radius * lambda(1), -lambda(2)};
   }
 };
 
