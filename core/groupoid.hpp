@@ -121,6 +121,12 @@ template <class Derived, int Dimension> class LieGroupoid {
     return w - self().tau_inverse(by);
   }
 
+  /// F+ - F-, the change of the momentum along g, from df/dv = -F- and df/dw = F+. On a group each determines the
+  /// other, and g near the unit leaves little of them: such a groupoid supplies a form without cancellation.
+  template <class A, class V> V momentum_change(const A&, const V& source_gradient, const V& target_gradient) const {
+    return source_gradient + target_gradient;
+  }
+
   /// Coordinates of the arrows near the unit in which a trajectory is extrapolated, and their inverse: tau unless the
   /// groupoid knows a cheaper smooth chart of its alpha-fibres.
   template <class A> auto chart(const A& g) const { return self().tau_inverse(g); }

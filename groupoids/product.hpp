@@ -55,6 +55,13 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
     return concatenate<rank>(
         indexed([&]<std::size_t I>() { return std::get<I>(factor).nudge(std::get<I>(g), segment<dimensions, I>(w)); }));
   }
+  template <class... As, class V>
+  V momentum_change(const std::tuple<As...>& g, const V& source_gradient, const V& target_gradient) const {
+    return concatenate<rank>(indexed([&]<std::size_t I>() {
+      return std::get<I>(factor).momentum_change(std::get<I>(g), segment<dimensions, I>(source_gradient),
+                                                 segment<dimensions, I>(target_gradient));
+    }));
+  }
   template <class... As> auto chart(const std::tuple<As...>& g) const {
     return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.chart(gi); }, g));
   }

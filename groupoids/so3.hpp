@@ -128,6 +128,32 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     return out;
   }
 
+  /// (I - g') F+ with g' = g (3 I - g^T g) / 2, the rotation nearest to g to first order: from E = g - I, whose entries
+  /// are small and exact. With g itself |mu| would change by the round-off of g, the same way at every step of a smooth
+  /// trajectory.
+  static Vector<double, 3> momentum_change(const Matrix<double, 3, 3>& g, const Vector<double, 3>&,
+                                           const Vector<double, 3>& target_gradient) {
+    Matrix<double, 3, 3> e = g;
+    unrolled<3>([&]<int I>() { e(I, I) -= 1; });
+    // S = g^T g - I
+    const auto s = [&]<int I, int J>() {
+      return (e(I, J) + e(J, I)) + (e(0, I) * e(0, J) + e(1, I) * e(1, J) + e(2, I) * e(2, J));
+    };
+    const double xy = s.template operator()<0, 1>();
+    const double xz = s.template operator()<0, 2>();
+    const double yz = s.template operator()<1, 2>();
+    const Matrix<double, 3, 3> square{{s.template operator()<0, 0>(), xy, xz},
+                                      {xy, s.template operator()<1, 1>(), yz},
+                                      {xz, yz, s.template operator()<2, 2>()}};
+    Vector<double, 3> out;
+    unrolled<3>([&]<int R>() {
+      out(R) = (0.5 * square(R, 0) - e(R, 0)) * target_gradient(0) +
+               (0.5 * square(R, 1) - e(R, 1)) * target_gradient(1) +
+               (0.5 * square(R, 2) - e(R, 2)) * target_gradient(2);
+    });
+    return out;
+  }
+
   /// The Cayley coordinates: no trigonometric functions.
   template <class T> static Vector<T, 3> chart(const Matrix<T, 3, 3>& g) { return cayley_inverse(g); }
   template <class T> static Matrix<T, 3, 3> arrow_in_chart(const Vector<T, 0>&, const Vector<T, 3>& v) {

@@ -43,4 +43,15 @@ TEST(RigidBodyLong, MomentumOverAHundredThousandSteps) {
   EXPECT_LT(seen.at("energy").last_quarter, 1.1 * seen.at("energy").first_quarter);
 }
 
+TEST(RigidBodyLong, TheLengthOfTheMomentumDoesNotFeelTheRoundingOfArrows) {
+  RigidBody system;
+  system.h = 0.05;
+  system.rotation = RotationMap::cayley;
+  State<SO3> state;
+  state.momentum << 1.2, 0.1, 0.9;
+  const auto seen = watch(system, state, 1'000'000);
+  ASSERT_FALSE(seen.empty());
+  EXPECT_LT(seen.at("spatial momentum A M").drift, 2e-12);
+}
+
 }  // namespace

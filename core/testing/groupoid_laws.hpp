@@ -190,6 +190,17 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
                                     along_ends.template tail<n>().eval())});
     });
   }
+  law("change of momentum", options.derivative, [&] {
+    // Of a random linear function of the arrow's coordinates.
+    const A g = arrow();
+    const auto ends = groupoid.coordinates_of_arrow(
+        groupoid.template seed_by_composition<Jet<double, 2 * n>, End::source, End::target, 0, n>(g));
+    Vector<double, 2 * n> gradient = Vector<double, 2 * n>::Zero();
+    for (int i = 0; i < ends.size(); ++i) gradient += vector()(0) * ends(i).gradient();
+    const V at_source = gradient.template head<n>();
+    const V at_target = gradient.template tail<n>();
+    return relative_defect(groupoid.momentum_change(g, at_source, at_target), (at_source + at_target).eval());
+  });
   law("extending an arrow", options.tolerance, [&] {
     const A g = arrow();
     V w = vector();
