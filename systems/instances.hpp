@@ -16,7 +16,7 @@
   prefix class NewtonStep<Sys>;                                                                                        \
   prefix class Integrator<Sys>
 
-#define LAGROID_SOLVERS(prefix, Sys)                                                                        \
+#define LAGROID_SOLVERS(prefix, Sys)                                                                                \
   prefix SecondDerivativesOf<Sys> second_derivatives(const Sys&, const ArrowOf<Sys::GroupoidType>&,                 \
                                                      const Sys::Multipliers&);                                      \
   prefix std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys&, StepMethod, StepOptions);                    \
