@@ -14,36 +14,14 @@ namespace kernels {
 /// `rotation` must be RotationForm::trace.
 struct HandPlateBall : lagroid::PlateBall {
   lagroid::GradientsOf<lagroid::PlateBall> gradients(const Arrow<double>& arrow, const Multipliers& lambda) const {
-    const auto& [move, g] = arrow;
-    const Eigen::Vector2d d = move.target - move.source;
-    const Eigen::Vector2d sum = move.source + move.target;
-    const Eigen::Vector3d w = lagroid::SO3::vee(g);
-    const Eigen::Vector3d nu = rotation_multiplier(lambda);
-    const Eigen::Vector3d back(g.col(0).dot(nu), g.col(1).dot(nu), g.col(2).dot(nu));
-    const double trace = g.trace();
-    const double rate = 1 / h;
-    const double half = 0.5 * h * plate_rate;
-    const Eigen::Vector2d common(half * lambda(0), -half * lambda(1));
-    const Eigen::Vector2d opposite(rate * d(0) + lambda(1), rate * d(1) + lambda(0));
-
-    lagroid::GradientsOf<lagroid::PlateBall> out;
-    out.constraint << d(1) + radius * w(0) - half * sum(0), d(0) - radius * w(1) + half * sum(1), h * spin - w(2);
-    out.value = 0.5 * rate * d.squaredNorm() + lambda.dot(out.constraint);
-    out.source_gradient << -common - opposite, 0.5 * (back - trace * nu);
-    out.target_gradient << opposite - common, 0.5 * (trace * nu - g * nu);
-    return out;
+    return gradients(arrow, lambda, terms(arrow, lambda));
   }
 
   lagroid::TwoSidedOf<lagroid::PlateBall> two_sided(const Arrow<double>& arrow, const Multipliers& lambda) const {
-    const auto& [move, g] = arrow;
-    const Eigen::Vector3d w = lagroid::SO3::vee(g);
-    const Eigen::Vector3d nu = rotation_multiplier(lambda);
-    const Eigen::Vector3d back(g.col(0).dot(nu), g.col(1).dot(nu), g.col(2).dot(nu));
-    const double trace = g.trace();
-    const double rate = 1 / h;
-    const double half = 0.5 * h * plate_rate;
-
-    lagroid::TwoSidedOf<lagroid::PlateBall> out{gradients(arrow, lambda), {}, {}, {}};
+    const auto& g = std::get<1>(arrow);
+    const Terms t = terms(arrow, lambda);
+    const auto& [w, nu, back, trace, rate, half] = t;
+    lagroid::TwoSidedOf<lagroid::PlateBall> out{gradients(arrow, lambda, t), {}, {}, {}};
     out.mixed << -rate, 0, 0, 0, 0,                                                      //
         0, -rate, 0, 0, 0,                                                               //
         0, 0, nu(0) * w(0), nu(0) * w(1) - 0.5 * back(2), nu(0) * w(2) + 0.5 * back(1),  //
@@ -64,8 +42,37 @@ struct HandPlateBall : lagroid::PlateBall {
   }
 
  private:
-  Eigen::Vector3d rotation_multiplier(const Multipliers& lambda) const {
-    return {radius * lambda(0), -radius * lambda(1), -lambda(2)};
+  /// What gradients and second derivatives share.
+  struct Terms {
+    Eigen::Vector3d w;
+    Eigen::Vector3d nu;
+    Eigen::Vector3d back;  // g^T nu
+    double trace;
+    double rate;
+    double half;
+  };
+  Terms terms(const Arrow<double>& arrow, const Multipliers& lambda) const {
+    const auto& g = std::get<1>(arrow);
+    const Eigen::Vector3d nu(radius * lambda(0), -radius * lambda(1), -lambda(2));
+    return {lagroid::SO3::vee(g), nu, {g.col(0).dot(nu), g.col(1).dot(nu), g.col(2).dot(nu)}, g.trace(), 1 / h,
+            0.5 * h * plate_rate};
+  }
+
+  lagroid::GradientsOf<lagroid::PlateBall> gradients(const Arrow<double>& arrow, const Multipliers& lambda,
+                                                     const Terms& t) const {
+    const auto& [move, g] = arrow;
+    const auto& [w, nu, back, trace, rate, half] = t;
+    const Eigen::Vector2d d = move.target - move.source;
+    const Eigen::Vector2d sum = move.source + move.target;
+    const Eigen::Vector2d common(half * lambda(0), -half * lambda(1));
+    const Eigen::Vector2d opposite(rate * d(0) + lambda(1), rate * d(1) + lambda(0));
+
+    lagroid::GradientsOf<lagroid::PlateBall> out;
+    out.constraint << d(1) + radius * w(0) - half * sum(0), d(0) - radius * w(1) + half * sum(1), h * spin - w(2);
+    out.value = 0.5 * rate * d.squaredNorm() + lambda.dot(out.constraint);
+    out.source_gradient << -common - opposite, 0.5 * (back - trace * nu);
+    out.target_gradient << opposite - common, 0.5 * (trace * nu - g * nu);
+    return out;
   }
 };
 
