@@ -1,5 +1,6 @@
 // A groupoid that lives only here passes the laws, as a user's would; broken ones fail the law they break.
 #include <lagroid/core/testing/groupoid_laws.hpp>
+#include <lagroid/groupoids/so3.hpp>
 
 #include <gtest/gtest.h>
 
@@ -113,6 +114,30 @@ TEST(BrokenGroupoid, NotANumberInALaterComponent) { expect_broken(Fault::not_a_n
 TEST(BrokenGroupoid, RetractionThatLeavesItsFibre) { expect_broken(Fault::moves_its_source, {"retraction"}); }
 TEST(BrokenGroupoid, WrongMomentumChange) { expect_broken(Fault::momentum_change, {"change of momentum"}); }
 TEST(BrokenGroupoid, WrongSeed) { expect_broken(Fault::seed, {"closed-form translations"}); }
+
+/// SO(3) with the bracket of its frame reversed, or its curves straightened.
+enum class FrameFault { bracket, curvature };
+template <FrameFault Fault> struct BadlyFramed : SO3 {
+  template <class T> static Matrix<T, 3, 3> frame_bracket(const Vector<T, 3>& p) {
+    return Fault == FrameFault::bracket ? Matrix<T, 3, 3>(-SO3::frame_bracket(p)) : SO3::frame_bracket(p);
+  }
+  template <class J, int Offset = 0, class T> static Matrix<J, 3, 3> frame_jet(const Matrix<T, 3, 3>& g) {
+    Matrix<J, 3, 3> out = SO3::frame_jet<J, Offset>(g);
+    if constexpr (J::order == 2 && Fault == FrameFault::curvature)
+      for (J& x : out.reshaped())
+        for (int i = 0; i < 3; ++i) x.set_row(i, typename J::Row{});
+    return out;
+  }
+};
+
+TEST(BrokenGroupoid, WrongFrame) {
+  const auto expect_curved = [](const auto& report) {
+    EXPECT_TRUE(report.law("arrow frame").holds()) << report;
+    EXPECT_FALSE(report.law("arrow frame, second order").holds()) << report;
+  };
+  expect_curved(laws::groupoid_laws<BadlyFramed<FrameFault::bracket>>());
+  expect_curved(laws::groupoid_laws<BadlyFramed<FrameFault::curvature>>());
+}
 
 /// R^2 with a product that is not associative.
 struct NotAssociative : LieGroupoid<NotAssociative, 1> {

@@ -8,6 +8,7 @@
 
 #include <lagroid/core/arrow_frame.hpp>
 #include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/second_jet.hpp>
 #include <lagroid/core/testing/property.hpp>
 
 namespace lagroid::laws {
@@ -188,6 +189,39 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
                                     along_ends.template head<n>().eval()),
                     relative_defect(groupoid.template frame_to_end<End::target>(g, along_frame),
                                     along_ends.template tail<n>().eval())});
+    });
+  }
+  if constexpr (HasArrowFrame<G>) {
+    law("arrow frame, second order", options.derivative, [&] {
+      // The second derivatives of a random linear function of the arrow's coordinates, pushed from the frame to the
+      // ends as arrow_frame.hpp says, against those by composition.
+      constexpr int d = arrow_dimension_of<G>();
+      using Hessian = Matrix<double, d, d>;
+      using M = Mixed<double, n, n>;
+      const A g = arrow();
+      const auto framed = groupoid.coordinates_of_arrow(groupoid.template frame_jet<SecondJet<double, d>>(g));
+      Vector<double, Eigen::Dynamic> weights(framed.size());
+      for (double& weight : weights) weight = vector()(0);
+      Vector<double, d> gradient = Vector<double, d>::Zero();
+      Hessian hessian = Hessian::Zero();
+      for (int i = 0; i < framed.size(); ++i) {
+        gradient += weights(i) * framed(i).gradient();
+        hessian += weights(i) * framed(i).hessian();
+      }
+      const auto defect = [&]<End First, End Second>(const Hessian& form) {
+        const auto ends =
+            groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M, First, Second, 0, 0>(g));
+        Matrix<double, n, n> expected = Matrix<double, n, n>::Zero();
+        for (int i = 0; i < ends.size(); ++i) expected += weights(i) * ends(i).mixed();
+        const Matrix<double, n, d> rows = groupoid.template frame_to_end<First>(g, form);
+        const Matrix<double, n, n> pushed =
+            groupoid.template frame_to_end<Second>(g, Matrix<double, d, n>(rows.transpose())).transpose();
+        return relative_defect(pushed, expected);
+      };
+      return worst({defect.template operator()<End::source, End::source>(hessian),
+                    defect.template operator()<End::target, End::target>(hessian),
+                    defect.template operator()<End::source, End::target>(
+                        Hessian(hessian + 0.5 * groupoid.frame_bracket(gradient)))});
     });
   }
   law("change of momentum", options.derivative, [&] {
