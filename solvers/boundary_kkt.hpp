@@ -95,7 +95,7 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   Inertia factor(double primal, double dual, double stiffness = 0) {
     const std::size_t count = diagonal_.size();
     factors_.resize(count);
-    scaled_coupling_.resize(count);
+    eliminated_.resize(count);
     Inertia inertia;
     for (std::size_t k = 0; k < count; ++k) {
       Block s = scale_.asDiagonal() * diagonal_[k] * scale_.asDiagonal();
@@ -103,12 +103,11 @@ template <DiscreteSystem Sys> class BoundaryKkt {
       s.diagonal().template tail<n>().array() += primal + stiffness;
       if (k + 1 == count) s.template bottomRightCorner<fixed, fixed>().setIdentity();
       if (k > 0) {
-        Coupling& c = scaled_coupling_[k];
-        c = scale_.asDiagonal() * coupling_[k] * scale_.template tail<n>().asDiagonal();
+        Coupling c = scale_.asDiagonal() * coupling_[k] * scale_.template tail<n>().asDiagonal();
         if (k + 1 < count) c.template bottomRows<n>().diagonal().array() -= 0.5 * stiffness;
         Block right = Block::Zero();
         right.template bottomRows<n>() = c.transpose();
-        factors_[k - 1].subtract_from(s, right);
+        eliminated_[k - 1] = factors_[k - 1].subtract_from(s, right);
       }
       factors_[k].compute(s);
       inertia.negative += factors_[k].negative();
@@ -120,11 +119,10 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   /// Solves the factored system in place; right-hand side and solution in scaled unknowns.
   void solve_in_place(Columns& b) const {
     const std::size_t count = b.size();
-    for (std::size_t k = 1; k < count; ++k)
-      b[k].noalias() -= scaled_coupling_[k] * factors_[k - 1].solve(b[k - 1]).template tail<n>();
+    for (std::size_t k = 1; k < count; ++k) b[k] -= eliminated_[k - 1].transpose() * b[k - 1];
     for (std::size_t k = count; k-- > 0;) {
-      if (k + 1 < count) b[k].template tail<n>().noalias() -= scaled_coupling_[k + 1].transpose() * b[k + 1];
       b[k] = factors_[k].solve(b[k]);
+      if (k + 1 < count) b[k] -= eliminated_[k] * b[k + 1];
     }
   }
   Columns solve(Columns b) const {
@@ -278,7 +276,7 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   Columns residual_;
   std::vector<Vector<double, n>> gradient_;  // of the cost alone
   Column scale_ = Column::Ones();
-  std::vector<Coupling> scaled_coupling_;
+  std::vector<Block> eliminated_;  // k: the inverse of the k-th pivot block times its coupling to z_{k+1}
   std::vector<SymmetricFactor<size>> factors_;
 };
 

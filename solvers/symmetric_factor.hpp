@@ -51,8 +51,8 @@ template <int N> class SymmetricFactor {
     return x;
   }
 
-  /// s -= R^T A^{-1} R, symmetric in exact arithmetic and here.
-  void subtract_from(Square& s, const Square& r) const {
+  /// s -= R^T A^{-1} R, symmetric in exact arithmetic and here. Returns A^{-1} R.
+  Square subtract_from(Square& s, const Square& r) const {
     using Row = Lanes<double, N>;
     std::array<Row, std::size_t(N)> y;  // L^{-1} P R
     for (int i = 0; i < N; ++i) y[i] = Row::load(r.row(order_[i]).data());
@@ -61,13 +61,21 @@ template <int N> class SymmetricFactor {
     });
     std::array<Row, std::size_t(N)> rows;
     for (int i = 0; i < N; ++i) rows[i] = Row::load(s.row(i).data());
+    std::array<Row, std::size_t(N)> z;  // D^{-1} y, then L^{-T} of it
     unrolled<N>([&]<int K>() {
-      Row z = inverse_(K) * y[K];  // row k of D^{-1} y
-      if constexpr (K + 1 < N) z = z + off_(K) * y[K + 1];
-      if constexpr (K > 0) z = z + off_(K - 1) * y[K - 1];
-      unrolled<N>([&]<int I>() { rows[I] = rows[I] - y[K][I] * z; });
+      z[K] = inverse_(K) * y[K];
+      if constexpr (K + 1 < N) z[K] = z[K] + off_(K) * y[K + 1];
+      if constexpr (K > 0) z[K] = z[K] + off_(K - 1) * y[K - 1];
+      unrolled<N>([&]<int I>() { rows[I] = rows[I] - y[K][I] * z[K]; });
     });
     for (int i = 0; i < N; ++i) rows[i].store(s.row(i).data());
+    unrolled<N>([&]<int J>() {
+      constexpr int i = N - 1 - J;
+      for (int j = 0; j < i; ++j) z[j] = z[j] - l_(i, j) * z[i];
+    });
+    Square solved;
+    for (int i = 0; i < N; ++i) z[i].store(solved.row(order_[i]).data());
+    return solved;
   }
 
  private:

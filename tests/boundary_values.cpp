@@ -166,7 +166,8 @@ TEST(SymmetricFactor, SolvesAndCountsWhereDiagonalsVanish) {
     EXPECT_LT((a * factor.solve(b) - b).norm(), 1e-13 * condition);
     SymmetricFactor<8>::Square s = SymmetricFactor<8>::Square::Zero();
     const SymmetricFactor<8>::Square r = SymmetricFactor<8>::Square::Random();
-    factor.subtract_from(s, r);
+    const Eigen::MatrixXd solved = factor.subtract_from(s, r);
+    EXPECT_LT((a * solved - r).norm(), 1e-12 * condition * r.norm());
     const Eigen::MatrixXd expected = -r.transpose() * Eigen::MatrixXd(a).inverse() * r;
     EXPECT_LT((s - expected).norm(), 1e-12 * condition * (1 + expected.norm()));
   }
