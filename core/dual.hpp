@@ -5,6 +5,7 @@
 #include <lagroid/core/types.hpp>
 
 #include <cmath>
+#include <concepts>
 #include <ostream>
 #include <type_traits>
 
@@ -22,8 +23,11 @@ template <class T> struct Dual {
   template <class A>
   requires std::is_arithmetic_v<A> Dual(A x)
       : value(double(x)), derivative(0.0) {}  // NOLINT(google-explicit-constructor)
-  /// A constant of the inner scalar.
-  explicit Dual(const T& x) requires(!std::is_arithmetic_v<T>) : value(x), derivative(0.0) {}
+  /// A constant of an inner scalar, however deep.
+  template <class A>
+  requires(!std::is_arithmetic_v<A> && !std::same_as<A, Dual> &&
+           std::constructible_from<T, const A&>) explicit Dual(const A& x)
+      : value(x), derivative(0.0) {}
   Dual(T x, T d) : value(x), derivative(d) {}
 
   Dual& operator+=(const Dual& b) { return *this = *this + b; }

@@ -59,8 +59,10 @@ concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
 /// and, only when arrows (objects) are not Eigen matrices, `arrow_size`, `coordinates(g)`, `arrow<S>(coordinates)`
 /// (`object_size`, `object_coordinates(q)`, `object<S>(coordinates)`).
 /// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and, for speed,
-/// `seed` (the translations in closed form), a frame of the whole arrow (arrow_frame.hpp), `extend`, `nudge`, `chart`
-/// and `arrow_in_chart` (see below). Everything else is deduced.
+/// `seed` (the translations in closed form), a frame of the whole arrow (arrow_frame.hpp), `extend`, `nudge`, `chart`,
+/// `arrow_in_chart` and `bracket` (algebroid.hpp). For its geometry it supplies `displace_object` and
+/// `object_displacement` where its objects are not an open set of their coordinates, and `bisection` where tau does not
+/// reach every arrow (see below). Everything else is deduced.
 ///
 /// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
 template <class Derived, int Dimension> class LieGroupoid {
@@ -113,11 +115,11 @@ template <class Derived, int Dimension> class LieGroupoid {
   template <class A, class V> A extend(const A& g, const V& w) const {
     return compose(g, self().tau(self().target(g), w));
   }
-  /// g <- g tau(w) for a w of the size of round-off. Returns the part of w that the numbers in which g is stored were
+  /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that the numbers in which g is stored were
   /// too coarse to take.
   template <class A, class V> V nudge(A& g, const V& w) const {
     const A by = self().tau(self().target(g), w);
-    g = compose(g, by);
+    g = self().project(compose(g, by));
     return w - self().tau_inverse(by);
   }
 
@@ -131,6 +133,21 @@ template <class Derived, int Dimension> class LieGroupoid {
   /// groupoid knows a cheaper smooth chart of its alpha-fibres.
   template <class A> auto chart(const A& g) const { return self().tau_inverse(g); }
   template <class Q, class V> auto arrow_in_chart(const Q& q, const V& v) const { return self().tau(q, v); }
+
+  /// The local chart of the objects around q: the object at u, u in R^d, and its inverse; q itself at u = 0. By default
+  /// u is added to the coordinates of q, right where these are an open set of R^d; other groupoids supply both, and
+  /// `object_dimension` = d.
+  template <class Q, class U> auto displace_object(const Q& q, const U& u) const {
+    const auto x = coordinates_of_object(q);
+    return object_at<typename decltype(x)::Scalar>((x + u).eval());
+  }
+  template <class Q> auto object_displacement(const Q& q, const Q& r) const {
+    return (coordinates_of_object(r) - coordinates_of_object(q)).eval();
+  }
+
+  /// The arrow from q, near alpha(g), of a local bisection through g: alpha(b(q)) = q, b(alpha(g)) = g, beta o b a
+  /// local diffeomorphism, smooth in g and q, and the units where g is one ([G] A.1). By default tau(q, tau^{-1}(g)).
+  template <class A, class Q> A bisection(const A& g, const Q& q) const { return self().tau(q, self().tau_inverse(g)); }
 
   /// The left-invariant field X<-(g) = d/dt|0 g tau(t X) of X in A_{beta(g)}G, in arrow coordinates. [G] (1)
   template <class A, class V> auto left_invariant(const A& g, const V& x) const {
@@ -250,6 +267,15 @@ template <class Derived, int Dimension> class LieGroupoid {
     return coordinates.unaryExpr([](const auto& c) { return c.derivative; }).eval();
   }
 };
+
+/// The dimension of Q.
+template <class G> constexpr int object_dimension_of() {
+  if constexpr (requires { G::object_dimension; }) {
+    return G::object_dimension;
+  } else {
+    return G::object_coordinate_count();
+  }
+}
 
 template <class G> using ArrowOf = typename G::template Arrow<double>;
 template <class G> using ObjectOf = typename G::template Object<double>;

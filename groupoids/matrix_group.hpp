@@ -94,6 +94,12 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return columns<T>([&](const Matrix<T, N, N>& e) -> Matrix<T, N, N> { return g * e * inverse; });
   }
 
+  /// [x, y] = ad_x y, the commutator.
+  template <class S> static Algebra<S> bracket(const Vector<S, 0>&, const Algebra<S>& x, const Algebra<S>& y) {
+    return Derived::template ad<S>(x) * y;
+  }
+  template <class S> static Matrix<S, N, N> bisection(const Matrix<S, N, N>& g, const Vector<S, 0>&) { return g; }
+
   /// The arrow frame: g tau(u). The source displacement v is the frame's -Ad_{g^{-1}} v, because both retractions
   /// satisfy tau(v)^{-1} g = g tau(-Ad_{g^{-1}} v); and tau(u) tau(w) = tau(u + w + [u, w] / 2 + ...).
   static constexpr int arrow_dimension = Dimension;

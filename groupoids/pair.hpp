@@ -29,6 +29,14 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
   template <class S> static Arrow<S> tau(const Vector<S, N>& q, const Vector<S, N>& v) { return {q, q + v}; }
   template <class S> static Vector<S, N> tau_inverse(const Arrow<S>& g) { return g.target - g.source; }
 
+  template <class S> static Vector<S, N> bracket(const Vector<S, N>&, const Vector<S, N>&, const Vector<S, N>&) {
+    return Vector<S, N>::Constant(S(0.0));
+  }
+
+  template <class S> static Arrow<S> bisection(const Arrow<S>& g, const Vector<S, N>& q) {
+    return {q, q + (g.target - g.source)};
+  }
+
   template <class S> static Vector<S, arrow_size> coordinates(const Arrow<S>& g) {
     Vector<S, arrow_size> x;
     x << g.source, g.target;

@@ -1,6 +1,7 @@
 #pragma once
 /// The product of two or more groupoids.
 
+#include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/arrow_frame.hpp>
 
 #include <array>
@@ -70,6 +71,28 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
         [&]<std::size_t I>() { return std::get<I>(factor).arrow_in_chart(std::get<I>(q), segment<dimensions, I>(v)); });
   }
 
+  template <class S, class... Qs>
+  requires(HasAnalyticBracket<Gs>&&...) auto bracket(const std::tuple<Qs...>& q, const Vector<S, rank>& x,
+                                                     const Vector<S, rank>& y) const {
+    return concatenate<rank>(indexed([&]<std::size_t I>() {
+      return std::get<I>(factor).bracket(std::get<I>(q), segment<dimensions, I>(x), segment<dimensions, I>(y));
+    }));
+  }
+  template <class... As, class... Qs> auto bisection(const std::tuple<As...>& g, const std::tuple<Qs...>& q) const {
+    return map([](const auto& f, const auto& gi, const auto& qi) { return f.bisection(gi, qi); }, g, q);
+  }
+  /// The objects' chart: those of the factors, side by side.
+  static constexpr int object_dimension = (object_dimension_of<Gs>() + ...);
+  template <class... Qs, class U> auto displace_object(const std::tuple<Qs...>& q, const U& u) const {
+    return indexed([&]<std::size_t I>() {
+      return std::get<I>(factor).displace_object(std::get<I>(q), segment<object_dimensions, I>(u));
+    });
+  }
+  template <class... Qs> auto object_displacement(const std::tuple<Qs...>& q, const std::tuple<Qs...>& r) const {
+    return concatenate<object_dimension>(
+        map([](const auto& f, const auto& qi, const auto& ri) { return f.object_displacement(qi, ri); }, q, r));
+  }
+
   template <class... As> Vector<double, rank> coordinate_scale(const std::tuple<As...>& g) const {
     return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.coordinate_scale(gi); }, g));
   }
@@ -137,6 +160,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
  private:
   static constexpr std::array<int, factors> dimensions{Gs::dimension...};
   static constexpr std::array<int, factors> frames{arrow_dimension_of<Gs>()...};
+  static constexpr std::array<int, factors> object_dimensions{object_dimension_of<Gs>()...};
   static constexpr std::array<int, factors> arrow_sizes{Gs::arrow_coordinate_count()...};
   static constexpr std::array<int, factors> object_sizes{Gs::object_coordinate_count()...};
 

@@ -20,6 +20,10 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
   template <class S> static Vector<S, N> multiply(const Vector<S, N>& g, const Vector<S, N>& h) { return g + h; }
   template <class S> static Vector<S, N> tau(const Vector<S, 0>&, const Vector<S, N>& v) { return v; }
   template <class S> static Vector<S, N> tau_inverse(const Vector<S, N>& g) { return g; }
+  template <class S> static Vector<S, N> bracket(const Vector<S, 0>&, const Vector<S, N>&, const Vector<S, N>&) {
+    return Vector<S, N>::Constant(S(0.0));
+  }
+  template <class S> static Vector<S, N> bisection(const Vector<S, N>& g, const Vector<S, 0>&) { return g; }
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
   LAGROID_INLINE static Vector<M, N> seed(const Vector<T, N>& g) {
     constexpr T by_first = First == End::source ? -1 : 1;

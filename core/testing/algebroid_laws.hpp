@@ -1,0 +1,190 @@
+#pragma once
+/// The identities of a Lie algebroid as a test suite that any groupoid runs by naming itself.
+///
+///     EXPECT_TRUE(lagroid::laws::algebroid_laws<MyGroupoid>().holds());
+
+#include <lagroid/core/algebroid.hpp>
+#include <lagroid/core/testing/groupoid_laws.hpp>
+
+#include <Eigen/LU>
+
+namespace lagroid::laws {
+
+namespace detail {
+
+/// A random section, of second degree in the object coordinates z: a + (1 + w.z) B z.
+template <Groupoid G> struct RandomSection {
+  static constexpr int size = G::object_coordinate_count();
+  const G* groupoid;
+  Vector<double, G::dimension> constant;
+  Matrix<double, G::dimension, size> linear;
+  Vector<double, size> weight;
+
+  template <class Q> auto operator()(const Q& q) const {
+    const auto z = groupoid->coordinates_of_object(q);
+    using S = typename std::decay_t<decltype(z)>::Scalar;
+    Vector<S, G::dimension> out = constant.template cast<S>();
+    if constexpr (size > 0) {
+      const S factor = S(1.0) + weight.template cast<S>().dot(z);
+      out += (linear.template cast<S>() * z).eval() * factor;
+    }
+    return out;
+  }
+
+  static RandomSection draw(const G& groupoid, double large) {
+    RandomSection s{&groupoid, draw_vector<G::dimension>(large), {}, {}};
+    for (int i = 0; i < s.linear.size(); ++i) s.linear(i) = draw_uniform();
+    for (int i = 0; i < size; ++i) s.weight(i) = draw_uniform();
+    return s;
+  }
+};
+
+}  // namespace detail
+
+/// The laws of [G] Def. 2.7, 2.9 and Remarks 2.8, 2.10, for sections with random coefficients of second degree, and
+/// what the geometry asks of the groupoid: its chart of the objects and its local bisections ([G] A.1).
+template <Groupoid G, class DrawObject>
+LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const GroupoidLawOptions& options = {}) {
+  constexpr int n = G::dimension;
+  using Q = ObjectOf<G>;
+  using V = Vector<double, n>;
+  using Section = detail::RandomSection<G>;
+  using detail::relative_defect;
+  const LieAlgebroid<G> algebroid(groupoid);
+  const auto section = [&] { return Section::draw(groupoid, options.large); };
+  const auto arrow = [&] {
+    const auto g = groupoid.tau(draw_object(), V(draw_vector<n>(options.large)));
+    return groupoid.project(groupoid.multiply(g, groupoid.tau(groupoid.target(g), V(draw_vector<n>(options.large)))));
+  };
+  const auto bracket_of = [&](const auto& x, const auto& y) {
+    return [&algebroid, x, y](const auto& q) { return algebroid.bracket(q, x, y); };
+  };
+  // A random function on Q, as a vector of one component.
+  const auto function = [&] {
+    Vector<double, Section::size> w;
+    for (int i = 0; i < Section::size; ++i) w(i) = draw_uniform();
+    return [&groupoid, w](const auto& q) {
+      const auto z = groupoid.coordinates_of_object(q);
+      using S = typename std::decay_t<decltype(z)>::Scalar;
+      S f(1.0);
+      for (int i = 0; i < Section::size; ++i) f += z(i) * (S(w(i)) + z(i) * S(0.5));
+      return Vector<S, 1>(f);
+    };
+  };
+
+  LawReport report{G::name() + ", algebroid", {}};
+  const auto law = [&](const char* name, const auto& defect) {
+    report.laws.push_back(check_law(name, options.derivative, defect));
+  };
+  law("chart of the objects", [&] {
+    using U = Vector<double, object_dimension_of<G>()>;
+    const Q q = draw_object();
+    const U u = draw_vector<object_dimension_of<G>()>(options.local);
+    const Q r = groupoid.displace_object(q, u);
+    return worst({relative_defect(groupoid.object_displacement(q, r), u),
+                  relative_defect(groupoid.coordinates_of_object(groupoid.displace_object(q, U(U::Zero()))),
+                                  groupoid.coordinates_of_object(q))});
+  });
+  law("bisections", [&] {
+    // Through g, over their objects, from units to units, and with beta o b a local diffeomorphism.
+    const auto g = arrow();
+    const Q q = draw_object();
+    const auto coordinates = [&](const auto& a) { return groupoid.coordinates_of_arrow(a); };
+    const auto unit = groupoid.unit(groupoid.source(g));
+    constexpr int d = object_dimension_of<G>();
+    using D = Dual<double>;
+    Matrix<double, d, d> along;
+    for (int j = 0; j < d; ++j) {
+      Vector<D, d> u = Vector<D, d>::Constant(D(0.0));
+      u(j).derivative = 1;
+      const auto gd = groupoid.template cast<D>(g);
+      const auto moved = groupoid.target(groupoid.bisection(gd, groupoid.displace_object(groupoid.source(gd), u)));
+      const auto y = groupoid.object_displacement(groupoid.target(gd), moved);
+      for (int i = 0; i < d; ++i) along(i, j) = y(i).derivative;
+    }
+    double singular = 0;
+    if constexpr (d > 0) singular = std::abs(along.determinant()) > 1e-9 ? 0 : 1;
+    return worst({relative_defect(coordinates(groupoid.bisection(g, groupoid.source(g))), coordinates(g)),
+                  relative_defect(groupoid.coordinates_of_object(groupoid.source(groupoid.bisection(g, q))),
+                                  groupoid.coordinates_of_object(q)),
+                  relative_defect(coordinates(groupoid.bisection(unit, q)), coordinates(groupoid.unit(q))), singular});
+  });
+  law("bracket is bilinear", [&] {
+    const Q q = draw_object();
+    const auto x = section();
+    const auto y = section();
+    const auto z = section();
+    const double a = draw_uniform();
+    const auto sum = [&](const auto& r) { return (a * x(r) + y(r)).eval(); };
+    return worst(
+        {relative_defect(algebroid.bracket(q, sum, z), V(a * algebroid.bracket(q, x, z) + algebroid.bracket(q, y, z))),
+         relative_defect(algebroid.bracket(q, z, sum),
+                         V(a * algebroid.bracket(q, z, x) + algebroid.bracket(q, z, y)))});
+  });
+  law("bracket is antisymmetric", [&] {
+    const Q q = draw_object();
+    const auto x = section();
+    const auto y = section();
+    return relative_defect(algebroid.bracket(q, x, y), V(-algebroid.bracket(q, y, x)));
+  });
+  law("Jacobi identity", [&] {
+    const Q q = draw_object();
+    const auto x = section();
+    const auto y = section();
+    const auto z = section();
+    const V first = algebroid.bracket(q, x, bracket_of(y, z));
+    return relative_defect(V(algebroid.bracket(q, y, bracket_of(z, x)) + algebroid.bracket(q, z, bracket_of(x, y))),
+                           V(-first));
+  });
+  law("Leibniz rule with the anchor", [&] {
+    const Q q = draw_object();
+    const auto x = section();
+    const auto y = section();
+    const auto f = function();
+    const auto fy = [&](const auto& r) { return (y(r) * f(r)(0)).eval(); };
+    // rho(X)[f] through the anchor in object coordinates.
+    using D = Dual<double>;
+    const auto z = groupoid.coordinates_of_object(q);
+    const auto direction = algebroid.anchor(q, x(q));
+    Vector<D, Section::size> zd;
+    for (int i = 0; i < Section::size; ++i) zd(i) = D(z(i), direction(i));
+    const double slope = f(groupoid.template object_at<D>(zd))(0).derivative;
+    return relative_defect(algebroid.fields_bracket(q, x, fy),
+                           V(f(q)(0) * algebroid.fields_bracket(q, x, y) + slope * y(q)));
+  });
+  law("anchor is a homomorphism", [&] {
+    const Q q = draw_object();
+    const auto x = section();
+    const auto y = section();
+    const auto field = [&](const auto& s) {
+      return [&algebroid, s](const auto& r) { return algebroid.anchor(r, algebroid.value(s, r)); };
+    };
+    const auto bracket = (algebroid.along_anchor(q, x(q), field(y)) - algebroid.along_anchor(q, y(q), field(x))).eval();
+    return relative_defect(algebroid.anchor(q, algebroid.bracket(q, x, y)), bracket);
+  });
+  law("bracket is that of left-invariant fields", [&] {
+    const auto g = arrow();
+    const auto x = section();
+    const auto y = section();
+    return relative_defect(algebroid.left_fields_bracket(g, x, y),
+                           groupoid.left_invariant(g, algebroid.bracket(groupoid.target(g), x, y)));
+  });
+  law("bracket is minus that of right-invariant fields", [&] {
+    const auto g = arrow();
+    const auto x = section();
+    const auto y = section();
+    return relative_defect(algebroid.right_fields_bracket(g, x, y),
+                           (-groupoid.right_invariant(g, algebroid.bracket(groupoid.source(g), x, y))).eval());
+  });
+  return report;
+}
+
+/// The same for groupoids whose objects are vectors of R^n (or tuples of such), drawn at random.
+template <Groupoid G> LawReport algebroid_laws(const G& groupoid = {}, const GroupoidLawOptions& options = {}) {
+  constexpr int size = G::object_coordinate_count();
+  return algebroid_laws(
+      groupoid, [&] { return ObjectOf<G>(groupoid.template object_at<double>(draw_vector<size>(options.large))); },
+      options);
+}
+
+}  // namespace lagroid::laws

@@ -1,0 +1,55 @@
+#pragma once
+/// SO(3) on vectors and on directions: the action groupoids of heavy tops.
+
+#include <lagroid/groupoids/action.hpp>
+#include <lagroid/groupoids/so3.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace lagroid {
+
+/// R^3 with m R = R^T m: a vector fixed in space, seen from a body of attitude A_k = A_{k-1} R.
+struct RotatedVectors {
+  template <class S> using Point = Vector<S, 3>;
+  template <class S> static Vector<S, 3> act(const Vector<S, 3>& m, const Matrix<S, 3, 3>& r) {
+    return r.transpose() * m;
+  }
+  static std::string name() { return "R^3"; }
+};
+
+/// S^2, the unit vectors, with the same action. Chart around m: the central projection of the tangent plane, u -> m + B
+/// u normalised, with B an orthonormal basis of the plane.
+struct RotatedDirections {
+  template <class S> using Point = Vector<S, 3>;
+  static constexpr int dimension = 2;
+  template <class S> static Vector<S, 3> act(const Vector<S, 3>& m, const Matrix<S, 3, 3>& r) {
+    return r.transpose() * m;
+  }
+  template <class S> static Vector<S, 3> displace(const Vector<S, 3>& m, const Vector<S, 2>& u) {
+    using std::sqrt;
+    return (m + tangent_basis(m) * u) / sqrt(u(0) * u(0) + u(1) * u(1) + 1.0);
+  }
+  template <class S> static Vector<S, 2> displacement(const Vector<S, 3>& m, const Vector<S, 3>& r) {
+    return (tangent_basis(m).transpose() * r).eval() / m.dot(r);
+  }
+  template <class S> static Vector<S, 3> project(const Vector<S, 3>& m) {
+    using std::sqrt;
+    return m / sqrt(m.squaredNorm());
+  }
+  static std::string name() { return "S^2"; }
+
+ private:
+  /// e1 and e2 turned by the shortest rotation from +-e3 to m: smooth on both halves of the sphere (formula of Duff and
+  /// others, Building an Orthonormal Basis, Revisited, J. Comput. Graph. Tech. 6 (2017)).
+  template <class S> static Matrix<S, 3, 2> tangent_basis(const Vector<S, 3>& m) {
+    const double sign = value_of(m(2)) < 0 ? -1 : 1;
+    const S a = -1.0 / (m(2) + sign);
+    const S b = m(0) * m(1) * a;
+    Matrix<S, 3, 2> basis;
+    basis << m(0) * m(0) * a * sign + 1.0, b, b * sign, m(1) * m(1) * a + sign, m(0) * -sign, -m(1);
+    return basis;
+  }
+};
+
+}  // namespace lagroid
