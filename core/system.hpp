@@ -92,7 +92,7 @@ concept DiscreteSystem = Groupoid<typename Sys::GroupoidType> &&
 
 template <class Sys>
 concept HasAnalyticDerivatives = requires(const Sys& system, const Step<Sys>& step) {
-  system.two_sided(step.arrow, step.multipliers);
+  { system.two_sided(step.arrow, step.multipliers) } -> std::convertible_to<TwoSidedOf<Sys>>;
 };
 
 template <class Sys>
@@ -115,5 +115,20 @@ concept HasTimeStep = requires(Sys& system) {
   { system.h } -> std::convertible_to<double>;
   system.h = 1.0;
 };
+
+/// Whether every optional member that the system has is one that will be used: a member of the right name that is not
+/// const, or does not take or return what it should, would otherwise be passed over without a word.
+template <class Sys>
+inline constexpr bool optional_members_fit = (HasAnalyticDerivatives<Sys> || !requires { &Sys::two_sided; }) &&
+                                             (HasAnalyticGradients<Sys> || !requires { &Sys::gradients; }) &&
+                                             (HasBranch<Sys> || !requires { &Sys::admissible; }) &&
+                                             (HasFirstGuess<Sys> || !requires { &Sys::first_guess; }) &&
+                                             (HasTimeStep<Sys> || !requires { &Sys::h; });
+template <class Sys> constexpr void require_optional_members_to_fit() {
+  static_assert(
+      optional_members_fit<Sys>,
+      "two_sided, gradients, admissible, first_guess or h is there but does not fit (see System): is it const, "
+      "with the right arguments and result?");
+}
 
 }  // namespace lagroid

@@ -94,6 +94,26 @@ TEST(Derivatives, AnalyticOverrideIsUsedAndChecked) {
   EXPECT_TRUE(report.law("automatic derivatives").holds());
 }
 
+/// Derivatives by hand that could never be called, and a time step that is no number.
+struct NotConst : System<NotConst, Pair<1>> {
+  template <class S> S lagrangian(const PairArrow<S, 1>& g) const { return g.source.dot(g.target); }
+  TwoSided<1, 0> two_sided(const PairArrow<double, 1>&, const Multipliers&) { return {}; }
+};
+struct WrongResult : System<WrongResult, Pair<1>> {
+  template <class S> S lagrangian(const PairArrow<S, 1>& g) const { return g.source.dot(g.target); }
+  double gradients(const PairArrow<double, 1>&, const Multipliers&) const { return 0; }
+};
+struct ConstantStep : System<ConstantStep, Pair<1>> {
+  const double h = 1;
+  template <class S> S lagrangian(const PairArrow<S, 1>& g) const { return g.source.dot(g.target); }
+};
+TEST(Derivatives, OverridesThatWouldBePassedOverAreRefused) {
+  static_assert(optional_members_fit<PlateBall> && optional_members_fit<RigidBody> && optional_members_fit<Kepler>);
+  static_assert(!optional_members_fit<NotConst>);
+  static_assert(!optional_members_fit<WrongResult>);
+  static_assert(!optional_members_fit<ConstantStep>);
+}
+
 TEST(Derivatives, OneSidedHessiansAreSecondDerivativesOfTheRetraction) {
   PlateBall system;
   system.plate_rate = 0.8;
