@@ -115,8 +115,8 @@ template <class Derived, int Dimension> class LieGroupoid {
   template <class A, class V> A extend(const A& g, const V& w) const {
     return compose(g, self().tau(self().target(g), w));
   }
-  /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that the numbers in which g is stored were
-  /// too coarse to take.
+  /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that the numbers in which g is
+  /// stored were too coarse to take.
   template <class A, class V> V nudge(A& g, const V& w) const {
     const A by = self().tau(self().target(g), w);
     g = self().project(compose(g, by));

@@ -6,6 +6,14 @@
 
 namespace lagroid {
 
+/// The derivatives, row by row, of a vector of jets. (Of dynamic size, to spare the compiler.)
+template <class Jets> Eigen::MatrixXd jacobian(const Jets& y) {
+  Eigen::MatrixXd out(y.size(), Jets::Scalar::size);
+  for (int i = 0; i < y.size(); ++i)
+    for (int j = 0; j < out.cols(); ++j) out(i, j) = y(i).gradient(j);
+  return out;
+}
+
 /// The matrix of a canonical form: {x^a, P_a} = 1. Pi = [0 I; -I 0]; omega = dx ^ dP has the same entries.
 template <int Half> Matrix<double, 2 * Half, 2 * Half> canonical_tensor() {
   Matrix<double, 2 * Half, 2 * Half> j = Matrix<double, 2 * Half, 2 * Half>::Zero();

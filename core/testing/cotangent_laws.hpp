@@ -11,14 +11,6 @@ namespace lagroid::laws {
 
 namespace detail {
 
-/// The derivatives of a vector of jets, row by row. (Of dynamic size, to spare the compiler.)
-template <class Jets> Eigen::MatrixXd jacobian(const Jets& y) {
-  Eigen::MatrixXd out(y.size(), Jets::Scalar::size);
-  for (int i = 0; i < y.size(); ++i)
-    for (int j = 0; j < out.cols(); ++j) out(i, j) = y(i).gradient(j);
-  return out;
-}
-
 inline double matrix_defect(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) { return relative_defect(x, y); }
 
 }  // namespace detail
@@ -36,7 +28,6 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
   using V = Vector<double, n>;
   using W = Vector<double, size>;
   using J = Jet<double, 2 * size>;
-  using detail::jacobian;
   using detail::matrix_defect;
   using detail::relative_defect;
 

@@ -1,0 +1,181 @@
+#pragma once
+/// The Lagrangian submanifold Sigma_L of T*G that a system generates, and the linear maps its dynamics is made of.
+
+#include <lagroid/core/symplectic.hpp>
+#include <lagroid/core/system.hpp>
+
+#include <Eigen/QR>
+
+namespace lagroid {
+
+namespace detail {
+
+/// A point of A*G without its derivatives.
+template <class Cotangent, class Z> auto point_of(const Cotangent& cotangent, const Z& z) {
+  const auto c = cotangent.coordinates_of_object(z);
+  return cotangent.template object_at<double>(c.unaryExpr([](const auto& y) { return y.value; }).eval());
+}
+/// The derivatives of a point of A*G over jets, in the chart around its value.
+template <class Cotangent, class Z> Eigen::MatrixXd chart_derivatives(const Cotangent& cotangent, const Z& z) {
+  using S = typename decltype(z.momentum)::Scalar;
+  return jacobian(cotangent.object_displacement(cotangent.template cast_object<S>(point_of(cotangent, z)), z));
+}
+/// The Poisson tensor of A*G at z in that chart.
+template <Groupoid G, class Z> Eigen::MatrixXd poisson_in_chart(const G& groupoid, const Z& z) {
+  constexpr int n = G::dimension;
+  constexpr int d = object_dimension_of<G>();
+  constexpr int k = G::object_coordinate_count();
+  using D = Dual<double>;
+  const Eigen::MatrixXd ambient = poisson_tensor(groupoid, z.object, z.momentum);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(d + n, d + n);
+  out.bottomRightCorner(n, n) = ambient.bottomRightCorner(n, n);
+  const auto q = groupoid.template cast_object<D>(z.object);
+  const auto coordinates = groupoid.coordinates_of_object(z.object);
+  for (int i = 0; i < n; ++i) {
+    Vector<D, k> moved;
+    for (int a = 0; a < k; ++a) moved(a) = D(coordinates(a), ambient(a, k + i));
+    const auto u = groupoid.object_displacement(q, groupoid.template object_at<D>(moved));
+    for (int j = 0; j < d; ++j) {
+      out(j, d + i) = u(j).derivative;
+      out(d + i, j) = -u(j).derivative;
+    }
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// T_mu Sigma_L at mu = d(L + <lambda, phi>)(g), by a basis: its columns in canonical coordinates of T*G, and their
+/// images under T F- and T F+, in charts of A*G: object displacements, then momenta.
+struct SubmanifoldTangent {
+  Eigen::MatrixXd canonical;
+  Eigen::MatrixXd minus;
+  Eigen::MatrixXd plus;
+  Eigen::MatrixXd poisson_minus;  ///< the Poisson tensor of A*G at F-(mu), in that chart
+  Eigen::MatrixXd poisson_plus;   ///< and at F+(mu)
+};
+
+/// Sigma_L of (G, N, L) ([G] Theorem 3.1, 3.3): covectors that agree with dL on TN. N is cut out by the arrow
+/// constraints phi and, for object constraints C, by C o alpha and C o beta, each with its multipliers; so the
+/// dimension of Sigma_L is that of G.
+template <DiscreteSystem Sys> class GeneratedSubmanifold {
+ public:
+  using G = typename Sys::GroupoidType;
+  static constexpr int size = total_dimension_of<G>();
+  static constexpr int conditions = Sys::arrow_constraints + 2 * Sys::object_constraints;
+  template <class S> using Multipliers = Vector<S, conditions>;  ///< of phi, C o alpha, C o beta
+
+  explicit GeneratedSubmanifold(const Sys& system) : system_(system), cotangent_(system.groupoid) {}
+
+  /// (phi(g), C(alpha(g)), C(beta(g))).
+  template <class A> auto conditions_at(const A& g) const {
+    using S = typename decltype(system_.groupoid.coordinates_of_arrow(g))::Scalar;
+    Vector<S, conditions> c;
+    if constexpr (Sys::arrow_constraints > 0) c.template head<Sys::arrow_constraints>() = system_.constraint(g);
+    if constexpr (Sys::object_constraints > 0) {
+      c.template segment<Sys::object_constraints>(Sys::arrow_constraints) =
+          system_.object_constraint(system_.groupoid.source(g));
+      c.template tail<Sys::object_constraints>() = system_.object_constraint(system_.groupoid.target(g));
+    }
+    return c;
+  }
+
+  /// d(L + <lambda, conditions>)(g).
+  template <class S, class A>
+  typename CotangentGroupoid<G>::template Arrow<S> covector(const A& g, const Multipliers<S>& lambda) const {
+    const TangentBasis<G> basis(system_.groupoid);
+    Vector<S, size> values;
+    for (int i = 0; i < size; ++i) {
+      const auto v = basis.template vector<S>(g, i);
+      values(i) = system_.lagrangian(v).derivative;
+      const auto c = conditions_at(v);
+      for (int a = 0; a < conditions; ++a) values(i) += lambda(a) * c(a).derivative;
+    }
+    return {g, values};
+  }
+
+  /// The multipliers of a step of the dynamics: the object constraints at its target take none.
+  static Multipliers<double> multipliers(const Step<Sys>& step) {
+    Multipliers<double> lambda = Multipliers<double>::Zero();
+    lambda.template head<Sys::constraints>() = step.multipliers;
+    return lambda;
+  }
+
+  /// The tangent space at a step that satisfies the constraints (which must have independent derivatives there).
+  SubmanifoldTangent tangent(const Step<Sys>& step) const {
+    using J = Jet<double, size + conditions>;
+    const CotangentChart<G> chart(cotangent_, step.arrow);
+    Vector<J, size> x;
+    for (int i = 0; i < size; ++i) x(i) = J::variable(0, i);
+    Multipliers<J> lambda;
+    const Multipliers<double> at = multipliers(step);
+    for (int a = 0; a < conditions; ++a) lambda(a) = J::variable(at(a), size + a);
+    const auto arrow = chart.template arrow<J>(x);
+    const auto mu = covector<J>(arrow, lambda);
+
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(size + conditions, size + conditions);
+    if constexpr (conditions > 0) {
+      const Eigen::MatrixXd normals = jacobian(conditions_at(arrow)).leftCols(size).transpose();
+      const Eigen::MatrixXd q = normals.householderQr().householderQ();
+      directions.resize(size + conditions, size);
+      directions.setZero();
+      directions.topLeftCorner(size, size - conditions) = q.rightCols(size - conditions);
+      directions.bottomRightCorner(conditions, conditions).setIdentity();
+    }
+    SubmanifoldTangent out;
+    out.canonical = jacobian(chart.template canonical<J>(mu)) * directions;
+    const auto from = cotangent_.source(mu);
+    const auto to = cotangent_.target(mu);
+    out.minus = detail::chart_derivatives(cotangent_, from) * directions;
+    out.plus = detail::chart_derivatives(cotangent_, to) * directions;
+    out.poisson_minus = detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, from));
+    out.poisson_plus = detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, to));
+    return out;
+  }
+
+ private:
+  const Sys& system_;
+  CotangentGroupoid<G> cotangent_;
+};
+
+/// omega on the basis of T Sigma_L, its columns first scaled to length one: zero, because Sigma_L is Lagrangian.
+double lagrangian_defect(const SubmanifoldTangent& tangent);
+
+/// The ranks of T F- and T F+ on Sigma_L: equal, whatever they are ([G] Remark 2.17). Singular values of the
+/// equilibrated matrices below `threshold` times the largest count as zero.
+struct LegendreRanks {
+  long minus = 0;
+  long plus = 0;
+};
+LegendreRanks legendre_ranks(const SubmanifoldTangent& tangent, double threshold = 1e-9);
+
+/// How far the dynamics is from Poisson. Where F- is a local diffeomorphism, F = F+ o (F-)^{-1} satisfies
+/// DF Pi DF^T = Pi o F exactly when its graph is coisotropic in (A*G, -Pi) x (A*G, Pi), and in general the image of
+/// Sigma_L under (F-, F+) is ([G], after Remark 2.17): covectors that annihilate it are orthogonal to one another.
+/// Returns the largest product of two of length one, relative to Pi, all in coordinates in which the tangent maps are
+/// equilibrated; round-off up to the condition of the maps there.
+///
+/// With object constraints this says that the step is symplectic on the constrained phase space: among the annihilating
+/// covectors are the differentials of C at both ends, along whose Hamiltonian vector fields momenta are projected.
+double poisson_defect(const SubmanifoldTangent& tangent);
+
+/// The same for any map of A*G, say a step by another method: `map` takes a point (q, mu) over any scalar (DualPoint)
+/// to such a point.
+template <Groupoid G, class Map>
+double poisson_defect(const G& groupoid, const typename CotangentGroupoid<G>::template Object<double>& z,
+                      const Map& map) {
+  constexpr int size = total_dimension_of<G>();
+  using J = Jet<double, size>;
+  const CotangentGroupoid<G> cotangent(groupoid);
+  Vector<J, size> u;
+  for (int i = 0; i < size; ++i) u(i) = J::variable(0, i);
+  const auto image = map(cotangent.displace_object(cotangent.template cast_object<J>(z), u));
+  SubmanifoldTangent graph;
+  graph.minus = Eigen::MatrixXd::Identity(size, size);
+  graph.plus = detail::chart_derivatives(cotangent, image);
+  graph.poisson_minus = detail::poisson_in_chart(groupoid, z);
+  graph.poisson_plus = detail::poisson_in_chart(groupoid, detail::point_of(cotangent, image));
+  return poisson_defect(graph);
+}
+
+}  // namespace lagroid

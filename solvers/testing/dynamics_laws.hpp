@@ -1,0 +1,73 @@
+#pragma once
+/// What [G] says of the dynamics, as properties that any system runs by naming itself.
+
+#include <lagroid/core/lagrangian.hpp>
+#include <lagroid/core/reversed.hpp>
+#include <lagroid/core/testing/groupoid_laws.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+
+#include <memory>
+
+namespace lagroid::laws {
+
+/// At steps from random states: Sigma_L is Lagrangian ([G] Theorem 3.1), the discrete Legendre transforms are the
+/// source and target of T*G (Def. 3.3) and have equal rank (Theorem 2.16, Corollary 3.4, Remark 2.17), the step is a
+/// Poisson map (after Remark 2.17), and the system run backwards recovers the state.
+///
+/// `draw()` returns a State from which a step can be taken. `Submanifold` is GeneratedSubmanifold<Sys> or, to see the
+/// suite fail, a subclass with another tangent space.
+template <DiscreteSystem Sys, class Draw, class Submanifold = GeneratedSubmanifold<Sys>>
+LawReport dynamics_laws(const Sys& system, const Draw& draw, double tolerance = 1e-10) {
+  using G = typename Sys::GroupoidType;
+  const G& groupoid = system.groupoid;
+  const Submanifold submanifold(system);
+  const auto step_from = [&](const State<G>& state) {
+    Integrator<Sys> integrator(system, state, groupoid.unit(state.object), std::make_unique<NewtonStep<Sys>>());
+    if (!integrator.advance().converged()) throw std::runtime_error("the step from a drawn state was not solved");
+    return integrator.point().step;
+  };
+  const auto step = [&] { return step_from(draw()); };
+  LawReport report{"dynamics", {}};
+  const auto law = [&](const char* name, double bound, const auto& defect) {
+    report.laws.push_back(check_law(name, bound, defect));
+  };
+  law("Sigma_L is Lagrangian", tolerance, [&] { return lagrangian_defect(submanifold.tangent(step())); });
+  law("Legendre transforms are source and target", tolerance, [&] {
+    const Step<Sys> s = step();
+    const CotangentGroupoid<G> cotangent(groupoid);
+    const auto mu = submanifold.template covector<double>(s.arrow, Submanifold::multipliers(s));
+    return worst({detail::relative_defect(cotangent.source(mu).momentum, legendre_minus(system, s).momentum),
+                  detail::relative_defect(cotangent.target(mu).momentum, legendre_plus(system, s).momentum)});
+  });
+  law("Legendre transforms have equal rank", 0, [&] {
+    const LegendreRanks ranks = legendre_ranks(submanifold.tangent(step()));
+    return double(ranks.minus != ranks.plus);
+  });
+  law("the step is Poisson", tolerance, [&] { return poisson_defect(submanifold.tangent(step())); });
+  law("the step reverses", tolerance, [&] {
+    // Back from a guess off by a thousandth. Object constraints leave momenta free along their normals: compared are
+    // the arrows, and momenta where they are determined.
+    const Step<Sys> s = step();
+    const Reversed<Sys> reversed(system);
+    const auto end = legendre_plus(system, s);
+    const AlgebroidVector<G> off = 1e-3 * groupoid.tau_inverse(s.arrow);
+    StepSolution<Reversed<Sys>> back;
+    const auto inverse = groupoid.inverse(s.arrow);
+    back.step.arrow = groupoid.compose(inverse, groupoid.tau(groupoid.target(inverse), off));
+    back.step.multipliers = s.multipliers;
+    const auto found =
+        NewtonStep<Reversed<Sys>>().solve(reversed, {end.object, AlgebroidVector<G>(-end.momentum)}, back);
+    if (!found.converged()) return std::numeric_limits<double>::infinity();
+    double momentum = 0;
+    if constexpr (Sys::object_constraints == 0)
+      momentum = detail::relative_defect(AlgebroidVector<G>(-legendre_plus(reversed, back.step).momentum),
+                                         legendre_minus(system, s).momentum);
+    return worst({detail::relative_defect(groupoid.coordinates_of_arrow(groupoid.inverse(back.step.arrow)),
+                                          groupoid.coordinates_of_arrow(s.arrow)),
+                  momentum});
+  });
+  return report;
+}
+
+}  // namespace lagroid::laws

@@ -1,0 +1,152 @@
+// The Lagrangian submanifold of every system and the Poisson maps it generates; what is neither fails.
+#include <lagroid/solvers/testing/dynamics_laws.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulum.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace lagroid;
+
+namespace {
+
+State<PlateBall::GroupoidType> draw_plate_ball() {
+  State<PlateBall::GroupoidType> s;
+  std::get<0>(s.object) = laws::draw_vector<2>(1.0);
+  for (int i = 0; i < 5; ++i) s.momentum(i) = laws::draw_uniform();
+  return s;
+}
+
+TEST(DynamicsLaws, PlateBallInEveryForm) {
+  PlateBall system;
+  system.h = 0.1;
+  system.plate_rate = 0.8;
+  system.spin = 0.3;
+  for (const auto form : {RotationForm::trace, RotationForm::exponential, RotationForm::cayley}) {
+    system.rotation = form;
+    const auto report = laws::dynamics_laws(system, draw_plate_ball);
+    EXPECT_TRUE(report.holds()) << report;
+  }
+}
+
+TEST(DynamicsLaws, RigidBody) {
+  for (const auto rotation : {RotationMap::exponential, RotationMap::cayley}) {
+    RigidBody system;
+    system.h = 0.1;
+    system.rotation = rotation;
+    const auto report = laws::dynamics_laws(system, [] {
+      State<SO3> s;
+      s.momentum = laws::draw_vector<3>(2.0);
+      return s;
+    });
+    EXPECT_TRUE(report.holds()) << report;
+  }
+}
+
+TEST(DynamicsLaws, PointMasses) {
+  Kepler kepler;
+  const auto orbit = laws::dynamics_laws(kepler, [] {
+    const Eigen::Vector2d wobble(0.2 * laws::draw_uniform(), 0.2 * laws::draw_uniform());
+    return State<Pair<2>>{Eigen::Vector2d(1, 0) + wobble, Eigen::Vector2d(wobble(1), 1)};
+  });
+  EXPECT_TRUE(orbit.holds()) << orbit;
+  const auto swing = laws::dynamics_laws(Pendulum{}, [] {
+    return State<Pair<1>>{laws::draw_vector<1>(3.0), laws::draw_vector<1>(2.0)};
+  });
+  EXPECT_TRUE(swing.holds()) << swing;
+}
+
+TEST(DynamicsLaws, ObjectConstraints) {
+  const auto report = laws::dynamics_laws(SphericalPendulum{}, [] {
+    const Eigen::Vector3d q = (laws::draw_vector<3>(1.0) + Eigen::Vector3d(0.1, 0.2, -0.3)).normalized();
+    Eigen::Vector3d p(laws::draw_uniform(), laws::draw_uniform(), laws::draw_uniform());
+    return State<Pair<3>>{q, p - p.dot(q) * q};
+  });
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+/// q1 alone enters: the system is not regular.
+struct HalfBlind : System<HalfBlind, Pair<2>> {
+  template <class S> S lagrangian(const PairArrow<S, 2>& g) const {
+    return g.source(0) * g.target(0) + g.source(1) * g.source(1) * g.target(0);
+  }
+};
+TEST(LegendreRanks, AreEqualAlsoWhereTheyAreNotFull) {
+  const HalfBlind system;
+  const Step<HalfBlind> step{{Eigen::Vector2d(0.3, 0.7), Eigen::Vector2d(-1, 2)}, {}};
+  const auto tangent = GeneratedSubmanifold<HalfBlind>(system).tangent(step);
+  const auto ranks = legendre_ranks(tangent);
+  EXPECT_EQ(ranks.minus, ranks.plus);
+  EXPECT_EQ(ranks.minus, 3);
+  EXPECT_LT(lagrangian_defect(tangent), 1e-14);
+  EXPECT_LT(poisson_defect(tangent), 1e-13);
+}
+
+/// F+ with a thousandth of the momentum lost, as by friction; and covectors that no function generates.
+struct WithFriction : GeneratedSubmanifold<Kepler> {
+  using GeneratedSubmanifold::GeneratedSubmanifold;
+  SubmanifoldTangent tangent(const Step<Kepler>& step) const {
+    auto t = GeneratedSubmanifold::tangent(step);
+    t.plus.bottomRows(2) *= 0.999;
+    return t;
+  }
+};
+struct NotLagrangian : GeneratedSubmanifold<Kepler> {
+  using GeneratedSubmanifold::GeneratedSubmanifold;
+  SubmanifoldTangent tangent(const Step<Kepler>& step) const {
+    auto t = GeneratedSubmanifold::tangent(step);
+    t.canonical.row(4) += 1e-3 * t.canonical.row(1);
+    t.minus.row(0).swap(t.minus.row(1));
+    t.plus.row(3) = t.plus.row(2);
+    return t;
+  }
+};
+TEST(BrokenDynamics, FailsTheLawsItBreaks) {
+  const auto draw = [] { return State<Pair<2>>{{1, 0.2 * laws::draw_uniform()}, {0.1, 1}}; };
+  const auto rubbed = laws::dynamics_laws<Kepler, decltype(draw), WithFriction>(Kepler{}, draw);
+  EXPECT_FALSE(rubbed.law("the step is Poisson").holds()) << rubbed;
+  const auto twisted = laws::dynamics_laws<Kepler, decltype(draw), NotLagrangian>(Kepler{}, draw);
+  EXPECT_FALSE(twisted.law("Sigma_L is Lagrangian").holds()) << twisted;
+  EXPECT_FALSE(twisted.law("Legendre transforms have equal rank").holds()) << twisted;
+}
+
+/// An oscillator by Euler's two methods.
+TEST(PoissonDefect, TellsSymplecticMapsFromOthers) {
+  const Pair<1> line;
+  const CotangentGroupoid<Pair<1>>::Object<double> z{Vector<double, 1>(0.3), Vector<double, 1>(-0.8)};
+  const double h = 0.1;
+  const auto force = [](const auto& q) { return (q.array() * q.array() * q.array() * -1.0).matrix().eval(); };
+  const auto explicit_euler = [&](auto p) {
+    const auto q = p.object;
+    p.object += h * p.momentum;
+    p.momentum += h * force(q);
+    return p;
+  };
+  const auto symplectic_euler = [&](auto p) {
+    p.momentum += h * force(p.object);
+    p.object += h * p.momentum;
+    return p;
+  };
+  EXPECT_LT(poisson_defect(line, z, symplectic_euler), 1e-15);
+  EXPECT_GT(poisson_defect(line, z, explicit_euler), 1e-4);
+}
+
+/// Lie-Poisson: rotations of the body momentum are Poisson maps of so(3)*, other linear maps are not.
+TEST(PoissonDefect, OnTheDualOfALieAlgebra) {
+  const SO3 rotations;
+  const CotangentGroupoid<SO3>::Object<double> z{{}, Eigen::Vector3d(1, -2, 0.5)};
+  const Matrix<double, 3, 3> r = SO3::exp(Vector<double, 3>(0.3, 0.2, -1));
+  const auto by = [](const Matrix<double, 3, 3>& a) {
+    return [a](auto p) {
+      const Matrix<typename decltype(p.momentum)::Scalar, 3, 3> aj = a.cast<typename decltype(p.momentum)::Scalar>();
+      p.momentum = (aj * p.momentum).eval();
+      return p;
+    };
+  };
+  EXPECT_LT(poisson_defect(rotations, z, by(r)), 1e-14);
+  EXPECT_GT(poisson_defect(rotations, z, by(Matrix<double, 3, 3>(1.01 * r))), 1e-3);
+}
+
+}  // namespace
