@@ -1,20 +1,114 @@
 #pragma once
-/// Noether symmetries, arrow by arrow. [G] Def. 4.8
+/// Noether symmetries of a discrete constrained Lagrangian system and their constants of the motion. [G] 4.2
 
+#include <lagroid/core/quantity.hpp>
 #include <lagroid/core/two_sided.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace lagroid {
 
-/// <F+(g, lambda), X(beta(g))> - <F-(g, lambda), X(alpha(g))>: zero on Sigma_L when the section X of AG is a Noether
-/// symmetry with f = 0, and then <mu, X> is conserved by the dynamics ([G] Theorem 4.9).
-/// `section(q)` returns X(q) in the basis of A_qG.
-template <DiscreteSystem Sys, class Section>
-double noether_defect(const Sys& system, const Step<Sys>& step, const Section& section) {
-  const auto d = two_sided(system, step.arrow, step.multipliers);
-  return d.target_gradient.dot(section(system.groupoid.target(step.arrow))) +
-         d.source_gradient.dot(section(system.groupoid.source(step.arrow)));
+/// A candidate: a section X of AG and a function f on Q. It is a Noether symmetry ([G] Def. 4.8) when, on Sigma_L,
+///
+///     <F-(g, lambda), X(alpha(g))> + f(alpha(g)) = <F+(g, lambda), X(beta(g))> + f(beta(g)).
+///
+/// With f = 0 the system is invariant under X, else quasi-invariant; either way <mu, X(q)> + f(q) is a constant of the
+/// motion (Theorem 4.9).
+template <class Sys> struct Symmetry {
+  using G = typename Sys::GroupoidType;
+  using Section = std::function<AlgebroidVector<G>(const ObjectOf<G>&)>;
+  using Function = std::function<double(const ObjectOf<G>&)>;
+
+  Symmetry(std::string name_, Section section_, Function boundary_term_ = nullptr)
+      : name(std::move(name_)), section(std::move(section_)), boundary_term(std::move(boundary_term_)) {}
+
+  std::string name;
+  Section section;         ///< X(q), in the basis of A_qG
+  Function boundary_term;  ///< f; zero where null
+
+  double f(const ObjectOf<G>& q) const { return boundary_term ? boundary_term(q) : 0.0; }
+  /// <mu, X(q)> + f(q).
+  double momentum(const State<G>& z) const { return z.momentum.dot(section(z.object)) + f(z.object); }
+  /// |<mu, X(q)>| + |f(q)|, component by component: the round-off of the momentum is relative to this.
+  double size(const State<G>& z) const {
+    return z.momentum.cwiseAbs().dot(section(z.object).cwiseAbs()) + std::abs(f(z.object));
+  }
+  /// The constant of the motion, for the ledger.
+  Quantity<Sys> quantity() const {
+    return {name,
+            {name},
+            Promise::conserved,
+            false,
+            [s = *this](const TrajectoryPoint<Sys>& p, double* out) { *out = s.momentum(p.state); },
+            [s = *this](const TrajectoryPoint<Sys>& p) { return s.size(p.state); }};
+  }
+};
+
+/// The difference of the two sides of Def. 4.8 at a point of Sigma_L, relative to the size of their terms; not a number
+/// where these are not.
+template <DiscreteSystem Sys>
+double noether_defect(const Sys& system, const Step<Sys>& step, const Symmetry<Sys>& symmetry) {
+  const auto minus = legendre_minus(system, step);
+  const auto plus = legendre_plus(system, step);
+  const double size = symmetry.size(minus) + symmetry.size(plus);
+  const double difference = std::abs(symmetry.momentum(plus) - symmetry.momentum(minus));
+  return difference == 0 ? 0 : difference / size;
+}
+
+enum class SymmetryKind { symmetric, quasi_symmetric, none };
+
+constexpr std::string_view to_string(SymmetryKind kind) {
+  switch (kind) {
+    case SymmetryKind::symmetric:
+      return "symmetric";
+    case SymmetryKind::quasi_symmetric:
+      return "quasi-symmetric";
+    case SymmetryKind::none:
+      return "not a symmetry";
+  }
+  return "unknown";
+}
+
+/// What a candidate turned out to be, and the worst defect over the samples. For one that is quasi-symmetric
+/// `boundary_defect` is the worst defect without f.
+struct SymmetryVerdict {
+  SymmetryKind kind = SymmetryKind::none;
+  double defect = std::numeric_limits<double>::infinity();
+  double boundary_defect = 0;
+};
+
+/// Asks points of Sigma_L: `samples` must satisfy the constraints, and should be many and generic, because a candidate
+/// that passes at them is believed. None is no symmetry.
+template <DiscreteSystem Sys>
+SymmetryVerdict examine(const Sys& system, const Symmetry<Sys>& symmetry, std::span<const Step<Sys>> samples,
+                        double tolerance = 1e-10) {
+  if (samples.empty()) return {};
+  const auto worst_defect = [&](const Symmetry<Sys>& candidate) {
+    double largest = 0;
+    for (const auto& step : samples) {
+      const double defect = noether_defect(system, step, candidate);
+      largest = std::isnan(defect) ? std::numeric_limits<double>::infinity() : std::max(largest, defect);
+    }
+    return largest;
+  };
+  SymmetryVerdict verdict;
+  verdict.defect = worst_defect(symmetry);
+  Symmetry<Sys> without = symmetry;
+  without.boundary_term = nullptr;
+  verdict.boundary_defect = worst_defect(without);
+  if (verdict.boundary_defect <= tolerance && verdict.defect <= tolerance) {
+    verdict.kind = SymmetryKind::symmetric;
+  } else if (verdict.defect <= tolerance) {
+    verdict.kind = SymmetryKind::quasi_symmetric;
+  }
+  return verdict;
 }
 
 }  // namespace lagroid

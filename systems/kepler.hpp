@@ -1,6 +1,7 @@
 #pragma once
 /// The planar Kepler problem.
 
+#include <lagroid/core/noether.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
@@ -18,18 +19,11 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
     return S(-strength) / sqrt(q.squaredNorm());
   }
 
-  static double angular_momentum(const State<Pair<2>>& s) {
-    return s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0);
+  /// Rotation about the centre.
+  std::vector<Symmetry<Kepler>> symmetries() const {
+    return {{"angular momentum", [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); }}};
   }
-  std::vector<Quantity<Kepler>> quantities() const {
-    return {energy_quantity(),
-            {"angular momentum",
-             {"L"},
-             Promise::conserved,
-             false,
-             [](const TrajectoryPoint<Kepler>& p, double* out) { *out = angular_momentum(p.state); },
-             [](const TrajectoryPoint<Kepler>& p) { return p.state.object.norm() * p.state.momentum.norm(); }}};
-  }
+  std::vector<Quantity<Kepler>> quantities() const { return {energy_quantity(), symmetries()[0].quantity()}; }
 };
 
 LAGROID_STEPS(extern template, Kepler);

@@ -115,6 +115,19 @@ State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& s
   return out;
 }
 
+std::vector<Symmetry<PlateBall>> PlateBall::symmetries() const {
+  using Fibre = AlgebroidVector<GroupoidType>;
+  std::vector<Symmetry<PlateBall>> all{{"J = x py - y px - M3", [](const ObjectOf<GroupoidType>& object) {
+                                          const auto& q = std::get<0>(object);
+                                          return Fibre(-q(1), q(0), 0, 0, -1);
+                                        }}};
+  if (plate_rate == 0) {
+    all.push_back({"px", [](const ObjectOf<GroupoidType>&) { return Fibre(Fibre::Unit(0)); }});
+    all.push_back({"py", [](const ObjectOf<GroupoidType>&) { return Fibre(Fibre::Unit(1)); }});
+  }
+  return all;
+}
+
 std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
   using Point = TrajectoryPoint<PlateBall>;
   // Momenta are exchanged between translation and rotation: each is rounded relative to all of them.
@@ -131,17 +144,11 @@ std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
                    spatial = std::get<1>(p.configuration) * p.state.momentum.tail<3>();
                  },
                  [momentum, r = radius](const Point& p) { return r * momentum(p); }});
-  all.push_back(
-      {"J = x py - y px - M3",
-       {"J"},
-       Promise::conserved,
-       false,
-       [](const Point& p, double* out) {
-         const auto& q = std::get<0>(p.state.object);
-         const auto& mu = p.state.momentum;
-         *out = q(0) * mu(1) - q(1) * mu(0) - mu(4);
-       },
-       [momentum, r = radius](const Point& p) { return (std::get<0>(p.state.object).norm() + r) * momentum(p); }});
+  Quantity<PlateBall> turning = symmetries().front().quantity();
+  turning.size = [momentum, r = radius](const Point& p) {
+    return (std::get<0>(p.state.object).norm() + r) * momentum(p);
+  };
+  all.push_back(std::move(turning));
   if (plate_rate == 0)
     all.push_back({"translational momentum",
                    {"px", "py"},

@@ -1,7 +1,7 @@
 #pragma once
 /// Optimal control of a ball that rolls on a rotating plate. [G] 6.2
 
-#include <lagroid/core/quantity.hpp>
+#include <lagroid/core/noether.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/so3.hpp>
@@ -92,6 +92,8 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// Returns the state and updates `attitude`.
   State<GroupoidType> reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude, double t) const;
 
+  /// Turning the table and all on it about its centre; with the plate at rest, moving them.
+  std::vector<Symmetry<PlateBall>> symmetries() const;
   std::vector<Quantity<PlateBall>> quantities() const;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The spherical pendulum, as R^3 with an object constraint.
 
+#include <lagroid/core/noether.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
@@ -24,17 +25,13 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   /// The continuous solution after time t: p' = -m g e3 + s q with s such that the rod keeps its length.
   State<Pair<3>> reference(const State<Pair<3>>& start, double t) const;
 
-  static double vertical_angular_momentum(const State<Pair<3>>& s) {
-    return s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0);
+  /// Rotation about the vertical.
+  std::vector<Symmetry<SphericalPendulum>> symmetries() const {
+    return {
+        {"vertical angular momentum", [](const Vector<double, 3>& q) { return Vector<double, 3>(-q(1), q(0), 0); }}};
   }
   std::vector<Quantity<SphericalPendulum>> quantities() const {
-    return {
-        energy_quantity(),
-        {"vertical angular momentum",
-         {"Jz"},
-         Promise::conserved,
-         false,
-         [](const TrajectoryPoint<SphericalPendulum>& p, double* out) { *out = vertical_angular_momentum(p.state); }}};
+    return {energy_quantity(), symmetries()[0].quantity()};
   }
 };
 

@@ -1,7 +1,6 @@
 // The two-sided derivative of every system, against nested dual numbers; a wrong analytic one is caught.
 #include "draws.hpp"
 
-#include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/derivative_laws.hpp>
 #include <lagroid/groupoids/se2.hpp>
 #include <lagroid/groupoids/se3.hpp>
@@ -173,15 +172,6 @@ TEST(SecondDerivatives, OnePassIsThreePasses) {
   expect_one_pass(Generic<SE2>());
   expect_one_pass(Generic<SpecialEuclidean3<Retraction::cayley>>());
   expect_one_pass(Generic<Product<SE2, VectorGroup<2>, Pair<1>>>());
-}
-
-TEST(Noether, DefectVanishesForSymmetriesAndOnlyForThem) {
-  Kepler system;
-  const auto rotation = [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); };
-  const auto translation = [](const Vector<double, 2>&) { return Vector<double, 2>(1, 0); };
-  const Step<Kepler> step{{{0.7, 0.4}, {0.72, 0.45}}, {}};
-  EXPECT_LT(std::abs(noether_defect(system, step, rotation)), 1e-14);
-  EXPECT_GT(std::abs(noether_defect(system, step, translation)), 1e-4);
 }
 
 }  // namespace

@@ -1,46 +1,83 @@
 #pragma once
-/// Momentum conservation as a property that any system with `quantities()` runs by naming itself.
+/// Momentum conservation as a property that any system runs by naming itself.
 
+#include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 namespace lagroid::laws {
+
+namespace detail {
+
+template <DiscreteSystem Sys>
+Integrator<Sys> newton_integrator(const Sys& system, const State<typename Sys::GroupoidType>& start) {
+  return Integrator<Sys>(system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>());
+}
+
+/// The largest change of a quantity over `steps` steps, relative to its size; infinite if a step fails.
+template <DiscreteSystem Sys>
+double drift(const Sys& system, const Quantity<Sys>& quantity, const State<typename Sys::GroupoidType>& start,
+             int steps) {
+  auto integrator = newton_integrator(system, start);
+  std::vector<double> first(quantity.components.size());
+  std::vector<double> now(quantity.components.size());
+  double size = 1e-3;
+  double largest = 0;
+  for (int k = 0; k <= steps; ++k) {
+    if (k > 0 && !integrator.advance().converged()) return std::numeric_limits<double>::infinity();
+    if (k == 0 && quantity.needs_step) continue;
+    quantity.evaluate(integrator.point(), now.data());
+    if (k == (quantity.needs_step ? 1 : 0)) first = now;
+    double norm = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      largest = worst({largest, std::abs(now[i] - first[i])});
+      norm += now[i] * now[i];
+    }
+    size = std::max({size, std::sqrt(norm), quantity.size ? quantity.size(integrator.point()) : 0.0});
+  }
+  return largest / size;
+}
+
+}  // namespace detail
+
+/// A point of Sigma_L: the first step from a state. Throws std::runtime_error where it is not solved.
+template <DiscreteSystem Sys> Step<Sys> step_from(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  auto integrator = detail::newton_integrator(system, state);
+  if (!integrator.advance().converged()) throw std::runtime_error("the step from a drawn state was not solved");
+  return integrator.point().step;
+}
 
 /// For random initial states: every quantity promised as conserved stays where it began over `steps` steps, within
 /// `tolerance` relative to its size. `draw()` returns a State; a step that fails counts as a defect of infinity.
 template <DiscreteSystem Sys, class Draw>
 LawReport momentum_laws(const Sys& system, const Draw& draw, int steps = 50, double tolerance = 1e-12) {
-  using G = typename Sys::GroupoidType;
   LawReport report{"conserved quantities", {}};
   for (const auto& quantity : system.quantities()) {
     if (quantity.promise != Promise::conserved) continue;
-    report.laws.push_back(check_law(quantity.name, tolerance, [&] {
-      const State<G> start = draw();
-      Integrator<Sys> integrator(system, start, system.groupoid.unit(start.object),
-                                 std::make_unique<NewtonStep<Sys>>());
-      std::vector<double> first(quantity.components.size());
-      std::vector<double> now(quantity.components.size());
-      double size = 1e-3;
-      double largest = 0;
-      for (int k = 0; k <= steps; ++k) {
-        if (k > 0 && !integrator.advance().converged()) return std::numeric_limits<double>::infinity();
-        if (k == 0 && quantity.needs_step) continue;
-        quantity.evaluate(integrator.point(), now.data());
-        if (k == (quantity.needs_step ? 1 : 0)) first = now;
-        double norm = 0;
-        for (std::size_t i = 0; i < now.size(); ++i) {
-          largest = worst({largest, std::abs(now[i] - first[i])});
-          norm += now[i] * now[i];
-        }
-        size = std::max({size, std::sqrt(norm), quantity.size ? quantity.size(integrator.point()) : 0.0});
-      }
-      return largest / size;
-    }));
+    report.laws.push_back(
+        check_law(quantity.name, tolerance, [&] { return detail::drift(system, quantity, draw(), steps); }));
+  }
+  return report;
+}
+
+/// Noether's theorem ([G] Theorem 4.9) for declared symmetries: each is one at the steps from random states (Def. 4.8),
+/// and its momentum is conserved along random trajectories.
+template <DiscreteSystem Sys, class Draw>
+LawReport noether_laws(const Sys& system, const std::vector<Symmetry<Sys>>& symmetries, const Draw& draw,
+                       int steps = 50, double tolerance = 1e-12) {
+  LawReport report{"Noether symmetries", {}};
+  for (const auto& symmetry : symmetries) {
+    report.laws.push_back(check_law(symmetry.name + " is a symmetry", tolerance,
+                                    [&] { return noether_defect(system, step_from(system, draw()), symmetry); }));
+    report.laws.push_back(check_law(symmetry.name + " is conserved", tolerance,
+                                    [&] { return detail::drift(system, symmetry.quantity(), draw(), steps); }));
   }
   return report;
 }
