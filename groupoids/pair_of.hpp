@@ -1,0 +1,85 @@
+#pragma once
+/// The pair groupoid G x G => G of a matrix group.
+
+#include <lagroid/core/algebroid.hpp>
+#include <lagroid/groupoids/pair.hpp>
+
+#include <string>
+
+namespace lagroid {
+
+/// An arrow from one group element to another.
+template <class Element> struct ElementPair {
+  Element source;
+  Element target;
+};
+
+/// Arrows: pairs (a, b) of elements of `Group`; (a, b)(b, c) = (a, c). Algebroid: TG, left-trivialised, so that
+/// constant sections are the group's left-invariant fields; anchor x -> a hat(x). Retraction tau_a(v) = (a, a tau(v)).
+/// Memory: source, then target.
+template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimension> {
+  static constexpr int rank = Group::dimension;
+  static constexpr int object_dimension = rank;
+  template <class S> using Object = typename Group::template Arrow<S>;
+  template <class S> using Arrow = ElementPair<Object<S>>;
+  static constexpr int arrow_size = 2 * Group::arrow_coordinate_count();
+
+  [[no_unique_address]] Group group;
+
+  template <class E> static E source(const ElementPair<E>& g) { return g.source; }
+  template <class E> static E target(const ElementPair<E>& g) { return g.target; }
+  template <class E> static ElementPair<E> unit(const E& a) { return {a, a}; }
+  template <class E> static ElementPair<E> inverse(const ElementPair<E>& g) { return {g.target, g.source}; }
+  template <class E> static ElementPair<E> multiply(const ElementPair<E>& g, const ElementPair<E>& h) {
+    return {g.source, h.target};
+  }
+  template <class E, class S> ElementPair<E> tau(const E& a, const Vector<S, rank>& v) const {
+    return {a, displace_object(a, v)};
+  }
+  template <class E> auto tau_inverse(const ElementPair<E>& g) const { return object_displacement(g.source, g.target); }
+  template <class E, class S> auto bracket(const E&, const Vector<S, rank>& x, const Vector<S, rank>& y) const {
+    return group.bracket(Vector<S, 0>(), x, y);
+  }
+  /// Translation from the left.
+  template <class E> ElementPair<E> bisection(const ElementPair<E>& g, const E& a) const {
+    return {a, group.multiply(a, quotient(g))};
+  }
+  template <class E, class S> E displace_object(const E& a, const Vector<S, rank>& v) const {
+    return group.multiply(a, group.tau(Vector<S, 0>(), v));
+  }
+  template <class E> auto object_displacement(const E& a, const E& b) const {
+    return group.tau_inverse(quotient(ElementPair<E>{a, b}));
+  }
+  template <class E> ElementPair<E> project(const ElementPair<E>& g) const {
+    return {group.project(g.source), group.project(g.target)};
+  }
+  template <class E, class V> ElementPair<E> extend(const ElementPair<E>& g, const V& w) const {
+    return {g.source, group.extend(g.target, w)};
+  }
+  template <class E, class V> V nudge(ElementPair<E>& g, const V& w) const { return group.nudge(g.target, w); }
+  template <class E> auto chart(const ElementPair<E>& g) const { return group.chart(quotient(g)); }
+
+  /// a^{-1} b, the morphism to the group.
+  template <class E> E quotient(const ElementPair<E>& g) const {
+    return group.multiply(group.inverse(g.source), g.target);
+  }
+  template <class E, class V> ElementPair<E> arrow_in_chart(const E& a, const V& v) const {
+    return {a, group.multiply(a, group.arrow_in_chart(Vector<typename V::Scalar, 0>(), v))};
+  }
+
+  template <class E> auto coordinates(const ElementPair<E>& g) const {
+    const auto a = group.coordinates_of_arrow(g.source);
+    Vector<typename decltype(a)::Scalar, arrow_size> x;
+    x << a, group.coordinates_of_arrow(g.target);
+    return x;
+  }
+  template <class S, class V> Arrow<S> arrow(const V& x) const {
+    constexpr int half = arrow_size / 2;
+    return {group.template arrow_at<S>(x.template head<half>().eval()),
+            group.template arrow_at<S>(x.template tail<half>().eval())};
+  }
+
+  static std::string name() { return "Pair(" + Group::name() + ")"; }
+};
+
+}  // namespace lagroid

@@ -1,0 +1,144 @@
+// Morphisms, reduction and reconstruction; maps that are no morphisms and systems that do not reduce are found out.
+#include <lagroid/core/testing/algebroid_laws.hpp>
+#include <lagroid/core/testing/morphism_laws.hpp>
+#include <lagroid/groupoids/morphisms.hpp>
+#include <lagroid/groupoids/rotated.hpp>
+#include <lagroid/solvers/testing/reduction_laws.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+
+#include "draws.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace lagroid;
+
+namespace {
+
+Matrix<double, 3, 3> draw_attitude() { return SO3::exp(laws::draw_vector<3>(2.0)); }
+laws::GroupoidLawOptions moderate() {
+  laws::GroupoidLawOptions o;
+  o.large = 1.5;
+  return o;
+}
+
+TEST(PairOfAGroup, IsAGroupoidWithItsAlgebroid) {
+  const auto axioms = laws::groupoid_laws(PairOf<SO3>{}, draw_attitude, moderate());
+  EXPECT_TRUE(axioms.holds()) << axioms;
+  const auto algebroid = laws::algebroid_laws(PairOf<SO3>{}, draw_attitude, moderate());
+  EXPECT_TRUE(algebroid.holds()) << algebroid;
+}
+
+TEST(MorphismLaws, HoldForThoseOfTheLibrary) {
+  const auto quotient = laws::morphism_laws(LeftQuotient<SO3>{}, draw_attitude, moderate());
+  EXPECT_TRUE(quotient.holds()) << quotient;
+  const auto difference = laws::morphism_laws<Difference<2>>();
+  EXPECT_TRUE(difference.holds()) << difference;
+  const auto acting = laws::morphism_laws<Acting<SO3, RotatedVectors>>({}, moderate());
+  EXPECT_TRUE(acting.holds()) << acting;
+  const auto projection = laws::morphism_laws<Projection<1, Pair<2>, SO3>>({}, moderate());
+  EXPECT_TRUE(projection.holds()) << projection;
+  const auto product = laws::morphism_laws<ProductMorphism<Difference<2>, IdentityMorphism<SO3>>>({}, moderate());
+  EXPECT_TRUE(product.holds()) << product;
+}
+
+/// b a^{-1}, which reverses products, and a map that does not add lengths.
+struct WrongQuotient : Morphism<WrongQuotient, PairOf<SO3>, SO3> {
+  template <class E> E operator()(const ElementPair<E>& g) const {
+    return this->to.multiply(g.target, this->to.inverse(g.source));
+  }
+};
+struct Stretched : Morphism<Stretched, Pair<1>, VectorGroup<1>> {
+  template <class S> Vector<S, 1> operator()(const PairArrow<S, 1>& g) const {
+    const Vector<S, 1> d = g.target - g.source;
+    return d * (d(0) * 0.01 + 1.0);
+  }
+};
+TEST(BrokenMorphism, IsFoundOut) {
+  const auto wrong = laws::morphism_laws(WrongQuotient{}, draw_attitude, moderate());
+  EXPECT_FALSE(wrong.law("products").holds()) << wrong;
+  EXPECT_FALSE(wrong.law("left-invariant fields").holds()) << wrong;
+  const auto stretched = laws::morphism_laws<Stretched>();
+  EXPECT_FALSE(stretched.law("products").holds()) << stretched;
+  EXPECT_FALSE(stretched.law("units and inverses").holds()) << stretched;
+}
+
+RigidBody body() {
+  RigidBody b;
+  b.h = 0.05;
+  return b;
+}
+
+TEST(Reduction, RigidBodyFromAttitudesToBodyMomenta) {
+  const LeftQuotient<SO3> phi;
+  const PulledBack<LeftQuotient<SO3>, RigidBody> full(body());
+  const auto morphism = laws::system_morphism_laws(phi, full, body(), [&] {
+    using Full = PulledBack<LeftQuotient<SO3>, RigidBody>;
+    return Step<Full>{full.groupoid.tau(draw_attitude(), laws::draw_vector<3>(0.5)), {}};
+  });
+  EXPECT_TRUE(morphism.holds()) << morphism;
+  const auto report =
+      laws::reduction_laws(phi, full, body(), [] { return std::pair(draw_attitude(), laws::draw_vector<3>(1.5)); });
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+TEST(Reduction, RigidBodyFromTheActionGroupoid) {
+  using Phi = Acting<SO3, RotatedVectors>;
+  const PulledBack<Phi, RigidBody> full(body());
+  const auto report = laws::reduction_laws(
+      Phi{}, full, body(), [] { return std::pair(laws::draw_vector<3>(1.0), laws::draw_vector<3>(1.5)); });
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+/// The plate-ball system on the plate at rest, without the point of contact: on the group R^2 x SO(3), in the trace
+/// form
+/// ([G] (8)).
+struct ReducedPlateBall : System<ReducedPlateBall, Product<VectorGroup<2>, SO3>, 3> {
+  double h = 0.05;
+  double radius = 1;
+  double spin = 0;
+  template <class S> S lagrangian(const Arrow<S>& g) const { return std::get<0>(g).squaredNorm() * (0.5 / h); }
+  template <class S> Vector<S, 3> constraint(const Arrow<S>& g) const {
+    const auto& [d, a] = g;
+    const Vector<S, 3> w = SO3::vee(a);
+    return {d(1) + w(0) * radius, d(0) - w(1) * radius, S(h * spin) - w(2)};
+  }
+};
+using PlateMorphism = ProductMorphism<Difference<2>, IdentityMorphism<SO3>>;
+
+TEST(Reduction, PlateBallByTranslations) {
+  PlateBall full;
+  full.h = 0.05;
+  full.radius = 0.8;
+  full.spin = 0.3;
+  ReducedPlateBall reduced;
+  reduced.radius = full.radius;
+  reduced.spin = full.spin;
+  const auto morphism =
+      laws::system_morphism_laws(PlateMorphism{}, full, reduced, [&] { return draw_step(full, 0.3); });
+  EXPECT_TRUE(morphism.holds()) << morphism;
+  const auto report = laws::reduction_laws(PlateMorphism{}, full, reduced, [] {
+    Vector<double, 5> mu;
+    for (double& x : mu) x = laws::draw_uniform();
+    return std::pair(std::tuple(laws::draw_vector<2>(2.0), Vector<double, 0>()), mu);
+  });
+  EXPECT_TRUE(report.holds()) << report;
+  // On the turning plate translations are no symmetry.
+  full.plate_rate = 0.4;
+  const auto turning = laws::system_morphism_laws(PlateMorphism{}, full, reduced, [&] { return draw_step(full, 0.3); });
+  EXPECT_FALSE(turning.law("Lagrangians and constraints").holds()) << turning;
+  EXPECT_FALSE(turning.law("Legendre transforms are related").holds()) << turning;
+}
+
+TEST(Reduction, OfAnotherBodyIsFoundOut) {
+  RigidBody other = body();
+  other.inertia(0) = 1.001;
+  const PulledBack<LeftQuotient<SO3>, RigidBody> full(body());
+  const auto report = laws::reduction_laws(LeftQuotient<SO3>{}, full, other,
+                                           [] { return std::pair(draw_attitude(), Vector<double, 3>(1, 0.5, -1)); });
+  EXPECT_FALSE(report.law("images of arrows").holds()) << report;
+  EXPECT_FALSE(report.law("related momenta").holds()) << report;
+  EXPECT_FALSE(report.law("reconstruction").holds()) << report;
+}
+
+}  // namespace
