@@ -34,7 +34,8 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
          {"Jz"},
          Promise::conserved,
          false,
-         [](const TrajectoryPoint<SphericalPendulum>& p, double* out) { *out = vertical_angular_momentum(p.state); }}};
+         [](const TrajectoryPoint<SphericalPendulum>& p, double* out) { *out = vertical_angular_momentum(p.state); },
+         [](const TrajectoryPoint<SphericalPendulum>& p) { return p.state.object.norm() * p.state.momentum.norm(); }}};
   }
 };
 
