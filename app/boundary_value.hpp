@@ -182,8 +182,9 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
         failure.message.empty()
             ? fmt::format(
                   "boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
-                  "more starts or a longer duration",
-                  starts, failure.residual)
+                  "more starts{} or a longer duration",
+                  starts, failure.residual,
+                  failure.status == SolveStatus::not_converged ? ", a larger solver.max_iterations" : "")
             : fmt::format("boundary value: none of {} starts converged; the best of them: {}", starts, failure.message);
   }
   const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;

@@ -126,7 +126,7 @@ TEST(EveryMethod, RefusesAPathThatIsNoPathOfTheProblem) {
   auto elsewhere = k.problem;
   elsewhere.boundary.target(0) += 0.1;
   auto not_finite = k.path;
-  not_finite[3].arrow.source(0) = not_finite[2].arrow.target(0) = std::nan("");
+  not_finite[1].arrow.source(0) = not_finite[0].arrow.target(0) = std::nan("");
   for (const auto method : {BoundaryMethod::newton, BoundaryMethod::shooting, BoundaryMethod::ceres}) {
     const auto solver = make_boundary_solver<Pendulum>(method);
     EXPECT_THROW(solver->solve(k.problem, {}, true), std::invalid_argument);
