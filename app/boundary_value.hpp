@@ -54,6 +54,18 @@ template <DiscreteSystem Sys> struct BoundaryScene {
   ArrowOf<typename Sys::GroupoidType> start;
 };
 
+/// `read` of the scene at s of its continuation. What is refused there is no mistake of the scene itself, but of where
+/// the continuation begins.
+template <class Read>
+auto read_along(const Section& scene, const ContinuationChoice& along, double s, const Read& read) {
+  try {
+    return read(along.scene_at(scene, s));
+  } catch (const SceneError& error) {
+    scene.section_or_empty("continuation")
+        .fail("from", fmt::format("at {} = {}: {}", along.parameter, along.value(s), error.problem()));
+  }
+}
+
 /// Replays a solved path through the recorder.
 template <DiscreteSystem Sys>
 void record_path(const Sys& system, const Presentation<Sys>& presentation, const Path<Sys>& path,
@@ -80,17 +92,19 @@ template <DiscreteSystem Sys, class Read>
 double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scene, const ContinuationChoice& along,
                           const Read& read, const RunContext& context, MultistartResult<Sys>& found,
                           RunResult& result) {
-  const auto stage = [&](double s) { return read(along.scene_at(scene, s)).stage; };
+  const auto stage = [&](double s) { return read_along(scene, along, s, read).stage; };
   HomotopyOptions options;
   options.first_step = 1 / double(along.steps);
   std::vector<BoundarySolution<Sys>> arrived;
   std::optional<std::pair<double, SolveStatus>> farthest;
   Progress progress("solutions", long(found.solutions.size()), context.progress);
   const std::size_t count = found.solutions.size();
+  std::size_t arrivals = 0;
   for (std::size_t i = 0; i < count; ++i) {
     auto followed = follow(solver, stage, std::move(found.solutions[i]), options);
     found.iterations += followed.iterations;
     if (followed.converged()) {
+      ++arrivals;
       detail::keep_if_new(arrived, stage(1).problem.system, std::move(followed.solution));
     } else if (!farthest || followed.reached > farthest->first) {
       farthest = {followed.reached, followed.status};
@@ -98,8 +112,10 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
     }
     progress.update(long(i) + 1);
   }
-  result.notes.push_back(fmt::format("continuation of {} from {} to {}: {} of {} solution(s) arrived", along.parameter,
-                                     along.value(0), along.value(1), arrived.size(), count));
+  result.notes.push_back(
+      fmt::format("continuation of {} from {} to {}: {} of {} solution(s) arrived{}", along.parameter, along.value(0),
+                  along.value(1), arrivals, count,
+                  arrived.size() < arrivals ? fmt::format(", {} of them different", arrived.size()) : ""));
   if (farthest) {
     result.notes.push_back(fmt::format("continuation: of those lost, the last came to {} = {} ({})", along.parameter,
                                        along.value(farthest->first), to_string(farthest->second)));
@@ -166,8 +182,9 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
         failure.message.empty()
             ? fmt::format(
                   "boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
-                  "more starts or a longer duration",
-                  starts, failure.residual)
+                  "more starts{} or a longer duration",
+                  starts, failure.residual,
+                  failure.status == SolveStatus::not_converged ? ", a larger solver.max_iterations" : "")
             : fmt::format("boundary value: none of {} starts converged; the best of them: {}", starts, failure.message);
   }
   const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
@@ -190,7 +207,7 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
   if (const auto why = inadmissible_ends(problem.stage.problem)) scene.section_or_empty("boundary").fail("", *why);
   if (problem.stage.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
 
-  const BoundaryStage<Sys> first = along ? read(along->scene_at(scene, 0)).stage : problem.stage;
+  const BoundaryStage<Sys> first = along ? read_along(scene, *along, 0, read).stage : problem.stage;
   if (const auto why = inadmissible_ends(first.problem)) scene.section("continuation", "").fail("from", *why);
 
   const auto clock = std::chrono::steady_clock::now();
@@ -217,8 +234,8 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
     reached = continue_solutions(*solver, scene, *along, read, context, found, result);
   result.iterations = found.iterations;
   // Where nothing arrived, the farthest path is one of the problem it was solved for.
-  report_solutions(reached < 1 ? read(along->scene_at(scene, reached)) : problem, presentation, solver->seek(), found,
-                   starts, every, result);
+  report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation, solver->seek(),
+                   found, starts, every, result);
   result.ledger.mean_iterations = double(found.start_iterations) / double(starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

@@ -26,7 +26,8 @@ class QuantityWatch {
   std::vector<double> last_;
   std::vector<double> envelope_;  // largest deviation in consecutive chunks of equal length
   long chunk_ = 1;
-  double size_ = 0;
+  double first_size_ = 0;
+  double size_ = 0;  // the largest
 };
 
 /// The entry for a constraint residual: the largest |phi| met, against round-off in its terms, which have the given

@@ -5,11 +5,12 @@
 #include "report.hpp"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <exception>
-#include <filesystem>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@ namespace {
 
 using namespace lagroid::app;
 
+constexpr int exit_internal_error = 1;
 constexpr int exit_bad_input = 2;
 constexpr int exit_failed = 3;
 
@@ -29,10 +31,17 @@ struct RunOptions {
   bool json = false;
 };
 
-int refuse(const RunOptions& options, const std::string& message, const std::string& status = "invalid_scene") {
+/// Prints on standard output, or throws OutputError.
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw OutputError("standard output could not be written");
+}
+
+/// Ends a run that has no result: one line, and one JSON object where that was asked for.
+int refuse(const RunOptions& options, int code, const std::string& status, const std::string& message) {
   fmt::print(stderr, "lagroid: {}\n", message);
-  if (options.json) fmt::print("{}\n", json_error(status, message));
-  return exit_bad_input;
+  if (options.json) print(json_error(status, message) + "\n");
+  return code;
 }
 
 int run(const RunOptions& options) {
@@ -42,45 +51,36 @@ int run(const RunOptions& options) {
     if (options.out) require_writable(*options.out);
     result = run_scene(scene, {.record = options.out.has_value(), .progress = !options.json});
   } catch (const SceneError& error) {
-    return refuse(options, error.what());
+    return refuse(options, exit_bad_input, "invalid_scene", error.what());
   } catch (const OutputError& error) {
-    return refuse(options, error.what());
+    return refuse(options, exit_bad_input, "invalid_scene", error.what());
   }
-  std::vector<std::filesystem::path> files;
+  std::string report;
   if (options.out) {
     try {
-      files = write_outputs(result, *options.out);
+      for (const auto& file : write_outputs(result, *options.out)) report += fmt::format("  wrote {}\n", file.string());
     } catch (const OutputError& error) {
-      result.status = "output_failed";
-      result.message = error.what();
-      fmt::print(stderr, "lagroid: {}\n", error.what());
-      fmt::print("{}\n", options.json ? json_report(result) : text_report(result));
-      return exit_failed;
+      result.output_error = error.what();
     }
-  }
-  if (options.json) {
-    fmt::print("{}\n", json_report(result));
   } else {
-    fmt::print("{}", text_report(result));
-    for (const auto& file : files) fmt::print("  wrote {}\n", file.string());
-    if (!options.out) fmt::print("  (no files written; --out DIR writes trajectory, plot and summary)\n");
+    report = "  (no files written; --out DIR writes trajectory, plot and summary)\n";
   }
-  if (std::fflush(stdout) != 0) {
-    fmt::print(stderr, "lagroid: standard output could not be written\n");
-    return exit_failed;
-  }
-  if (!result.converged()) {
-    fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
-    return exit_failed;
-  }
+  print(options.json ? json_report(result) + "\n" : text_report(result) + report);
+  if (!result.converged()) fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
+  if (!result.output_error.empty()) fmt::print(stderr, "lagroid: {}\n", result.output_error);
+  return result.converged() && result.output_error.empty() ? 0 : exit_failed;
+}
+
+int list() {
+  std::string lines;
+  for (const auto& entry : systems()) lines += fmt::format("{:<20} {}\n", entry.name, entry.summary);
+  print(lines);
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// Reads the command line and does what it says.
+int serve(int argc, char** argv) {
   CLI::App app{"lagroid: discrete mechanics on Lie groupoids"};
-  app.require_subcommand(1);
   app.set_version_flag("--version", LAGROID_VERSION);
 
   RunOptions options;
@@ -94,21 +94,35 @@ int main(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
+    if (list_command->parsed()) return list();
+    if (run_command->parsed()) return run(options);
+    return refuse(options, exit_bad_input, "invalid_command_line", "name a command, run or list; see lagroid --help");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     // The flag may not have been read before the mistake was met.
     for (int i = 1; i < argc; ++i) options.json = options.json || std::string_view(argv[i]) == "--json";
-    return refuse(options, fmt::format("{}; see lagroid --help", error.what()), "invalid_command_line");
-  }
-  try {
-    if (list_command->parsed()) {
-      for (const auto& entry : systems()) fmt::print("{:<20} {}\n", entry.name, entry.summary);
-      return 0;
-    }
-    return run(options);
+    return refuse(options, exit_bad_input, "invalid_command_line", fmt::format("{}; see lagroid --help", error.what()));
+  } catch (const OutputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return refuse(options, exit_failed, "out_of_memory",
+                  fmt::format("{}: out of memory; lower time.steps{}", options.scene,
+                              options.out ? " or raise output.every" : ""));
   } catch (const std::exception& error) {
-    fmt::print(stderr, "lagroid: internal error: {}; please report it with the scene\n", error.what());
-    if (options.json) fmt::print("{}\n", json_error("internal_error", error.what()));
-    return 1;
+    return refuse(options, exit_internal_error, "internal_error",
+                  fmt::format("internal error: {}; please report it with the scene", error.what()));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // What Ceres would say on standard error stands in its summary too, and is judged anew from the residual.
+  FLAGS_minloglevel = google::GLOG_FATAL;
+  try {
+    return serve(argc, argv);
+  } catch (const OutputError& error) {
+    fmt::print(stderr, "lagroid: {}\n", error.what());
+    return exit_failed;
   }
 }

@@ -10,15 +10,40 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
-#include <limits>
+#include <string_view>
+#include <system_error>
 
 namespace lagroid::app {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+/// All that a run can leave in its folder.
+constexpr std::array<const char*, 7> output_files{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt",
+                                                  "plot.gp",       "plot.svg",       "plot.png"};
+
+constexpr std::string_view staging_prefix = ".partial-";
+
+/// Removes the stagings of runs that were killed: those of processes that are no more.
+void remove_stale_stagings(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(staging_prefix)) continue;
+    pid_t owner = 0;
+    const char* end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + staging_prefix.size(), end, owner);
+    if (error == std::errc{} && rest == end && owner > 0 && kill(owner, 0) != 0 && errno == ESRCH)
+      fs::remove_all(entry.path(), ignored);
+  }
+}
 
 /// Row `node` of a series; series on arrows have none at the first node.
 const double* row(const Series& s, std::size_t node) {
@@ -56,15 +81,27 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
   if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
 }
 
+void write_text(std::string_view text, const fs::path& file) {
+  std::ofstream out(file, std::ios::binary);
+  out.write(text.data(), std::streamsize(text.size()));
+  out.close();
+  if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
+}
+
 void attribute(const H5::H5Object& object, const std::string& name, const std::string& value) {
   const H5::StrType type(H5::PredType::C_S1, std::max<std::size_t>(1, value.size()));
   object.createAttribute(name, type, H5::DataSpace(H5S_SCALAR)).write(type, value.c_str());
 }
 
+/// The file is made in memory: HDF5 cannot survive a disk that is full (closing the file crashes, at exit at the
+/// latest).
 void write_hdf5(const RunResult& result, const fs::path& file) {
   H5::Exception::dontPrint();
+  std::string image;
   try {
-    H5::H5File out(file.string(), H5F_ACC_TRUNC);
+    H5::FileAccPropList in_memory;
+    in_memory.setCore(/*increment=*/1 << 20, /*backing_store=*/false);
+    H5::H5File out(file.string(), H5F_ACC_TRUNC, H5::FileCreatPropList::DEFAULT, in_memory);
     attribute(out, "system", result.system);
     attribute(out, "status", result.status);
     attribute(out, "generator", "lagroid");
@@ -88,17 +125,16 @@ void write_hdf5(const RunResult& result, const fs::path& file) {
       attribute(set, "components", fmt::format("{}", fmt::join(s.components, ", ")));
       attribute(set, "rows", s.on_arrows ? "one per recorded arrow" : "one per recorded node");
     }
-    out.close();
+    out.flush(H5F_SCOPE_GLOBAL);
+    const auto size = H5Fget_file_image(out.getId(), nullptr, 0);
+    if (size < 0) throw H5::FileIException("H5Fget_file_image", "no image of the file");
+    image.resize(std::size_t(size));
+    if (H5Fget_file_image(out.getId(), image.data(), image.size()) != size)
+      throw H5::FileIException("H5Fget_file_image", "no image of the file");
   } catch (const H5::Exception& error) {
     throw OutputError(fmt::format("{}: HDF5: {}", file.string(), error.getDetailMsg()));
   }
-}
-
-void write_text(const std::string& text, const fs::path& file) {
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
+  write_text(image, file);
 }
 
 /// A text as a gnuplot string: single quotes, no enhanced-text surprises.
@@ -176,17 +212,26 @@ void require_writable(const fs::path& folder) {
   if (!fs::is_directory(existing, error))
     throw OutputError(
         fmt::format("--out {}: {} is not a folder; choose another place", folder.string(), existing.string()));
-  if (access(existing.c_str(), W_OK | X_OK) != 0)
-    throw OutputError(fmt::format("--out {}: no permission to write in {}; choose another place", folder.string(),
-                                  existing.string()));
+  // Permissions do not tell everything (read-only file systems, /proc): a folder is made there, and removed.
+  const fs::path probe = existing / fmt::format("{}{}", staging_prefix, getpid());
+  fs::create_directory(probe, error);
+  if (error)
+    throw OutputError(fmt::format("--out {}: nothing can be written in {} ({}); choose another place", folder.string(),
+                                  existing.string(), error.message()));
+  fs::remove(probe, error);
+  for (const char* name : output_files)
+    if (fs::is_directory(folder / name, error))
+      throw OutputError(
+          fmt::format("--out {}: {} is a folder where a file is to be written; move it away or choose another place",
+                      folder.string(), (folder / name).string()));
 }
 
 std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
   // Staged inside the folder itself: the same file system, and no need to write beside it.
-  const fs::path staging = folder / fmt::format(".partial-{}", getpid());
-  const std::vector<std::string> pictures{"plot.svg", "plot.png"};
+  const fs::path staging = folder / fmt::format("{}{}", staging_prefix, getpid());
   try {
     fs::create_directories(staging);
+    remove_stale_stagings(folder);
     std::vector<std::string> names{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt"};
     write_hdf5(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
@@ -195,7 +240,7 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
       names.emplace_back("plot.gp");
       std::string reason;
       if (run_gnuplot(staging, reason)) {
-        names.insert(names.end(), pictures.begin(), pictures.end());
+        names.insert(names.end(), {"plot.svg", "plot.png"});
       } else {
         result.notes.push_back("no pictures: " + reason);
       }
@@ -207,14 +252,16 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
       fs::rename(staging / name, folder / name);
       written.push_back(folder / name);
     }
-    for (const auto& name : pictures)
+    for (const char* name : output_files)
       if (std::find(names.begin(), names.end(), name) == names.end()) fs::remove(folder / name);  // of an earlier run
     fs::remove_all(staging);
     return written;
   } catch (const fs::filesystem_error& error) {
     std::error_code ignored;
     fs::remove_all(staging, ignored);
-    throw OutputError(fmt::format("--out {}: {}", folder.string(), error.code().message()));
+    const fs::path& file = error.path2().empty() ? error.path1() : error.path2();
+    throw OutputError(fmt::format("--out {}: {} could not be written ({}); choose another place", folder.string(),
+                                  file.string(), error.code().message()));
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(staging, ignored);

@@ -45,8 +45,20 @@ std::string endpoint(const Endpoint& e) {
   return out + fmt::format("momentum {}", numbers(e.momentum));
 }
 
+/// The run as a whole: the solve and its files.
+std::string run_status(const RunResult& r) { return r.output_error.empty() ? r.status : "output_failed"; }
+
+std::string run_message(const RunResult& r) {
+  return r.message + (r.message.empty() || r.output_error.empty() ? "" : "; ") + r.output_error;
+}
+
 /// The solver's own promise: every step, or the boundary value, solved within its iterations.
 std::string solver_verdict(const RunResult& r) { return r.converged() ? "kept" : "BROKEN"; }
+
+std::string solved(const RunResult& r) {
+  if (r.converged()) return "every equation solved";
+  return r.status == "no_minimum" ? "no minimum found" : "not every equation solved";
+}
 
 std::string kind(const Minimum& m) {
   std::string out = m.is_minimum ? "minimum" : fmt::format("saddle ({} descending)", m.negative_directions);
@@ -60,8 +72,8 @@ std::string kind(const Minimum& m) {
 std::string text_report(const RunResult& r) {
   std::string out;
   const auto line = [&](const std::string& text) { out += text + "\n"; };
-  line(fmt::format("{}: {}, {} of {} steps in {:.3g} s", r.system, r.status, r.steps, r.steps_asked, r.seconds));
-  if (!r.message.empty()) line("  " + r.message);
+  line(fmt::format("{}: {}, {} of {} steps in {:.3g} s", r.system, run_status(r), r.steps, r.steps_asked, r.seconds));
+  if (const std::string message = run_message(r); !message.empty()) line("  " + message);
   if (r.cost) line(fmt::format("  cost      {:.15g}", *r.cost));
   if (!r.initial.momentum.empty()) {
     line("  initial   " + endpoint(r.initial));
@@ -83,15 +95,15 @@ std::string text_report(const RunResult& r) {
   }
   line(fmt::format("    {:<28} mean {:.2f}, most {}: {}", "iterations", r.ledger.mean_iterations,
                    r.ledger.most_iterations, solver_verdict(r)));
-  line(fmt::format("    {:<28} every equation solved, status {}: {}", "solver", r.status, solver_verdict(r)));
+  line(fmt::format("    {:<28} {}, status {}: {}", "solver", solved(r), r.status, solver_verdict(r)));
   return out;
 }
 
 std::string json_report(const RunResult& r) {
   Json out;
   out["system"] = r.system;
-  out["status"] = r.status;
-  if (!r.message.empty()) out["message"] = r.message;
+  out["status"] = run_status(r);
+  if (const std::string message = run_message(r); !message.empty()) out["message"] = message;
   out["steps"] = r.steps;
   out["steps_asked"] = r.steps_asked;
   out["seconds"] = r.seconds;

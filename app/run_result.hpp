@@ -75,8 +75,9 @@ struct Panel {
 
 struct RunResult {
   std::string system;
-  std::string status = "converged";  ///< or a typed failure
+  std::string status = "converged";  ///< of the solve: this or a typed failure
   std::string message;               ///< why, at which step, what to do
+  std::string output_error;          ///< why the files of the run could not be written
   long steps = 0;                    ///< arrows computed
   long steps_asked = 0;
   double seconds = 0;

@@ -68,14 +68,13 @@ void Section::fail(std::string_view key, const std::string& problem) const {
     const auto dot = origin.rfind('.');
     origin = dot == std::string::npos ? "" : origin.substr(0, dot);
   }
-  if (!origin.empty() && origin != name)
-    throw SceneError(one_line(fmt::format("--set {}: {}: {}", origin, name, problem)));
-  if (!origin.empty()) throw SceneError(one_line(fmt::format("--set {}: {}", name, problem)));
+  const std::string said = one_line(name.empty() ? problem : fmt::format("{}: {}", name, problem));
+  if (!origin.empty() && origin != name) throw SceneError(fmt::format("--set {}: {}", one_line(origin), said), said);
+  if (!origin.empty()) throw SceneError(fmt::format("--set {}", said), said);
   const toml::node* node = table_ && !key.empty() ? table_->get(key) : nullptr;
   const int line = node ? int(node->source().begin.line) : line_;
   const std::string where = line > 0 ? fmt::format("{}:{}", source_->file, line) : source_->file;
-  throw SceneError(
-      one_line(name.empty() ? fmt::format("{}: {}", where, problem) : fmt::format("{}: {}: {}", where, name, problem)));
+  throw SceneError(fmt::format("{}: {}", one_line(where), said), said);
 }
 
 const toml::node* Section::find(std::string_view key) const {

@@ -12,13 +12,22 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
 
 /// A mistake in a scene. The message is one line: where, which key, what is wrong, what to do.
 class SceneError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+ public:
+  explicit SceneError(const std::string& message) : SceneError(message, message) {}
+  SceneError(const std::string& message, std::string problem)
+      : std::runtime_error(message), problem_(std::move(problem)) {}
+  /// The message without the place in the file: key and what is wrong with it.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  std::string problem_;
 };
 
 /// What a number must satisfy, with the words to say so.

@@ -98,11 +98,16 @@ void timed(benchmark::State& state, const std::function<void(long)>& steps) {
   if (counted > 0) state.counters["instructions"] = counted / double(state.iterations());
 }
 
-Results run(const std::vector<Subject>& subjects, int repetitions, double min_time, const std::string& filter) {
+std::vector<Subject> matching(std::vector<Subject> subjects, const std::string& part) {
+  std::erase_if(subjects, [&](const Subject& s) { return key_of(s.group, s.name).find(part) == std::string::npos; });
+  return subjects;
+}
+
+Results run(const std::vector<Subject>& subjects, int repetitions, double min_time) {
+  if (subjects.empty()) return {};
   std::vector<std::string> flags{"lagroid_bench", "--benchmark_enable_random_interleaving=true",
                                  fmt::format("--benchmark_repetitions={}", repetitions),
                                  fmt::format("--benchmark_min_time={}", min_time)};
-  if (!filter.empty()) flags.push_back("--benchmark_filter=" + filter);
   std::vector<char*> arguments;
   for (auto& flag : flags) arguments.push_back(flag.data());
   int count = int(arguments.size());
@@ -143,16 +148,22 @@ std::string table(const std::vector<Subject>& subjects, const Results& results) 
   return out;
 }
 
-std::string goals_table(const std::vector<Goal>& goals, const Results& results) {
+std::string goals_table(const std::vector<Goal>& goals, const Results& results, bool every) {
   std::string out = "| | ratio | wanted | |\n|---|---|---|---|\n";
   for (const Goal& g : goals) {
     const auto above = results.find(key_of(g.group, g.numerator));
     const auto below = results.find(key_of(g.group, g.denominator));
-    if (above == results.end() || below == results.end()) continue;
-    const double ratio = above->second.median / below->second.median;
-    const bool reached = g.at_least ? ratio >= g.bound : ratio <= g.bound;
-    out += fmt::format("| {}: {} / {} | {:.3g} | {} {:g} | {} |\n", g.group, g.numerator, g.denominator, ratio,
-                       g.at_least ? "at least" : "at most", g.bound, reached ? "reached" : "**missed**");
+    const bool measured = above != results.end() && below != results.end();
+    if (!measured && !every) continue;
+    std::string ratio_column;
+    std::string outcome = "**not measured**";
+    if (measured) {
+      const double ratio = above->second.median / below->second.median;
+      ratio_column = fmt::format("{:.3g}", ratio);
+      outcome = (g.at_least ? ratio >= g.bound : ratio <= g.bound) ? "reached" : "**missed**";
+    }
+    out += fmt::format("| {}: {} / {} | {} | {} {:g} | {} |\n", g.group, g.numerator, g.denominator, ratio_column,
+                       g.at_least ? "at least" : "at most", g.bound, outcome);
   }
   return out;
 }

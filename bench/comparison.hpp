@@ -38,13 +38,16 @@ using Results = std::map<std::string, Measured>;  ///< by key_of
 
 std::string key_of(const std::string& group, const std::string& name);
 
-/// Registers the subjects with Google Benchmark and runs them, repetitions interleaved at random. `filter` is its
-/// regular expression.
-Results run(const std::vector<Subject>& subjects, int repetitions, double min_time, const std::string& filter);
+/// The subjects whose keys contain `part`, as plain text.
+std::vector<Subject> matching(std::vector<Subject> subjects, const std::string& part);
 
-/// Markdown: one table per group, and the goals with what was reached.
+/// Registers the subjects with Google Benchmark and runs them, repetitions interleaved at random.
+Results run(const std::vector<Subject>& subjects, int repetitions, double min_time);
+
+/// Markdown: one table per group, and the goals with what was reached. A goal of which nothing was measured is left out
+/// unless `every`, where it is said.
 std::string table(const std::vector<Subject>& subjects, const Results& results);
-std::string goals_table(const std::vector<Goal>& goals, const Results& results);
+std::string goals_table(const std::vector<Goal>& goals, const Results& results, bool every);
 
 /// Runs `step` in the timed loop, and counts its instructions where the machine has a counter.
 void timed(benchmark::State& state, const std::function<void(long)>& steps);

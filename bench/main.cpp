@@ -3,13 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -40,46 +42,52 @@ std::string machine() {
                      LAGROID_COMPILER, LAGROID_ARCH, date);
 }
 
-struct Part {
-  std::vector<bench::Subject> subjects;
-  std::vector<bench::Goal> goals;
-  bench::Results results;
-};
-
-Part measured(std::vector<bench::Subject> subjects, std::vector<bench::Goal> goals, int repetitions, double min_time,
-              const std::string& filter) {
-  auto results = bench::run(subjects, repetitions, min_time, filter);
-  return {std::move(subjects), std::move(goals), std::move(results)};
+/// Replaces the file by the text, or leaves it as it is and throws.
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  std::filesystem::path partial = file;
+  partial += ".partial";
+  std::ofstream out(partial);
+  out << text;
+  out.close();
+  if (!out) {
+    std::filesystem::remove(partial);
+    throw std::runtime_error(file.string() + " could not be written; is the disk full?");
+  }
+  std::filesystem::rename(partial, file);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  std::string filter;
+  std::string part;
   bool write_page = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--page") == 0) {
       write_page = true;
-    } else if (argv[i][0] != '-' && filter.empty()) {
-      filter = argv[i];
+    } else if (argv[i][0] != '-' && part.empty()) {
+      part = argv[i];
     } else {
-      fmt::print(stderr, "lagroid bench: \"{}\" is neither --page nor a regular expression for the names\n", argv[i]);
+      fmt::print(stderr, "lagroid bench: \"{}\" is neither --page nor one part of the subjects' names\n", argv[i]);
       return 2;
     }
   }
-  if (write_page && !filter.empty()) {
-    fmt::print(stderr, "lagroid bench: --page takes every measurement; leave out \"{}\"\n", filter);
+  if (write_page && !part.empty()) {
+    fmt::print(stderr, "lagroid bench: --page takes every measurement; leave out \"{}\"\n", part);
     return 2;
   }
-  const Part steps = measured(bench::step_subjects(), bench::step_goals(), 21, 0.02, filter);
-  const Part boundary = measured(bench::boundary_subjects(), bench::boundary_goals(), 7, 0.02, filter);
-  const std::string step_tables = bench::table(steps.subjects, steps.results);
-  const std::string boundary_tables = bench::table(boundary.subjects, boundary.results);
-  std::vector<bench::Goal> goals = steps.goals;
-  goals.insert(goals.end(), boundary.goals.begin(), boundary.goals.end());
-  bench::Results all = steps.results;
-  all.insert(boundary.results.begin(), boundary.results.end());
-  const std::string goals_reached = bench::goals_table(goals, all);
+  const auto steps = bench::matching(bench::step_subjects(), part);
+  const auto boundary = bench::matching(bench::boundary_subjects(), part);
+  if (steps.empty() && boundary.empty()) {
+    fmt::print(stderr, "lagroid bench: no subject's name contains \"{}\"; docs/performance.md shows the names\n", part);
+    return 2;
+  }
+  bench::Results results = bench::run(steps, 21, 0.02);
+  results.merge(bench::run(boundary, 7, 0.02));
+  std::vector<bench::Goal> goals = bench::step_goals();
+  for (auto& goal : bench::boundary_goals()) goals.push_back(std::move(goal));
+  const std::string step_tables = bench::table(steps, results);
+  const std::string boundary_tables = bench::table(boundary, results);
+  const std::string goals_reached = bench::goals_table(goals, results, /*every=*/part.empty());
   fmt::print("{}{}\n{}", step_tables, boundary_tables, goals_reached);
   if (write_page) {
     std::string page = file_contents(LAGROID_SOURCE "/bench/performance.md.in");
@@ -88,7 +96,7 @@ int main(int argc, char** argv) try {
     put(page, "@STEPS@", step_tables);
     put(page, "@BOUNDARY@", boundary_tables);
     put(page, "@COMPILE@", bench::compile_times());
-    std::ofstream(LAGROID_SOURCE "/docs/performance.md") << page;
+    write_whole(LAGROID_SOURCE "/docs/performance.md", page);
     fmt::print("\nwritten: docs/performance.md\n");
   }
   return 0;

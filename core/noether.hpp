@@ -40,16 +40,20 @@ template <class Sys> struct Symmetry {
   double size(const State<G>& z) const {
     return z.momentum.cwiseAbs().dot(section(z.object).cwiseAbs()) + std::abs(f(z.object));
   }
-  /// The constant of the motion, for the ledger.
-  Quantity<Sys> quantity() const {
+  /// The constant of the motion, for the ledger; `size_of_terms` where its round-off is relative to more than size().
+  Quantity<Sys> quantity(typename Quantity<Sys>::Size size_of_terms = nullptr) const {
+    if (!size_of_terms) size_of_terms = [s = *this](const TrajectoryPoint<Sys>& p) { return s.size(p.state); };
     return {name,
             {name},
             Promise::conserved,
             false,
             [s = *this](const TrajectoryPoint<Sys>& p, double* out) { *out = s.momentum(p.state); },
-            [s = *this](const TrajectoryPoint<Sys>& p) { return s.size(p.state); }};
+            std::move(size_of_terms)};
   }
 };
+}
+}
+;
 
 /// The difference of the two sides of Def. 4.8 at a point of Sigma_L, relative to the size of their terms; not a number
 /// where these are not.

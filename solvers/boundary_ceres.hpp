@@ -50,8 +50,9 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
 
   using BoundarySolver<Sys>::BoundarySolver;
 
-  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
-                              bool keep_multipliers) const override {
+ private:
+  BoundarySolution<Sys> solve_from(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                                   bool keep_multipliers) const override {
     BoundarySolution<Sys> out;
     const Sys& system = problem.system;
     BoundaryKkt<Sys> kkt;
@@ -82,6 +83,10 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
       this->describe(system, kkt, out);
     } else if (summary.termination_type == ceres::NO_CONVERGENCE && still_falling(summary)) {
       out.status = SolveStatus::not_converged;
+      out.message = fmt::format(
+          "Ceres is still at residual {:.1e} after {} iterations; raise solver.max_iterations or use solver.method = "
+          "\"newton\"",
+          out.residual, summary.iterations.size());
     } else if (newton_contracts(problem, kkt, out.path)) {
       out.status = SolveStatus::ill_conditioned;
       out.message = fmt::format(
@@ -92,11 +97,14 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
           out.residual, options_.tolerance, out.path.size(), summary.iterations.size());
     } else {
       out.status = SolveStatus::stagnated;
+      out.message = fmt::format(
+          "Ceres stalls at residual {:.1e}, a least of its squares that may be no solution; use solver.method = "
+          "\"newton\"",
+          out.residual);
     }
     return out;
   }
 
- private:
   using BoundarySolver<Sys>::options_;
   using BoundarySolver<Sys>::seek_;
   static constexpr int ambient = AlphaFibreManifold<G>::ambient;

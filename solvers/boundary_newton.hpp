@@ -24,8 +24,20 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
   static constexpr int m = Sys::constraints;
   using BoundarySolver<Sys>::BoundarySolver;
 
-  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
-                              bool keep_multipliers) const override {
+  /// The path brought onto the constraints, with its least-squares multipliers; `converged` if that succeeded.
+  BoundarySolution<Sys> prepare(const BoundaryProblem<Sys>& problem, Path<Sys> path) const {
+    Work work;
+    BoundarySolution<Sys> out;
+    if (restore(problem, work, path, out) && least_squares_multipliers(problem, work, path, out))
+      out.status = SolveStatus::converged;
+    out.path = std::move(path);
+    evaluate_residual(problem.system, work.kkt, out);
+    return out;
+  }
+
+ private:
+  BoundarySolution<Sys> solve_from(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                                   bool keep_multipliers) const override {
     Work work;
     BoundarySolution<Sys> out;
     const Sys& system = problem.system;
@@ -46,18 +58,6 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     return out;
   }
 
-  /// The path brought onto the constraints, with its least-squares multipliers; `converged` if that succeeded.
-  BoundarySolution<Sys> prepare(const BoundaryProblem<Sys>& problem, Path<Sys> path) const {
-    Work work;
-    BoundarySolution<Sys> out;
-    if (restore(problem, work, path, out) && least_squares_multipliers(problem, work, path, out))
-      out.status = SolveStatus::converged;
-    out.path = std::move(path);
-    evaluate_residual(problem.system, work.kkt, out);
-    return out;
-  }
-
- private:
   using BoundarySolver<Sys>::options_;
   using BoundarySolver<Sys>::seek_;
   using Kkt = BoundaryKkt<Sys>;

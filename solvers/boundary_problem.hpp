@@ -150,6 +150,32 @@ template <DiscreteSystem Sys> std::optional<std::string> inadmissible_ends(const
   return std::nullopt;
 }
 
+/// Why a path is no start for a problem, or nothing: it has no arrows, they do not compose, or their product is not the
+/// boundary arrow; by more than 1e-6 of the largest coordinate met on the way. A NaN or an infinity is no reason: the
+/// solver's status tells of those.
+template <DiscreteSystem Sys>
+std::optional<std::string> inadmissible_path(const BoundaryProblem<Sys>& problem, const Path<Sys>& path) {
+  const auto& groupoid = problem.system.groupoid;
+  if (path.empty()) return "the path has no arrows";
+  double size = groupoid.coordinates_of_arrow(problem.boundary).norm();
+  const auto apart = [&](const auto& a, const auto& b) {
+    size = std::max({size, a.norm(), b.norm()});
+    return (a - b).norm() > 1e-6 * size;
+  };
+  auto product = groupoid.unit(groupoid.source(problem.boundary));
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const auto& arrow = path[k].arrow;
+    if (apart(groupoid.coordinates_of_object(groupoid.target(product)),
+              groupoid.coordinates_of_object(groupoid.source(arrow))))
+      return "arrow " + std::to_string(k + 1) + " of the path does not start where " +
+             (k == 0 ? "the boundary arrow starts" : "the one before it ends");
+    product = groupoid.project(groupoid.multiply(product, arrow));
+  }
+  if (apart(groupoid.coordinates_of_arrow(product), groupoid.coordinates_of_arrow(problem.boundary)))
+    return "the product of the path's arrows is not the boundary arrow";
+  return std::nullopt;
+}
+
 /// How a stationary point sits among its neighbours.
 struct Classification {
   bool is_minimum =

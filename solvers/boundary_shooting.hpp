@@ -63,9 +63,10 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
 
   using BoundarySolver<Sys>::BoundarySolver;
 
+ private:
   /// The initial momentum to start from is F- of the path's first arrow.
-  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
-                              bool keep_multipliers) const override {
+  BoundarySolution<Sys> solve_from(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                                   bool keep_multipliers) const override {
     const Sys& system = problem.system;
     BoundarySolution<Sys> out;
     if (!keep_multipliers) {
@@ -116,7 +117,6 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
     return out;
   }
 
- private:
   using BoundarySolver<Sys>::options_;
   using BoundarySolver<Sys>::seek_;
 

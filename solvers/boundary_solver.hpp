@@ -4,6 +4,8 @@
 #include <lagroid/solvers/boundary_problem.hpp>
 
 #include <memory>
+#include <stdexcept>
+#include <utility>
 
 namespace lagroid {
 
@@ -35,11 +37,18 @@ template <DiscreteSystem Sys> class BoundarySolver {
 
   /// Starts from `path`, whose product must be the boundary arrow and whose ends must satisfy the object constraints.
   /// Multipliers are found from the arrows unless `keep_multipliers` says that those of `path` are worth starting from.
-  virtual BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path,
-                                      bool keep_multipliers) const = 0;
+  /// Throws std::invalid_argument where `inadmissible_path` has a reason.
+  BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path, bool keep_multipliers) const {
+    if (const auto why = inadmissible_path(problem, path)) throw std::invalid_argument(*why);
+    return solve_from(problem, std::move(path), keep_multipliers);
+  }
   Seek seek() const { return seek_; }
 
  protected:
+  /// What `solve` says, for a path that is admissible.
+  virtual BoundarySolution<Sys> solve_from(const BoundaryProblem<Sys>& problem, Path<Sys> path,
+                                           bool keep_multipliers) const = 0;
+
   /// Cost and, if asked for, kind of a converged solution.
   template <class Kkt> void describe(const Sys& system, Kkt& kkt, BoundarySolution<Sys>& solution) const {
     solution.cost = action(system, solution.path);

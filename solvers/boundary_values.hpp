@@ -3,6 +3,7 @@
 
 #include <lagroid/solvers/multistart.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <random>
@@ -46,6 +47,8 @@ MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>& solver, const Bo
   if (steps < 2) throw std::invalid_argument("a boundary-value problem needs at least 2 steps");
   if (options.coarse_steps < 2) throw std::invalid_argument("coarse_steps must be at least 2");
   if (options.starts < 1) throw std::invalid_argument("starts must be at least 1");
+  if (!(options.amplitude >= 0 && std::isfinite(options.amplitude)))
+    throw std::invalid_argument("amplitude must be zero or positive, and finite");
   std::vector<BoundaryStage<Sys>> stages{{problem, steps}};
   if constexpr (HasTimeStep<Sys>) {
     stages.clear();

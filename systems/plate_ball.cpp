@@ -144,11 +144,8 @@ std::vector<Quantity<PlateBall>> PlateBall::quantities() const {
                    spatial = std::get<1>(p.configuration) * p.state.momentum.tail<3>();
                  },
                  [momentum, r = radius](const Point& p) { return r * momentum(p); }});
-  Quantity<PlateBall> turning = symmetries().front().quantity();
-  turning.size = [momentum, r = radius](const Point& p) {
-    return (std::get<0>(p.state.object).norm() + r) * momentum(p);
-  };
-  all.push_back(std::move(turning));
+  all.push_back(symmetries().front().quantity(
+      [momentum, r = radius](const Point& p) { return (std::get<0>(p.state.object).norm() + r) * momentum(p); }));
   if (plate_rate == 0)
     all.push_back({"translational momentum",
                    {"px", "py"},

@@ -31,7 +31,10 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
         {"vertical angular momentum", [](const Vector<double, 3>& q) { return Vector<double, 3>(-q(1), q(0), 0); }}};
   }
   std::vector<Quantity<SphericalPendulum>> quantities() const {
-    return {energy_quantity(), symmetries()[0].quantity()};
+    // Near the vertical the bob moves little: its momentum is rounded relative to the rod all the same.
+    return {energy_quantity(), symmetries()[0].quantity([](const TrajectoryPoint<SphericalPendulum>& p) {
+              return p.state.object.norm() * p.state.momentum.norm();
+            })};
   }
 };
 

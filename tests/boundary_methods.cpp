@@ -116,6 +116,36 @@ TEST(Ceres, ItsIterationLimitIsNoStall) {
   const auto out = solver->solve(problem, straight(system, 30), true);
   EXPECT_EQ(out.status, SolveStatus::not_converged);
   EXPECT_TRUE(std::isfinite(out.residual));
+  EXPECT_NE(out.message.find("solver.method = \"newton\""), std::string::npos) << out.message;
+}
+
+TEST(EveryMethod, RefusesAPathThatIsNoPathOfTheProblem) {
+  const auto k = known(pendulum(), {Vector<double, 1>(0.4), Vector<double, 1>(0.9)}, 8);
+  auto torn = k.path;
+  torn[3].arrow.source(0) += 0.1;
+  auto elsewhere = k.problem;
+  elsewhere.boundary.target(0) += 0.1;
+  auto not_finite = k.path;
+  not_finite[1].arrow.source(0) = not_finite[0].arrow.target(0) = std::nan("");
+  for (const auto method : {BoundaryMethod::newton, BoundaryMethod::shooting, BoundaryMethod::ceres}) {
+    const auto solver = make_boundary_solver<Pendulum>(method);
+    EXPECT_THROW(solver->solve(k.problem, {}, true), std::invalid_argument);
+    EXPECT_THROW(solver->solve(k.problem, torn, true), std::invalid_argument);
+    EXPECT_THROW(solver->solve(elsewhere, k.path, true), std::invalid_argument);
+    EXPECT_TRUE(solver->solve(k.problem, k.path, true).converged());
+    EXPECT_EQ(solver->solve(k.problem, not_finite, true).status, SolveStatus::not_finite) << int(method);
+  }
+}
+
+TEST(EveryMethod, RefusesAPathWithAnotherProductOnAGroup) {
+  // All rotations compose; what is wrong shows in their product alone.
+  State<SO3> start;
+  start.momentum << 0.3, 1.5, 0.4;
+  auto k = known(rigid_body(), start, 8);
+  const auto solver = make_boundary_solver<RigidBody>();
+  EXPECT_TRUE(solver->solve(k.problem, k.path, true).converged());
+  k.problem.boundary = k.problem.boundary * SO3::exp(Vector<double, 3>(0, 0, 0.1));
+  EXPECT_THROW(solver->solve(k.problem, k.path, true), std::invalid_argument);
 }
 
 TEST(EveryMethod, LeavesOutTheKindWhereItIsNotAskedFor) {

@@ -112,6 +112,11 @@ TEST(Stationary, OptionsOutOfRangeAreRefused) {
   options = {};
   options.starts = 0;
   EXPECT_THROW(solve_boundary(*solver, k.problem, 4, options), std::invalid_argument);
+  options = {};
+  for (const double amplitude : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    options.amplitude = amplitude;
+    EXPECT_THROW(solve_boundary(*solver, k.problem, 4, options), std::invalid_argument) << amplitude;
+  }
 }
 
 /// Negative eigenvalues of the whole scaled KKT matrix, dense, against those its elimination counts.

@@ -30,9 +30,10 @@ class CommandLine : public ::testing::Test {
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
 
-  Outcome run(const std::string& arguments) const {
+  /// `before` is what the shell does first.
+  Outcome run(const std::string& arguments, const std::string& before = "") const {
     const fs::path errors = folder_ / "stderr";
-    const std::string command = std::string(LAGROID_PROGRAM) + " " + arguments + " 2>" + errors.string();
+    const std::string command = before + std::string(LAGROID_PROGRAM) + " " + arguments + " 2>" + errors.string();
     Outcome r;
     FILE* pipe = popen(command.c_str(), "r");
     std::array<char, 4096> buffer{};
@@ -272,6 +273,101 @@ TEST_F(CommandLine, AFailingBoundaryValueIsTyped) {
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_NE(json.at("status"), "converged");
   EXPECT_NE(json.at("message").get<std::string>().find("best residual"), std::string::npos);
+}
+
+TEST_F(CommandLine, TheLedgerSpeaksOfTheSolve) {
+  const Outcome failed =
+      run("run " + example("plate_ball") + " --set solver.starts=2 --set boundary.end.position=[1e6,0]");
+  EXPECT_EQ(failed.code, 3);
+  EXPECT_NE(failed.out.find("not every equation solved, status stagnated: BROKEN"), std::string::npos) << failed.out;
+  EXPECT_NE(run("run " + example("pendulum")).out.find(" every equation solved, status converged: kept"),
+            std::string::npos);
+}
+
+TEST_F(CommandLine, FilesThatCannotBeWrittenDoNotBreakTheSolve) {
+  const fs::path out = folder_ / "full";
+  fs::create_directories(out);
+  // Files may have four thousand bytes: the trajectory does not fit.
+  const Outcome r = run("run " + example("pendulum") + " --json --out " + out.string(), "trap '' XFSZ; ulimit -f 8; ");
+  EXPECT_EQ(r.code, 3);
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json.at("status"), "output_failed");
+  EXPECT_FALSE(json.at("message").get<std::string>().empty());
+  EXPECT_EQ(json.at("ledger").at("solver").at("status"), "converged");
+  EXPECT_EQ(json.at("ledger").at("solver").at("verdict"), "kept");
+  EXPECT_TRUE(fs::is_empty(out));
+}
+
+TEST_F(CommandLine, AFolderThatTakesNoFilesIsRefusedBeforeRunning) {
+  const fs::path out = folder_ / "taken";
+  fs::create_directories(out / "trajectory.h5");
+  const Outcome taken = run("run " + example("pendulum") + " --out " + out.string());
+  EXPECT_EQ(taken.code, 2);
+  EXPECT_NE(taken.err.find("trajectory.h5 is a folder"), std::string::npos) << taken.err;
+  EXPECT_NE(taken.err.find("choose another place"), std::string::npos) << taken.err;
+  const Outcome proc = run("run " + example("pendulum") + " --out /proc/foo");
+  EXPECT_EQ(proc.code, 2);
+  EXPECT_NE(proc.err.find("--out /proc/foo"), std::string::npos) << proc.err;
+  EXPECT_NE(proc.err.find("choose another place"), std::string::npos) << proc.err;
+}
+
+TEST_F(CommandLine, StagingsOfKilledRunsAreRemoved) {
+  const fs::path out = folder_ / "stale";
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  waitpid(child, nullptr, 0);
+  const fs::path dead = out / (".partial-" + std::to_string(child));
+  const fs::path alive = out / (".partial-" + std::to_string(::getpid()));
+  const fs::path foreign = out / ".partial-results";
+  for (const auto& folder : {dead, alive, foreign}) fs::create_directories(folder);
+  std::ofstream(dead / "trajectory.csv") << "half";
+  EXPECT_EQ(run("run " + example("pendulum") + " --set time.steps=3 --out " + out.string()).code, 0);
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(alive));
+  EXPECT_TRUE(fs::exists(foreign));
+}
+
+TEST_F(CommandLine, AFullStandardOutputIsSaid) {
+  for (const std::string& arguments :
+       std::vector<std::string>{"run " + example("pendulum"), "run " + example("pendulum") + " --json", "list"}) {
+    const Outcome r = run(arguments + " >/dev/full");
+    EXPECT_EQ(r.code, 3) << arguments;
+    EXPECT_EQ(r.err, "lagroid: standard output could not be written\n");
+  }
+}
+
+TEST_F(CommandLine, TooManyStepsForTheMemoryAreNamed) {
+  if (std::string(LAGROID_PROGRAM).find("sanitizers") != std::string::npos)
+    GTEST_SKIP() << "AddressSanitizer needs the whole address space";
+  const Outcome r =
+      run("run " + example("kepler_boundary") + " --json --set time.steps=20000000", "ulimit -v 1500000; ");
+  EXPECT_EQ(r.code, 3) << r.err;
+  EXPECT_NE(r.err.find("out of memory; lower time.steps"), std::string::npos) << r.err;
+  EXPECT_EQ(nlohmann::json::parse(r.out).at("status"), "out_of_memory");
+}
+
+TEST_F(CommandLine, CeresKeepsQuietOnStandardError) {
+  const Outcome r = run("run " + example("rigid_body") + " --set solver.method=ceres --set parameters.rotation=cayley");
+  EXPECT_EQ(r.code, 0);
+  EXPECT_EQ(r.err, "");
+}
+
+TEST_F(CommandLine, WhereAContinuationCannotBeginItsFromIsBlamed) {
+  const std::string scene = "run " + example("plate_ball_continuation") + " --set continuation.parameter=";
+  for (const std::string& arguments : std::vector<std::string>{
+           "time.duration --set continuation.from=0", "parameters.spin --set continuation.from=1000",
+           "boundary.end.attitude --set boundary.end.attitude=[1,0,0,0] --set continuation.from=[1,1,0,0]"}) {
+    const Outcome r = run(scene + arguments);
+    EXPECT_EQ(r.code, 2) << arguments;
+    EXPECT_EQ(r.err.rfind("lagroid: --set continuation.from: at ", 0), 0U) << r.err;
+  }
+}
+
+TEST_F(CommandLine, AnUnknownCommandIsNamed) {
+  const Outcome r = run("frobnicate");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("frobnicate"), std::string::npos) << r.err;
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
 }
 
 TEST_F(CommandLine, ListAndVersion) {

@@ -43,6 +43,21 @@ TEST(Ledger, NaNIsNeverKept) {
   EXPECT_EQ(e.verdict, "BROKEN");
 }
 
+TEST(Ledger, WhatItsTermsHaveOutgrownIsUnjudged) {
+  const auto grown = [](double start, double end) {
+    QuantityWatch watch("q", Promise::conserved, 1);
+    double x = 1e-12;
+    watch.observe(&x, start);
+    x = 1;
+    watch.observe(&x, end);
+    return watch.entry().verdict;
+  };
+  EXPECT_EQ(grown(1e-12, 1e20), "unjudged");
+  EXPECT_EQ(grown(1e-12, 1), "BROKEN");
+  EXPECT_EQ(grown(1e10, 1e20), "kept");
+  EXPECT_EQ(grown(0, 1e20), "kept") << "released from rest";
+}
+
 TEST(Ledger, ConstraintResidualIsJudgedByTheSizeOfItsTerms) {
   EXPECT_EQ(constraint_entry(1e-15, 1).verdict, "kept");
   EXPECT_EQ(constraint_entry(1e-12, 1).verdict, "BROKEN");

@@ -1,4 +1,4 @@
-// Runs of many minutes: millions of steps, and boundary values over many seeds.
+// Too long for every test run: millions of steps, and boundary values over many seeds.
 #include "run_watch.hpp"
 
 #include <lagroid/solvers/boundary_newton.hpp>
