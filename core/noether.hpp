@@ -51,9 +51,6 @@ template <class Sys> struct Symmetry {
             std::move(size_of_terms)};
   }
 };
-}
-}
-;
 
 /// The difference of the two sides of Def. 4.8 at a point of Sigma_L, relative to the size of their terms; not a number
 /// where these are not.
