@@ -24,6 +24,7 @@ RunResult run_scene(const Section& scene, const RunContext& context);
 
 RunResult run_plate_ball(const Section& scene, const RunContext& context);
 RunResult run_rigid_body(const Section& scene, const RunContext& context);
+RunResult run_heavy_top(const Section& scene, const RunContext& context);
 RunResult run_pendulum(const Section& scene, const RunContext& context);
 RunResult run_kepler(const Section& scene, const RunContext& context);
 RunResult run_spherical_pendulum(const Section& scene, const RunContext& context);

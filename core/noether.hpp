@@ -36,10 +36,8 @@ template <class Sys> struct Symmetry {
   double f(const ObjectOf<G>& q) const { return boundary_term ? boundary_term(q) : 0.0; }
   /// <mu, X(q)> + f(q).
   double momentum(const State<G>& z) const { return z.momentum.dot(section(z.object)) + f(z.object); }
-  /// |<mu, X(q)>| + |f(q)|, component by component: the round-off of the momentum is relative to this.
-  double size(const State<G>& z) const {
-    return z.momentum.cwiseAbs().dot(section(z.object).cwiseAbs()) + std::abs(f(z.object));
-  }
+  /// |mu| |X(q)| + |f(q)|, to which the round-off of the momentum is relative: components of mu are rounded together.
+  double size(const State<G>& z) const { return z.momentum.norm() * section(z.object).norm() + std::abs(f(z.object)); }
   /// The constant of the motion, for the ledger; `size_of_terms` where its round-off is relative to more than size().
   Quantity<Sys> quantity(typename Quantity<Sys>::Size size_of_terms = nullptr) const {
     if (!size_of_terms) size_of_terms = [s = *this](const TrajectoryPoint<Sys>& p) { return s.size(p.state); };

@@ -30,6 +30,24 @@ template <class Group, class Space> struct Acting : Morphism<Acting<Group, Space
   template <class E, class P> ActionArrow<E, P> lift(const P& m, const E& g) const { return {g, m}; }
 };
 
+/// Pair(G) -> G acting on a space, (a, b) -> (a^{-1} b, m a): reduction by the left translations that leave m where it
+/// is, as turning about the vertical m is for a heavy top.
+template <class Group, class Space>
+struct StabiliserQuotient : Morphism<StabiliserQuotient<Group, Space>, PairOf<Group>, Action<Group, Space>> {
+  typename Space::template Point<double> fixed;
+
+  explicit StabiliserQuotient(const typename Space::template Point<double>& m = {}) : fixed(m) {}
+
+  template <class E> auto operator()(const ElementPair<E>& g) const {
+    using Point = typename Space::template Point<typename E::Scalar>;
+    return ActionArrow<E, Point>{this->from.quotient(g),
+                                 Space::act(Point(fixed.template cast<typename E::Scalar>()), g.source)};
+  }
+  template <class E, class P> ElementPair<E> lift(const E& a, const ActionArrow<E, P>& g) const {
+    return {a, this->from.group.multiply(a, g.element)};
+  }
+};
+
 /// The projection of a product to its factor I.
 template <std::size_t I, class... Gs>
 struct Projection : Morphism<Projection<I, Gs...>, Product<Gs...>, std::tuple_element_t<I, std::tuple<Gs...>>> {

@@ -2,13 +2,10 @@
 /// The free rigid body.
 
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/groupoids/so3.hpp>
 #include <lagroid/systems/instances.hpp>
+#include <lagroid/systems/rotation_map.hpp>
 
 namespace lagroid {
-
-/// How a rotation g of one step becomes an angular velocity w = tau^{-1}(g) / h.
-enum class RotationMap { exponential, cayley };
 
 /// Free motion about a fixed point with principal moments of inertia I: L(g) = h l(tau^{-1}(g) / h), l(w) = w.I w / 2,
 /// on SO(3) ([G] 6.1). The momentum mu is the body angular momentum M; A_k = A_{k-1} g_k carries body to space.
@@ -17,10 +14,7 @@ struct RigidBody : System<RigidBody, SO3> {
   Vector<double, 3> inertia{1, 2, 3};  ///< principal moments, kg m^2
   RotationMap rotation = RotationMap::exponential;
 
-  template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const {
-    const Vector<S, 3> w = rotation == RotationMap::exponential ? SO3::log(g) : SO3::cayley_inverse(g);
-    return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * (0.5 / h);
-  }
+  template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const { return rotational_action(g, inertia, h, rotation); }
 
   /// M.I^{-1} M / 2.
   double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }

@@ -1,6 +1,6 @@
 #include "../boundary_value.hpp"
 #include "../registry.hpp"
-#include "attitude.hpp"
+#include "rotating.hpp"
 
 #include <lagroid/systems/rigid_body.hpp>
 
@@ -11,12 +11,8 @@ namespace {
 RigidBody read_system(const Section& scene) {
   const Section parameters = scene.section("parameters", "inertia, the three principal moments");
   RigidBody system;
-  const auto inertia = parameters.numbers("inertia", 3, "principal moments");
-  for (const double moment : inertia)
-    if (!(moment > 0)) parameters.fail("inertia", fmt::format("principal moments must be positive, got {}", moment));
-  system.inertia = Eigen::Map<const Vector<double, 3>>(inertia.data());
-  system.rotation = parameters.choice_or("rotation", "exp", {"exp", "cayley"}) == "exp" ? RotationMap::exponential
-                                                                                        : RotationMap::cayley;
+  system.inertia = read_inertia(parameters);
+  system.rotation = read_rotation_map(parameters);
   system.h = read_time(scene).step;
   return system;
 }

@@ -1,0 +1,55 @@
+#pragma once
+/// A rigid body with a fixed point, under gravity.
+
+#include <lagroid/core/noether.hpp>
+#include <lagroid/groupoids/rotated.hpp>
+#include <lagroid/systems/instances.hpp>
+#include <lagroid/systems/rotation_map.hpp>
+
+namespace lagroid {
+
+/// L(g, v) = h l(tau^{-1}(g) / h) - h (U(v) + U(v g)) / 2 with l(w) = w.I w / 2, U(v) = w.v, on the action groupoid of
+/// SO(3) on S^2: v = A^T e3 is the upward vertical seen from the body, w = `weight` the body's weight times the vector
+/// from the fixed point to its centre of mass. Discretises M' = M x I^{-1} M + v x w, v' = v x I^{-1} M.
+/// The momentum mu is the body angular momentum M. The configuration is (A_k, e3), the arrow from e3 to v_k.
+struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
+  double h = 0.01;
+  Vector<double, 3> inertia{1, 1, 0.5};  ///< principal moments, kg m^2
+  Vector<double, 3> weight{0, 0, 1};     ///< N m
+  RotationMap rotation = RotationMap::exponential;
+
+  template <class S> S lagrangian(const Arrow<S>& g) const {
+    const Vector<S, 3> verticals = g.point + groupoid.target(g);
+    return rotational_action(g.element, inertia, h, rotation) -
+           (verticals(0) * weight(0) + verticals(1) * weight(1) + verticals(2) * weight(2)) * (0.5 * h);
+  }
+
+  /// M.I^{-1} M / 2 + w.v.
+  double energy(const State<GroupoidType>& s) const {
+    return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum) + weight.dot(s.object);
+  }
+  /// Two equal moments of inertia and the centre of mass on the third axis, which is e3.
+  bool is_lagrange() const { return inertia(0) == inertia(1) && weight(0) == 0 && weight(1) == 0; }
+  /// Two equal moments, the third half as large, and the centre of mass in the plane of the equal ones.
+  bool is_kovalevskaya() const { return inertia(0) == inertia(1) && inertia(0) == 2 * inertia(2) && weight(2) == 0; }
+  /// Kovalevskaya's integral |w^2 - c v / I3|^2 of the continuous top, with the complex numbers w = w1 + i w2 of the
+  /// angular velocity, v = v1 + i v2 and c = weight1 + i weight2.
+  double kovalevskaya_integral(const State<GroupoidType>& s) const;
+
+  /// The rotation by h I^{-1} M, exact to second order in h.
+  Step<HeavyTop> first_guess(const State<GroupoidType>& s) const {
+    return {{SO3::exp(Vector<double, 3>(h * s.momentum.cwiseQuotient(inertia))), s.object}, {}};
+  }
+
+  /// The continuous solution after time t. Returns (v, M) and updates `attitude`.
+  State<GroupoidType> reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude, double t) const;
+
+  /// Turning about the vertical; a Lagrange top also about its own axis.
+  std::vector<Symmetry<HeavyTop>> symmetries() const;
+  std::vector<Quantity<HeavyTop>> quantities() const;
+};
+
+LAGROID_STEPS(extern template, HeavyTop);
+LAGROID_SOLVERS(extern template, HeavyTop);
+
+}  // namespace lagroid
