@@ -7,6 +7,7 @@
 #include "simulation.hpp"
 
 #include <lagroid/solvers/boundary_values.hpp>
+#include <lagroid/solvers/step_solver.hpp>
 
 #include <fmt/format.h>
 
@@ -66,6 +67,15 @@ auto read_along(const Section& scene, const ContinuationChoice& along, double s,
   }
 }
 
+/// The round-off of F+(g, lambda), relative to its size: the arrow's own, which the step divides by h, included.
+template <DiscreteSystem Sys>
+double evaluation_noise(const Sys& system, const Step<Sys>& step, const State<typename Sys::GroupoidType>& state) {
+  const double size = state.momentum.norm();
+  if (size == 0) return 0;
+  const auto jacobian = StepEquations<Sys>::jacobian(two_sided(system, step.arrow, step.multipliers));
+  return round_off_level(system, state, step, jacobian).template head<Sys::dimension>().maxCoeff() / size;
+}
+
 /// Replays a solved path through the recorder.
 template <DiscreteSystem Sys>
 void record_path(const Sys& system, const Presentation<Sys>& presentation, const Path<Sys>& path,
@@ -81,7 +91,7 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
     point.step = step;
     point.configuration = system.groupoid.project(system.groupoid.compose(point.configuration, step.arrow));
     point.state = legendre_plus(system, step);
-    recorder.observe(reported(system, point));
+    recorder.observe(reported(system, point), evaluation_noise(system, step, point.state));
   }
   recorder.finish(result);
 }

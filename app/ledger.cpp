@@ -18,7 +18,7 @@ double worse(double a, double b) { return a <= b || std::isnan(b) ? b : a; }
 QuantityWatch::QuantityWatch(std::string name, Promise promise, std::size_t width)
     : name_(std::move(name)), promise_(promise), first_(width), last_(width) {}
 
-void QuantityWatch::observe(const double* values, double size) {
+void QuantityWatch::observe(const double* values, double size, double noise) {
   if (samples_ == 0) {
     std::copy_n(values, first_.size(), first_.begin());
     first_size_ = size;
@@ -37,6 +37,7 @@ void QuantityWatch::observe(const double* values, double size) {
   }
   envelope_.back() = worse(envelope_.back(), std::sqrt(square));
   size_ = std::max(size_, size);
+  noise_ = std::max(noise_, noise);
   ++samples_;
 }
 
@@ -56,8 +57,10 @@ LedgerEntry QuantityWatch::entry() const {
   for (const double x : first_) norm += x * x;
   norm = std::sqrt(norm);
   e.relative_drift = e.drift / (norm > 0 ? norm : 1.0);
-  // A random walk of round-off errors, each a few units in the last place of the largest term.
-  const double noise = round_off * size_ * (200 + 20 * std::sqrt(double(samples_)));
+  // A random walk of round-off errors, each a few units in the last place of the largest term, or of evaluations'
+  // noise.
+  const double noise =
+      round_off * size_ * (200 + 20 * std::sqrt(double(samples_))) + noise_ * (3 + 3 * std::sqrt(double(samples_)));
   if (promise_ == Promise::conserved) {
     e.promise = "conserved";
     e.bound = noise;

@@ -14,8 +14,9 @@ namespace lagroid::app {
 class QuantityWatch {
  public:
   QuantityWatch(std::string name, Promise promise, std::size_t width);
-  /// `size` is the size of the terms the quantity is made of; round-off is relative to it.
-  void observe(const double* values, double size);
+  /// `size` is the size of the terms the quantity is made of; round-off is relative to it. `noise` is what one
+  /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not carried along.
+  void observe(const double* values, double size, double noise = 0);
   LedgerEntry entry() const;
 
  private:
@@ -27,7 +28,8 @@ class QuantityWatch {
   std::vector<double> envelope_;  // largest deviation in consecutive chunks of equal length
   long chunk_ = 1;
   double first_size_ = 0;
-  double size_ = 0;  // the largest
+  double size_ = 0;   // the largest
+  double noise_ = 0;  // the largest
 };
 
 /// The entry for a constraint residual: the largest |phi| met, against round-off in its terms, which have the given

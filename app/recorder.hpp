@@ -58,14 +58,17 @@ template <DiscreteSystem Sys> class Recorder {
     if (every_ > 0) declare_series();
   }
 
-  void observe(const TrajectoryPoint<Sys>& point) {
+  /// `noise`: what the evaluation of the momentum at this point lost, relative to its size, where it was not carried
+  /// along from the point before.
+  void observe(const TrajectoryPoint<Sys>& point, double noise = 0) {
     const bool has_step = point.index > 0;
     for (std::size_t i = 0; i < quantities_.size(); ++i) {
       const auto& q = quantities_[i];
       if (q.needs_step && !has_step) continue;
       q.evaluate(point, now_[i].data());
       if (point.index == (q.needs_step ? 1 : 0)) first_[i] = now_[i];
-      watches_[i].observe(now_[i].data(), q.size ? q.size(point) : norm(now_[i]));
+      const double size = q.size ? q.size(point) : norm(now_[i]);
+      watches_[i].observe(now_[i].data(), size, noise * size);
     }
     double residual = 0;
     if (has_step) {
