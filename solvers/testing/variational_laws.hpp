@@ -1,0 +1,189 @@
+#pragma once
+/// The discrete constrained action principle as a property that any system runs by naming itself. [G] section 5
+
+#include <lagroid/core/lagrangian.hpp>
+#include <lagroid/core/testing/groupoid_laws.hpp>
+#include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/testing/momentum_laws.hpp>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include <cstddef>
+
+namespace lagroid::laws {
+
+namespace detail {
+
+/// Columns that span the kernel of `a`; all of the space where it has no rows.
+inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
+  if (a.rows() == 0) return Eigen::MatrixXd::Identity(a.cols(), a.cols());
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullV);
+  svd.setThreshold(1e-9);
+  return svd.matrixV().rightCols(a.cols() - svd.rank());
+}
+
+/// The first variation of a trajectory g_1 ... g_n with a fixed product, in the displacements v_1 ... v_{n-1} of its
+/// inner nodes, one after the other: the conditions phi(g_k) = 0, C(q_k) = 0 with their derivatives, and the derivative
+/// of the action sum L(g_1) + ... + L(g_n).
+struct FirstVariation {
+  Eigen::VectorXd conditions;
+  Eigen::MatrixXd derivative;
+  Eigen::VectorXd action;
+  double size = 0;  ///< of the terms of the action's derivative
+};
+
+template <DiscreteSystem Sys> FirstVariation first_variation(const Sys& system, const Path<Sys>& path) {
+  constexpr int n = Sys::dimension;
+  constexpr int phis = Sys::arrow_constraints;
+  constexpr int objects = Sys::object_constraints;
+  const Eigen::Index count = Eigen::Index(path.size());
+  FirstVariation out;
+  out.conditions.setZero(count * phis + (count - 1) * objects);
+  out.derivative.setZero(out.conditions.size(), (count - 1) * n);
+  out.action.setZero((count - 1) * n);
+  Eigen::Index row = 0;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto d = two_sided(system, path[std::size_t(k)].arrow, Sys::Multipliers::Zero().eval());
+    const bool has_target = k + 1 < count;
+    out.conditions.segment(row, phis) = d.constraint.template head<phis>();
+    if (k > 0) {
+      out.action.template segment<n>((k - 1) * n) += d.source_gradient;
+      out.derivative.block(row, (k - 1) * n, phis, n) = d.constraint_source.template leftCols<phis>().transpose();
+    }
+    if (has_target) {
+      out.action.template segment<n>(k * n) += d.target_gradient;
+      out.derivative.block(row, k * n, phis, n) = d.constraint_target.template topRows<phis>();
+      out.conditions.segment(row + phis, objects) = d.constraint.template tail<objects>();
+      out.derivative.block(row + phis, k * n, objects, n) = d.constraint_target.template bottomRows<objects>();
+    }
+    row += phis + (has_target ? objects : 0);
+    out.size = std::max({out.size, d.source_gradient.norm(), d.target_gradient.norm()});
+  }
+  return out;
+}
+
+/// How far a trajectory is from critical: the derivative of the action along admissible variations, those that keep the
+/// constraints to first order, relative to its terms.
+inline double criticality_defect(const FirstVariation& v) {
+  const Eigen::MatrixXd admissible = kernel_of(v.derivative);
+  return admissible.cols() == 0 ? 0 : (admissible.transpose() * v.action).norm() / v.size;
+}
+
+/// The variation of n - 1 nodes with the coordinates v.
+template <DiscreteSystem Sys> Variation<Sys> variation_of(const Eigen::VectorXd& v) {
+  constexpr int n = Sys::dimension;
+  Variation<Sys> out(std::size_t(v.size() / n) + 1);
+  for (std::size_t k = 0; k + 1 < out.nodes.size(); ++k) out.nodes[k] = v.template segment<n>(Eigen::Index(k) * n);
+  return out;
+}
+
+}  // namespace detail
+
+/// Along trajectories from random states: displacements of inner nodes keep the product; the admissible variations of
+/// two arrows are those of Theorem 5.1; trajectories of the dynamics are critical for the action sum, with two arrows
+/// and with `count`; admissible ones nearby are not.
+template <DiscreteSystem Sys, class Draw>
+LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t count = 5, double tolerance = 1e-10) {
+  using G = typename Sys::GroupoidType;
+  constexpr int n = Sys::dimension;
+  const G& groupoid = system.groupoid;
+  const auto trajectory = [&](std::size_t arrows) {
+    auto integrator = detail::newton_integrator(system, draw());
+    Path<Sys> path;
+    for (std::size_t k = 0; k < arrows; ++k) {
+      if (!integrator.advance().converged()) throw std::runtime_error("a step from a drawn state was not solved");
+      path.push_back(integrator.point().step);
+    }
+    return path;
+  };
+  const auto product = [&](const Path<Sys>& path) {
+    ArrowOf<G> g = path.front().arrow;
+    for (std::size_t k = 1; k < path.size(); ++k) g = groupoid.multiply(g, path[k].arrow);
+    return g;
+  };
+  const auto random_nodes = [&](double size) {
+    Eigen::VectorXd v(Eigen::Index(count - 1) * n);
+    for (double& x : v) x = size * draw_uniform();
+    return v;
+  };
+
+  LawReport report{"action principle", {}};
+  const auto law = [&](const char* name, double bound, const auto& defect) {
+    report.laws.push_back(check_law(name, bound, defect));
+  };
+  law("displaced nodes keep the product", tolerance, [&] {
+    const auto path = trajectory(count);
+    const ArrowOf<G> g = product(path);
+    const auto moved = displaced({system, g}, path, detail::variation_of<Sys>(random_nodes(0.1)), 1.0);
+    return detail::relative_defect(groupoid.coordinates_of_arrow(product(moved)), groupoid.coordinates_of_arrow(g));
+  });
+  law("variations of two arrows (Theorem 5.1)", tolerance, [&] {
+    // (X<-(g1), -X->(g2)) spans the tangent space of {(g1, g2) in N x N composable, g1 g2 fixed}, found from its
+    // equations.
+    constexpr int size = total_dimension_of<G>();
+    using J = Jet<double, 2 * size>;
+    const auto path = trajectory(2);
+    const CotangentGroupoid<G> cotangent(groupoid);
+    const GeneratedSubmanifold<Sys> submanifold(system);
+    Vector<J, size> x1;
+    Vector<J, size> x2;
+    for (int i = 0; i < size; ++i) {
+      x1(i) = J::variable(0, i);
+      x2(i) = J::variable(0, size + i);
+    }
+    const auto g1 = CotangentChart<G>(cotangent, path[0].arrow).template arrow<J>(x1);
+    const auto g2 = CotangentChart<G>(cotangent, path[1].arrow).template arrow<J>(x2);
+    const auto q = groupoid.template cast_object<J>(groupoid.target(path[0].arrow));
+    const std::vector<Eigen::MatrixXd> equations{jacobian(groupoid.object_displacement(q, groupoid.target(g1))) -
+                                                     jacobian(groupoid.object_displacement(q, groupoid.source(g2))),
+                                                 jacobian(groupoid.coordinates_of_arrow(groupoid.multiply(g1, g2))),
+                                                 jacobian(submanifold.conditions_at(g1)),
+                                                 jacobian(submanifold.conditions_at(g2))};
+    Eigen::Index rows = 0;
+    for (const auto& e : equations) rows += e.rows();
+    Eigen::MatrixXd all(rows, 2 * size);
+    rows = 0;
+    for (const auto& e : equations) {
+      all.middleRows(rows, e.rows()) = e;
+      rows += e.rows();
+    }
+    const Eigen::MatrixXd fibre = detail::kernel_of(detail::first_variation(system, path).derivative);
+    if (detail::kernel_of(all).cols() != fibre.cols()) return 1.0;
+    const TangentBasis<G> basis(groupoid);
+    const auto second = groupoid.template cast<Dual<double>>(path[1].arrow);
+    Eigen::MatrixXd image(2 * size, fibre.cols());
+    image.setZero();
+    for (Eigen::Index j = 0; j < fibre.cols(); ++j) {
+      const AlgebroidVector<G> v = fibre.col(j);
+      image.col(j).template head<n>() = v;
+      image.col(j).tail(size) = basis.template components<double>(
+          path[1].arrow, basis.template right<double>(second, AlgebroidVector<G>(-v)));
+    }
+    return fibre.cols() == 0 ? 0.0 : (all * image).cwiseAbs().maxCoeff() / all.cwiseAbs().maxCoeff();
+  });
+  law("two arrows of the dynamics are critical", tolerance,
+      [&] { return detail::criticality_defect(detail::first_variation(system, trajectory(2))); });
+  law("trajectories are critical", tolerance,
+      [&] { return detail::criticality_defect(detail::first_variation(system, trajectory(count))); });
+  law("admissible neighbours are not", 0, [&] {
+    auto path = trajectory(count);
+    const BoundaryProblem<Sys> problem{system, product(path)};
+    auto v = detail::first_variation(system, path);
+    const Eigen::MatrixXd admissible = detail::kernel_of(v.derivative);
+    if (admissible.cols() == 0) return 0.0;
+    // Off by a thousandth, and back to the constraints.
+    Eigen::VectorXd step = 1e-3 * admissible.rowwise().sum();
+    for (int iteration = 0; iteration < 6; ++iteration) {
+      path = displaced(problem, path, detail::variation_of<Sys>(step), 1.0);
+      v = detail::first_variation(system, path);
+      if (v.conditions.size() == 0) break;
+      step = -v.derivative.completeOrthogonalDecomposition().solve(v.conditions);
+    }
+    const bool on_constraints = v.conditions.size() == 0 || v.conditions.cwiseAbs().maxCoeff() < 1e-10;
+    return double(!on_constraints || detail::criticality_defect(v) < 1e-6);
+  });
+  return report;
+}
+
+}  // namespace lagroid::laws
