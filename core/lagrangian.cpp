@@ -23,8 +23,8 @@ Eigen::VectorXd equilibrate(Eigen::MatrixXd& a) {
 
 }  // namespace
 
-double lagrangian_defect(const SubmanifoldTangent& tangent) {
-  Eigen::MatrixXd t = tangent.canonical;
+double lagrangian_defect(const Eigen::MatrixXd& canonical) {
+  Eigen::MatrixXd t = canonical;
   t.colwise().normalize();
   const Eigen::Index half = t.rows() / 2;
   const Eigen::MatrixXd form = t.topRows(half).transpose() * t.bottomRows(half);

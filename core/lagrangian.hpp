@@ -101,45 +101,61 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
     return lambda;
   }
 
-  /// The tangent space at a step that satisfies the constraints (which must have independent derivatives there).
-  SubmanifoldTangent tangent(const Step<Sys>& step) const {
-    using J = Jet<double, size + conditions>;
-    const CotangentChart<G> chart(cotangent_, step.arrow);
-    Vector<J, size> x;
-    for (int i = 0; i < size; ++i) x(i) = J::variable(0, i);
-    Multipliers<J> lambda;
-    const Multipliers<double> at = multipliers(step);
-    for (int a = 0; a < conditions; ++a) lambda(a) = J::variable(at(a), size + a);
-    const auto arrow = chart.template arrow<J>(x);
-    const auto mu = covector<J>(arrow, lambda);
-
-    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(size + conditions, size + conditions);
+  /// A basis of the tangent space at a step that satisfies the constraints (which must have independent derivatives
+  /// there): columns of changes of the arrow, in the coordinates of CotangentChart, and of the multipliers.
+  Eigen::MatrixXd directions(const Step<Sys>& step) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Identity(size + conditions, size);
     if constexpr (conditions > 0) {
-      const Eigen::MatrixXd normals = jacobian(conditions_at(arrow)).leftCols(size).transpose();
+      using J = Jet<double, size>;
+      Vector<J, size> x;
+      for (int i = 0; i < size; ++i) x(i) = J::variable(0, i);
+      const auto arrow = CotangentChart<G>(cotangent_, step.arrow).template arrow<J>(x);
+      const Eigen::MatrixXd normals = jacobian(conditions_at(arrow)).transpose();
       const Eigen::MatrixXd q = normals.householderQr().householderQ();
-      directions.resize(size + conditions, size);
-      directions.setZero();
-      directions.topLeftCorner(size, size - conditions) = q.rightCols(size - conditions);
-      directions.bottomRightCorner(conditions, conditions).setIdentity();
+      out.setZero();
+      out.topLeftCorner(size, size - conditions) = q.rightCols(size - conditions);
+      out.bottomRightCorner(conditions, conditions).setIdentity();
     }
-    SubmanifoldTangent out;
-    out.canonical = jacobian(chart.template canonical<J>(mu)) * directions;
-    const auto from = cotangent_.source(mu);
-    const auto to = cotangent_.target(mu);
-    out.minus = detail::chart_derivatives(cotangent_, from) * directions;
-    out.plus = detail::chart_derivatives(cotangent_, to) * directions;
-    out.poisson_minus = detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, from));
-    out.poisson_plus = detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, to));
     return out;
   }
+
+  /// The covectors near a step along such columns, one infinitesimal for each.
+  typename CotangentGroupoid<G>::template Arrow<Jet<double, size>> along(const Step<Sys>& step,
+                                                                         const Eigen::MatrixXd& columns) const {
+    using J = Jet<double, size>;
+    const auto moved = [&](double value, Eigen::Index row) {
+      const Vector<double, size> gradient = columns.row(row).transpose();
+      return J(value, J::Left::load(gradient.data()));
+    };
+    Vector<J, size> x;
+    for (int i = 0; i < size; ++i) x(i) = moved(0, i);
+    Multipliers<J> lambda;
+    const Multipliers<double> at = multipliers(step);
+    for (int a = 0; a < conditions; ++a) lambda(a) = moved(at(a), size + a);
+    return covector<J>(CotangentChart<G>(cotangent_, step.arrow).template arrow<J>(x), lambda);
+  }
+
+  SubmanifoldTangent tangent(const Step<Sys>& step) const {
+    const auto mu = along(step, directions(step));
+    const auto from = cotangent_.source(mu);
+    const auto to = cotangent_.target(mu);
+    using J = Jet<double, size>;
+    return {jacobian(CotangentChart<G>(cotangent_, step.arrow).template canonical<J>(mu)),
+            detail::chart_derivatives(cotangent_, from), detail::chart_derivatives(cotangent_, to),
+            detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, from)),
+            detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, to))};
+  }
+
+  const CotangentGroupoid<G>& cotangent() const { return cotangent_; }
 
  private:
   const Sys& system_;
   CotangentGroupoid<G> cotangent_;
 };
 
-/// omega on the basis of T Sigma_L, its columns first scaled to length one: zero, because Sigma_L is Lagrangian.
-double lagrangian_defect(const SubmanifoldTangent& tangent);
+/// omega on tangent vectors given by columns in canonical coordinates, scaled to length one: zero on a basis of T
+/// Sigma_L, because Sigma_L is Lagrangian.
+double lagrangian_defect(const Eigen::MatrixXd& canonical);
 
 /// The ranks of T F- and T F+ on Sigma_L: equal, whatever they are ([G] Remark 2.17). Singular values of the
 /// equilibrated matrices below `threshold` times the largest count as zero.

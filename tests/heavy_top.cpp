@@ -10,7 +10,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
 
 using namespace lagroid;
 
@@ -120,6 +124,32 @@ TEST(HeavyTop, KovalevskayasIntegralStaysInABandThatShrinksWithTheStep) {
     EXPECT_LT(seen.at("vertical momentum M.v").drift, 1e-12);
   }
   EXPECT_NEAR(std::log2(band[0] / band[1]), 2, 0.3);
+}
+
+TEST(HeavyTop, OfLagrangeOverAMillionSteps) {
+  HeavyTop top;
+  top.h = 0.02;
+  Integrator<HeavyTop> integrator(top, leaning, top.groupoid.unit(leaning.object),
+                                  std::make_unique<NewtonStep<HeavyTop>>());
+  const auto symmetries = top.symmetries();
+  constexpr long steps = 1'000'000;
+  const double energy = top.energy(leaning);
+  std::vector<double> drift(symmetries.size() + 1);
+  double first_quarter = 0;
+  double last_quarter = 0;
+  for (long k = 1; k <= steps; ++k) {
+    ASSERT_TRUE(integrator.advance().converged()) << k;
+    const auto& z = integrator.point().state;
+    for (std::size_t i = 0; i < symmetries.size(); ++i)
+      drift[i] = std::max(drift[i], std::abs(symmetries[i].momentum(z) - symmetries[i].momentum(leaning)));
+    drift.back() = std::max(drift.back(), std::abs(z.object.norm() - 1));
+    double& quarter = 4 * k <= steps ? first_quarter : last_quarter;
+    if (4 * k <= steps || 4 * k > 3 * steps) quarter = std::max(quarter, std::abs(top.energy(z) - energy));
+  }
+  // No more than a random walk of round-off: one unit in the last place a step would be fifty times as much.
+  const double walk = 20 * std::numeric_limits<double>::epsilon() * std::sqrt(double(steps));
+  for (const double d : drift) EXPECT_LT(d, walk * leaning.momentum.norm());
+  EXPECT_LT(last_quarter, 1.05 * first_quarter);
 }
 
 TEST(HeavyTop, ReducesFromAttitudes) {

@@ -1,5 +1,6 @@
 // Lie algebroids: brackets, anchors and bisections of every groupoid of the library; wrong ones fail.
 #include <lagroid/core/testing/algebroid_laws.hpp>
+#include <lagroid/groupoids/orthogonal.hpp>
 #include <lagroid/groupoids/rotated.hpp>
 #include <lagroid/groupoids/se2.hpp>
 #include <lagroid/groupoids/se3.hpp>
@@ -16,8 +17,9 @@ using namespace lagroid;
 namespace {
 
 template <class G> class AlgebroidLaws : public testing::Test {};
-using Groupoids = testing::Types<Affine, VectorGroup<2>, Pair<2>, SO2, SE2, SO3, SpecialOrthogonal3<Retraction::cayley>,
-                                 SE3, Product<Pair<2>, SO3>, TimeExtended<Pair<1>>, Action<SO3, RotatedVectors>>;
+using Groupoids =
+    testing::Types<Affine, VectorGroup<2>, Pair<2>, SO2, SE2, SO3, SpecialOrthogonal3<Retraction::cayley>, SE3,
+                   Orthogonal<4>, Product<Pair<2>, SO3>, TimeExtended<Pair<1>>, Action<SO3, RotatedVectors>>;
 TYPED_TEST_SUITE(AlgebroidLaws, Groupoids);
 
 TYPED_TEST(AlgebroidLaws, Hold) {

@@ -82,6 +82,22 @@ TEST(Reduction, RigidBodyFromAttitudesToBodyMomenta) {
   EXPECT_TRUE(report.holds()) << report;
 }
 
+TEST(Reduction, RigidBodyOverTenThousandSteps) {
+  const LeftQuotient<SO3> phi;
+  const PulledBack<LeftQuotient<SO3>, RigidBody> full(body());
+  const Vector<double, 3> momentum(1.2, 0.3, -0.5);
+  const Matrix<double, 3, 3> attitude = SO3::exp(Vector<double, 3>(0.3, 0.1, 0.8));
+  auto above = laws::detail::newton_integrator(full, phi.related(attitude, momentum));
+  Integrator<RigidBody> below(body(), {{}, momentum}, attitude, std::make_unique<NewtonStep<RigidBody>>());
+  for (int k = 0; k < 10'000; ++k) {
+    ASSERT_TRUE(above.advance().converged());
+    ASSERT_TRUE(below.advance().converged());
+  }
+  // The configuration of the reduced run is its reconstruction.
+  EXPECT_LT((above.point().state.object - below.point().configuration).norm(), 1e-10);
+  EXPECT_LT((above.point().state.momentum - below.point().state.momentum).norm(), 1e-10);
+}
+
 TEST(Reduction, RigidBodyFromTheActionGroupoid) {
   using Phi = Acting<SO3, RotatedVectors>;
   const PulledBack<Phi, RigidBody> full(body());

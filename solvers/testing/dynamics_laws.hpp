@@ -6,6 +6,8 @@
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 
+#include <Eigen/LU>
+
 #include <limits>
 
 namespace lagroid::laws {
@@ -26,7 +28,7 @@ LawReport dynamics_laws(const Sys& system, const Draw& draw, double tolerance = 
   const auto law = [&](const char* name, double bound, const auto& defect) {
     report.laws.push_back(check_law(name, bound, defect));
   };
-  law("Sigma_L is Lagrangian", tolerance, [&] { return lagrangian_defect(submanifold.tangent(step())); });
+  law("Sigma_L is Lagrangian", tolerance, [&] { return lagrangian_defect(submanifold.tangent(step()).canonical); });
   law("Legendre transforms are source and target", tolerance, [&] {
     const Step<Sys> s = step();
     const CotangentGroupoid<G> cotangent(groupoid);
@@ -39,6 +41,26 @@ LawReport dynamics_laws(const Sys& system, const Draw& draw, double tolerance = 
     return double(ranks.minus != ranks.plus);
   });
   law("the step is Poisson", tolerance, [&] { return poisson_defect(submanifold.tangent(step())); });
+  if constexpr (Sys::object_constraints == 0)
+    law("products of steps compose", tolerance, [&] {
+      // mu1 mu2 in T*G, for two steps in a row: from the first state to the last, and the products of all composable
+      // pairs nearby form a Lagrangian submanifold again ([G] end of section 2).
+      const State<G> start = draw();
+      const Step<Sys> first = step_from(system, start);
+      const Step<Sys> second = step_from(system, legendre_plus(system, first));
+      const auto& cotangent = submanifold.cotangent();
+      const Eigen::MatrixXd matched =
+          submanifold.tangent(second).minus.partialPivLu().solve(submanifold.tangent(first).plus);
+      const auto product = cotangent.multiply(submanifold.along(first, submanifold.directions(first)),
+                                              submanifold.along(second, submanifold.directions(second) * matched));
+      using J = Jet<double, Submanifold::size>;
+      const CotangentChart<G> chart(cotangent, groupoid.multiply(first.arrow, second.arrow));
+      const auto end = legendre_plus(system, second).momentum;
+      const auto values = [](const auto& z) { return z.momentum.unaryExpr([](const J& x) { return x.value; }).eval(); };
+      return worst({lagrangian_defect(jacobian(chart.template canonical<J>(product))),
+                    detail::relative_defect(values(cotangent.source(product)), legendre_minus(system, first).momentum),
+                    detail::relative_defect(values(cotangent.target(product)), end)});
+    });
   law("the step reverses", tolerance, [&] {
     // Back from a guess off by a thousandth. Object constraints leave momenta free along their normals: compared are
     // the arrows, and momenta where they are determined.
