@@ -47,12 +47,12 @@ template <int N> struct Orthogonal : MatrixGroup<Orthogonal<N>, N, N*(N - 1) / 2
   template <class S> static Matrix<S, N, N> cayley(const Vector<S, rank>& x) {
     const Matrix<S, N, N> half = hat(x) * S(0.5);
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
-    return solve(one - half, one + half);
+    return solve<S>(one - half, one + half);
   }
   /// X = 2 (g + I)^{-1} (g - I). Requires that g has no eigenvalue -1.
   template <class S> static Vector<S, rank> cayley_inverse(const Matrix<S, N, N>& g) {
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
-    return vee(Matrix<S, N, N>(solve(g + one, (g - one) * S(2.0))));
+    return vee(Matrix<S, N, N>(solve<S>(g + one, (g - one) * S(2.0))));
   }
 
   /// The nearest orthogonal matrix, by one Newton-Schulz step: exact where g is orthogonal up to round-off.
