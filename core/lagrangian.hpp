@@ -24,22 +24,16 @@ template <class Cotangent, class Z> Eigen::MatrixXd chart_derivatives(const Cota
 template <Groupoid G, class Z> Eigen::MatrixXd poisson_in_chart(const G& groupoid, const Z& z) {
   constexpr int n = G::dimension;
   constexpr int d = object_dimension_of<G>();
-  constexpr int k = G::object_coordinate_count();
-  using D = Dual<double>;
-  const Eigen::MatrixXd ambient = poisson_tensor(groupoid, z.object, z.momentum);
+  const LieAlgebroid<G> algebroid(groupoid);
+  const auto q = groupoid.template cast_object<Dual<double>>(z.object);
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(d + n, d + n);
-  out.bottomRightCorner(n, n) = ambient.bottomRightCorner(n, n);
-  const auto q = groupoid.template cast_object<D>(z.object);
-  const auto coordinates = groupoid.coordinates_of_object(z.object);
   for (int i = 0; i < n; ++i) {
-    Vector<D, k> moved;
-    for (int a = 0; a < k; ++a) moved(a) = D(coordinates(a), ambient(a, k + i));
-    const auto u = groupoid.object_displacement(q, groupoid.template object_at<D>(moved));
-    for (int j = 0; j < d; ++j) {
-      out(j, d + i) = u(j).derivative;
-      out(d + i, j) = -u(j).derivative;
-    }
+    const Vector<double, n> e = Vector<double, n>::Unit(i);
+    out.block(0, d + i, d, 1) =
+        algebroid.along_anchor(z.object, e, [&](const auto& r) { return groupoid.object_displacement(q, r); });
   }
+  out.bottomLeftCorner(n, d) = -out.topRightCorner(d, n).transpose();
+  out.bottomRightCorner(n, n) = poisson_tensor(groupoid, z.object, z.momentum).bottomRightCorner(n, n);
   return out;
 }
 
@@ -135,6 +129,7 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
     return covector<J>(CotangentChart<G>(cotangent_, step.arrow).template arrow<J>(x), lambda);
   }
 
+  /// The tangent space along `directions`.
   SubmanifoldTangent tangent(const Step<Sys>& step) const {
     const auto mu = along(step, directions(step));
     const auto from = cotangent_.source(mu);

@@ -112,6 +112,28 @@ TEST(BrokenDynamics, FailsTheLawsItBreaks) {
   EXPECT_FALSE(twisted.law("Legendre transforms have equal rank").holds()) << twisted;
 }
 
+/// A spring whose derivatives by hand lose a thousandth of F+.
+struct Leaking : System<Leaking, Pair<1>> {
+  double h = 0.1;
+  template <class S> S lagrangian(const PairArrow<S, 1>& g) const {
+    const S dq = g.target(0) - g.source(0);
+    return dq * dq * (0.5 / h) - (g.source(0) * g.source(0) + g.target(0) * g.target(0)) * (0.25 * h);
+  }
+  TwoSided<1, 0> two_sided(const PairArrow<double, 1>& g, const Multipliers& lambda) const {
+    auto d = automatic_two_sided(*this, g, lambda);
+    d.target_gradient *= 0.999;
+    return d;
+  }
+};
+TEST(BrokenDynamics, DerivativesThatAreNotTheLagrangiansAreFoundOut) {
+  const auto report = laws::dynamics_laws(Leaking{}, [] {
+    return State<Pair<1>>{Vector<double, 1>(0.5), Vector<double, 1>(1.0)};
+  });
+  EXPECT_FALSE(report.law("Legendre transforms are source and target").holds()) << report;
+  EXPECT_FALSE(report.law("products of steps compose").holds()) << report;
+  EXPECT_FALSE(report.law("the step reverses").holds()) << report;
+}
+
 /// An oscillator by Euler's two methods.
 TEST(PoissonDefect, TellsSymplecticMapsFromOthers) {
   const Pair<1> line;
