@@ -79,8 +79,9 @@ double evaluation_noise(const Sys& system, const Step<Sys>& step, const State<ty
 /// Replays a solved path through the recorder.
 template <DiscreteSystem Sys>
 void record_path(const Sys& system, const Presentation<Sys>& presentation, const Path<Sys>& path,
-                 const ArrowOf<typename Sys::GroupoidType>& start, long every, RunResult& result) {
-  Recorder<Sys> recorder(system, presentation, every);
+                 const ArrowOf<typename Sys::GroupoidType>& start, long every, const Observer<Sys>& observer,
+                 RunResult& result) {
+  Recorder<Sys> recorder(system, presentation, every, observer);
   TrajectoryPoint<Sys> point;
   point.configuration = start;
   point.state = legendre_minus(system, path.front());
@@ -145,7 +146,8 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
 /// Says which path was chosen, and records it; or why there is none.
 template <DiscreteSystem Sys>
 void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, Seek seek,
-                      const MultistartResult<Sys>& found, long starts, long every, RunResult& result) {
+                      const MultistartResult<Sys>& found, long starts, long every, const Observer<Sys>& observer,
+                      RunResult& result) {
   const Sys& system = problem.stage.problem.system;
   for (const auto& s : found.solutions) {
     const auto momentum = tangent_momentum(system, legendre_minus(system, s.path.front()));
@@ -159,7 +161,7 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
   const auto best = std::find_if(found.solutions.begin(), found.solutions.end(),
                                  [&](const auto& s) { return seek == Seek::stationary || s.kind.is_minimum; });
   if (best != found.solutions.end()) {
-    record_path(system, presentation, best->path, problem.start, every, result);
+    record_path(system, presentation, best->path, problem.start, every, observer, result);
     result.cost = best->cost;
     result.steps = long(best->path.size());
     if (best != found.solutions.begin())
@@ -199,35 +201,36 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
   }
   const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
   if (!path.empty()) {
-    record_path(system, presentation, path, problem.start, every, result);
+    record_path(system, presentation, path, problem.start, every, observer, result);
     for (auto& entry : result.ledger.entries) entry.verdict = "unjudged";
   }
 }
 
-/// A boundary-value run. `read(scene)` gives the BoundaryScene of a scene, with every check of its data;
-/// `search(solver, stage, options)` its multistart.
+/// Everything that a boundary-value run takes from its scene.
+template <DiscreteSystem Sys> struct BoundaryRun {
+  Section scene;
+  Presentation<Sys> presentation;
+  BoundaryScene<Sys> problem;
+  BoundaryStage<Sys> first;  ///< where the continuation begins; the problem itself without one
+  BoundaryChoice choice;
+  std::optional<ContinuationChoice> along;
+  long every = 0;
+};
+
+/// Searches, continues, reports. `search(solver, stage, options)` is the multistart.
 template <DiscreteSystem Sys, class Read, class Search>
-RunResult run_boundary_value(const Section& scene, const RunContext& context, const Presentation<Sys>& presentation,
-                             const Read& read, const Search& search) {
-  const BoundaryScene<Sys> problem = read(scene);
-  BoundaryChoice choice = read_boundary_solver(scene.section_or_empty("solver"));
-  const auto along = read_continuation(scene);
-  const long every = read_every(scene, context);
-  scene.finish();
-  if (const auto why = inadmissible_ends(problem.stage.problem)) scene.section_or_empty("boundary").fail("", *why);
-  if (problem.stage.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
-
-  const BoundaryStage<Sys> first = along ? read_along(scene, *along, 0, read).stage : problem.stage;
-  if (const auto why = inadmissible_ends(first.problem)) scene.section("continuation", "").fail("from", *why);
-
+RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& context, const Read& read,
+                               const Search& search, const Observer<Sys>& observer) {
+  const auto& [scene, presentation, problem, first, choice, along, every] = run;
   const auto clock = std::chrono::steady_clock::now();
   const auto solver = make_boundary_solver<Sys>(choice.method, choice.options, choice.seek.value_or(natural_seek<Sys>));
-  const long starts = choice.multistart.starts;
+  MultistartOptions multistart = choice.multistart;
+  const long starts = multistart.starts;
   MultistartResult<Sys> found;
   {
     Progress progress("starts", starts, context.progress);
-    choice.multistart.report = [&](int done) { progress.update(done); };
-    found = search(*solver, first, choice.multistart);
+    multistart.report = [&](int done) { progress.update(done); };
+    found = search(*solver, first, multistart);
   }
   RunResult result;
   result.system = presentation.name;
@@ -245,18 +248,39 @@ RunResult run_boundary_value(const Section& scene, const RunContext& context, co
   result.iterations = found.iterations;
   // Where nothing arrived, the farthest path is one of the problem it was solved for.
   report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation, solver->seek(),
-                   found, starts, every, result);
+                   found, starts, every, observer, result);
   result.ledger.mean_iterations = double(found.start_iterations) / double(starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return result;
 }
 
+/// A boundary-value run. `read(scene)` gives the BoundaryScene of a scene, with every check of its data.
+template <DiscreteSystem Sys, class Read, class Search>
+Task<Sys> boundary_value(const Section& scene, const RunContext& context, const Presentation<Sys>& presentation,
+                         const Read& read, const Search& search) {
+  BoundaryRun<Sys> run{scene,
+                       presentation,
+                       read(scene),
+                       {},
+                       read_boundary_solver(scene.section_or_empty("solver")),
+                       read_continuation(scene),
+                       read_every(scene, context)};
+  scene.finish();
+  const auto& problem = run.problem.stage;
+  if (const auto why = inadmissible_ends(problem.problem)) scene.section_or_empty("boundary").fail("", *why);
+  if (problem.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
+  run.first = run.along ? read_along(scene, *run.along, 0, read).stage : problem;
+  if (const auto why = inadmissible_ends(run.first.problem)) scene.section("continuation", "").fail("from", *why);
+  return {problem.problem.system,
+          [=](const Observer<Sys>& observer) { return solve_boundary_scene(run, context, read, search, observer); }};
+}
+
 /// The same with the multistart that serves any system.
 template <DiscreteSystem Sys, class Read>
-RunResult run_boundary_value(const Section& scene, const RunContext& context, const Presentation<Sys>& presentation,
-                             const Read& read) {
-  return run_boundary_value<Sys>(
+Task<Sys> boundary_value(const Section& scene, const RunContext& context, const Presentation<Sys>& presentation,
+                         const Read& read) {
+  return boundary_value<Sys>(
       scene, context, presentation, read,
       [](const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage, const MultistartOptions& options) {
         return solve_boundary(solver, stage.problem, stage.steps, options);

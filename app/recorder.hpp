@@ -3,6 +3,7 @@
 
 #include "ledger.hpp"
 #include "run_result.hpp"
+#include "task.hpp"
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/two_sided.hpp>
@@ -48,8 +49,12 @@ template <DiscreteSystem Sys> class Recorder {
   using G = typename Sys::GroupoidType;
 
   /// `every` = 0 records nothing but the ledger and the endpoints.
-  Recorder(const Sys& system, const Presentation<Sys>& presentation, long every)
-      : system_(system), presentation_(presentation), quantities_(system.quantities()), every_(every) {
+  Recorder(const Sys& system, const Presentation<Sys>& presentation, long every, Observer<Sys> observer = nullptr)
+      : system_(system),
+        presentation_(presentation),
+        quantities_(system.quantities()),
+        every_(every),
+        observer_(std::move(observer)) {
     for (const auto& q : quantities_) {
       watches_.emplace_back(q.name, q.promise, q.components.size());
       first_.emplace_back(q.components.size());
@@ -61,6 +66,7 @@ template <DiscreteSystem Sys> class Recorder {
   /// `noise`: what the evaluation of the momentum at this point lost, relative to its size, where it was not carried
   /// along from the point before.
   void observe(const TrajectoryPoint<Sys>& point, double noise = 0) {
+    if (observer_) observer_(point);
     const bool has_step = point.index > 0;
     for (std::size_t i = 0; i < quantities_.size(); ++i) {
       const auto& q = quantities_[i];
@@ -205,6 +211,7 @@ template <DiscreteSystem Sys> class Recorder {
   std::vector<std::vector<double>> first_;
   std::vector<std::vector<double>> now_;
   long every_;
+  Observer<Sys> observer_;
   double largest_residual_ = 0;
   double constraint_size_ = 0;
   TrajectoryPoint<Sys> last_point_;

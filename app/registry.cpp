@@ -1,28 +1,24 @@
 #include "registry.hpp"
 
-#include <array>
-
 namespace lagroid::app {
 
-std::span<const SystemEntry> systems() {
-  static constexpr std::array<SystemEntry, 6> all{{
-      {"plate_ball", "optimal control of a ball rolling on a rotating plate", run_plate_ball},
-      {"rigid_body", "free rigid body on SO(3)", run_rigid_body},
-      {"heavy_top", "rigid body with a fixed point under gravity, SO(3) acting on S^2", run_heavy_top},
-      {"pendulum", "planar pendulum", run_pendulum},
-      {"kepler", "planar Kepler problem", run_kepler},
-      {"spherical_pendulum", "spherical pendulum, R^3 with an object constraint", run_spherical_pendulum},
-  }};
-  return all;
+RunResult run_scene(const Section& scene, const RunContext& context) {
+  return with_system_of(scene, [&](const auto& entry) { return entry.read(scene, context).run(nullptr); });
 }
 
-RunResult run_scene(const Section& scene, const RunContext& context) {
-  std::vector<std::string> names;
-  for (const auto& entry : systems()) names.emplace_back(entry.name);
-  const std::string name = scene.choice("system", names);
-  for (const auto& entry : systems())
-    if (entry.name == name) return entry.run(scene, context);
-  scene.fail("system", "not a system");
+std::vector<SystemSummary> list_systems() {
+  std::vector<SystemSummary> out;
+  for_each_system([&]<class Sys>(const Entry<Sys>& entry) {
+    SystemSummary s{
+        std::string(entry.name), std::string(entry.summary), Sys::GroupoidType::name(), entry.parameters, {}, {}};
+    const Sys system;
+    if constexpr (requires { system.symmetries(); })
+      for (const auto& symmetry : system.symmetries()) s.symmetries.push_back(symmetry.name);
+    for (const auto& quantity : system.quantities())
+      if (quantity.promise == Promise::conserved) s.conserved.push_back(quantity.name);
+    out.push_back(std::move(s));
+  });
+  return out;
 }
 
 }  // namespace lagroid::app

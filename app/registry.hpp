@@ -1,32 +1,96 @@
 #pragma once
 /// The systems a scene can name.
 
-#include "run_result.hpp"
-#include "scene_reader.hpp"
-#include "simulation.hpp"
+#include "systems/readers.hpp"
 
-#include <span>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace lagroid::app {
 
-struct SystemEntry {
+/// A key of [parameters].
+struct Parameter {
   std::string_view name;
-  std::string_view summary;
-  RunResult (*run)(const Section& scene, const RunContext& context);
+  std::string_view unit;
+  std::string_view fallback;  ///< empty where the key must be given
+  std::string_view meaning;
 };
 
-/// All systems, in the order they are listed to users.
-std::span<const SystemEntry> systems();
+template <DiscreteSystem Sys> struct Entry {
+  std::string_view name;
+  std::string_view summary;
+  Task<Sys> (*read)(const Section& scene, const RunContext& context);
+  std::vector<Parameter> parameters;
+};
 
-/// Reads `system` and runs it. Every key of the scene is read and checked before anything is computed.
+/// Visits the entry of every system, in the order in which they are listed to users.
+template <class Visit> void for_each_system(const Visit& visit) {
+  const Parameter quadrature{"quadrature", "", "", "of the potential over a step: midpoint or trapezoid"};
+  const Parameter inertia{"inertia", "kg m^2", "", "three principal moments"};
+  const Parameter rotation{"rotation", "", "exp", "how a rotation becomes an angular velocity: exp or cayley"};
+  const auto with = [](Parameter p, std::string_view fallback) {
+    p.fallback = fallback;
+    return p;
+  };
+  visit(Entry<PlateBall>{"plate_ball",
+                         "optimal control of a ball rolling on a rotating plate",
+                         read_plate_ball,
+                         {{"radius", "m", "1", "of the ball"},
+                          {"plate_rate", "rad/s", "0", "angular velocity of the plate"},
+                          {"spin", "rad/s", "0", "prescribed rate about the vertical"},
+                          {"rotation", "", "trace", "form of the constraints: trace, exp or cayley"}}});
+  visit(Entry<RigidBody>{"rigid_body", "free rigid body on SO(3)", read_rigid_body, {inertia, rotation}});
+  visit(Entry<HeavyTop>{"heavy_top",
+                        "rigid body with a fixed point under gravity, SO(3) acting on S^2",
+                        read_heavy_top,
+                        {inertia, {"weight", "N m", "", "weight times the vector to the centre of mass"}, rotation}});
+  visit(Entry<Pendulum>{"pendulum",
+                        "planar pendulum",
+                        read_pendulum,
+                        {{"mass", "kg", "1", "of the bob"},
+                         {"length", "m", "1", "of the rod"},
+                         {"gravity", "m/s^2", "1", "acceleration"},
+                         with(quadrature, "midpoint")}});
+  visit(Entry<Kepler>{"kepler",
+                      "planar Kepler problem",
+                      read_kepler,
+                      {{"strength", "m^3/s^2", "1", "of the attraction"}, with(quadrature, "trapezoid")}});
+  visit(Entry<SphericalPendulum>{"spherical_pendulum",
+                                 "spherical pendulum, R^3 with an object constraint",
+                                 read_spherical_pendulum,
+                                 {{"mass", "kg", "1", "of the bob"},
+                                  {"length", "m", "1", "of the rod"},
+                                  {"gravity", "m/s^2", "1", "acceleration"},
+                                  with(quadrature, "trapezoid")}});
+}
+
+/// What `visit(entry)` returns for the system that the scene names.
+template <class Visit> auto with_system_of(const Section& scene, const Visit& visit) {
+  std::vector<std::string> names;
+  for_each_system([&](const auto& entry) { names.emplace_back(entry.name); });
+  const std::string name = scene.choice("system", names);
+  std::optional<decltype(visit(Entry<PlateBall>{}))> result;
+  for_each_system([&](const auto& entry) {
+    if (entry.name == name) result = visit(entry);
+  });
+  return std::move(*result);
+}
+
+/// Runs the scene.
 RunResult run_scene(const Section& scene, const RunContext& context);
 
-RunResult run_plate_ball(const Section& scene, const RunContext& context);
-RunResult run_rigid_body(const Section& scene, const RunContext& context);
-RunResult run_heavy_top(const Section& scene, const RunContext& context);
-RunResult run_pendulum(const Section& scene, const RunContext& context);
-RunResult run_kepler(const Section& scene, const RunContext& context);
-RunResult run_spherical_pendulum(const Section& scene, const RunContext& context);
+/// One system as `lagroid list` shows it.
+struct SystemSummary {
+  std::string name;
+  std::string summary;
+  std::string groupoid;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> symmetries;  ///< of the system with its default parameters
+  std::vector<std::string> conserved;   ///< quantities promised as conserved
+};
+std::vector<SystemSummary> list_systems();
 
 }  // namespace lagroid::app

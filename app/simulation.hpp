@@ -4,6 +4,7 @@
 #include "progress.hpp"
 #include "recorder.hpp"
 #include "scene_reader.hpp"
+#include "task.hpp"
 
 #include <lagroid/solvers/integrator.hpp>
 
@@ -14,12 +15,6 @@
 #include <memory>
 
 namespace lagroid::app {
-
-/// What the command line asks of a run.
-struct RunContext {
-  bool record = false;    ///< keep the trajectory
-  bool progress = false;  ///< show a bar
-};
 
 /// [time]: two of step, steps, duration.
 struct TimeGrid {
@@ -52,11 +47,11 @@ template <DiscreteSystem Sys>
 RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
                    const State<typename Sys::GroupoidType>& initial,
                    const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const StepperChoice& choice,
-                   long every, const RunContext& context) {
+                   long every, const RunContext& context, const Observer<Sys>& observer) {
   const auto start = std::chrono::steady_clock::now();
   RunResult result;
   result.steps_asked = steps;
-  Recorder<Sys> recorder(system, presentation, every);
+  Recorder<Sys> recorder(system, presentation, every, observer);
   Integrator<Sys> integrator(system, initial, configuration, make_step_solver(system, choice.method, choice.options));
   recorder.observe(reported(system, integrator.point()));
   {
@@ -80,6 +75,17 @@ RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
   result.ledger.mean_iterations = result.steps > 0 ? double(result.iterations) / double(result.steps) : 0;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+/// The same, to be run later.
+template <DiscreteSystem Sys>
+Task<Sys> simulation(const Sys& system, const Presentation<Sys>& presentation,
+                     const State<typename Sys::GroupoidType>& initial,
+                     const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const StepperChoice& choice,
+                     long every, const RunContext& context) {
+  return {system, [=](const Observer<Sys>& observer) {
+            return simulate(system, presentation, initial, configuration, steps, choice, every, context, observer);
+          }};
 }
 
 }  // namespace lagroid::app

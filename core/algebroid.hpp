@@ -47,11 +47,9 @@ template <Groupoid G> class LieAlgebroid {
   template <class Q, class V, class F> auto along_anchor(const Q& q, const V& x, const F& f) const {
     using S = ObjectScalar<G, Q>;
     using D = Dual<S>;
-    const auto moved = groupoid_.target(groupoid_.tau(groupoid_.template cast_object<D>(q), infinitesimal<S>(x)));
-    const auto y = f(moved);
-    Vector<S, decltype(y)::RowsAtCompileTime> out;
-    for (int i = 0; i < out.size(); ++i) out(i) = y(i).derivative;
-    return out;
+    const auto moved =
+        groupoid_.target(groupoid_.tau(groupoid_.template cast_object<D>(q), infinitesimal(Fibre<S>(x))));
+    return derivative_of(f(moved));
   }
 
   /// The bracket at q of the sections of constant coefficients x and y, from the bracket of their left-invariant fields
@@ -120,11 +118,6 @@ template <Groupoid G> class LieAlgebroid {
   }
 
  private:
-  template <class S, class V> static auto infinitesimal(const V& x) {
-    Fibre<Dual<S>> out;
-    for (int i = 0; i < rank; ++i) out(i) = Dual<S>(S(0.0), x(i));
-    return out;
-  }
   template <class T, class V> static V times(const T& size, V v) {
     for (int i = 0; i < v.size(); ++i) v(i) = v(i) * size;
     return v;

@@ -41,11 +41,11 @@ template <Groupoid G> class TangentBasis {
   }
   /// X<-(g) and X->(g) as arrows over dual numbers, x the coefficients of X at the target and at the source.
   template <class S, class K> K left(const K& g, const Vector<S, n>& x) const {
-    return groupoid_.multiply(g, groupoid_.tau(groupoid_.target(g), infinitesimal<S, n>(x)));
+    return groupoid_.multiply(g, groupoid_.tau(groupoid_.target(g), infinitesimal(x)));
   }
   template <class S, class K> K right(const K& g, const Vector<S, n>& x) const {
-    return groupoid_.multiply(
-        groupoid_.inverse(groupoid_.tau(groupoid_.source(g), infinitesimal<S, n>(Vector<S, n>(-x)))), g);
+    return groupoid_.multiply(groupoid_.inverse(groupoid_.tau(groupoid_.source(g), infinitesimal(Vector<S, n>(-x)))),
+                              g);
   }
   /// U_j at g: its source displaced along the bisection b_g.
   template <class S, class K> K along_bisection(const K& g, int j) const {
@@ -57,13 +57,8 @@ template <Groupoid G> class TangentBasis {
   }
 
  private:
-  template <class S, int N> static auto infinitesimal(const Vector<S, N>& x) {
-    Vector<Dual<S>, N> e;
-    for (int i = 0; i < N; ++i) e(i) = Dual<S>(S(0.0), x(i));
-    return e;
-  }
   template <class S, class Q> auto displaced(const Q& q, int j) const {
-    return groupoid_.displace_object(q, infinitesimal<S, d>(Vector<S, d>(Vector<S, d>::Unit(j))));
+    return groupoid_.displace_object(q, infinitesimal(Vector<S, d>(Vector<S, d>::Unit(j))));
   }
 
   const G& groupoid_;

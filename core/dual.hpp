@@ -124,6 +124,22 @@ template <int Order, class T> Dual<T> angle_ratio(const Dual<T>& w) {
   return {angle_ratio<Order>(w.value), angle_ratio<Order + 1>(w.value) * w.derivative};
 }
 
+/// x e: the components of x as infinitesimals.
+template <class V> auto infinitesimal(const V& x) {
+  using T = typename V::Scalar;
+  Vector<Dual<T>, V::RowsAtCompileTime> out;
+  for (int i = 0; i < out.size(); ++i) out(i) = Dual<T>(T(0.0), x(i));
+  return out;
+}
+
+/// The derivative parts of x.
+template <class V> auto derivative_of(const V& x) {
+  using T = std::remove_cvref_t<decltype(x(0).derivative)>;
+  Vector<T, V::RowsAtCompileTime> out;
+  for (int i = 0; i < out.size(); ++i) out(i) = x(i).derivative;
+  return out;
+}
+
 }  // namespace lagroid
 
 template <class T> struct Eigen::NumTraits<lagroid::Dual<T>> : Eigen::NumTraits<double> {
@@ -139,4 +155,10 @@ template <class T, class Operation> struct Eigen::ScalarBinaryOpTraits<lagroid::
 };
 template <class T, class Operation> struct Eigen::ScalarBinaryOpTraits<double, lagroid::Dual<T>, Operation> {
   using ReturnType = lagroid::Dual<T>;
+};
+
+/// Arrays are aligned like T, which may need more than Eigen's own limit.
+template <class T, int Size>
+requires(Size != Eigen::Dynamic) struct Eigen::internal::compute_default_alignment<lagroid::Dual<T>, Size> {
+  enum { value = 0 };
 };

@@ -256,16 +256,6 @@ template <class Derived, int Dimension> class LieGroupoid {
 
  private:
   const Derived& self() const { return static_cast<const Derived&>(*this); }
-
-  template <class V> static auto infinitesimal(const V& x) {
-    using T = typename V::Scalar;
-    Vector<Dual<T>, Dimension> e;
-    for (int i = 0; i < Dimension; ++i) e(i) = Dual<T>(T(0.0), x(i));
-    return e;
-  }
-  template <class V> static auto derivative_of(const V& coordinates) {
-    return coordinates.unaryExpr([](const auto& c) { return c.derivative; }).eval();
-  }
 };
 
 /// The dimension of Q.

@@ -1,27 +1,11 @@
 #include <lagroid/core/lagrangian.hpp>
+#include <lagroid/core/step_equations.hpp>
 
 #include <Eigen/SVD>
 
-#include <cmath>
-
 namespace lagroid {
 
-namespace {
-
-/// Scales rows and columns of `a` to largest entries near one (Ruiz); returns the rows' scales.
-Eigen::VectorXd equilibrate(Eigen::MatrixXd& a) {
-  Eigen::VectorXd row = Eigen::VectorXd::Ones(a.rows());
-  const auto inverse_root = [](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; };
-  for (int sweep = 0; sweep < 8; ++sweep) {
-    const Eigen::VectorXd r = a.cwiseAbs().rowwise().maxCoeff().unaryExpr(inverse_root);
-    const Eigen::VectorXd c = a.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(inverse_root);
-    a = (r.asDiagonal() * a * c.asDiagonal()).eval();
-    row = row.cwiseProduct(r);
-  }
-  return row;
-}
-
-}  // namespace
+using Balance = Scaling<Eigen::Dynamic, Eigen::Dynamic>;
 
 double lagrangian_defect(const Eigen::MatrixXd& canonical) {
   Eigen::MatrixXd t = canonical;
@@ -32,9 +16,8 @@ double lagrangian_defect(const Eigen::MatrixXd& canonical) {
 }
 
 LegendreRanks legendre_ranks(const SubmanifoldTangent& tangent, double threshold) {
-  const auto rank = [&](Eigen::MatrixXd a) {
-    equilibrate(a);
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd(a);
+  const auto rank = [&](const Eigen::MatrixXd& a) {
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd(Balance::equilibrate(a).apply(a));
     svd.setThreshold(threshold);
     return long(svd.rank());
   };
@@ -45,12 +28,13 @@ double poisson_defect(const SubmanifoldTangent& tangent) {
   const Eigen::Index size = tangent.minus.rows();
   Eigen::MatrixXd image(2 * size, tangent.minus.cols());
   image << tangent.minus, tangent.plus;
-  const Eigen::VectorXd scale = equilibrate(image);
+  const auto balance = Balance::equilibrate(image);
+  const Eigen::VectorXd scale = balance.row;
   Eigen::MatrixXd poisson = Eigen::MatrixXd::Zero(2 * size, 2 * size);
   poisson.topLeftCorner(size, size) = -tangent.poisson_minus;
   poisson.bottomRightCorner(size, size) = tangent.poisson_plus;
   poisson = (scale.asDiagonal() * poisson * scale.asDiagonal()).eval();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(image, Eigen::ComputeFullU);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(balance.apply(image), Eigen::ComputeFullU);
   const Eigen::MatrixXd annihilators = svd.matrixU().rightCols(2 * size - svd.rank());
   const double largest = poisson.cwiseAbs().maxCoeff();
   if (largest == 0) return 0;

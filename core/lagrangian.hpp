@@ -15,10 +15,10 @@ template <class Cotangent, class Z> auto point_of(const Cotangent& cotangent, co
   const auto c = cotangent.coordinates_of_object(z);
   return cotangent.template object_at<double>(c.unaryExpr([](const auto& y) { return y.value; }).eval());
 }
-/// The derivatives of a point of A*G over jets, in the chart around its value.
-template <class Cotangent, class Z> Eigen::MatrixXd chart_derivatives(const Cotangent& cotangent, const Z& z) {
-  using S = typename decltype(z.momentum)::Scalar;
-  return jacobian(cotangent.object_displacement(cotangent.template cast_object<S>(point_of(cotangent, z)), z));
+/// The derivative of a point of A*G over dual numbers, in the chart around its value.
+template <class Cotangent, class Z> auto chart_derivative(const Cotangent& cotangent, const Z& z) {
+  const auto centre = cotangent.template cast_object<Dual<double>>(point_of(cotangent, z));
+  return derivative_of(cotangent.object_displacement(centre, z));
 }
 /// The Poisson tensor of A*G at z in that chart.
 template <Groupoid G, class Z> Eigen::MatrixXd poisson_in_chart(const G& groupoid, const Z& z) {
@@ -100,11 +100,10 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
   Eigen::MatrixXd directions(const Step<Sys>& step) const {
     Eigen::MatrixXd out = Eigen::MatrixXd::Identity(size + conditions, size);
     if constexpr (conditions > 0) {
-      using J = Jet<double, size>;
-      Vector<J, size> x;
-      for (int i = 0; i < size; ++i) x(i) = J::variable(0, i);
-      const auto arrow = CotangentChart<G>(cotangent_, step.arrow).template arrow<J>(x);
-      const Eigen::MatrixXd normals = jacobian(conditions_at(arrow)).transpose();
+      const CotangentChart<G> chart(cotangent_, step.arrow);
+      const Eigen::MatrixXd normals = jacobian(Vector<double, size>(Vector<double, size>::Zero()), [&](const auto& x) {
+                                        return conditions_at(chart.arrow(x));
+                                      }).transpose();
       const Eigen::MatrixXd q = normals.householderQr().householderQ();
       out.setZero();
       out.topLeftCorner(size, size - conditions) = q.rightCols(size - conditions);
@@ -113,32 +112,29 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
     return out;
   }
 
-  /// The covectors near a step along such columns, one infinitesimal for each.
-  typename CotangentGroupoid<G>::template Arrow<Jet<double, size>> along(const Step<Sys>& step,
-                                                                         const Eigen::MatrixXd& columns) const {
-    using J = Jet<double, size>;
-    const auto moved = [&](double value, Eigen::Index row) {
-      const Vector<double, size> gradient = columns.row(row).transpose();
-      return J(value, J::Left::load(gradient.data()));
-    };
-    Vector<J, size> x;
-    for (int i = 0; i < size; ++i) x(i) = moved(0, i);
-    Multipliers<J> lambda;
-    const Multipliers<double> at = multipliers(step);
-    for (int a = 0; a < conditions; ++a) lambda(a) = moved(at(a), size + a);
-    return covector<J>(CotangentChart<G>(cotangent_, step.arrow).template arrow<J>(x), lambda);
+  /// The covector of a step, moved infinitesimally along such a column.
+  auto along(const Step<Sys>& step, const Eigen::VectorXd& column) const {
+    using D = Dual<double>;
+    const Vector<D, size> x = infinitesimal(Vector<double, size>(column.head(size)));
+    const auto lambda = moved_along<conditions>(multipliers(step), column.tail(conditions));
+    return covector<D>(CotangentChart<G>(cotangent_, step.arrow).template arrow<D>(x), lambda);
   }
 
   /// The tangent space along `directions`.
   SubmanifoldTangent tangent(const Step<Sys>& step) const {
-    const auto mu = along(step, directions(step));
-    const auto from = cotangent_.source(mu);
-    const auto to = cotangent_.target(mu);
-    using J = Jet<double, size>;
-    return {jacobian(CotangentChart<G>(cotangent_, step.arrow).template canonical<J>(mu)),
-            detail::chart_derivatives(cotangent_, from), detail::chart_derivatives(cotangent_, to),
-            detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, from)),
-            detail::poisson_in_chart(system_.groupoid, detail::point_of(cotangent_, to))};
+    const CotangentChart<G> chart(cotangent_, step.arrow);
+    const auto mu = covector<double>(step.arrow, multipliers(step));
+    const Eigen::MatrixXd columns = directions(step);
+    SubmanifoldTangent out{Eigen::MatrixXd(2 * size, size), Eigen::MatrixXd(size, size), Eigen::MatrixXd(size, size),
+                           detail::poisson_in_chart(system_.groupoid, cotangent_.source(mu)),
+                           detail::poisson_in_chart(system_.groupoid, cotangent_.target(mu))};
+    for (int i = 0; i < size; ++i) {
+      const auto moved = along(step, columns.col(i));
+      out.canonical.col(i) = derivative_of(chart.canonical(moved));
+      out.minus.col(i) = detail::chart_derivative(cotangent_, cotangent_.source(moved));
+      out.plus.col(i) = detail::chart_derivative(cotangent_, cotangent_.target(moved));
+    }
+    return out;
   }
 
   const CotangentGroupoid<G>& cotangent() const { return cotangent_; }
@@ -176,16 +172,17 @@ template <Groupoid G, class Map>
 double poisson_defect(const G& groupoid, const typename CotangentGroupoid<G>::template Object<double>& z,
                       const Map& map) {
   constexpr int size = total_dimension_of<G>();
-  using J = Jet<double, size>;
+  using W = Vector<double, size>;
   const CotangentGroupoid<G> cotangent(groupoid);
-  Vector<J, size> u;
-  for (int i = 0; i < size; ++i) u(i) = J::variable(0, i);
-  const auto image = map(cotangent.displace_object(cotangent.template cast_object<J>(z), u));
+  const auto centre = cotangent.template cast_object<Dual<double>>(z);
   SubmanifoldTangent graph;
   graph.minus = Eigen::MatrixXd::Identity(size, size);
-  graph.plus = detail::chart_derivatives(cotangent, image);
+  graph.plus.resize(size, size);
+  for (int i = 0; i < size; ++i)
+    graph.plus.col(i) =
+        detail::chart_derivative(cotangent, map(cotangent.displace_object(centre, infinitesimal(W(W::Unit(i))))));
   graph.poisson_minus = detail::poisson_in_chart(groupoid, z);
-  graph.poisson_plus = detail::poisson_in_chart(groupoid, detail::point_of(cotangent, image));
+  graph.poisson_plus = detail::poisson_in_chart(groupoid, detail::point_of(cotangent, map(centre)));
   return poisson_defect(graph);
 }
 

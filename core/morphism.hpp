@@ -33,10 +33,8 @@ template <class Derived, class From, class To> struct Morphism {
     Matrix<S, To::dimension, From::dimension> out;
     const auto qd = from.template cast_object<D>(q);
     for (int i = 0; i < From::dimension; ++i) {
-      Vector<D, From::dimension> e = Vector<D, From::dimension>::Constant(D(0.0));
-      e(i) = D(S(0.0), S(1.0));
-      const auto image = to.tau_inverse(self()(from.tau(qd, e)));
-      for (int k = 0; k < To::dimension; ++k) out(k, i) = image(k).derivative;
+      const auto e = infinitesimal(Vector<S, From::dimension>(Vector<S, From::dimension>::Unit(i)));
+      out.col(i) = derivative_of(to.tau_inverse(self()(from.tau(qd, e))));
     }
     return out;
   }

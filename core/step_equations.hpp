@@ -37,24 +37,22 @@ template <class Sys> struct StepEquations {
 };
 
 /// Row and column scales, powers of two, with which a matrix has rows and columns of largest entry near one.
-template <int Size> struct Scaling {
-  Vector<double, Size> row = Vector<double, Size>::Ones();
-  Vector<double, Size> column = Vector<double, Size>::Ones();
+template <int Rows, int Columns = Rows> struct Scaling {
+  Vector<double, Rows> row;
+  Vector<double, Columns> column;
 
-  Matrix<double, Size, Size> apply(const Matrix<double, Size, Size>& a) const {
+  Matrix<double, Rows, Columns> apply(const Matrix<double, Rows, Columns>& a) const {
     return row.asDiagonal() * a * column.asDiagonal();
   }
 
   /// Ruiz's simultaneous equilibration. Zero rows and columns keep scale one.
-  static Scaling equilibrate(const Matrix<double, Size, Size>& a) {
-    Scaling s;
+  static Scaling equilibrate(const Matrix<double, Rows, Columns>& a) {
+    Scaling s{Vector<double, Rows>::Ones(a.rows()), Vector<double, Columns>::Ones(a.cols())};
     const auto inverse_root = [](double x) { return x > 0 && std::isfinite(x) ? 1 / std::sqrt(x) : 1.0; };
     for (int sweep = 0; sweep < 8; ++sweep) {
-      const Matrix<double, Size, Size> b = s.apply(a).cwiseAbs();
-      for (int i = 0; i < Size; ++i) {
-        s.row(i) *= inverse_root(b.row(i).maxCoeff());
-        s.column(i) *= inverse_root(b.col(i).maxCoeff());
-      }
+      const Matrix<double, Rows, Columns> b = s.apply(a).cwiseAbs();
+      for (int i = 0; i < b.rows(); ++i) s.row(i) *= inverse_root(b.row(i).maxCoeff());
+      for (int j = 0; j < b.cols(); ++j) s.column(j) *= inverse_root(b.col(j).maxCoeff());
     }
     const auto power_of_two = [](double x) { return std::exp2(std::round(std::log2(x))); };
     s.row = s.row.unaryExpr(power_of_two);

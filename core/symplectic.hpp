@@ -6,11 +6,20 @@
 
 namespace lagroid {
 
-/// The derivatives, row by row, of a vector of jets. (Of dynamic size, to spare the compiler.)
-template <class Jets> Eigen::MatrixXd jacobian(const Jets& y) {
-  Eigen::MatrixXd out(y.size(), Jets::Scalar::size);
-  for (int i = 0; i < y.size(); ++i)
-    for (int j = 0; j < out.cols(); ++j) out(i, j) = y(i).gradient(j);
+/// x + u e.
+template <int N> Vector<Dual<double>, N> moved_along(const Vector<double, N>& x, const Vector<double, N>& u) {
+  return x.template cast<Dual<double>>() + infinitesimal(u);
+}
+
+/// The derivative at x of f, a map of R^N over any scalar to vectors, column by column. (One scalar type for maps of
+/// all sizes, and a matrix of dynamic size, spare the compiler.)
+template <int N, class F> Eigen::MatrixXd jacobian(const Vector<double, N>& x, const F& f) {
+  Eigen::MatrixXd out;
+  for (int i = 0; i < N; ++i) {
+    const auto column = derivative_of(f(moved_along(x, Vector<double, N>(Vector<double, N>::Unit(i)))));
+    if (i == 0) out.resize(column.size(), N);
+    out.col(i) = column;
+  }
   return out;
 }
 
@@ -49,7 +58,7 @@ template <Groupoid G> class CotangentChart {
   }
 
   /// (x, P) of a covector.
-  template <class S> Vector<S, 2 * size> canonical(const typename CotangentGroupoid<G>::template Arrow<S>& p) const {
+  template <class A, class S> Vector<S, 2 * size> canonical(const Covector<A, S, size>& p) const {
     using D = Dual<S>;
     const G& groupoid = cotangent_.groupoid;
     const auto g0 = groupoid.template cast<S>(centre_);

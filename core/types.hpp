@@ -7,7 +7,14 @@
 
 // Operations on derivatives must be inlined to stay in registers, and all that a step calls with them. Instrumented or
 // unoptimised code has nothing to gain, and would take minutes to compile.
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__)
+#define LAGROID_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define LAGROID_SANITIZED
+#endif
+#endif
+#if defined(__OPTIMIZE__) && !defined(LAGROID_SANITIZED)
 #define LAGROID_INLINE [[gnu::always_inline]]
 #define LAGROID_FLATTEN [[gnu::flatten]]
 #else

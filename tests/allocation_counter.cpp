@@ -1,9 +1,11 @@
 #include "allocation_counter.hpp"
 
+#include <lagroid/core/types.hpp>
+
 #include <atomic>
 #include <cstddef>
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(LAGROID_SANITIZED)
 
 long lagroid::allocation_count() { return -1; }
 

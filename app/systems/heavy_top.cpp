@@ -1,8 +1,6 @@
 #include "../boundary_value.hpp"
-#include "../registry.hpp"
+#include "readers.hpp"
 #include "rotating.hpp"
-
-#include <lagroid/systems/heavy_top.hpp>
 
 namespace lagroid::app {
 
@@ -35,7 +33,7 @@ BoundaryScene<HeavyTop> read_boundary(const Section& scene) {
 
 }  // namespace
 
-RunResult run_heavy_top(const Section& scene, const RunContext& context) {
+Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context) {
   Presentation<HeavyTop> p;
   p.name = "heavy_top";
   p.position = {"v1", "v2", "v3"};
@@ -57,7 +55,7 @@ RunResult run_heavy_top(const Section& scene, const RunContext& context) {
 
   const HeavyTop system = read_system(scene);
   if (is_boundary_value(scene, "attitude and momentum"))
-    return run_boundary_value<HeavyTop>(scene, context, p, read_boundary);
+    return boundary_value<HeavyTop>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");
   const auto configuration = configuration_of(read_rotation(initial));
   State<HeavyTop::GroupoidType> state;
@@ -67,7 +65,7 @@ RunResult run_heavy_top(const Section& scene, const RunContext& context) {
   const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
   const long every = read_every(scene, context);
   scene.finish();
-  return simulate(system, p, state, configuration, steps, choice, every, context);
+  return simulation(system, p, state, configuration, steps, choice, every, context);
 }
 
 }  // namespace lagroid::app

@@ -1,10 +1,9 @@
 #include "mechanical.hpp"
-
-#include <lagroid/systems/kepler.hpp>
+#include "readers.hpp"
 
 namespace lagroid::app {
 
-RunResult run_kepler(const Section& scene, const RunContext& context) {
+Task<Kepler> read_kepler(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<Kepler, 2>("kepler", {"x", "y"}, "m", {"px", "py"}, "m/s");
   p.panels = {{"orbit", "x", "y", "x", {"y"}, true},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
@@ -20,7 +19,7 @@ RunResult run_kepler(const Section& scene, const RunContext& context) {
     if (q.norm() == 0) section.fail("position", "lies on the centre of attraction; move it away from 0, 0");
     return q;
   };
-  return run_mechanical<Kepler, 2>(scene, context, p, "x, y", "px, py", read_system, off_centre, any_state);
+  return read_mechanical<Kepler, 2>(scene, context, p, "x, y", "px, py", read_system, off_centre, any_state);
 }
 
 }  // namespace lagroid::app

@@ -2,7 +2,6 @@
 /// What the scenes of point masses on R^n have in common.
 
 #include "../boundary_value.hpp"
-#include "../registry.hpp"
 
 #include <lagroid/systems/mechanical.hpp>
 
@@ -58,15 +57,15 @@ BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::s
           PairArrow<double, N>{from, from}};
 }
 
-/// Runs [initial] or [boundary]. `system(scene)` reads the parameters; `check(section, q)` refuses a position or
+/// Reads [initial] or [boundary]. `system(scene)` reads the parameters; `check(section, q)` refuses a position or
 /// returns it.
 template <class Sys, int N, class ReadSystem, class Check, class CheckState>
-RunResult run_mechanical(const Section& scene, const RunContext& context, const Presentation<Sys>& p,
-                         std::string_view position, std::string_view momentum, const ReadSystem& read_system,
-                         const Check& check, const CheckState& check_state) {
+Task<Sys> read_mechanical(const Section& scene, const RunContext& context, const Presentation<Sys>& p,
+                          std::string_view position, std::string_view momentum, const ReadSystem& read_system,
+                          const Check& check, const CheckState& check_state) {
   Sys system = read_system(scene);
   if (is_boundary_value(scene, "position and momentum"))
-    return run_boundary_value<Sys>(scene, context, p, [&](const Section& s) {
+    return boundary_value<Sys>(scene, context, p, [=](const Section& s) {
       return read_vector_boundary<Sys, N>(s, read_system(s), position, check);
     });
   const Section section = scene.section("initial", "position and momentum");
@@ -78,8 +77,8 @@ RunResult run_mechanical(const Section& scene, const RunContext& context, const 
   const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
   const long every = read_every(scene, context);
   scene.finish();
-  return simulate(system, p, initial, PairArrow<double, N>{initial.object, initial.object}, grid.steps, choice, every,
-                  context);
+  return simulation(system, p, initial, PairArrow<double, N>{initial.object, initial.object}, grid.steps, choice, every,
+                    context);
 }
 
 /// Any position, any state.

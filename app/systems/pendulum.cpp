@@ -1,10 +1,9 @@
 #include "mechanical.hpp"
-
-#include <lagroid/systems/pendulum.hpp>
+#include "readers.hpp"
 
 namespace lagroid::app {
 
-RunResult run_pendulum(const Section& scene, const RunContext& context) {
+Task<Pendulum> read_pendulum(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<Pendulum, 1>("pendulum", {"q"}, "rad", {"p"}, "kg m^2/s");
   p.panels = {{"angle", "t", "q", "t", {"q"}},
               {"phase plane", "q", "p", "q", {"p"}},
@@ -18,8 +17,8 @@ RunResult run_pendulum(const Section& scene, const RunContext& context) {
     system.quadrature = read_quadrature(parameters, "midpoint");
     return system;
   };
-  return run_mechanical<Pendulum, 1>(scene, context, p, "the angle from the downward vertical", "m l^2 dq/dt",
-                                     read_system, any_position, any_state);
+  return read_mechanical<Pendulum, 1>(scene, context, p, "the angle from the downward vertical", "m l^2 dq/dt",
+                                      read_system, any_position, any_state);
 }
 
 }  // namespace lagroid::app

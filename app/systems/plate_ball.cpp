@@ -1,6 +1,6 @@
 #include "../boundary_value.hpp"
-#include "../registry.hpp"
 #include "attitude.hpp"
+#include "readers.hpp"
 
 #include <lagroid/systems/plate_ball_boundary.hpp>
 
@@ -54,7 +54,7 @@ ArrowOf<G> end_point(const Section& end) {
   return {PairArrow<double, 2>{at, at}, read_rotation(end)};
 }
 
-RunResult initial_value(const Section& scene, const RunContext& context, const PlateBall& system, long steps) {
+Task<PlateBall> initial_value(const Section& scene, const RunContext& context, const PlateBall& system, long steps) {
   const Section initial = scene.section("initial", "position, attitude and momentum");
   const ArrowOf<G> configuration = end_point(initial);
   State<G> state;
@@ -65,7 +65,7 @@ RunResult initial_value(const Section& scene, const RunContext& context, const P
   read_multistart(solver);
   const long every = read_every(scene, context);
   scene.finish();
-  return simulate(system, presentation(system), state, configuration, steps, choice, every, context);
+  return simulation(system, presentation(system), state, configuration, steps, choice, every, context);
 }
 
 /// [parameters] and [time].
@@ -108,10 +108,10 @@ MultistartResult<PlateBall> search(const BoundarySolver<PlateBall>& solver, cons
 
 }  // namespace
 
-RunResult run_plate_ball(const Section& scene, const RunContext& context) {
+Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context) {
   const PlateBall system = read_system(scene);
   if (is_boundary_value(scene, "position, attitude, momentum"))
-    return run_boundary_value<PlateBall>(scene, context, presentation(system), read_boundary, search);
+    return boundary_value<PlateBall>(scene, context, presentation(system), read_boundary, search);
   return initial_value(scene, context, system, read_time(scene).steps);
 }
 

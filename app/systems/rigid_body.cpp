@@ -1,8 +1,6 @@
 #include "../boundary_value.hpp"
-#include "../registry.hpp"
+#include "readers.hpp"
 #include "rotating.hpp"
-
-#include <lagroid/systems/rigid_body.hpp>
 
 namespace lagroid::app {
 
@@ -28,7 +26,7 @@ BoundaryScene<RigidBody> read_boundary(const Section& scene) {
 
 }  // namespace
 
-RunResult run_rigid_body(const Section& scene, const RunContext& context) {
+Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context) {
   Presentation<RigidBody> p;
   p.name = "rigid_body";
   p.has_attitude = true;
@@ -43,7 +41,7 @@ RunResult run_rigid_body(const Section& scene, const RunContext& context) {
 
   const RigidBody system = read_system(scene);
   if (is_boundary_value(scene, "attitude and momentum"))
-    return run_boundary_value<RigidBody>(scene, context, p, read_boundary);
+    return boundary_value<RigidBody>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");
   State<SO3> state;
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
@@ -52,7 +50,7 @@ RunResult run_rigid_body(const Section& scene, const RunContext& context) {
   const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
   const long every = read_every(scene, context);
   scene.finish();
-  return simulate(system, p, state, attitude, steps, choice, every, context);
+  return simulation(system, p, state, attitude, steps, choice, every, context);
 }
 
 }  // namespace lagroid::app

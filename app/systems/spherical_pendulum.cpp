@@ -1,10 +1,9 @@
 #include "mechanical.hpp"
-
-#include <lagroid/systems/spherical_pendulum.hpp>
+#include "readers.hpp"
 
 namespace lagroid::app {
 
-RunResult run_spherical_pendulum(const Section& scene, const RunContext& context) {
+Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<SphericalPendulum, 3>("spherical_pendulum", {"x", "y", "z"}, "m", {"px", "py", "pz"},
                                                      "kg m/s");
   p.multipliers = {"lambda"};
@@ -22,7 +21,7 @@ RunResult run_spherical_pendulum(const Section& scene, const RunContext& context
     return system;
   };
   const double length = read_system(scene).length;
-  const auto on_sphere = [&](const Section& section, const Vector<double, 3>& q) -> Vector<double, 3> {
+  const auto on_sphere = [length](const Section& section, const Vector<double, 3>& q) -> Vector<double, 3> {
     const double norm = q.norm();
     if (norm == 0 || (std::abs(norm - length) > 1e-6 * length && !section.interpolated()))
       section.fail("position",
@@ -33,14 +32,14 @@ RunResult run_spherical_pendulum(const Section& scene, const RunContext& context
                        : std::string("lies on the pivot"));
     return q * (length / norm);
   };
-  const auto tangent = [&](const Section& section, const State<Pair<3>>& s) {
+  const auto tangent = [length](const Section& section, const State<Pair<3>>& s) {
     const double radial = s.object.dot(s.momentum) / length;
     if (std::abs(radial) > 1e-6 * (1 + s.momentum.norm()))
       section.fail("momentum",
                    fmt::format("has a part {:.6g} along the rod; it must be tangent to the sphere", radial));
   };
-  return run_mechanical<SphericalPendulum, 3>(scene, context, p, "x, y, z with z up", "px, py, pz", read_system,
-                                              on_sphere, tangent);
+  return read_mechanical<SphericalPendulum, 3>(scene, context, p, "x, y, z with z up", "px, py, pz", read_system,
+                                               on_sphere, tangent);
 }
 
 }  // namespace lagroid::app

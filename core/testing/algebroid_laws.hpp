@@ -92,15 +92,12 @@ LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const
     const auto coordinates = [&](const auto& a) { return groupoid.coordinates_of_arrow(a); };
     const auto unit = groupoid.unit(groupoid.source(g));
     constexpr int d = object_dimension_of<G>();
-    using D = Dual<double>;
     Matrix<double, d, d> along;
     for (int j = 0; j < d; ++j) {
-      Vector<D, d> u = Vector<D, d>::Constant(D(0.0));
-      u(j).derivative = 1;
-      const auto gd = groupoid.template cast<D>(g);
+      const auto u = infinitesimal(Vector<double, d>(Vector<double, d>::Unit(j)));
+      const auto gd = groupoid.template cast<Dual<double>>(g);
       const auto moved = groupoid.target(groupoid.bisection(gd, groupoid.displace_object(groupoid.source(gd), u)));
-      const auto y = groupoid.object_displacement(groupoid.target(gd), moved);
-      for (int i = 0; i < d; ++i) along(i, j) = y(i).derivative;
+      along.col(j) = derivative_of(groupoid.object_displacement(groupoid.target(gd), moved));
     }
     double singular = 0;
     if constexpr (d > 0) singular = std::abs(along.determinant()) > 1e-9 ? 0 : 1;

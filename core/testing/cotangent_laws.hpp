@@ -27,7 +27,6 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
   using A = ArrowOf<G>;
   using V = Vector<double, n>;
   using W = Vector<double, size>;
-  using J = Jet<double, 2 * size>;
   using detail::matrix_defect;
   using detail::relative_defect;
 
@@ -37,13 +36,6 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
     return groupoid.project(groupoid.multiply(g, groupoid.tau(groupoid.target(g), fibre())));
   };
   const auto arrow = [&] { return arrow_from(draw_object()); };
-  const auto variable = [](auto jet, int offset, auto length, const auto& value) {
-    using S = decltype(jet);
-    Vector<S, decltype(length)::value> x;
-    for (int i = 0; i < x.size(); ++i) x(i) = S::variable(value(i), offset + i);
-    return x;
-  };
-  const auto whole = std::integral_constant<int, size>{};
   const Eigen::MatrixXd canonical = canonical_tensor<size>();
 
   LawReport report{Cotangent::name() + ", symplectic", {}};
@@ -55,17 +47,14 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
     using D = Dual<double>;
     const A g1 = arrow();
     const A g2 = arrow_from(groupoid.target(g1));
-    const auto infinitesimal = [&](const auto& x) { return x.unaryExpr([](double c) { return D(0.0, c); }).eval(); };
-    const auto derivative = [&](const auto& k) {
-      return groupoid.coordinates_of_arrow(k).unaryExpr([](const D& c) { return c.derivative; }).eval();
-    };
+    const auto derivative = [&](const auto& k) { return derivative_of(groupoid.coordinates_of_arrow(k)); };
     const auto b = [&](const A& g, const auto& q) { return groupoid.bisection(groupoid.template cast<D>(g), q); };
     const Vector<D, d> u = infinitesimal(Vector<double, d>(draw_vector<d>(options.large)));
     const auto from = groupoid.displace_object(groupoid.source(groupoid.template cast<D>(g1)), u);
     const auto along = b(g1, from);
-    const auto k1 = groupoid.multiply(along, groupoid.tau(groupoid.target(along), infinitesimal(fibre()).eval()));
+    const auto k1 = groupoid.multiply(along, groupoid.tau(groupoid.target(along), infinitesimal(fibre())));
     const auto q = groupoid.target(k1);
-    const auto k2 = groupoid.multiply(b(g2, q), groupoid.tau(groupoid.target(b(g2, q)), infinitesimal(fibre()).eval()));
+    const auto k2 = groupoid.multiply(b(g2, q), groupoid.tau(groupoid.target(b(g2, q)), infinitesimal(fibre())));
     const auto b1 = [&](const auto& r) { return groupoid.inverse(b(groupoid.inverse(g1), r)); };
     return relative_defect(derivative(groupoid.multiply(k1, k2)),
                            (derivative(groupoid.multiply(k1, b(g2, q))) + derivative(groupoid.multiply(b1(q), k2)) -
@@ -83,13 +72,19 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
     const A g = arrow();
     const W values = draw_vector<size>(options.large);
     const CotangentChart<G> chart(cotangent, g);
-    const auto p =
-        chart.template covector<J>(variable(J{}, 0, whole, W(W::Zero())), variable(J{}, size, whole, values));
-    const Eigen::MatrixXd c = jacobian(chart.template canonical<J>(p)).inverse();
+    const auto derivative = [&](const auto& f) {
+      Vector<double, 2 * size> x;
+      x << W::Zero(), values;
+      return jacobian(x, [&](const auto& y) {
+        return f(chart.covector(y.template head<size>().eval(), y.template tail<size>().eval()));
+      });
+    };
+    const Eigen::MatrixXd c = derivative([&](const auto& p) { return chart.canonical(p); }).inverse();
     const typename Cotangent::template Arrow<double> at{g, values};
-    return Point{c * canonical * c.transpose(), jacobian(cotangent.coordinates_of_object(cotangent.source(p))),
-                 jacobian(cotangent.coordinates_of_object(cotangent.target(p))), cotangent.source(at),
-                 cotangent.target(at)};
+    return Point{c * canonical * c.transpose(),
+                 derivative([&](const auto& p) { return cotangent.coordinates_of_object(cotangent.source(p)); }),
+                 derivative([&](const auto& p) { return cotangent.coordinates_of_object(cotangent.target(p)); }),
+                 cotangent.source(at), cotangent.target(at)};
   };
   const auto poisson = [&](const auto& z) { return poisson_tensor(groupoid, z.object, z.momentum); };
   law("source is anti-Poisson", [&] {
@@ -106,40 +101,42 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
     return matrix_defect(product, Eigen::MatrixXd::Zero(product.rows(), product.cols()));
   });
   law("units are Lagrangian", [&] {
-    using U = Jet<double, size>;
-    const auto q = draw_object();
-    const V mu = fibre();
-    const typename Cotangent::template Object<U> z =
-        cotangent.displace_object(cotangent.template cast_object<U>(typename Cotangent::template Object<double>{q, mu}),
-                                  variable(U{}, 0, whole, W(W::Zero())));
-    const Eigen::MatrixXd c =
-        jacobian(CotangentChart<G>(cotangent, groupoid.unit(q)).template canonical<U>(cotangent.unit(z)));
+    const typename Cotangent::template Object<double> z{draw_object(), fibre()};
+    const CotangentChart<G> chart(cotangent, groupoid.unit(z.object));
+    const Eigen::MatrixXd c = jacobian(W(W::Zero()), [&](const auto& u) {
+      using S = typename std::remove_cvref_t<decltype(u)>::Scalar;
+      return chart.canonical(cotangent.unit(cotangent.displace_object(cotangent.template cast_object<S>(z), u)));
+    });
     const Eigen::MatrixXd form = c.transpose() * canonical * c;
     return matrix_defect(form, Eigen::MatrixXd::Zero(size, size));
   });
   law("graph of the product is Lagrangian", [&] {
     // Composable pairs: p1 anywhere; the arrow of p2 starts where p1 ends; its values on the target are free.
-    using T = Jet<double, 3 * size>;
+    using U = Vector<double, 3 * size>;
     const A g1 = arrow();
     const A g2 = arrow_from(groupoid.target(g1));
     const CotangentChart<G> chart1(cotangent, g1);
     const CotangentChart<G> chart2(cotangent, g2);
     const CotangentChart<G> chart3(cotangent, groupoid.multiply(g1, g2));
-    const auto p1 = chart1.template covector<T>(variable(T{}, 0, whole, W(W::Zero())),
-                                                variable(T{}, size, whole, W(draw_vector<size>(options.large))));
-    const auto z = cotangent.target(p1);
-    const auto along = groupoid.bisection(groupoid.template cast<T>(g2), z.object);
-    const auto arrow2 = groupoid.multiply(
-        along,
-        groupoid.tau(groupoid.target(along), variable(T{}, 2 * size, std::integral_constant<int, n>{}, V(V::Zero()))));
-    const auto p2 = cotangent.with_source(arrow2, z.momentum,
-                                          variable(T{}, 2 * size + n, std::integral_constant<int, d>{},
-                                                   Vector<double, d>(draw_vector<d>(options.large))));
+    const U x =
+        (U() << W::Zero(), draw_vector<size>(options.large), V::Zero(), draw_vector<d>(options.large)).finished();
+    const auto first = [&](const auto& y) {
+      return chart1.covector(y.template head<size>().eval(), y.template segment<size>(size).eval());
+    };
+    const auto second = [&](const auto& y) {
+      using S = typename std::remove_cvref_t<decltype(y)>::Scalar;
+      const auto z = cotangent.target(first(y));
+      const auto along = groupoid.bisection(groupoid.template cast<S>(g2), z.object);
+      const auto arrow2 =
+          groupoid.multiply(along, groupoid.tau(groupoid.target(along), y.template segment<n>(2 * size).eval()));
+      return cotangent.with_source(arrow2, z.momentum, y.template tail<d>().eval());
+    };
     const auto form = [&](const CotangentChart<G>& chart, const auto& p) {
-      const Eigen::MatrixXd c = jacobian(chart.template canonical<T>(p));
+      const Eigen::MatrixXd c = jacobian(x, [&](const auto& y) { return chart.canonical(p(y)); });
       return Eigen::MatrixXd(c.transpose() * canonical * c);
     };
-    return matrix_defect(form(chart1, p1) + form(chart2, p2), form(chart3, cotangent.multiply(p1, p2)));
+    return matrix_defect(form(chart1, first) + form(chart2, second),
+                         form(chart3, [&](const auto& y) { return cotangent.multiply(first(y), second(y)); }));
   });
   return report;
 }

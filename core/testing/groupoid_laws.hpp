@@ -95,12 +95,8 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
   });
   law("left-invariant fields are alpha-vertical", options.derivative, [&] {
     const A g = arrow();
-    using D = Dual<double>;
-    const V x = vector();
-    Vector<D, n> e;
-    for (int i = 0; i < n; ++i) e(i) = D(0.0, x(i));
-    const auto moved =
-        groupoid.multiply(groupoid.template cast<D>(g), groupoid.tau(groupoid.target(groupoid.template cast<D>(g)), e));
+    const auto gd = groupoid.template cast<Dual<double>>(g);
+    const auto moved = groupoid.multiply(gd, groupoid.tau(groupoid.target(gd), infinitesimal(vector())));
     double largest = 0;
     const auto q = groupoid.coordinates_of_object(groupoid.source(moved));
     for (int i = 0; i < q.size(); ++i) largest = worst({largest, std::abs(q(i).derivative)});
@@ -122,8 +118,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     // T l_g (X<-(h)): move h along the field, then translate.
     const auto hd = groupoid.with_tangent(h, groupoid.left_invariant(h, x));
     const auto gh = groupoid.coordinates_of_arrow(groupoid.multiply(groupoid.template cast<D>(g), hd));
-    return relative_defect(gh.unaryExpr([](const D& c) { return c.derivative; }).eval(),
-                           groupoid.left_invariant(groupoid.multiply(g, h), x));
+    return relative_defect(derivative_of(gh), groupoid.left_invariant(groupoid.multiply(g, h), x));
   });
   law("right-invariant fields are invariant (2)", options.derivative, [&] {
     const A h = arrow();
@@ -132,19 +127,16 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     using D = Dual<double>;
     const auto hd = groupoid.with_tangent(h, groupoid.right_invariant(h, x));
     const auto hg = groupoid.coordinates_of_arrow(groupoid.multiply(hd, groupoid.template cast<D>(g)));
-    return relative_defect(hg.unaryExpr([](const D& c) { return c.derivative; }).eval(),
-                           groupoid.right_invariant(groupoid.multiply(h, g), x));
+    return relative_defect(derivative_of(hg), groupoid.right_invariant(groupoid.multiply(h, g), x));
   });
   law("tangent of the inversion (3)", options.derivative, [&] {
     // T i (v) = -v + T(epsilon o beta)(v) for v in A_qG.
     const auto q = draw_object();
     const V x = vector();
-    using D = Dual<double>;
     const auto v = groupoid.left_invariant(groupoid.unit(q), x);
     const auto curve = groupoid.with_tangent(groupoid.unit(q), v);
-    const auto derivative = [](const auto& c) { return c.unaryExpr([](const D& e) { return e.derivative; }).eval(); };
-    const auto inverted = derivative(groupoid.coordinates_of_arrow(groupoid.inverse(curve)));
-    const auto units = derivative(groupoid.coordinates_of_arrow(groupoid.unit(groupoid.target(curve))));
+    const auto inverted = derivative_of(groupoid.coordinates_of_arrow(groupoid.inverse(curve)));
+    const auto units = derivative_of(groupoid.coordinates_of_arrow(groupoid.unit(groupoid.target(curve))));
     return relative_defect(inverted, (units - v).eval());
   });
   law("closed-form translations", options.derivative, [&] {

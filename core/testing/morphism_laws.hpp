@@ -31,10 +31,9 @@ LawReport morphism_laws(const Phi& phi, const DrawObject& draw_object, const Gro
   const auto objects = [&](const auto& x, const auto& y) {
     return relative_defect(to.coordinates_of_object(x), to.coordinates_of_object(y));
   };
-  const auto derivative = [](const auto& x) { return x.unaryExpr([](const D& c) { return c.derivative; }).eval(); };
   // T Phi of a tangent vector in arrow coordinates.
   const auto pushed = [&](const ArrowOf<G>& g, const auto& tangent) {
-    return derivative(to.coordinates_of_arrow(phi(from.with_tangent(g, tangent))));
+    return derivative_of(to.coordinates_of_arrow(phi(from.with_tangent(g, tangent))));
   };
 
   LawReport report{G::name() + " -> " + H::name(), {}};
@@ -62,7 +61,7 @@ LawReport morphism_laws(const Phi& phi, const DrawObject& draw_object, const Gro
     Vector<D, n> e;
     for (int i = 0; i < n; ++i) e(i) = D(0.0, x(i));
     const auto moved = from.target(from.tau(from.template cast_object<D>(q), e));
-    return relative_defect(derivative(to.coordinates_of_object(phi.object(moved))),
+    return relative_defect(derivative_of(to.coordinates_of_object(phi.object(moved))),
                            to.anchor(phi.object(q), (phi.algebroid(q) * x).eval()));
   });
   law("left-invariant fields", options.derivative, [&] {

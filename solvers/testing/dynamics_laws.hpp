@@ -51,15 +51,21 @@ LawReport dynamics_laws(const Sys& system, const Draw& draw, double tolerance = 
       const auto& cotangent = submanifold.cotangent();
       const Eigen::MatrixXd matched =
           submanifold.tangent(second).minus.partialPivLu().solve(submanifold.tangent(first).plus);
-      const auto product = cotangent.multiply(submanifold.along(first, submanifold.directions(first)),
-                                              submanifold.along(second, submanifold.directions(second) * matched));
-      using J = Jet<double, Submanifold::size>;
+      const Eigen::MatrixXd columns1 = submanifold.directions(first);
+      const Eigen::MatrixXd columns2 = submanifold.directions(second) * matched;
       const CotangentChart<G> chart(cotangent, groupoid.multiply(first.arrow, second.arrow));
-      const auto end = legendre_plus(system, second).momentum;
-      const auto values = [](const auto& z) { return z.momentum.unaryExpr([](const J& x) { return x.value; }).eval(); };
-      return worst({lagrangian_defect(jacobian(chart.template canonical<J>(product))),
-                    detail::relative_defect(values(cotangent.source(product)), legendre_minus(system, first).momentum),
-                    detail::relative_defect(values(cotangent.target(product)), end)});
+      Eigen::MatrixXd tangent(2 * Submanifold::size, Submanifold::size);
+      for (int i = 0; i < Submanifold::size; ++i)
+        tangent.col(i) = derivative_of(chart.canonical(
+            cotangent.multiply(submanifold.along(first, columns1.col(i)), submanifold.along(second, columns2.col(i)))));
+      const auto covector = [&](const Step<Sys>& s) {
+        return submanifold.template covector<double>(s.arrow, Submanifold::multipliers(s));
+      };
+      const auto product = cotangent.multiply(covector(first), covector(second));
+      return worst(
+          {lagrangian_defect(tangent),
+           detail::relative_defect(cotangent.source(product).momentum, legendre_minus(system, first).momentum),
+           detail::relative_defect(cotangent.target(product).momentum, legendre_plus(system, second).momentum)});
     });
   law("the step reverses", tolerance, [&] {
     // Back from a guess off by a thousandth. Object constraints leave momenta free along their normals: compared are

@@ -122,32 +122,24 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
     // (X<-(g1), -X->(g2)) spans the tangent space of {(g1, g2) in N x N composable, g1 g2 fixed}, found from its
     // equations.
     constexpr int size = total_dimension_of<G>();
-    using J = Jet<double, 2 * size>;
+    using X = Vector<double, 2 * size>;
     const auto path = trajectory(2);
     const CotangentGroupoid<G> cotangent(groupoid);
     const GeneratedSubmanifold<Sys> submanifold(system);
-    Vector<J, size> x1;
-    Vector<J, size> x2;
-    for (int i = 0; i < size; ++i) {
-      x1(i) = J::variable(0, i);
-      x2(i) = J::variable(0, size + i);
-    }
-    const auto g1 = CotangentChart<G>(cotangent, path[0].arrow).template arrow<J>(x1);
-    const auto g2 = CotangentChart<G>(cotangent, path[1].arrow).template arrow<J>(x2);
-    const auto q = groupoid.template cast_object<J>(groupoid.target(path[0].arrow));
-    const std::vector<Eigen::MatrixXd> equations{jacobian(groupoid.object_displacement(q, groupoid.target(g1))) -
-                                                     jacobian(groupoid.object_displacement(q, groupoid.source(g2))),
-                                                 jacobian(groupoid.coordinates_of_arrow(groupoid.multiply(g1, g2))),
-                                                 jacobian(submanifold.conditions_at(g1)),
-                                                 jacobian(submanifold.conditions_at(g2))};
-    Eigen::Index rows = 0;
-    for (const auto& e : equations) rows += e.rows();
-    Eigen::MatrixXd all(rows, 2 * size);
-    rows = 0;
-    for (const auto& e : equations) {
-      all.middleRows(rows, e.rows()) = e;
-      rows += e.rows();
-    }
+    const Eigen::MatrixXd all = jacobian(X(X::Zero()), [&](const auto& x) {
+      using S = typename std::remove_cvref_t<decltype(x)>::Scalar;
+      const auto g1 = CotangentChart<G>(cotangent, path[0].arrow).arrow(x.template head<size>().eval());
+      const auto g2 = CotangentChart<G>(cotangent, path[1].arrow).arrow(x.template tail<size>().eval());
+      const auto q = groupoid.template cast_object<S>(groupoid.target(path[0].arrow));
+      constexpr int objects = object_dimension_of<G>();
+      constexpr int arrows = G::arrow_coordinate_count();
+      Vector<S, objects + arrows + 2 * GeneratedSubmanifold<Sys>::conditions> equations;
+      equations << groupoid.object_displacement(q, groupoid.target(g1)) -
+                       groupoid.object_displacement(q, groupoid.source(g2)),
+          groupoid.coordinates_of_arrow(groupoid.multiply(g1, g2)), submanifold.conditions_at(g1),
+          submanifold.conditions_at(g2);
+      return equations;
+    });
     const Eigen::MatrixXd fibre = detail::kernel_of(detail::first_variation(system, path).derivative);
     if (detail::kernel_of(all).cols() != fibre.cols()) return 1.0;
     const TangentBasis<G> basis(groupoid);

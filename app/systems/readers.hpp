@@ -1,0 +1,24 @@
+#pragma once
+/// From scenes to tasks. Every key of a scene is read and checked, and unknown ones are refused, before anything is
+/// computed.
+
+#include "../scene_reader.hpp"
+#include "../task.hpp"
+
+#include <lagroid/systems/heavy_top.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulum.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
+
+namespace lagroid::app {
+
+Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context);
+Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context);
+Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context);
+Task<Pendulum> read_pendulum(const Section& scene, const RunContext& context);
+Task<Kepler> read_kepler(const Section& scene, const RunContext& context);
+Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunContext& context);
+
+}  // namespace lagroid::app

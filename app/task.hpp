@@ -1,0 +1,27 @@
+#pragma once
+/// A scene, read and checked, before anything is computed.
+
+#include "run_result.hpp"
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/core/system.hpp>
+
+#include <functional>
+
+namespace lagroid::app {
+
+/// What the command line asks of a run.
+struct RunContext {
+  bool record = false;    ///< keep the trajectory
+  bool progress = false;  ///< show a bar
+};
+
+/// Sees every point of a run, in order, beside its recorder; may be null.
+template <class Sys> using Observer = std::function<void(const TrajectoryPoint<Sys>&)>;
+
+template <DiscreteSystem Sys> struct Task {
+  Sys system;
+  std::function<RunResult(const Observer<Sys>&)> run;
+};
+
+}  // namespace lagroid::app

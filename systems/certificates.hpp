@@ -1,0 +1,16 @@
+#pragma once
+/// The certificates of the library's systems, compiled once (target lagroid::certificates).
+
+#include <lagroid/core/system.hpp>
+#include <lagroid/core/testing/law_report.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace lagroid::laws {
+
+/// Every law there is, asked of one system (solvers/testing/certificate.hpp; include that for a system of your own).
+template <DiscreteSystem Sys>
+std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw);
+
+}  // namespace lagroid::laws
