@@ -82,15 +82,4 @@ template <class Visit> auto with_system_of(const Section& scene, const Visit& vi
 /// Runs the scene.
 RunResult run_scene(const Section& scene, const RunContext& context);
 
-/// One system as `lagroid list` shows it.
-struct SystemSummary {
-  std::string name;
-  std::string summary;
-  std::string groupoid;
-  std::vector<Parameter> parameters;
-  std::vector<std::string> symmetries;  ///< of the system with its default parameters
-  std::vector<std::string> conserved;   ///< quantities promised as conserved
-};
-std::vector<SystemSummary> list_systems();
-
 }  // namespace lagroid::app

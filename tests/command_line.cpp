@@ -370,6 +370,75 @@ TEST_F(CommandLine, AnUnknownCommandIsNamed) {
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
 }
 
+#ifdef LAGROID_CERTIFIES
+TEST_F(CommandLine, EveryExampleIsCertified) {
+  for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
+    if (entry.path().extension() != ".toml") continue;
+    const Outcome r = run("check " + entry.path().string() + " --samples 10 --json");
+    EXPECT_EQ(r.code, 0) << entry.path() << r.err << r.out;
+    const auto json = nlohmann::json::parse(r.out);
+    EXPECT_EQ(json.at("status"), "certified");
+    for (const auto& suite : json.at("suites"))
+      for (const auto& law : suite.at("laws")) EXPECT_EQ(law.at("samples"), 10) << law;
+  }
+}
+
+TEST_F(CommandLine, ACertificateIsWithheldFromALawThatIsBroken) {
+  // Half turns in one step: the run goes through, steps from states beside it do not.
+  const Outcome r = run("check " + example("rigid_body") + " --samples 20 --set time.step=3");
+  EXPECT_EQ(r.code, 3) << r.out;
+  EXPECT_NE(r.out.find("BROKEN"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("NOT certified"), std::string::npos) << r.out;
+  EXPECT_EQ(nlohmann::json::parse(run("check " + example("rigid_body") + " --json --set time.step=3").out).at("status"),
+            "broken");
+}
+
+TEST_F(CommandLine, WhereTheRunFailsNothingIsAsked) {
+  const Outcome r = run("check " + example("spherical_pendulum") + " --json --set time.step=2");
+  EXPECT_EQ(r.code, 3) << r.out;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json.at("status"), "not_converged") << r.out;
+  EXPECT_NE(json.at("message").get<std::string>().find("step 1"), std::string::npos) << r.out;
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+}
+
+TEST_F(CommandLine, CheckRefusesWhatRunRefuses) {
+  const Outcome unknown = run("check " + example("pendulum") + " --set parameters.colour=1 --json");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(nlohmann::json::parse(unknown.out).at("status"), "invalid_scene");
+  const Outcome samples = run("check " + example("pendulum") + " --samples 0");
+  EXPECT_EQ(samples.code, 2);
+  EXPECT_NE(samples.err.find("--samples"), std::string::npos) << samples.err;
+  EXPECT_NE(run("check --help").out.find("--samples"), std::string::npos);
+}
+#endif
+
+TEST_F(CommandLine, ListNamesSystemsGroupoidsParametersAndSymmetries) {
+  const auto listed = nlohmann::json::parse(run("list --json").out);
+  const std::string text = run("list").out;
+  for (const auto& system : listed) {
+    for (const char* key : {"name", "groupoid", "summary"})
+      EXPECT_NE(text.find(system.at(key).get<std::string>()), std::string::npos) << system;
+    for (const auto& parameter : system.at("parameters"))
+      EXPECT_NE(text.find(parameter.at("name").get<std::string>()), std::string::npos) << parameter;
+  }
+  EXPECT_EQ(listed.at(0).at("symmetries").size(), 3U);
+}
+
+TEST_F(CommandLine, EveryListedParameterIsRead) {
+  // A table in the place of a parameter is refused under its name; an unlisted key is refused as unknown.
+  for (const auto& system : nlohmann::json::parse(run("list --json").out)) {
+    const std::string scene = "run " + example(system.at("name")) + " --set parameters.";
+    for (const auto& parameter : system.at("parameters")) {
+      const std::string key = parameter.at("name");
+      const Outcome r = run(scene + key + "={}");
+      EXPECT_EQ(r.code, 2) << key;
+      EXPECT_NE(r.err.find("parameters." + key), std::string::npos) << r.err;
+      EXPECT_EQ(r.err.find("unknown"), std::string::npos) << r.err;
+    }
+  }
+}
+
 TEST_F(CommandLine, ListAndVersion) {
   EXPECT_NE(run("list").out.find("plate_ball"), std::string::npos);
   EXPECT_EQ(run("--version").code, 0);

@@ -51,19 +51,6 @@ TEST(HeavyTop, Derivatives) {
   }
 }
 
-TEST(HeavyTop, IsPoissonReversibleAndSymmetricAboutTheVertical) {
-  for (const auto map : {RotationMap::exponential, RotationMap::cayley}) {
-    HeavyTop top = asymmetric();
-    top.rotation = map;
-    top.h = 0.1;
-    const auto dynamics = laws::dynamics_laws(top, draw_state);
-    EXPECT_TRUE(dynamics.holds()) << dynamics;
-    EXPECT_EQ(top.symmetries().size(), 1U);
-    const auto noether = laws::noether_laws(top, top.symmetries(), draw_state);
-    EXPECT_TRUE(noether.holds()) << noether;
-  }
-}
-
 TEST(HeavyTop, OfLagrangeIsSymmetricAboutItsAxisToo) {
   HeavyTop top;
   top.h = 0.1;

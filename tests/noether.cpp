@@ -2,7 +2,6 @@
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/plate_ball.hpp>
-#include <lagroid/systems/spherical_pendulum.hpp>
 
 #include <lagroid/groupoids/time_extended.hpp>
 
@@ -24,26 +23,6 @@ State<PlateBall::GroupoidType> rolling(int i) {
   std::get<0>(s.object) = Eigen::Vector2d(0.3 - 0.1 * i, 0.2 * i);
   s.momentum << 0.3, -0.1 * i, 0.5, 0.2, 0.1 * i - 0.4;
   return s;
-}
-
-TEST(Symmetries, OfTheLibrarysSystemsHold) {
-  const auto kepler = laws::noether_laws(Kepler{}, Kepler{}.symmetries(), [] {
-    return State<Pair<2>>{{1 + 0.2 * laws::draw_uniform(), 0.3}, {0.2 * laws::draw_uniform(), 1}};
-  });
-  EXPECT_TRUE(kepler.holds()) << kepler;
-  const auto pendulum = laws::noether_laws(SphericalPendulum{}, SphericalPendulum{}.symmetries(), [] {
-    return State<Pair<3>>{{0.6, 0, -0.8}, {0, laws::draw_uniform(), 0}};
-  });
-  EXPECT_TRUE(pendulum.holds()) << pendulum;
-  for (const double rate : {0.0, 0.7}) {
-    PlateBall plate;
-    plate.plate_rate = rate;
-    plate.spin = 0.2;
-    EXPECT_EQ(plate.symmetries().size(), rate == 0 ? 3U : 1U);
-    const auto report =
-        laws::noether_laws(plate, plate.symmetries(), [] { return rolling(int(3 * laws::draw_uniform())); });
-    EXPECT_TRUE(report.holds()) << report;
-  }
 }
 
 TEST(Examine, TellsSymmetriesFromOthers) {

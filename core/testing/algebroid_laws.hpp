@@ -81,7 +81,7 @@ LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const
     const Q q = draw_object();
     const U u = draw_vector<object_dimension_of<G>()>(options.local);
     const Q r = groupoid.displace_object(q, u);
-    return worst({relative_defect(groupoid.object_displacement(q, r), u),
+    return worst({detail::displacement_defect(groupoid.object_displacement(q, r), u, groupoid.coordinates_of_object(r)),
                   relative_defect(groupoid.coordinates_of_object(groupoid.displace_object(q, U(U::Zero()))),
                                   groupoid.coordinates_of_object(q))});
   });

@@ -1,0 +1,113 @@
+/// The program lagroid-check: `lagroid check`.
+
+#include "certificate.hpp"
+#include "command.hpp"
+#include "registry.hpp"
+
+#include <lagroid/core/noether.hpp>
+#include <lagroid/core/testing/property.hpp>
+#include <lagroid/systems/certificates.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace lagroid;
+using namespace lagroid::app;
+
+struct CheckOptions : SceneOptions {
+  int samples = 100;
+  long seed = 20261120;
+};
+
+/// Points of a run, evenly spread and never more than a few thousand.
+template <class Sys> class Thinned {
+ public:
+  void add(const TrajectoryPoint<Sys>& point) {
+    if (point.index % stride_ != 0) return;
+    points_.push_back(point);
+    if (points_.size() < 4096) return;
+    for (std::size_t i = 0; 2 * i < points_.size(); ++i) points_[i] = points_[2 * i];
+    points_.resize(points_.size() / 2);
+    stride_ *= 2;
+  }
+  const std::vector<TrajectoryPoint<Sys>>& points() const { return points_; }
+
+ private:
+  std::vector<TrajectoryPoint<Sys>> points_;
+  long stride_ = 1;
+};
+
+/// A state of the run, its momentum moved by a tenth.
+template <DiscreteSystem Sys>
+State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vector<TrajectoryPoint<Sys>>& points) {
+  auto state = points[*rc::gen::inRange<std::size_t>(0, points.size())].state;
+  const double size = 0.1 * state.momentum.norm();
+  for (double& x : state.momentum) x += size * laws::draw_uniform();
+  state.momentum = tangent_momentum(system, state);
+  return state;
+}
+
+template <DiscreteSystem Sys> Certificate certify(const Task<Sys>& task, const CheckOptions& options) {
+  const auto clock = std::chrono::steady_clock::now();
+  Thinned<Sys> run;
+  const RunResult result = task.run([&](const TrajectoryPoint<Sys>& point) { run.add(point); });
+  auto points = run.points();
+  // From the last one there need not be another step: the end of a boundary value.
+  if (points.size() > 1) points.pop_back();
+
+  Certificate certificate;
+  certificate.system = result.system;
+  certificate.groupoid = Sys::GroupoidType::name();
+  certificate.states = points.size();
+  certificate.samples = options.samples;
+  certificate.seed = options.seed;
+  if (!result.converged()) {
+    certificate.failure = result.message;
+    certificate.failure_status = result.status;
+    return certificate;
+  }
+  certificate.suites = laws::certificate<Sys>(task.system, [&] { return draw_state(task.system, points); });
+  if constexpr (requires { task.system.symmetries(); }) {
+    std::vector<Step<Sys>> steps;
+    for (const auto& point : points)
+      if (point.index > 0) steps.push_back(point.step);
+    for (const auto& symmetry : task.system.symmetries()) {
+      const auto found = examine<Sys>(task.system, symmetry, steps);
+      certificate.symmetries.push_back(
+          {symmetry.name, std::string(to_string(found.kind)), found.defect, found.kind != SymmetryKind::none});
+    }
+  }
+  certificate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return certificate;
+}
+
+int check(const CheckOptions& options) {
+  // RapidCheck reads its options from here, and reports each law on std::cerr: the certificate does.
+  ::setenv("RC_PARAMS", fmt::format("seed={} max_success={}", options.seed, options.samples).c_str(), 1);
+  std::cerr.setstate(std::ios::failbit);
+  const Section scene = read_scene(options.scene, options.overrides);
+  const Certificate certificate = with_system_of(
+      scene, [&](const auto& entry) { return certify(entry.read(scene, {.progress = !options.json}), options); });
+  print(options.json ? json_certificate(certificate) + "\n" : text_certificate(certificate));
+  if (!certificate.failure.empty()) fmt::print(stderr, "lagroid: {}: {}\n", options.scene, certificate.failure);
+  return certificate.holds() ? 0 : exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"ask a scene's system, along its run, every law that applies", "lagroid check"};
+  CheckOptions options;
+  add_scene_options(app, options);
+  app.add_option("--samples", options.samples, "random samples a law")->check(CLI::Range(1, 1000000));
+  app.add_option("--seed", options.seed, "of the samples; the certificate is reproducible")
+      ->check(CLI::NonNegativeNumber);
+  return command_line(app, argc, argv, options, [&] { return check(options); });
+}

@@ -1,0 +1,34 @@
+#pragma once
+/// What the programs have in common: the scene on the command line, what is printed, how they end.
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+inline constexpr int exit_internal_error = 1;
+inline constexpr int exit_bad_input = 2;
+inline constexpr int exit_failed = 3;
+
+struct SceneOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  bool json = false;
+};
+
+/// SCENE, --set and --json.
+void add_scene_options(CLI::App& command, SceneOptions& options);
+
+/// Prints on standard output, or throws OutputError.
+void print(const std::string& text);
+
+/// Ends a command that has no result: one line, and one JSON object where that was asked for. Returns `code`.
+int refuse(const SceneOptions& options, int code, const std::string& status, const std::string& message);
+
+/// Reads the command line with the named `app`, then serves it. What goes wrong becomes one line and an exit code.
+int command_line(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve);
+
+}  // namespace lagroid::app

@@ -1,0 +1,99 @@
+// The certificate of every system of the library, at random states and in every form it has.
+#include <lagroid/core/testing/property.hpp>
+#include <lagroid/systems/certificates.hpp>
+#include <lagroid/systems/heavy_top.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulum.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace lagroid;
+
+namespace {
+
+template <class Sys> using Draw = std::function<State<typename Sys::GroupoidType>()>;
+
+template <class Sys> void expect_certificate(const Sys& system, const Draw<Sys>& draw) {
+  for (const auto& suite : laws::certificate(system, draw)) EXPECT_TRUE(suite.holds()) << suite;
+}
+
+Vector<double, 3> draw_direction() {
+  return (laws::draw_vector<3>(1.0) + Vector<double, 3>(0.01, -0.02, 0.03)).normalized();
+}
+
+TEST(Certificate, PlateBallInEveryForm) {
+  PlateBall system;
+  system.h = 0.1;
+  system.spin = 0.3;
+  for (const auto form : {RotationForm::trace, RotationForm::exponential, RotationForm::cayley}) {
+    system.rotation = form;
+    system.plate_rate = form == RotationForm::trace ? 0.8 : 0;
+    EXPECT_EQ(system.symmetries().size(), system.plate_rate == 0 ? 3U : 1U);
+    expect_certificate<PlateBall>(system, [] {
+      State<PlateBall::GroupoidType> s;
+      std::get<0>(s.object) = laws::draw_vector<2>(1.0);
+      for (double& x : s.momentum) x = laws::draw_uniform();
+      return s;
+    });
+  }
+}
+
+TEST(Certificate, RigidBodyInBothForms) {
+  for (const auto rotation : {RotationMap::exponential, RotationMap::cayley}) {
+    RigidBody system;
+    system.h = 0.1;
+    system.rotation = rotation;
+    expect_certificate<RigidBody>(system, [] { return State<SO3>{{}, laws::draw_vector<3>(2.0)}; });
+  }
+}
+
+TEST(Certificate, HeavyTopInBothForms) {
+  for (const auto rotation : {RotationMap::exponential, RotationMap::cayley}) {
+    HeavyTop top;
+    top.h = 0.1;
+    top.inertia << 1.1, 0.8, 0.5;
+    top.weight << 0.3, -0.2, 0.9;
+    top.rotation = rotation;
+    EXPECT_EQ(top.symmetries().size(), 1U);
+    expect_certificate<HeavyTop>(top, [] {
+      return State<HeavyTop::GroupoidType>{draw_direction(), laws::draw_vector<3>(1.5)};
+    });
+  }
+}
+
+TEST(Certificate, PointMasses) {
+  for (const auto quadrature : {Quadrature::midpoint, Quadrature::trapezoid}) {
+    Pendulum pendulum;
+    pendulum.quadrature = quadrature;
+    expect_certificate<Pendulum>(pendulum, [] {
+      return State<Pair<1>>{laws::draw_vector<1>(3.0), laws::draw_vector<1>(2.0)};
+    });
+    Kepler kepler;
+    kepler.quadrature = quadrature;
+    expect_certificate<Kepler>(kepler, [] {
+      const Eigen::Vector2d wobble(0.2 * laws::draw_uniform(), 0.2 * laws::draw_uniform());
+      return State<Pair<2>>{Eigen::Vector2d(1, 0) + wobble, Eigen::Vector2d(wobble(1), 1)};
+    });
+  }
+}
+
+TEST(Certificate, SphericalPendulum) {
+  expect_certificate<SphericalPendulum>(SphericalPendulum{}, [] {
+    const Vector<double, 3> q = draw_direction();
+    const Eigen::Vector3d p(laws::draw_uniform(), laws::draw_uniform(), laws::draw_uniform());
+    return State<Pair<3>>{q, p - p.dot(q) * q};
+  });
+}
+
+TEST(Certificate, OfAWrongPromiseIsWithheld) {
+  // States off the sphere, from which no step can be taken.
+  const auto suites = laws::certificate<SphericalPendulum>(SphericalPendulum{}, [] {
+    return State<Pair<3>>{Eigen::Vector3d(0, 0, -1 - std::abs(laws::draw_uniform())), Eigen::Vector3d(5, 0, 0)};
+  });
+  EXPECT_TRUE(std::any_of(suites.begin(), suites.end(), [](const auto& s) { return !s.holds(); }));
+}
+
+}  // namespace
