@@ -17,6 +17,7 @@ struct Watched {
   double drift = 0;          ///< largest deviation over the norm of the first value
   double first_quarter = 0;  ///< largest deviation in the first and the last quarter
   double last_quarter = 0;
+  double trend = 0;  ///< what the least-squares line through a component rises over the run, at most, over that norm
 };
 
 /// Runs `steps` steps and watches every quantity of the system; empty when a step fails.
@@ -25,6 +26,7 @@ std::map<std::string, Watched> watch(const Sys& system, const State<typename Sys
   const auto quantities = system.quantities();
   std::map<std::string, Watched> out;
   std::vector<std::vector<double>> first(quantities.size());
+  std::vector<std::vector<double>> moment(quantities.size());  // sums of deviation times centred time
   std::vector<double> now;
   Integrator<Sys> integrator(system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>());
   for (long k = 0; k <= steps; ++k) {
@@ -35,12 +37,16 @@ std::map<std::string, Watched> watch(const Sys& system, const State<typename Sys
       if (quantities[i].needs_step && k == 0) continue;
       now.resize(quantities[i].components.size());
       quantities[i].evaluate(point, now.data());
-      if (first[i].empty()) first[i] = now;
+      if (first[i].empty()) {
+        first[i] = now;
+        moment[i].resize(now.size());
+      }
       double deviation = 0;
       double norm = 0;
       for (std::size_t j = 0; j < now.size(); ++j) {
         deviation += (now[j] - first[i][j]) * (now[j] - first[i][j]);
         norm += first[i][j] * first[i][j];
+        moment[i][j] += (now[j] - first[i][j]) * (double(k) - 0.5 * double(steps));
       }
       if (!std::isfinite(deviation)) return {};
       auto& w = out[quantities[i].name];
@@ -48,6 +54,10 @@ std::map<std::string, Watched> watch(const Sys& system, const State<typename Sys
       w.drift = std::max(w.drift, deviation);
       if (4 * k < steps) w.first_quarter = std::max(w.first_quarter, deviation);
       if (4 * k > 3 * steps) w.last_quarter = std::max(w.last_quarter, deviation);
+      // Sum of squares of the centred times: steps^3 / 12.
+      if (k == steps)
+        for (const double m : moment[i])
+          w.trend = std::max(w.trend, 12 * std::abs(m) / (double(steps) * double(steps) * std::sqrt(norm)));
     }
   }
   return out;
