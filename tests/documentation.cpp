@@ -1,8 +1,12 @@
-// The documentation keeps up with the code: its C++ is that of the examples, what it quotes is printed.
+// The documentation keeps up with the code: its C++ is that of the examples, what it quotes is printed, what it names
+// exists.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -10,9 +14,11 @@
 
 namespace {
 
-std::string read(const std::string& path) {
-  std::ifstream file(std::string(LAGROID_ROOT) + "/" + path);
-  if (!file) throw std::runtime_error("cannot read " + path);
+const std::filesystem::path root = LAGROID_ROOT;
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream file(root / path);
+  if (!file) throw std::runtime_error("cannot read " + path.string());
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
@@ -49,6 +55,47 @@ std::string section(const std::string& page, const std::string& heading) {
   return page.substr(start, page.find("\n## ", start + 1) - start);
 }
 
+/// The text of all files of that ending in those folders.
+std::string text_of(const std::vector<std::string>& folders, const std::string& ending) {
+  std::string out;
+  for (const auto& folder : folders)
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder))
+      if (entry.path().extension() == ending) out += read(entry.path());
+  return out;
+}
+
+/// What matches the pattern's group, lines joined.
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::string joined = std::regex_replace(text, std::regex("\\s+"), " ");
+  const std::regex expression(pattern);
+  std::vector<std::string> out;
+  for (std::sregex_iterator at(joined.begin(), joined.end(), expression); at != std::sregex_iterator(); ++at)
+    out.push_back((*at)[1]);
+  return out;
+}
+
+/// The files, tests and identifiers in `backquotes` and the laws in "quotes" that do not exist.
+std::vector<std::string> unknown_names(const std::string& page) {
+  const std::string headers = text_of({"core", "groupoids", "solvers"}, ".hpp");
+  const std::string tests = text_of({"tests"}, ".cpp");
+  std::vector<std::string> out;
+  const auto require = [&](const std::string& name, bool exists) {
+    if (!exists) out.push_back(name);
+  };
+  for (const auto& name : matches(page, "`([^`]+)`")) {
+    const auto dot = name.find('.');
+    if (name.find('/') != std::string::npos) {
+      require(name, exists(root / name));
+    } else if (dot != std::string::npos) {
+      require(name, tests.find("TEST(" + name.substr(0, dot) + ", " + name.substr(dot + 1) + ")") != std::string::npos);
+    } else {
+      require(name, std::regex_search(headers, std::regex("\\b" + name + "\\b")));
+    }
+  }
+  for (const auto& law : matches(page, "\"([^\"]+)\"")) require(law, headers.find(law + "\"") != std::string::npos);
+  return out;
+}
+
 const std::vector<std::string> none;
 
 TEST(Readme, ItsOwnSystemIsThatOfTheExample) {
@@ -78,6 +125,20 @@ TEST(BrokenPage, AnAlteredBlockIsFoundOut) {
   page.replace(page.find(half), half.size(), "(0.6 / h)");
   EXPECT_EQ(foreign_blocks(page, "cpp", read("examples/my_system.cpp")).size(), 1U);
   EXPECT_EQ(foreign_blocks("no code", "cpp", "any").size(), 1U);
+}
+
+TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathematics.md")), none); }
+
+TEST(Mathematics, ItNamesEveryLaw) {
+  const auto named = matches(read("docs/mathematics.md"), "\"([^\"]+)\"");
+  const auto laws = matches(text_of({"core/testing", "solvers/testing"}, ".hpp"), "law\\( ?\"([^\"]+)\"");
+  EXPECT_GT(laws.size(), 50U);
+  for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;
+}
+
+TEST(BrokenPage, ANameOfNothingIsFoundOut) {
+  const std::vector<std::string> names{"core/nothing.hpp", "Nothing.IsTested", "nothing_at_all", "no law"};
+  EXPECT_EQ(unknown_names("`core/nothing.hpp` `Nothing.IsTested` `nothing_at_all` \"no law\""), names);
 }
 
 }  // namespace
