@@ -1,76 +1,99 @@
-// A groupoid and a constrained system of your own, in one file.
+// A groupoid and a constrained system of your own, in one file; docs/tutorial.md goes through it.
 //
-// The Heisenberg group, and its sub-Riemannian geodesics: the shortest horizontal curves, whose shadows on the plane
-// are circles (Dido's problem). Run it: build/release/bin/my_system
-#include <lagroid/core/testing/groupoid_laws.hpp>
-#include <lagroid/solvers/testing/momentum_laws.hpp>
+// Dido's problem: the shortest shore that encloses a given area. Run it: build/release/bin/my_system
+#include <lagroid/solvers/testing/certificate.hpp>
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <functional>
 #include <iostream>
+#include <memory>
+#include <numbers>
+#include <vector>
 
 using namespace lagroid;
 
-// R^3 with (a, b, c)(a', b', c') = (a + a', b + b', c + c' + (a b' - b a')/2). In these coordinates exp is the
-// identity.
-struct Heisenberg : LieGroupoid<Heisenberg, 3> {
-  template <class S> using Arrow = Vector<S, 3>;
-  template <class S> using Object = Vector<S, 0>;
-  template <class S> static Vector<S, 0> source(const Vector<S, 3>&) { return {}; }
-  template <class S> static Vector<S, 0> target(const Vector<S, 3>&) { return {}; }
-  template <class S> static Vector<S, 3> unit(const Vector<S, 0>&) { return Vector<S, 3>(S(0), S(0), S(0)); }
-  template <class S> static Vector<S, 3> inverse(const Vector<S, 3>& g) { return -g; }
-  template <class S> static Vector<S, 3> multiply(const Vector<S, 3>& g, const Vector<S, 3>& h) {
-    return g + h + Vector<S, 3>(S(0), S(0), (g(0) * h(1) - g(1) * h(0)) * S(0.5));
+// A stretch of shore g = (p, q, a): where it starts, where it ends, and the area between it and its chord, positive to
+// the left. Two stretches make one, and the triangle of their ends is added: (p, q, a)(q, r, b) = (p, r, a + b + pqr).
+struct Shores : LieGroupoid<Shores, 3> {
+  template <class S> using Arrow = Vector<S, 5>;
+  template <class S> using Object = Vector<S, 2>;
+  template <class S> static Vector<S, 2> source(const Vector<S, 5>& g) { return {g(0), g(1)}; }
+  template <class S> static Vector<S, 2> target(const Vector<S, 5>& g) { return {g(2), g(3)}; }
+  template <class S> static Vector<S, 5> unit(const Vector<S, 2>& q) { return {q(0), q(1), q(0), q(1), S(0)}; }
+  template <class S> static Vector<S, 5> inverse(const Vector<S, 5>& g) { return {g(2), g(3), g(0), g(1), -g(4)}; }
+  template <class S> static Vector<S, 5> multiply(const Vector<S, 5>& g, const Vector<S, 5>& h) {
+    const Vector<S, 2> u = chord(g);
+    const Vector<S, 2> v = chord(h);
+    return {g(0), g(1), h(2), h(3), g(4) + h(4) + (u(0) * v(1) - u(1) * v(0)) * 0.5};
   }
-  template <class S> static Vector<S, 3> tau(const Vector<S, 0>&, const Vector<S, 3>& v) { return v; }
-  template <class S> static Vector<S, 3> tau_inverse(const Vector<S, 3>& g) { return g; }
-  static std::string name() { return "Heisenberg group"; }
+  template <class S> static Vector<S, 5> tau(const Vector<S, 2>& q, const Vector<S, 3>& v) {
+    return {q(0), q(1), q(0) + v(0), q(1) + v(1), v(2)};
+  }
+  template <class S> static Vector<S, 3> tau_inverse(const Vector<S, 5>& g) { return {g(2) - g(0), g(3) - g(1), g(4)}; }
+  static std::string name() { return "stretches of shore"; }
+
+  template <class S> static Vector<S, 2> chord(const Vector<S, 5>& g) { return target(g) - source(g); }
 };
 
-// L = (a^2 + b^2) / (2 h) on the horizontal arrows, c = 0.
-struct Dido : System<Dido, Heisenberg, /*arrow constraints*/ 1> {
+// L = |q - p|^2 / 2h on the straight stretches, a = 0.
+struct Dido : System<Dido, Shores, /*arrow constraints*/ 1> {
   double h = 0.05;
-  template <class S> S lagrangian(const Arrow<S>& g) const { return (g(0) * g(0) + g(1) * g(1)) * (0.5 / h); }
-  template <class S> Vector<S, 1> constraint(const Arrow<S>& g) const { return Vector<S, 1>(g(2)); }
+  template <class S> S lagrangian(const Arrow<S>& g) const { return Shores::chord(g).squaredNorm() * (0.5 / h); }
+  template <class S> Vector<S, 1> constraint(const Arrow<S>& g) const { return Vector<S, 1>(g(4)); }
 
-  // The momentum seen from the start, Ad*: conserved, because L and the constraint depend on the arrow alone.
+  // What leaves L and the constraint alone: enclosing more, and moving the whole shore east, north or round the origin.
+  std::vector<Symmetry<Dido>> symmetries() const {
+    using Point = Vector<double, 2>;
+    using Fibre = Vector<double, 3>;
+    return {{"area", [](const Point&) { return Fibre(0, 0, 1); }},
+            {"east", [](const Point& q) { return Fibre(1, 0, q(1)); }},
+            {"north", [](const Point& q) { return Fibre(0, 1, -q(0)); }},
+            {"round", [](const Point& q) { return Fibre(-q(1), q(0), -0.5 * q.squaredNorm()); }}};
+  }
   std::vector<Quantity<Dido>> quantities() const {
-    return {{"spatial momentum",
-             {"P1", "P2", "P3"},
-             Promise::conserved,
-             false,
-             [](const TrajectoryPoint<Dido>& p, double* out) {
-               const auto& [g, mu] = std::pair(p.configuration, p.state.momentum);
-               out[0] = mu(0) + g(1) * mu(2);
-               out[1] = mu(1) - g(0) * mu(2);
-               out[2] = mu(2);
-             }}};
+    std::vector<Quantity<Dido>> out;
+    for (const auto& symmetry : symmetries()) out.push_back(symmetry.quantity());
+    return out;
   }
 };
 
 int main() {
-  const auto axioms = laws::groupoid_laws<Heisenberg>();
-  const auto momenta = laws::momentum_laws(Dido{}, [] {
-    State<Heisenberg> s;
-    s.momentum = laws::draw_vector<3>(2.0);
-    return s;
-  });
-  std::cout << axioms << momenta;
+  const laws::LawReport axioms = laws::groupoid_laws<Shores>();
+  std::cout << axioms;
 
-  // One turn: with momentum (1, 0, 1) the shadow is a circle of radius about one.
   const Dido system;
-  State<Heisenberg> start;
-  start.momentum << 1, 0, 1;
-  Integrator<Dido> walk(system, start, Heisenberg::unit(start.object), std::make_unique<NewtonStep<Dido>>());
-  while (walk.point().time < 6.283) {
-    const auto report = walk.advance();
+  std::vector<Step<Dido>> samples;
+  for (int k = 0; k < 20; ++k)
+    samples.push_back(laws::step_from(system, {{0.1 * k, 1 - 0.2 * k}, {std::cos(k), std::sin(k), 0.3 * k - 2}}));
+  const Symmetry<Dido> naive("east without area", [](const auto&) { return Vector<double, 3>(1, 0, 0); });
+  for (const auto& candidate : {system.symmetries()[1], naive})
+    fmt::print("{}: {}\n", candidate.name, to_string(examine<Dido>(system, candidate, samples).kind));
+
+  const std::function<State<Shores>()> draw = [] {
+    const double speed = 1.5 + laws::draw_uniform();
+    return State<Shores>{laws::draw_vector<2>(1.0), {speed, laws::draw_uniform(), 2 * laws::draw_uniform()}};
+  };
+  const laws::LawReport momenta = laws::momentum_laws(system, draw);
+  std::cout << momenta;
+
+  Integrator<Dido> walk(system, {{0, 0}, {1, 0, 1}}, Shores::unit(Vector<double, 2>(0, 0)),
+                        std::make_unique<NewtonStep<Dido>>());
+  while (walk.point().time < 2 * std::numbers::pi) {
+    const StepReport report = walk.advance();
     if (!report.converged()) {
       fmt::print("step {}: {}\n", walk.point().index + 1, to_string(report.status));
       return 1;
     }
   }
-  fmt::print("after one turn at ({:.3f}, {:.3f}), area enclosed {:.3f} (pi is 3.142)\n", walk.point().configuration(0),
-             walk.point().configuration(1), walk.point().configuration(2));
-  return axioms.holds() && momenta.holds() ? 0 : 1;
+  const Vector<double, 5> shore = walk.point().configuration;
+  fmt::print("once round: at ({:.2f}, {:.2f}), area {:.2f}\n", shore(2), shore(3), shore(4));
+
+  bool all_hold = true;
+  for (const auto& report : laws::certificate(system, draw)) {
+    fmt::print("{}: {}\n", report.subject, report.holds() ? "holds" : "BROKEN");
+    all_hold = all_hold && report.holds();
+  }
+  return all_hold ? 0 : 1;
 }

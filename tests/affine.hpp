@@ -17,6 +17,7 @@ template <class S> struct AffineArrow { S a, b, x; };
 
 enum class Fault {
   none,
+  source,
   unit,
   inverse,
   target,
@@ -40,7 +41,9 @@ struct Affine : LieGroupoid<Affine, 2> {
   Fault fault = Fault::none;
   bool has(Fault f) const { return fault == f; }
 
-  template <class S> static Object<S> source(const Arrow<S>& g) { return Object<S>(g.x); }
+  template <class S> Object<S> source(const Arrow<S>& g) const {
+    return Object<S>(has(Fault::source) ? S(g.x + g.b * 1e-3) : g.x);
+  }
   template <class S> Object<S> target(const Arrow<S>& g) const {
     using std::exp;
     return Object<S>(has(Fault::target) ? S(exp(g.a) * g.x + g.b * g.b) : S(exp(g.a) * g.x + g.b));

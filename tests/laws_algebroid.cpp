@@ -63,6 +63,34 @@ TEST(StructureFunctions, OfTheAffineGroup) {
   EXPECT_EQ(c[1](1, 0), 1);
 }
 
+/// A diffeomorphism of the line as a bisection of its pair groupoid.
+struct Wave {
+  template <class S> PairArrow<S, 1> operator()(const Vector<S, 1>& q) const {
+    using std::sin;
+    return {q, Vector<S, 1>(q(0) + sin(q(0)) * 0.5)};
+  }
+};
+TEST(Bisection, OfAPairIsADiffeomorphismOfTheObjects) {
+  const Bisection wave(Pair<1>{}, Vector<double, 1>(0.0), Wave{});
+  const Vector<double, 1> q(0.4);
+  EXPECT_EQ((wave * wave)(q).target, wave.image(wave.image(q)));
+  EXPECT_NEAR(wave.inverse().image(wave.image(q))(0), 0.4, 1e-15);
+  // Derivatives of the inverse: 1 / f' and -f'' / f'^3.
+  using D = Dual<Dual<double>>;
+  const Vector<D, 1> r(D(Dual<double>(wave.image(q)(0), 1.0), Dual<double>(1.0)));
+  const D p = wave.preimage(r)(0);
+  const double slope = 1 + 0.5 * std::cos(0.4);
+  EXPECT_NEAR(p.value.derivative, 1 / slope, 1e-15);
+  EXPECT_NEAR(p.derivative.derivative, 0.5 * std::sin(0.4) / (slope * slope * slope), 1e-15);
+}
+TEST(Bisection, SaysWhereItHasNoArrow) {
+  const Bisection bounded(Pair<1>{}, Vector<double, 1>(0.0), [](const auto& q) {
+    using std::tanh;
+    return std::decay_t<decltype(Pair<1>::unit(q))>{q, q.unaryExpr([](const auto& x) { return tanh(x); })};
+  });
+  EXPECT_THROW(bounded.preimage(Vector<double, 1>(2.0)), OutsideBisection);
+}
+
 void expect_broken(Fault fault, const std::vector<std::string>& names) {
   Affine groupoid;
   groupoid.fault = fault;
@@ -77,7 +105,10 @@ TEST(BrokenAlgebroid, BracketOfTheWrongSign) {
 TEST(BrokenAlgebroid, TransposedAnchor) {
   expect_broken(Fault::anchor, {"Leibniz rule with the anchor", "anchor is a homomorphism"});
 }
-TEST(BrokenAlgebroid, BisectionThatMissesItsArrow) { expect_broken(Fault::bisection, {"bisections"}); }
+TEST(BrokenAlgebroid, BisectionThatMissesItsArrow) {
+  expect_broken(Fault::bisection,
+                {"bisections", "products of bisections", "inverses of bisections", "translations by bisections"});
+}
 TEST(BrokenAlgebroid, ChartThatIsNotInverted) { expect_broken(Fault::object_chart, {"chart of the objects"}); }
 
 /// A frame bracket that is antisymmetric but no Lie bracket, and one that is not even that.

@@ -111,5 +111,12 @@ TEST(BrokenCotangentGroupoid, SwappedEnds) {
   expect_broken<CotangentFault::ends>({"source is anti-Poisson", "target is Poisson"});
 }
 TEST(BrokenCotangentGroupoid, Unit) { expect_broken<CotangentFault::unit>({"units are Lagrangian"}); }
+TEST(BrokenCotangentGroupoid, OfAGroupoidWhoseBisectionsMissTheirArrows) {
+  Affine groupoid;
+  groupoid.fault = Fault::bisection;
+  const auto report = laws::cotangent_laws(groupoid, moderate());
+  for (const char* law : {"tangent of the product (A.1)", "fibres of source and target are orthogonal"})
+    EXPECT_FALSE(report.law(law).holds()) << report;
+}
 
 }  // namespace

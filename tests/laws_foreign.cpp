@@ -33,13 +33,18 @@ void expect_broken(Fault fault, const std::vector<std::string>& names) {
   for (const auto& law : names) EXPECT_FALSE(report.law(law).holds()) << law << '\n' << report;
 }
 
-TEST(BrokenGroupoid, WrongUnit) { expect_broken(Fault::unit, {"units"}); }
+TEST(BrokenGroupoid, WrongSource) { expect_broken(Fault::source, {"left-invariant fields are alpha-vertical"}); }
+TEST(BrokenGroupoid, WrongUnit) { expect_broken(Fault::unit, {"units", "tangent of the inversion (3)"}); }
 TEST(BrokenGroupoid, WrongInverse) { expect_broken(Fault::inverse, {"inverses"}); }
-TEST(BrokenGroupoid, WrongTarget) { expect_broken(Fault::target, {"source and target of products"}); }
+TEST(BrokenGroupoid, WrongTarget) {
+  expect_broken(Fault::target, {"source and target of products", "right-invariant fields are beta-vertical"});
+}
 TEST(BrokenGroupoid, WrongProduct) { expect_broken(Fault::product, {"source and target of products"}); }
-TEST(BrokenGroupoid, WrongRetraction) { expect_broken(Fault::retraction, {"retraction"}); }
+TEST(BrokenGroupoid, WrongRetraction) { expect_broken(Fault::retraction, {"retraction", "chart"}); }
 TEST(BrokenGroupoid, WrongInverseRetraction) { expect_broken(Fault::inverse_retraction, {"retraction"}); }
-TEST(BrokenGroupoid, NotANumberInALaterComponent) { expect_broken(Fault::not_a_number, {"retraction"}); }
+TEST(BrokenGroupoid, NotANumberInALaterComponent) {
+  expect_broken(Fault::not_a_number, {"retraction", "nudging an arrow"});
+}
 TEST(BrokenGroupoid, RetractionThatLeavesItsFibre) { expect_broken(Fault::moves_its_source, {"retraction"}); }
 TEST(BrokenGroupoid, WrongMomentumChange) { expect_broken(Fault::momentum_change, {"change of momentum"}); }
 TEST(BrokenGroupoid, WrongSeed) { expect_broken(Fault::seed, {"closed-form translations"}); }
@@ -87,9 +92,8 @@ struct NotAssociative : LieGroupoid<NotAssociative, 1> {
 TEST(BrokenGroupoid, NotAssociative) {
   const auto report = laws::groupoid_laws<NotAssociative>();
   EXPECT_FALSE(report.law("associativity").holds()) << report;
+  EXPECT_FALSE(report.law("left-invariant fields are invariant (1)").holds()) << report;
   EXPECT_FALSE(report.law("right-invariant fields are invariant (2)").holds()) << report;
-  EXPECT_FALSE(report.law("tangent of the inversion (3)").holds() && report.law("inverses").holds() &&
-               report.law("left-invariant fields are invariant (1)").holds());
 }
 
 }  // namespace

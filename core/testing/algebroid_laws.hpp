@@ -4,9 +4,8 @@
 ///     EXPECT_TRUE(lagroid::laws::algebroid_laws<MyGroupoid>().holds());
 
 #include <lagroid/core/algebroid.hpp>
+#include <lagroid/core/bisection.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
-
-#include <Eigen/LU>
 
 namespace lagroid::laws {
 
@@ -42,7 +41,8 @@ template <Groupoid G> struct RandomSection {
 }  // namespace detail
 
 /// The laws of [G] Def. 2.7, 2.9 and Remarks 2.8, 2.10, for sections with random coefficients of second degree, and
-/// what the geometry asks of the groupoid: its chart of the objects and its local bisections ([G] A.1).
+/// what the geometry asks of the groupoid: its chart of the objects and its local bisections, which multiply, are
+/// inverted and translate arrows ([G] A.1).
 template <Groupoid G, class DrawObject>
 LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const GroupoidLawOptions& options = {}) {
   constexpr int n = G::dimension;
@@ -52,9 +52,20 @@ LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const
   using detail::relative_defect;
   const LieAlgebroid<G> algebroid(groupoid);
   const auto section = [&] { return Section::draw(groupoid, options.large); };
-  const auto arrow = [&] {
-    const auto g = groupoid.tau(draw_object(), V(draw_vector<n>(options.large)));
+  const auto arrow_from = [&](const Q& q) -> ArrowOf<G> {
+    const ArrowOf<G> g = groupoid.tau(q, V(draw_vector<n>(options.large)));
     return groupoid.project(groupoid.multiply(g, groupoid.tau(groupoid.target(g), V(draw_vector<n>(options.large)))));
+  };
+  const auto arrow = [&] { return arrow_from(draw_object()); };
+  const auto near = [&](const Q& q) -> Q {
+    constexpr int d = object_dimension_of<G>();
+    return groupoid.displace_object(q, Vector<double, d>(0.1 * draw_vector<d>(options.local)));
+  };
+  const auto arrows = [&](const ArrowOf<G>& x, const ArrowOf<G>& y) {
+    return relative_defect(groupoid.coordinates_of_arrow(x), groupoid.coordinates_of_arrow(y));
+  };
+  const auto objects = [&](const Q& x, const Q& y) {
+    return relative_defect(groupoid.coordinates_of_object(x), groupoid.coordinates_of_object(y));
   };
   const auto bracket_of = [&](const auto& x, const auto& y) {
     return [&algebroid, x, y](const auto& q) { return algebroid.bracket(q, x, y); };
@@ -89,22 +100,43 @@ LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const
     // Through g, over their objects, from units to units, and with beta o b a local diffeomorphism.
     const auto g = arrow();
     const Q q = draw_object();
-    const auto coordinates = [&](const auto& a) { return groupoid.coordinates_of_arrow(a); };
-    const auto unit = groupoid.unit(groupoid.source(g));
-    constexpr int d = object_dimension_of<G>();
-    Matrix<double, d, d> along;
-    for (int j = 0; j < d; ++j) {
-      const auto u = infinitesimal(Vector<double, d>(Vector<double, d>::Unit(j)));
-      const auto gd = groupoid.template cast<Dual<double>>(g);
-      const auto moved = groupoid.target(groupoid.bisection(gd, groupoid.displace_object(groupoid.source(gd), u)));
-      along.col(j) = derivative_of(groupoid.object_displacement(groupoid.target(gd), moved));
-    }
-    double singular = 0;
-    if constexpr (d > 0) singular = std::abs(along.determinant()) > 1e-9 ? 0 : 1;
-    return worst({relative_defect(coordinates(groupoid.bisection(g, groupoid.source(g))), coordinates(g)),
-                  relative_defect(groupoid.coordinates_of_object(groupoid.source(groupoid.bisection(g, q))),
-                                  groupoid.coordinates_of_object(q)),
-                  relative_defect(coordinates(groupoid.bisection(unit, q)), coordinates(groupoid.unit(q))), singular});
+    const auto b = bisection_through(groupoid, g);
+    const auto units = bisection_through(groupoid, groupoid.unit(groupoid.source(g)));
+    return worst({arrows(b(groupoid.source(g)), g), objects(groupoid.source(b(q)), q),
+                  arrows(units(q), groupoid.unit(q)),
+                  std::abs(b.slope(groupoid.source(g)).determinant()) > 1e-9 ? 0.0 : 1.0});
+  });
+  law("products of bisections", [&] {
+    const auto g = arrow();
+    const auto h = arrow_from(groupoid.target(g));
+    const auto b = bisection_through(groupoid, g);
+    const auto c = bisection_through(groupoid, h);
+    const auto d = bisection_through(groupoid, arrow_from(groupoid.target(h)));
+    const Q q = near(groupoid.source(g));
+    return worst({arrows((b * c)(groupoid.source(g)), groupoid.multiply(g, h)),
+                  objects((b * c).image(q), c.image(b.image(q))), arrows(((b * c) * d)(q), (b * (c * d))(q)),
+                  arrows((unit_bisection(groupoid, q) * b)(q), b(q)),
+                  arrows((b * unit_bisection(groupoid, b.image(q)))(q), b(q))});
+  });
+  law("inverses of bisections", [&] {
+    const auto g = arrow();
+    const auto b = bisection_through(groupoid, g);
+    const auto back = b.inverse();
+    const Q q = near(groupoid.source(g));
+    const Q r = near(groupoid.target(g));
+    return worst({arrows(back(groupoid.target(g)), groupoid.inverse(g)), arrows((b * back)(q), groupoid.unit(q)),
+                  arrows((back * b)(r), groupoid.unit(r))});
+  });
+  law("translations by bisections", [&] {
+    const auto g = arrow();
+    const auto h = arrow_from(groupoid.target(g));
+    const auto k = arrow_from(near(groupoid.target(h)));
+    const auto b = bisection_through(groupoid, g);
+    const auto c = bisection_through(groupoid, h);
+    const auto d = bisection_through(groupoid, arrow_from(groupoid.target(k)));
+    return worst({arrows(c.left(groupoid.unit(c.image(groupoid.source(h)))), h),
+                  arrows((b * c).left(k), b.left(c.left(k))), arrows(c.left(d.right(k)), d.right(c.left(k))),
+                  arrows(c.inverse().left(c.left(k)), k)});
   });
   law("bracket is bilinear", [&] {
     const Q q = draw_object();

@@ -2,6 +2,7 @@
 /// The symplectic groupoid T*G => A*G as a test suite that any groupoid runs by naming itself. (That T*G is a groupoid
 /// is asked by groupoid_laws<CotangentGroupoid<MyGroupoid>>.)
 
+#include <lagroid/core/bisection.hpp>
 #include <lagroid/core/symplectic.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 
@@ -47,19 +48,21 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
     using D = Dual<double>;
     const A g1 = arrow();
     const A g2 = arrow_from(groupoid.target(g1));
+    const auto b1 = bisection_through(groupoid, g1);
+    const auto b2 = bisection_through(groupoid, g2);
     const auto derivative = [&](const auto& k) { return derivative_of(groupoid.coordinates_of_arrow(k)); };
-    const auto b = [&](const A& g, const auto& q) { return groupoid.bisection(groupoid.template cast<D>(g), q); };
+    // The velocity of k, moved along its fibre, at g.
+    const auto curve = [&](const A& g, const auto& k) {
+      const auto moved = groupoid.multiply(k, groupoid.tau(groupoid.target(k), infinitesimal(fibre())));
+      return groupoid.with_tangent(g, derivative(moved));
+    };
     const Vector<D, d> u = infinitesimal(Vector<double, d>(draw_vector<d>(options.large)));
-    const auto from = groupoid.displace_object(groupoid.source(groupoid.template cast<D>(g1)), u);
-    const auto along = b(g1, from);
-    const auto k1 = groupoid.multiply(along, groupoid.tau(groupoid.target(along), infinitesimal(fibre())));
+    const auto k1 = curve(g1, b1(groupoid.displace_object(groupoid.source(groupoid.template cast<D>(g1)), u)));
     const auto q = groupoid.target(k1);
-    const auto k2 = groupoid.multiply(b(g2, q), groupoid.tau(groupoid.target(b(g2, q)), infinitesimal(fibre())));
-    const auto b1 = [&](const auto& r) { return groupoid.inverse(b(groupoid.inverse(g1), r)); };
-    return relative_defect(derivative(groupoid.multiply(k1, k2)),
-                           (derivative(groupoid.multiply(k1, b(g2, q))) + derivative(groupoid.multiply(b1(q), k2)) -
-                            derivative(groupoid.multiply(b1(q), b(g2, q))))
-                               .eval());
+    const auto k2 = curve(g2, b2(q));
+    return relative_defect(
+        derivative(groupoid.multiply(k1, k2)),
+        (derivative(b2.right(k1)) + derivative(b1.left(k2)) - derivative(b1.left(b2.right(groupoid.unit(q))))).eval());
   });
 
   // The derivatives, at a random covector, of its canonical coordinates, its source and its target.

@@ -1,0 +1,144 @@
+// The documentation keeps up with the code: its C++ is that of the examples, what it quotes is printed, what it names
+// exists.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+const std::filesystem::path root = LAGROID_ROOT;
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream file(root / path);
+  if (!file) throw std::runtime_error("cannot read " + path.string());
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The text without the indentation of its lines.
+std::string flush_left(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    const auto first = line.find_first_not_of(' ');
+    out += (first == std::string::npos ? "" : line.substr(first)) + '\n';
+  }
+  return out;
+}
+
+/// The page's blocks in that language which are no part of `source`, indentation aside; one "no block" if it has none.
+std::vector<std::string> foreign_blocks(const std::string& page, const std::string& language,
+                                        const std::string& source) {
+  const std::string fence = "```" + language + "\n";
+  std::vector<std::string> out;
+  if (page.find(fence) == std::string::npos) out.push_back("no block");
+  for (auto at = page.find(fence); at != std::string::npos; at = page.find(fence, at)) {
+    at += fence.size();
+    const std::string block = page.substr(at, page.find("```", at) - at);
+    if (flush_left(source).find(flush_left(block)) == std::string::npos) out.push_back(block);
+    at += block.size() + 3;
+  }
+  return out;
+}
+
+/// The page's section of that heading.
+std::string section(const std::string& page, const std::string& heading) {
+  const auto start = page.find("\n" + heading + "\n");
+  if (start == std::string::npos) throw std::runtime_error("no section " + heading);
+  return page.substr(start, page.find("\n## ", start + 1) - start);
+}
+
+/// The text of all files of that ending in those folders.
+std::string text_of(const std::vector<std::string>& folders, const std::string& ending) {
+  std::string out;
+  for (const auto& folder : folders)
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder))
+      if (entry.path().extension() == ending) out += read(entry.path());
+  return out;
+}
+
+/// What matches the pattern's group, lines joined.
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::string joined = std::regex_replace(text, std::regex("\\s+"), " ");
+  const std::regex expression(pattern);
+  std::vector<std::string> out;
+  for (std::sregex_iterator at(joined.begin(), joined.end(), expression); at != std::sregex_iterator(); ++at)
+    out.push_back((*at)[1]);
+  return out;
+}
+
+/// The files, tests and identifiers in `backquotes` and the laws in "quotes" that do not exist.
+std::vector<std::string> unknown_names(const std::string& page) {
+  const std::string headers = text_of({"core", "groupoids", "solvers"}, ".hpp");
+  const std::string tests = text_of({"tests"}, ".cpp");
+  std::vector<std::string> out;
+  const auto require = [&](const std::string& name, bool exists) {
+    if (!exists) out.push_back(name);
+  };
+  for (const auto& name : matches(page, "`([^`]+)`")) {
+    const auto dot = name.find('.');
+    if (name.find('/') != std::string::npos) {
+      require(name, exists(root / name));
+    } else if (dot != std::string::npos) {
+      require(name, tests.find("TEST(" + name.substr(0, dot) + ", " + name.substr(dot + 1) + ")") != std::string::npos);
+    } else {
+      require(name, std::regex_search(headers, std::regex("\\b" + name + "\\b")));
+    }
+  }
+  for (const auto& law : matches(page, "\"([^\"]+)\"")) require(law, headers.find(law + "\"") != std::string::npos);
+  return out;
+}
+
+const std::vector<std::string> none;
+
+TEST(Readme, ItsOwnSystemIsThatOfTheExample) {
+  EXPECT_EQ(
+      foreign_blocks(section(read("README.md"), "## A system of your own"), "cpp", read("examples/my_system.cpp")),
+      none);
+}
+
+TEST(Tutorial, ItsCodeIsThatOfTheExample) {
+  EXPECT_EQ(foreign_blocks(read("docs/tutorial.md"), "cpp", read("examples/my_system.cpp")), none);
+}
+
+#ifdef LAGROID_EXAMPLE
+TEST(Tutorial, WhatItQuotesIsPrinted) {
+  std::FILE* pipe = ::popen(LAGROID_EXAMPLE " 2>/dev/null", "r");
+  ASSERT_NE(pipe, nullptr);
+  std::string printed;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) printed += char(c);
+  EXPECT_EQ(::pclose(pipe), 0);
+  EXPECT_EQ(foreign_blocks(read("docs/tutorial.md"), "text", printed), none);
+}
+#endif
+
+TEST(BrokenPage, AnAlteredBlockIsFoundOut) {
+  std::string page = read("docs/tutorial.md");
+  const std::string half = "(0.5 / h)";
+  page.replace(page.find(half), half.size(), "(0.6 / h)");
+  EXPECT_EQ(foreign_blocks(page, "cpp", read("examples/my_system.cpp")).size(), 1U);
+  EXPECT_EQ(foreign_blocks("no code", "cpp", "any").size(), 1U);
+}
+
+TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathematics.md")), none); }
+
+TEST(Mathematics, ItNamesEveryLaw) {
+  const auto named = matches(read("docs/mathematics.md"), "\"([^\"]+)\"");
+  const auto laws = matches(text_of({"core/testing", "solvers/testing"}, ".hpp"), "law\\( ?\"([^\"]+)\"");
+  EXPECT_GT(laws.size(), 50U);
+  for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;
+}
+
+TEST(BrokenPage, ANameOfNothingIsFoundOut) {
+  const std::vector<std::string> names{"core/nothing.hpp", "Nothing.IsTested", "nothing_at_all", "no law"};
+  EXPECT_EQ(unknown_names("`core/nothing.hpp` `Nothing.IsTested` `nothing_at_all` \"no law\""), names);
+}
+
+}  // namespace
