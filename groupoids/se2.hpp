@@ -33,6 +33,21 @@ struct SpecialEuclidean2 : MatrixGroup<SpecialEuclidean2<Tau>, 3, 3, Tau> {
     const Vector<S, 2> v = screw(w).transpose() * g.template topRightCorner<2, 1>() / (S(2) * stumpff<2>(S(w * w)));
     return Vector<S, 3>(w, v(0), v(1));
   }
+  /// cay(w, v) = [R p; 0 1] with R the rotation by 2 atan(w/2) and p = (I + w J / 2) v / (1 + w^2 / 4), J = hat(1).
+  template <class S> static Matrix<S, 3, 3> cayley(const Vector<S, 3>& xi) {
+    const S half = xi(0) * 0.5;
+    const S scale = 1.0 / (half * half + 1.0);
+    const S c = (1.0 - half * half) * scale;
+    const S s = xi(0) * scale;
+    Matrix<S, 3, 3> g;
+    g << c, -s, scale * (xi(1) - half * xi(2)), s, c, scale * (xi(2) + half * xi(1)), S(0), S(0), S(1);
+    return g;
+  }
+  /// w = 2 tan(angle/2), v = p - w J p / 2. Requires an angle below pi.
+  template <class S> static Vector<S, 3> cayley_inverse(const Matrix<S, 3, 3>& g) {
+    const S half = (g(1, 0) - g(0, 1)) / (g(0, 0) + g(1, 1) + 2.0);
+    return Vector<S, 3>(half * 2.0, g(0, 2) + half * g(1, 2), g(1, 2) - half * g(0, 2));
+  }
   template <class S> static Matrix<S, 3, 3> ad(const Vector<S, 3>& xi) {
     Matrix<S, 3, 3> a;
     a << S(0), S(0), S(0), xi(2), S(0), -xi(0), -xi(1), xi(0), S(0);

@@ -6,7 +6,7 @@
 namespace lagroid {
 
 /// How a rotation g of one step becomes an angular velocity w = tau^{-1}(g) / h.
-enum class RotationMap { exponential, cayley };
+using RotationMap = Retraction;
 
 /// h l(tau^{-1}(g) / h), l(w) = w.I w / 2, with I the principal moments of inertia. [G] 6.1
 template <class S>

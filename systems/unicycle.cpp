@@ -1,0 +1,7 @@
+#include <lagroid/systems/unicycle.hpp>
+
+namespace lagroid {
+
+LAGROID_STEPS(template, Unicycle);
+
+}  // namespace lagroid
