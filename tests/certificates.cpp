@@ -8,7 +8,11 @@
 #include <lagroid/systems/rigid_body.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
+#include "control_cases.hpp"
+
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 using namespace lagroid;
 
@@ -86,6 +90,24 @@ TEST(Certificate, SphericalPendulum) {
     const Eigen::Vector3d p(laws::draw_uniform(), laws::draw_uniform(), laws::draw_uniform());
     return State<Pair<3>>{q, p - p.dot(q) * q};
   });
+}
+
+TEST(Certificate, ControlOnGroupsInBothForms) {
+  for (const auto map : {Retraction::exponential, Retraction::cayley}) {
+    Case<Unicycle> unicycle;
+    unicycle.system.h = 0.1;
+    unicycle.system.map = map;
+    expect_certificate<Unicycle>(unicycle.system, [] { return State<SE2>{{}, laws::draw_vector<3>(1.5)}; });
+    Case<AttitudeControl> attitude;
+    attitude.system.h = 0.1;
+    attitude.system.map = map;
+    expect_certificate<AttitudeControl>(attitude.system, [] { return State<SO3>{{}, laws::draw_vector<3>(1.5)}; });
+  }
+  // With equal weights the forbidden axis is an axis of symmetry.
+  AttitudeControl axial;
+  axial.h = 0.1;
+  EXPECT_EQ(axial.symmetries().size(), 1U);
+  expect_certificate<AttitudeControl>(axial, [] { return State<SO3>{{}, laws::draw_vector<3>(1.5)}; });
 }
 
 TEST(Certificate, OfAWrongPromiseIsWithheld) {

@@ -1,5 +1,6 @@
 // Systems in other formulations: rigid bodies by momenta and by quaternions, the unicycle on pairs of poses.
 #include <lagroid/groupoids/pair.hpp>
+#include <lagroid/solvers/testing/momentum_laws.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 
 #include "control_cases.hpp"
@@ -165,6 +166,17 @@ TEST(Poses, MoveAsTheirReductionDoes) {
       EXPECT_LT((p.step.multipliers - posed.point().step.multipliers).norm(), 1e-12) << k;
     }
   }
+}
+
+TEST(AttitudeControl, TheForbiddenAxisIsOneOfSymmetryForEqualWeightsOnly) {
+  AttitudeControl system;
+  system.h = 0.1;
+  const auto draw = [] { return State<SO3>{{}, laws::draw_vector<3>(1.5)}; };
+  AttitudeControl uneven = system;
+  uneven.weights(0) = 1.2;
+  EXPECT_TRUE(uneven.symmetries().empty());
+  const auto broken = laws::noether_laws(uneven, system.symmetries(), draw);
+  EXPECT_FALSE(broken.law("axial momentum M.n is a symmetry").holds()) << broken;
 }
 
 }  // namespace
