@@ -1,5 +1,5 @@
 #pragma once
-/// The certificates of the library's systems, compiled once (target lagroid::certificates).
+/// The certificates of the library's systems, compiled once (target lagroid_certificates).
 
 #include <lagroid/core/system.hpp>
 #include <lagroid/core/testing/law_report.hpp>

@@ -26,6 +26,7 @@ enum class Fault {
   inverse_retraction,
   seed,
   momentum_change,
+  extension,
   not_a_number,
   bracket,
   anchor,
@@ -74,6 +75,9 @@ struct Affine : LieGroupoid<Affine, 2> {
       for (int i = 0; i < 2 && has(Fault::seed); ++i)
         for (int j = 0; j < 2; ++j) out.b.set_mixed(i, j, -out.b.mixed(i, j));
     return out;
+  }
+  template <class A, class V> A extend(const A& g, const V& w) const {
+    return LieGroupoid::extend(g, has(Fault::extension) ? V(w * 1.001) : w);
   }
   template <class A, class V> V momentum_change(const A&, const V& source_gradient, const V& target_gradient) const {
     return V((source_gradient + target_gradient) * (has(Fault::momentum_change) ? 1.001 : 1.0));

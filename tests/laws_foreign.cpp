@@ -47,13 +47,18 @@ TEST(BrokenGroupoid, NotANumberInALaterComponent) {
 }
 TEST(BrokenGroupoid, RetractionThatLeavesItsFibre) { expect_broken(Fault::moves_its_source, {"retraction"}); }
 TEST(BrokenGroupoid, WrongMomentumChange) { expect_broken(Fault::momentum_change, {"change of momentum"}); }
+TEST(BrokenGroupoid, WrongExtension) { expect_broken(Fault::extension, {"extending an arrow"}); }
 TEST(BrokenGroupoid, WrongSeed) { expect_broken(Fault::seed, {"closed-form translations"}); }
 
-/// SO(3) with the bracket of its frame reversed, or its curves straightened.
-enum class FrameFault { bracket, curvature };
+/// SO(3) with the bracket of its frame reversed, its curves straightened, or both ends moved alike.
+enum class FrameFault { bracket, curvature, ends };
 template <FrameFault Fault> struct BadlyFramed : SO3 {
   template <class T> static Matrix<T, 3, 3> frame_bracket(const Vector<T, 3>& p) {
     return Fault == FrameFault::bracket ? Matrix<T, 3, 3>(-SO3::frame_bracket(p)) : SO3::frame_bracket(p);
+  }
+  template <End Which, class T, int K>
+  static Matrix<T, 3, K> frame_to_end(const Matrix<T, 3, 3>& g, const Matrix<T, 3, K>& rows) {
+    return SO3::frame_to_end < Fault == FrameFault::ends ? End::target : Which > (g, rows);
   }
   template <class J, int Offset = 0, class T> static Matrix<J, 3, 3> frame_jet(const Matrix<T, 3, 3>& g) {
     Matrix<J, 3, 3> out = SO3::frame_jet<J, Offset>(g);
@@ -71,6 +76,7 @@ TEST(BrokenGroupoid, WrongFrame) {
   };
   expect_curved(laws::groupoid_laws<BadlyFramed<FrameFault::bracket>>());
   expect_curved(laws::groupoid_laws<BadlyFramed<FrameFault::curvature>>());
+  EXPECT_FALSE(laws::groupoid_laws<BadlyFramed<FrameFault::ends>>().law("arrow frame").holds());
 }
 
 /// R^2 with a product that is not associative.

@@ -1,8 +1,9 @@
-// The groupoid laws on products and time-extended groupoids.
+// The groupoid laws on products, trivial and time-extended groupoids.
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/groupoids/se2.hpp>
 #include <lagroid/groupoids/so3.hpp>
 #include <lagroid/groupoids/time_extended.hpp>
+#include <lagroid/groupoids/trivial.hpp>
 #include <lagroid/groupoids/vector_group.hpp>
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@ namespace {
 
 template <class G> class GroupoidLaws : public ::testing::Test {};
 
-using Subjects = ::testing::Types<Product<Pair<2>, SO3>, Product<VectorGroup<1>, Pair<1>, SO2>, TimeExtended<SE2>,
+using Subjects = ::testing::Types<Trivial<2, SO3>, Product<VectorGroup<1>, Pair<1>, SO2>, TimeExtended<SE2>,
                                   TimeExtended<Product<Pair<1>, SO2>>>;
 TYPED_TEST_SUITE(GroupoidLaws, Subjects);
 

@@ -3,6 +3,7 @@
 #include <lagroid/core/testing/morphism_laws.hpp>
 #include <lagroid/groupoids/morphisms.hpp>
 #include <lagroid/groupoids/rotated.hpp>
+#include <lagroid/groupoids/trivial.hpp>
 #include <lagroid/solvers/testing/reduction_laws.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
@@ -10,6 +11,8 @@
 #include "draws.hpp"
 
 #include <gtest/gtest.h>
+
+#include <concepts>
 
 using namespace lagroid;
 
@@ -40,6 +43,31 @@ TEST(MorphismLaws, HoldForThoseOfTheLibrary) {
   EXPECT_TRUE(projection.holds()) << projection;
   const auto product = laws::morphism_laws<ProductMorphism<Difference<2>, IdentityMorphism<SO3>>>({}, moderate());
   EXPECT_TRUE(product.holds()) << product;
+}
+
+TEST(GaugeGroupoid, OfATrivialBundleIsTheTrivialOne) {
+  using Phi = ProductMorphism<IdentityMorphism<Pair<2>>, LeftQuotient<SO3>>;
+  static_assert(std::same_as<Phi::Codomain, Trivial<2, SO3>>);
+  const auto point = [] { return std::tuple(laws::draw_vector<2>(1.0), draw_attitude()); };
+  const auto report = laws::morphism_laws(Phi{}, point, moderate());
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+TEST(GaugeGroupoid, OfRotationsOverTheSphereIsTheirAction) {
+  // The classes under rotations about e3 from the left are the fibres of (a, b) -> (a^{-1} b, e3 a).
+  const StabiliserQuotient<SO3, RotatedDirections> phi(Vector<double, 3>::UnitZ());
+  const ElementPair<Matrix<double, 3, 3>> g{SO3::exp(Vector<double, 3>(0.3, -1, 0.5)),
+                                            SO3::exp(Vector<double, 3>(1, 0.2, -0.4))};
+  const auto moved = [&](const Matrix<double, 3, 3>& k) {
+    return ElementPair<Matrix<double, 3, 3>>{k * g.source, k * g.target};
+  };
+  const auto apart = [&](const auto& x, const auto& y) {
+    return (phi.to.coordinates_of_arrow(x) - phi.to.coordinates_of_arrow(y)).norm();
+  };
+  const auto turned = moved(SO3::exp(Vector<double, 3>(0, 0, 0.7)));
+  EXPECT_LT(apart(phi(turned), phi(g)), 1e-15);
+  EXPECT_LT((phi.lift(turned.source, phi(g)).target - turned.target).norm(), 1e-15);
+  EXPECT_GT(apart(phi(moved(SO3::exp(Vector<double, 3>(0.1, 0, 0.7)))), phi(g)), 0.01);
 }
 
 /// b a^{-1}, which reverses products, and a map that does not add lengths.

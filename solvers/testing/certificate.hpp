@@ -21,12 +21,9 @@ std::vector<LawReport> certificate(const Sys& system, const std::function<State<
   const auto& groupoid = system.groupoid;
   const auto object = [&] { return draw().object; };
   std::vector<LawReport> reports{
-      groupoid_laws(groupoid, object),
-      algebroid_laws(groupoid, object),
-      cotangent_laws(groupoid, object),
-      derivative_laws(system, [&] { return step_from(system, draw()); }),
-      dynamics_laws(system, draw),
-      variational_laws(system, draw),
+      groupoid_laws(groupoid, object),  algebroid_laws(groupoid, object),
+      cotangent_laws(groupoid, object), derivative_laws(system, [&] { return step_from(system, draw()); }),
+      dynamics_laws(system, draw),      variational_laws(system, draw),
   };
   const auto append = [&](LawReport report) {
     if (!report.laws.empty()) reports.push_back(std::move(report));
