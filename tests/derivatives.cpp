@@ -1,4 +1,6 @@
 // The two-sided derivative of every system, against nested dual numbers; a wrong analytic one is caught.
+#include "affine.hpp"
+#include "badly_framed.hpp"
 #include "draws.hpp"
 
 #include <lagroid/core/testing/derivative_laws.hpp>
@@ -172,6 +174,24 @@ TEST(SecondDerivatives, OnePassIsThreePasses) {
   expect_one_pass(Generic<SE2>());
   expect_one_pass(Generic<SpecialEuclidean3<Retraction::cayley>>());
   expect_one_pass(Generic<Product<SE2, VectorGroup<2>, Pair<1>>>());
+}
+
+TEST(BrokenDerivatives, OfClosedFormsThatAreWrong) {
+  Generic<Affine> seeded;
+  seeded.groupoid.fault = Fault::seed;
+  const auto curved = laws::derivative_laws(seeded, [&] { return draw_step(seeded, 0.4); });
+  EXPECT_FALSE(curved.law("automatic derivatives").holds()) << curved;
+  EXPECT_TRUE(curved.law("gradients").holds()) << curved;
+  const Generic<BadlyFramed<FrameFault::ends>> swapped;
+  const auto displaced = laws::derivative_laws(swapped, [&] { return draw_step(swapped, 0.4); });
+  EXPECT_TRUE(displaced.law("automatic derivatives").holds()) << displaced;
+  EXPECT_FALSE(displaced.law("gradients").holds()) << displaced;
+}
+
+TEST(BrokenDerivatives, OfAFrameWithTheWrongBracket) {
+  const Generic<BadlyFramed<FrameFault::bracket>> system;
+  const auto law = laws::second_derivative_law(system, [&] { return draw_step(system, 0.4); });
+  EXPECT_FALSE(law.law("one pass is three").holds()) << law;
 }
 
 }  // namespace

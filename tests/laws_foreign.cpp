@@ -1,8 +1,8 @@
 // A groupoid that lives only here passes the laws, as a user's would; broken ones fail the law they break.
 #include <lagroid/core/testing/groupoid_laws.hpp>
-#include <lagroid/groupoids/so3.hpp>
 
 #include "affine.hpp"
+#include "badly_framed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,25 +49,6 @@ TEST(BrokenGroupoid, RetractionThatLeavesItsFibre) { expect_broken(Fault::moves_
 TEST(BrokenGroupoid, WrongMomentumChange) { expect_broken(Fault::momentum_change, {"change of momentum"}); }
 TEST(BrokenGroupoid, WrongExtension) { expect_broken(Fault::extension, {"extending an arrow"}); }
 TEST(BrokenGroupoid, WrongSeed) { expect_broken(Fault::seed, {"closed-form translations"}); }
-
-/// SO(3) with the bracket of its frame reversed, its curves straightened, or both ends moved alike.
-enum class FrameFault { bracket, curvature, ends };
-template <FrameFault Fault> struct BadlyFramed : SO3 {
-  template <class T> static Matrix<T, 3, 3> frame_bracket(const Vector<T, 3>& p) {
-    return Fault == FrameFault::bracket ? Matrix<T, 3, 3>(-SO3::frame_bracket(p)) : SO3::frame_bracket(p);
-  }
-  template <End Which, class T, int K>
-  static Matrix<T, 3, K> frame_to_end(const Matrix<T, 3, 3>& g, const Matrix<T, 3, K>& rows) {
-    return SO3::frame_to_end < Fault == FrameFault::ends ? End::target : Which > (g, rows);
-  }
-  template <class J, int Offset = 0, class T> static Matrix<J, 3, 3> frame_jet(const Matrix<T, 3, 3>& g) {
-    Matrix<J, 3, 3> out = SO3::frame_jet<J, Offset>(g);
-    if constexpr (J::order == 2 && Fault == FrameFault::curvature)
-      for (J& x : out.reshaped())
-        for (int i = 0; i < 3; ++i) x.set_row(i, typename J::Row{});
-    return out;
-  }
-};
 
 TEST(BrokenGroupoid, WrongFrame) {
   const auto expect_curved = [](const auto& report) {
