@@ -1,6 +1,8 @@
 // Lagrangian submanifolds and Poisson maps, and what is neither. (Those of the library's systems: certificates.cpp.)
 #include <lagroid/solvers/testing/dynamics_laws.hpp>
+#include <lagroid/systems/attitude_control.hpp>
 #include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
 
 #include <gtest/gtest.h>
 
@@ -26,14 +28,17 @@ TEST(LegendreRanks, AreEqualAlsoWhereTheyAreNotFull) {
 }
 
 /// F+ with a thousandth of the momentum lost, as by friction; and covectors that no function generates.
-struct WithFriction : GeneratedSubmanifold<Kepler> {
-  using GeneratedSubmanifold::GeneratedSubmanifold;
-  SubmanifoldTangent tangent(const Step<Kepler>& step) const {
-    auto t = GeneratedSubmanifold::tangent(step);
-    t.plus.bottomRows(2) *= 0.999;
+template <class Sys> struct WithFriction : GeneratedSubmanifold<Sys> {
+  using GeneratedSubmanifold<Sys>::GeneratedSubmanifold;
+  SubmanifoldTangent tangent(const Step<Sys>& step) const {
+    auto t = GeneratedSubmanifold<Sys>::tangent(step);
+    t.plus.bottomRows(Sys::dimension) *= 0.999;
     return t;
   }
 };
+template <class Sys, class Draw> laws::LawReport laws_with_friction(const Sys& system, const Draw& draw) {
+  return laws::dynamics_laws<Sys, Draw, WithFriction<Sys>>(system, draw);
+}
 struct NotLagrangian : GeneratedSubmanifold<Kepler> {
   using GeneratedSubmanifold::GeneratedSubmanifold;
   SubmanifoldTangent tangent(const Step<Kepler>& step) const {
@@ -46,11 +51,25 @@ struct NotLagrangian : GeneratedSubmanifold<Kepler> {
 };
 TEST(BrokenDynamics, FailsTheLawsItBreaks) {
   const auto draw = [] { return State<Pair<2>>{{1, 0.2 * laws::draw_uniform()}, {0.1, 1}}; };
-  const auto rubbed = laws::dynamics_laws<Kepler, decltype(draw), WithFriction>(Kepler{}, draw);
+  const auto rubbed = laws_with_friction(Kepler{}, draw);
   EXPECT_FALSE(rubbed.law("the step is Poisson").holds()) << rubbed;
   const auto twisted = laws::dynamics_laws<Kepler, decltype(draw), NotLagrangian>(Kepler{}, draw);
   EXPECT_FALSE(twisted.law("Sigma_L is Lagrangian").holds()) << twisted;
   EXPECT_FALSE(twisted.law("Legendre transforms have equal rank").holds()) << twisted;
+}
+
+TEST(BrokenDynamics, FrictionUnderConstraintsIsNotPoisson) {
+  const auto swing = laws_with_friction(SphericalPendulum{}, [] {
+    const Vector<double, 3> q = (laws::draw_vector<3>(0.5) - Vector<double, 3>::UnitZ()).normalized();
+    return State<Pair<3>>{q, q.cross(Vector<double, 3>(0.3, 0.5, laws::draw_uniform()))};
+  });
+  AttitudeControl control;
+  control.weights << 1, 1.7, 0.6;
+  const auto turn = laws_with_friction(control, [] {
+    return State<SO3>{{}, Vector<double, 3>(0.9, -0.4, 1.1) + laws::draw_vector<3>(0.3)};
+  });
+  for (const auto& report : {swing, turn})
+    for (const auto& law : report.laws) EXPECT_EQ(law.holds(), law.name != "the step is Poisson") << report;
 }
 
 /// A spring whose derivatives by hand lose a thousandth of F+.
