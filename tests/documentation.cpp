@@ -76,7 +76,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
 
 /// The files, tests and identifiers in `backquotes` and the laws in "quotes" that do not exist.
 std::vector<std::string> unknown_names(const std::string& page) {
-  const std::string headers = text_of({"core", "groupoids", "solvers"}, ".hpp");
+  const std::string headers = text_of({"core", "groupoids", "solvers", "systems"}, ".hpp");
   const std::string tests = text_of({"tests"}, ".cpp");
   std::vector<std::string> out;
   const auto require = [&](const std::string& name, bool exists) {
@@ -93,6 +93,40 @@ std::vector<std::string> unknown_names(const std::string& page) {
     }
   }
   for (const auto& law : matches(page, "\"([^\"]+)\"")) require(law, headers.find(law + "\"") != std::string::npos);
+  return out;
+}
+
+/// The text of a test, from its name to the next one at most; empty if there is none.
+std::string body_of(const std::string& test, const std::string& tests) {
+  const auto dot = test.find('.');
+  const auto start = tests.find("TEST(" + test.substr(0, dot) + ", " + test.substr(dot + 1) + ")");
+  if (start == std::string::npos) return {};
+  return tests.substr(start, std::min(tests.find("\nTEST", start), tests.find("\n}\n", start)) - start);
+}
+
+/// For every statement, the laws that none of the tests said to fail them mentions, and those of these tests that
+/// mention none of the laws. What fails is named in the sentence "Fails: ...", or anywhere in a statement without.
+std::vector<std::string> unfounded_failures(const std::string& page) {
+  const std::string tests = text_of({"tests"}, ".cpp");
+  std::vector<std::string> out;
+  for (std::size_t start = 0; start < page.size();) {
+    const auto end = std::min(page.find("\n\n", start), page.size());
+    const std::string statement = page.substr(start, end - start);
+    start = end + 2;
+    const auto laws = matches(statement, "\"([^\"]+)\"");
+    if (laws.empty()) continue;
+    const auto fails = matches(statement, "Fails:((?:[^.]|\\.\\w)*)");
+    const auto failing = matches(fails.empty() ? statement : fails.front(), "`(\\w+\\.\\w+)`");
+    const auto mentions = [&](const std::string& test, const std::string& law) {
+      return body_of(test, tests).find(law + "\"") != std::string::npos;
+    };
+    for (const auto& law : laws)
+      if (std::none_of(failing.begin(), failing.end(), [&](const auto& test) { return mentions(test, law); }))
+        out.push_back(law);
+    for (const auto& test : failing)
+      if (std::none_of(laws.begin(), laws.end(), [&](const auto& law) { return mentions(test, law); }))
+        out.push_back(test);
+  }
   return out;
 }
 
@@ -134,6 +168,15 @@ TEST(Mathematics, ItNamesEveryLaw) {
   const auto laws = matches(text_of({"core/testing", "solvers/testing"}, ".hpp"), "law\\( ?\"([^\"]+)\"");
   EXPECT_GT(laws.size(), 50U);
   for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;
+}
+
+TEST(Mathematics, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/mathematics.md")), none); }
+
+TEST(BrokenPage, AFailureOfAnotherLawIsFoundOut) {
+  const std::vector<std::string> unfounded{"units", "BrokenGroupoid.WrongInverse"};
+  EXPECT_EQ(unfounded_failures("\"units\"\n- Fails: `BrokenGroupoid.WrongInverse`.\n\n"
+                               "\"units\", fails: `BrokenGroupoid.WrongUnit`"),
+            unfounded);
 }
 
 TEST(BrokenPage, ANameOfNothingIsFoundOut) {
