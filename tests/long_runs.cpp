@@ -53,13 +53,18 @@ TEST(RigidBodyLong, MomentumAndEnergyHaveNoTrendOverAMillionSteps) {
   State<SO3> state;
   state.momentum << 1.2, 0.1, 0.9;
   const long steps = 1'000'000;
-  const auto seen = watch(system, state, steps);
+  using Point = TrajectoryPoint<RigidBody>;
+  const auto seen =
+      watch(system, state, steps, {{"Casimir", {"|M|"}, Promise::conserved, false, [](const Point& p, double* out) {
+                                      *out = p.state.momentum.norm();
+                                    }}});
   ASSERT_FALSE(seen.empty());
   const auto& momentum = seen.at("spatial momentum A M");
   EXPECT_LT(momentum.drift, 2e-12);
   // A random walk of round-off has trends of this order; one unit in the last place a step would be fifty times as
   // much.
   EXPECT_LT(momentum.trend, 20 * std::numeric_limits<double>::epsilon() * std::sqrt(double(steps)));
+  EXPECT_LT(seen.at("Casimir").drift, 1e-11);
   const auto& energy = seen.at("energy");
   EXPECT_LT(energy.trend, 1e-3 * energy.drift);
 }

@@ -20,10 +20,12 @@ struct Watched {
   double trend = 0;  ///< what the least-squares line through a component rises over the run, at most, over that norm
 };
 
-/// Runs `steps` steps and watches every quantity of the system; empty when a step fails.
+/// Runs `steps` steps and watches every quantity of the system, and `more`; empty when a step fails.
 template <DiscreteSystem Sys>
-std::map<std::string, Watched> watch(const Sys& system, const State<typename Sys::GroupoidType>& start, long steps) {
-  const auto quantities = system.quantities();
+std::map<std::string, Watched> watch(const Sys& system, const State<typename Sys::GroupoidType>& start, long steps,
+                                     const std::vector<Quantity<Sys>>& more = {}) {
+  auto quantities = system.quantities();
+  quantities.insert(quantities.end(), more.begin(), more.end());
   std::map<std::string, Watched> out;
   std::vector<std::vector<double>> first(quantities.size());
   std::vector<std::vector<double>> moment(quantities.size());  // sums of deviation times centred time
