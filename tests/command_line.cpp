@@ -75,7 +75,7 @@ TEST_F(CommandLine, BoundaryValueJson) {
 }
 
 TEST_F(CommandLine, EveryMethodSolvesTheSameBoundaryValues) {
-  for (const char* scene : {"kepler_boundary", "rigid_body_boundary"}) {
+  for (const char* scene : {"kepler_boundary", "rigid_body_boundary", "unicycle"}) {
     std::vector<double> costs;
     for (const char* method : {"newton", "shooting", "ceres"}) {
       const Outcome r = run("run " + example(scene) +
