@@ -40,7 +40,8 @@ Presentation<Sys> vector_presentation(std::string name, std::vector<std::string>
   return p;
 }
 
-/// [boundary] start and end, each a position that `check(system, section, q)` refuses or returns, and the time between them.
+/// [boundary] start and end, each a position that `check(system, section, q)` refuses or returns, and the time between
+/// them.
 template <class Sys, int N, class Check>
 BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::string_view position,
                                         const Check& check) {
@@ -49,16 +50,17 @@ BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::s
   const Section boundary = scene.section("boundary", "start and end");
   const auto end = [&](std::string_view key) {
     const Section section = boundary.section(key, "position");
-    return check(system, section, Vector<double, N>(
-                              Eigen::Map<const Vector<double, N>>(section.numbers("position", N, position).data())));
+    return check(
+        system, section,
+        Vector<double, N>(Eigen::Map<const Vector<double, N>>(section.numbers("position", N, position).data())));
   };
   const Vector<double, N> from = end("start");
   return {{{system, PairArrow<double, N>{from, end("end")}}, std::size_t(grid.steps)},
           PairArrow<double, N>{from, from}};
 }
 
-/// Reads [initial] or [boundary]. `system(scene)` reads the parameters; `check(system, section, q)` refuses a position or
-/// returns it.
+/// Reads [initial] or [boundary]. `system(scene)` reads the parameters; `check(system, section, q)` refuses a position
+/// or returns it.
 template <class Sys, int N, class ReadSystem, class Check, class CheckState>
 Task<Sys> read_mechanical(const Section& scene, const RunContext& context, const Presentation<Sys>& p,
                           std::string_view position, std::string_view momentum, const ReadSystem& read_system,
