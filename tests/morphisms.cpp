@@ -82,6 +82,14 @@ struct Stretched : Morphism<Stretched, Pair<1>, VectorGroup<1>> {
     return d * (d(0) * 0.01 + 1.0);
   }
 };
+/// Doubles the far end of every arrow, which leaves products and left-invariant fields related; halves none in the
+/// lift.
+struct Lopsided : Morphism<Lopsided, Pair<1>, Pair<1>> {
+  template <class S> PairArrow<S, 1> operator()(const PairArrow<S, 1>& g) const { return {g.source, g.target * 2.0}; }
+  template <class S> PairArrow<S, 1> lift(const Vector<S, 1>& q, const PairArrow<S, 1>& g) const {
+    return {q, g.target};
+  }
+};
 TEST(BrokenMorphism, IsFoundOut) {
   const auto wrong = laws::morphism_laws(WrongQuotient{}, draw_attitude, moderate());
   EXPECT_FALSE(wrong.law("products").holds()) << wrong;
@@ -89,6 +97,10 @@ TEST(BrokenMorphism, IsFoundOut) {
   const auto stretched = laws::morphism_laws<Stretched>();
   EXPECT_FALSE(stretched.law("products").holds()) << stretched;
   EXPECT_FALSE(stretched.law("units and inverses").holds()) << stretched;
+  const auto lopsided = laws::morphism_laws<Lopsided>();
+  EXPECT_TRUE(lopsided.law("products").holds()) << lopsided;
+  for (const auto* law : {"sources and targets", "anchors", "right-invariant fields", "lift"})
+    EXPECT_FALSE(lopsided.law(law).holds()) << law << '\n' << lopsided;
 }
 
 RigidBody body() {
