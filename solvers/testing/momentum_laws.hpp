@@ -20,6 +20,14 @@ Integrator<Sys> newton_integrator(const Sys& system, const State<typename Sys::G
   return Integrator<Sys>(system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>());
 }
 
+/// The round-off of the momenta of a step, which small arrows divide by h: as the size of terms of which a hundred
+/// times that round-off is 1e-10.
+template <DiscreteSystem Sys>
+double size_of_round_off(const Sys& system, const Step<Sys>& step, const TwoSidedOf<Sys>& d) {
+  const auto level = round_off_level(system, legendre_minus(system, step), step, StepEquations<Sys>::jacobian(d));
+  return 1e12 * level.template head<Sys::dimension>().maxCoeff();
+}
+
 /// What to say where no step could be taken.
 inline NotSampled no_step(const StepReport& report) {
   return NotSampled("no step from the state drawn (" + std::string(to_string(report.status)) + ")");

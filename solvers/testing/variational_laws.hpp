@@ -20,7 +20,7 @@ namespace detail {
 /// Columns that span the kernel of `a`; all of the space where it has no rows.
 inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
   if (a.rows() == 0) return Eigen::MatrixXd::Identity(a.cols(), a.cols());
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullV);
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(a.rowwise().normalized(), Eigen::ComputeFullV);
   svd.setThreshold(1e-9);
   return svd.matrixV().rightCols(a.cols() - svd.rank());
 }
@@ -68,10 +68,6 @@ template <DiscreteSystem Sys> FirstVariation first_variation(const Sys& system, 
     const Step<Sys>& step = path[std::size_t(k)];
     const auto d = two_sided(system, step.arrow, step.multipliers);
     const auto [at_source, at_target] = lagrangian_derivatives(system, step.arrow);
-    const double round_off =
-        round_off_level(system, legendre_minus(system, step), step, StepEquations<Sys>::jacobian(d))
-            .template head<n>()
-            .maxCoeff();
     const bool has_target = k + 1 < count;
     out.conditions.segment(row, phis) = d.constraint.template head<phis>();
     if (k > 0) {
@@ -85,7 +81,7 @@ template <DiscreteSystem Sys> FirstVariation first_variation(const Sys& system, 
       out.derivative.block(row + phis, k * n, objects, n) = d.constraint_target.template bottomRows<objects>();
     }
     row += phis + (has_target ? objects : 0);
-    out.size = worst({out.size, at_source.norm(), at_target.norm(), 1e12 * round_off});
+    out.size = worst({out.size, at_source.norm(), at_target.norm(), size_of_round_off(system, step, d)});
   }
   return out;
 }
