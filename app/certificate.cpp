@@ -12,8 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string verdict(const laws::Law& law) { return law.holds() ? "holds" : "BROKEN"; }
-
 /// JSON has no infinity.
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
@@ -24,7 +22,9 @@ Json json(const laws::LawReport& suite) {
                     {"samples", law.samples},
                     {"worst_defect", number(law.worst)},
                     {"tolerance", law.tolerance},
-                    {"verdict", verdict(law)}});
+                    {"skipped", law.skipped},
+                    {"verdict", law.verdict()}});
+    if (law.skipped > 0) laws.back()["skipped_because"] = law.skipped_because;
     if (!law.first_failure.empty()) laws.back()["message"] = law.first_failure;
   }
   return {{"suite", suite.subject}, {"holds", suite.holds()}, {"laws", laws}};
@@ -42,22 +42,28 @@ std::string text_certificate(const Certificate& c) {
                                 c.system, c.groupoid, c.samples, c.states, c.seed, c.seconds);
   std::size_t laws = 0;
   std::size_t broken = 0;
+  std::size_t unjudged = 0;
   for (const auto& suite : c.suites) {
     out += fmt::format("  {}\n", suite.subject);
     for (const auto& law : suite.laws) {
-      out +=
-          fmt::format("    {:<6}  {:<48} worst defect {:.1e}, tolerance {:.0e}, {} samples{}\n", verdict(law), law.name,
-                      law.worst, law.tolerance, law.samples, law.first_failure.empty() ? "" : "; " + law.first_failure);
+      out += fmt::format("    {:<8}  {:<48} worst defect {:.1e}, tolerance {:.0e}, {} samples{}{}\n", law.verdict(),
+                         law.name, law.worst, law.tolerance, law.samples,
+                         law.skipped > 0 ? fmt::format("; {} skipped: {}", law.skipped, law.skipped_because) : "",
+                         law.first_failure.empty() ? "" : "; " + law.first_failure);
       ++laws;
-      broken += law.holds() ? 0 : 1;
+      broken += law.holds() || law.unjudged ? 0 : 1;
+      unjudged += law.unjudged ? 1 : 0;
     }
   }
   if (!c.symmetries.empty()) out += "  symmetries along the run\n";
-  for (const auto& s : c.symmetries)
-    out += fmt::format("    {:<6}  {:<48} {}, defect {:.1e}\n", s.holds ? "holds" : "BROKEN", s.name, s.kind, s.defect);
+  for (const auto& s : c.symmetries) {
+    out += fmt::format("    {:<8}  {:<48} {}, defect {:.1e}\n", s.holds ? "holds" : "BROKEN", s.name, s.kind, s.defect);
+    ++laws;
+    broken += s.holds ? 0 : 1;
+  }
   if (!c.failure.empty()) return out + fmt::format("  NOT certified: the run itself failed: {}\n", c.failure);
   out += c.holds() ? fmt::format("  certified: all {} laws hold\n", laws)
-                   : fmt::format("  NOT certified: {} of {} laws broken\n", broken, laws);
+                   : fmt::format("  NOT certified: of {} laws {} broken, {} unjudged\n", laws, broken, unjudged);
   return out;
 }
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -44,11 +45,12 @@ template <class Sys> class Thinned {
   long stride_ = 1;
 };
 
-/// A state of the run, its momentum moved by a tenth.
+/// A state of the run, its momentum moved by a tenth of the largest.
 template <DiscreteSystem Sys>
-State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vector<TrajectoryPoint<Sys>>& points) {
+State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vector<TrajectoryPoint<Sys>>& points,
+                                             double largest) {
   auto state = points[*rc::gen::inRange<std::size_t>(0, points.size())].state;
-  const double size = 0.1 * state.momentum.norm();
+  const double size = 0.1 * largest;
   for (double& x : state.momentum) x += size * laws::draw_uniform();
   state.momentum = tangent_momentum(system, state);
   return state;
@@ -59,6 +61,12 @@ template <DiscreteSystem Sys> Certificate certify(const Task<Sys>& task, const C
   Thinned<Sys> run;
   const RunResult result = task.run([&](const TrajectoryPoint<Sys>& point) { run.add(point); });
   auto points = run.points();
+  std::vector<Step<Sys>> steps;
+  double largest = 0;
+  for (const auto& point : points) {
+    if (point.index > 0) steps.push_back(point.step);
+    largest = std::max(largest, point.state.momentum.norm());
+  }
   // From the last one there need not be another step: the end of a boundary value.
   if (points.size() > 1) points.pop_back();
 
@@ -73,11 +81,8 @@ template <DiscreteSystem Sys> Certificate certify(const Task<Sys>& task, const C
     certificate.failure_status = result.status;
     return certificate;
   }
-  certificate.suites = laws::certificate<Sys>(task.system, [&] { return draw_state(task.system, points); });
+  certificate.suites = laws::certificate<Sys>(task.system, [&] { return draw_state(task.system, points, largest); });
   if constexpr (requires { task.system.symmetries(); }) {
-    std::vector<Step<Sys>> steps;
-    for (const auto& point : points)
-      if (point.index > 0) steps.push_back(point.step);
     for (const auto& symmetry : task.system.symmetries()) {
       const auto found = examine<Sys>(task.system, symmetry, steps);
       certificate.symmetries.push_back(
@@ -108,6 +113,6 @@ int main(int argc, char** argv) {
   add_scene_options(app, options);
   app.add_option("--samples", options.samples, "random samples a law")->check(CLI::Range(1, 1000000));
   app.add_option("--seed", options.seed, "of the samples; the certificate is reproducible")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0L, 1'000'000'000'000L));
   return command_line(app, argc, argv, options, [&] { return check(options); });
 }

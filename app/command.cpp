@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string_view>
 
 namespace lagroid::app {
@@ -21,9 +23,14 @@ int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options,
     app.parse(argc, argv);
     return serve();
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      std::ostringstream text;
+      app.exit(error, text, text);
+      print(text.str());
+      return 0;
+    }
     // The flag may not have been read before the mistake was met.
-    for (int i = 1; i < argc; ++i) options.json = options.json || std::string_view(argv[i]) == "--json";
+    options.json = asks_for_json(argc, argv);
     return refuse(options, exit_bad_input, "invalid_command_line",
                   fmt::format("{}; see {} --help", error.what(), app.get_name()));
   } catch (const SceneError& error) {
@@ -46,6 +53,10 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
   command.add_option("--set", options.overrides, "override a key: --set time.steps=100 (repeatable)")
       ->allow_extra_args(false);
   command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
+}
+
+bool asks_for_json(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
 }
 
 void print(const std::string& text) {

@@ -22,6 +22,9 @@ struct SceneOptions {
 /// SCENE, --set and --json.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
+/// Whether --json stands anywhere on the command line.
+bool asks_for_json(int argc, char** argv);
+
 /// Prints on standard output, or throws OutputError.
 void print(const std::string& text);
 

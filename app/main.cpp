@@ -51,7 +51,8 @@ int run(const RunOptions& options) {
 
 /// Hands over to lagroid-check, which stands beside this program: the laws of every system take long to compile, and
 /// whoever only runs scenes need not wait for them.
-int check(const SceneOptions& options, char** argv) {
+int check(SceneOptions options, int argc, char** argv) {
+  options.json = asks_for_json(argc, argv);
   const auto program = std::filesystem::canonical("/proc/self/exe").parent_path() / "lagroid-check";
   ::execv(program.c_str(), argv);
   return refuse(options, exit_internal_error, "internal_error",
@@ -73,12 +74,13 @@ int main(int argc, char** argv) {
   check_command->prefix_command();
   CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
   list_command->add_flag("--json", options.json, "print one JSON array and nothing else on standard output");
+  app.require_subcommand(0, 1);
   return command_line(app, argc, argv, options, [&] {
     if (list_command->parsed()) {
       print(options.json ? json_listing() : text_listing());
       return 0;
     }
-    if (check_command->parsed()) return check(options, argv + 1);
+    if (check_command->parsed()) return check(options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options);
     return refuse(options, exit_bad_input, "invalid_command_line",
                   "name a command: run, check or list; see lagroid --help");

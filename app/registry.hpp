@@ -42,6 +42,17 @@ template <class Visit> void for_each_system(const Visit& visit) {
                           {"plate_rate", "rad/s", "0", "angular velocity of the plate"},
                           {"spin", "rad/s", "0", "prescribed rate about the vertical"},
                           {"rotation", "", "trace", "form of the constraints: trace, exp or cayley"}}});
+  visit(Entry<Unicycle>{
+      "unicycle",
+      "steering at constant speed: planar elastica on SE(2)",
+      read_unicycle,
+      {{"speed", "m/s", "1", "forward speed"}, {"map", "", "exp", "how a motion becomes a velocity: exp or cayley"}}});
+  visit(Entry<AttitudeControl>{"attitude_control",
+                               "optimal control of a rotation on SO(3) with one axis forbidden",
+                               read_attitude_control,
+                               {{"weights", "1", "1, 1, 1", "three weights of the cost w.W w / 2"},
+                                {"forbidden", "1", "0, 0, 1", "the forbidden axis in the body"},
+                                rotation}});
   visit(Entry<RigidBody>{"rigid_body", "free rigid body on SO(3)", read_rigid_body, {inertia, rotation}});
   visit(Entry<HeavyTop>{"heavy_top",
                         "rigid body with a fixed point under gravity, SO(3) acting on S^2",

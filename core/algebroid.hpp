@@ -32,7 +32,9 @@ template <Groupoid G> class LieAlgebroid {
   static constexpr int rank = G::dimension;
   template <class S> using Fibre = Vector<S, rank>;
 
+  /// Refers to the groupoid.
   explicit LieAlgebroid(const G& groupoid) : groupoid_(groupoid) {}
+  explicit LieAlgebroid(G&&) = delete;
 
   /// rho(x) in T_qQ, in object coordinates. [G] Def. 2.9
   template <class Q, class V> auto anchor(const Q& q, const V& x) const { return groupoid_.anchor(q, x); }

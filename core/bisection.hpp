@@ -59,9 +59,9 @@ template <Groupoid G, class Section> class Bisection {
       const Vector<S, size> gap = groupoid_.object_displacement(image(q), r);
       const Matrix<double, size, size> inverse = Eigen::MatrixXd(slope(without_derivatives(q)).inverse());
       q = groupoid_.displace_object(q, Vector<S, size>(inverse.template cast<S>() * gap));
-      double largest = 0;
-      for (int i = 0; i < size; ++i) largest = std::max(largest, std::abs(double(value_of(gap(i)))));
-      if (largest < 1e-9 * scale && ++settled == orders) return q;
+      bool small = true;
+      for (int i = 0; i < size; ++i) small = small && std::abs(double(value_of(gap(i)))) < 1e-9 * scale;
+      if (small && ++settled == orders) return q;
     }
     throw OutsideBisection(G::name() + ": no arrow of the bisection found that ends at the object");
   }

@@ -19,7 +19,9 @@ template <Groupoid G> class TangentBasis {
   static constexpr int d = object_dimension_of<G>();
   static constexpr int size = n + d;
 
+  /// Refers to the groupoid.
   explicit TangentBasis(const G& groupoid) : groupoid_(groupoid) {}
+  explicit TangentBasis(G&&) = delete;
 
   /// The components of the tangent vector `k` at g, the value part of k.
   template <class S, class A, class K> Vector<S, size> components(const A& g, const K& k) const {

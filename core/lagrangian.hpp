@@ -59,6 +59,8 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
   static constexpr int conditions = Sys::arrow_constraints + 2 * Sys::object_constraints;
   template <class S> using Multipliers = Vector<S, conditions>;  ///< of phi, C o alpha, C o beta
 
+  /// Refers to the system.
+  explicit GeneratedSubmanifold(Sys&&) = delete;
   explicit GeneratedSubmanifold(const Sys& system) : system_(system), cotangent_(system.groupoid) {}
 
   /// (phi(g), C(alpha(g)), C(beta(g))).
@@ -148,13 +150,16 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
 /// Sigma_L, because Sigma_L is Lagrangian.
 double lagrangian_defect(const Eigen::MatrixXd& canonical);
 
-/// The ranks of T F- and T F+ on Sigma_L: equal, whatever they are ([G] Remark 2.17). Singular values of the
-/// equilibrated matrices below `threshold` times the largest count as zero.
+/// Singular values of equilibrated matrices below this part of the largest count as zero.
+inline constexpr double singular_threshold = 1e-9;
+
+/// The ranks of T F- and T F+ on Sigma_L: equal, whatever they are ([G] Remark 2.17); -1 for a matrix that is not
+/// finite.
 struct LegendreRanks {
   long minus = 0;
   long plus = 0;
 };
-LegendreRanks legendre_ranks(const SubmanifoldTangent& tangent, double threshold = 1e-9);
+LegendreRanks legendre_ranks(const SubmanifoldTangent& tangent);
 
 /// How far the dynamics is from Poisson. Where F- is a local diffeomorphism, F = F+ o (F-)^{-1} satisfies
 /// DF Pi DF^T = Pi o F exactly when its graph is coisotropic in (A*G, -Pi) x (A*G, Pi), and in general the image of

@@ -39,6 +39,8 @@ template <Groupoid G> class CotangentChart {
   static constexpr int d = object_dimension_of<G>();
   static constexpr int size = n + d;
 
+  /// Refers to the cotangent groupoid.
+  CotangentChart(CotangentGroupoid<G>&&, const ArrowOf<G>&) = delete;
   CotangentChart(const CotangentGroupoid<G>& cotangent, const ArrowOf<G>& centre)
       : cotangent_(cotangent), centre_(centre) {}
 
@@ -110,7 +112,9 @@ template <Groupoid G> class PoissonAlgebra {
   static constexpr int n = G::dimension;
   template <class S> using Point = DualPoint<typename G::template Object<S>, S, n>;
 
+  /// Refers to the groupoid.
   explicit PoissonAlgebra(const G& groupoid) : groupoid_(groupoid) {}
+  explicit PoissonAlgebra(G&&) = delete;
 
   template <class Q, class S, class F, class H> S bracket(const DualPoint<Q, S, n>& z, const F& f, const H& h) const {
     const auto [f_along, f_momentum] = gradients(z, f);

@@ -36,7 +36,7 @@ template <class Group, class Space>
 struct StabiliserQuotient : Morphism<StabiliserQuotient<Group, Space>, PairOf<Group>, Action<Group, Space>> {
   typename Space::template Point<double> fixed;
 
-  explicit StabiliserQuotient(const typename Space::template Point<double>& m = {}) : fixed(m) {}
+  explicit StabiliserQuotient(const typename Space::template Point<double>& m) : fixed(m) {}
 
   template <class E> auto operator()(const ElementPair<E>& g) const {
     using Point = typename Space::template Point<typename E::Scalar>;

@@ -5,9 +5,10 @@ namespace lagroid {
 LAGROID_STEPS(template, AttitudeControl);
 
 bool AttitudeControl::is_axial() const {
-  for (int i = 0; i < 3; ++i)
-    if (forbidden(i) != 0 && weights((i + 1) % 3) != weights((i + 2) % 3)) return false;
-  return true;
+  using Square = Matrix<double, 3, 3>;
+  const Square across = Square::Identity() - forbidden * forbidden.transpose();
+  const Square weight = across * weights.asDiagonal() * across;
+  return (weight - 0.5 * weight.trace() * across).norm() <= 1e-14 * weights.norm();
 }
 
 std::vector<Symmetry<AttitudeControl>> AttitudeControl::symmetries() const {

@@ -13,8 +13,8 @@ namespace lagroid {
 ///
 ///     w = W^{-1} (M - lambda n),    lambda = n.W^{-1} M / n.W^{-1} n,    M' = M x w.
 ///
-/// |M| and the energy M.w / 2 are constant. With equal weights these are the sub-Riemannian geodesics
-/// A(t) = A(0) exp(t (a + b n)) exp(-t b n), a = w(0), b = lambda / weight, at cost |a|^2 weight / 2 a second.
+/// |M| and the energy M.w / 2 are constant. Where W is c times the identity across n these are the sub-Riemannian
+/// geodesics A(t) = A(0) exp(t (a + b n)) exp(-t b n), a = w(0), b = M.n / c, at cost c |a|^2 / 2 a second.
 struct AttitudeControl : GroupControl<AttitudeControl, SO3, /*constraints*/ 1> {
   Vector<double, 3> weights{1, 1, 1};    ///< W = diag(weights), > 0
   Vector<double, 3> forbidden{0, 0, 1};  ///< n, a unit vector in the body
@@ -32,7 +32,7 @@ struct AttitudeControl : GroupControl<AttitudeControl, SO3, /*constraints*/ 1> {
     return {free - lambda * along, Vector<double, 1>(lambda)};
   }
 
-  /// Whether turning about n changes nothing: hat(n) commutes with W.
+  /// Whether W is, to round-off, a multiple of the identity across n: turning about n then changes nothing.
   bool is_axial() const;
   /// Turning about the forbidden axis, where it is one: M.n is conserved.
   std::vector<Symmetry<AttitudeControl>> symmetries() const;

@@ -35,7 +35,7 @@ concept HasControl = requires(const Sys& system, const Vector<double, Sys::dimen
 ///     S l(const Vector<S, n>& xi) const
 ///     Vector<S, Constraints> psi(const Vector<S, n>& xi) const            if there are any
 ///
-/// and may write the inverse of the Legendre transform, from which the members that ask for it follow:
+/// and may write the inverse of the Legendre transform, which `energy` and `reference` need:
 ///
 ///     Control<n, Constraints> control(const Vector<double, n>& mu) const
 ///         (xi, lambda) with dl(xi) + <lambda, dpsi(xi)> = mu, psi(xi) = 0
@@ -65,21 +65,24 @@ template <class Derived, class G, int Constraints = 0> class GroupControl : publ
   }
 
   /// <mu, xi> - l(xi) at xi = xi(mu): the Hamiltonian of the continuous problem (Pontryagin).
-  double energy(const State<G>& s) const requires HasControl<Derived> {
+  double energy(const State<G>& s) const {
     const Algebra<double> xi = self().control(s.momentum).velocity;
     return s.momentum.dot(xi) - self().l(xi);
   }
 
-  /// tau(h xi(mu)), exact to second order in h.
-  Step<Derived> first_guess(const State<G>& s) const requires HasControl<Derived> {
-    const auto [xi, lambda] = self().control(s.momentum);
-    return {arrow(xi), lambda};
+  /// tau(h xi(mu)), exact to second order in h; the unit arrow where there is no `control`.
+  Step<Derived> first_guess(const State<G>& s) const {
+    if constexpr (HasControl<Derived>) {
+      const auto [xi, lambda] = self().control(s.momentum);
+      return {arrow(xi), lambda};
+    } else {
+      return {G::unit(s.object), Vector<double, Constraints>::Zero()};
+    }
   }
 
   /// The continuous solution after time t: mu' = ad_xi^T mu, A' = A hat(xi) at xi = xi(mu). Returns mu and updates
   /// `configuration`.
-  State<G> reference(const State<G>& start, Element<double>& configuration,
-                     double t) const requires HasControl<Derived> {
+  State<G> reference(const State<G>& start, Element<double>& configuration, double t) const {
     constexpr int n = dimension;
     constexpr int size = G::matrix_size;
     Eigen::VectorXd y(n + size * size);

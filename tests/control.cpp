@@ -107,36 +107,42 @@ TYPED_TEST(Extremals, HaveNoSymmetryInGeneral) {
 }
 
 TEST(AttitudeControl, IsSymmetricAboutTheForbiddenAxisWhereItsWeightsAre) {
-  AttitudeControl axial;
-  axial.h = 0.1;
-  axial.weights << 2, 2, 0.7;
-  ASSERT_EQ(axial.symmetries().size(), 1U);
   const Vector3 momentum(0.9, -0.4, 1.1);
-  EXPECT_LT(least_change(axial, momentum), 1e-28);
-  const auto steps = steps_of(axial, momentum, 20);
-  EXPECT_EQ(examine<AttitudeControl>(axial, axial.symmetries()[0], steps).kind, SymmetryKind::symmetric);
-  AttitudeControl other = axial;
-  other.weights << 2, 2.1, 0.7;
-  EXPECT_TRUE(other.symmetries().empty());
-  const auto others = steps_of(other, momentum, 20);
-  EXPECT_EQ(examine<AttitudeControl>(other, axial.symmetries()[0], others).kind, SymmetryKind::none);
-  other.forbidden << 0.6, 0.8, 0;
-  other.weights << 1, 1, 1.1;
-  EXPECT_FALSE(other.is_axial());
-  other.weights << 1, 1, 1;
-  EXPECT_TRUE(other.is_axial());
+  const auto system = [](const Vector3& weights, const Vector3& forbidden) {
+    AttitudeControl out;
+    out.h = 0.1;
+    out.weights = weights;
+    out.forbidden = forbidden.normalized();
+    return out;
+  };
+  for (const auto& axial :
+       {system({2, 2, 0.7}, {0, 0, 1}), system({1, 2, 1.5}, {1, 1, 0}), system({1, 1, 1}, {3, -2, 5})}) {
+    ASSERT_EQ(axial.symmetries().size(), 1U);
+    EXPECT_LT(least_change(axial, momentum), 1e-16);
+    const auto steps = steps_of(axial, momentum, 20);
+    EXPECT_EQ(examine<AttitudeControl>(axial, axial.symmetries()[0], steps).kind, SymmetryKind::symmetric);
+  }
+  for (const auto& other : {system({2, 2.1, 0.7}, {0, 0, 1}), system({1, 1, 1.1}, {3, 4, 0})}) {
+    EXPECT_TRUE(other.symmetries().empty());
+    const Symmetry<AttitudeControl> about{"M.n", [n = other.forbidden](const auto&) { return n; }};
+    const auto steps = steps_of(other, momentum, 20);
+    EXPECT_EQ(examine<AttitudeControl>(other, about, steps).kind, SymmetryKind::none);
+  }
 }
 
 TEST(AttitudeControl, ReferenceIsTheSubRiemannianGeodesic) {
+  // Weights 1.5 in every direction across n.
   AttitudeControl system;
-  system.weights << 1.5, 1.5, 1.5;
-  const Vector3 n(0.48, -0.6, 0.64);
-  system.forbidden = n;
+  system.weights << 1, 2, 1.5;
+  system.forbidden = Vector3(1, 1, 0).normalized();
+  const Vector3 n = system.forbidden;
   const Vector3 a = n.cross(Vector3(0.3, 1.1, -0.8));
   const double b = 1.7;
+  const State<SO3> start{{}, 1.5 * (a + b * n)};
   Matrix3 at = Matrix3::Identity();
-  system.reference({{}, 1.5 * (a + b * n)}, at, 2.0);
+  system.reference(start, at, 2.0);
   EXPECT_LT((at - SO3::exp(Vector3(2 * (a + b * n))) * SO3::exp(Vector3(-2 * b * n))).norm(), 1e-12);
+  EXPECT_NEAR(system.energy(start), 1.5 * a.squaredNorm() / 2, 1e-14);
 }
 
 TYPED_TEST(Extremals, AreThoseOfTheLiePoissonEquations) {

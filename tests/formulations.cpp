@@ -1,4 +1,5 @@
-// Systems in other formulations: rigid bodies by momenta and by quaternions, the unicycle on pairs of poses.
+// Systems on groups as users write them, and in other formulations: rigid bodies by momenta and by quaternions, the
+// unicycle on pairs of poses.
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 #include <lagroid/systems/rigid_body.hpp>
@@ -46,6 +47,30 @@ TEST(LiePoissonStep, SaysWhyItFails) {
   FreeBody body;
   EXPECT_EQ(lie_poisson_step(body, Vector3(1, std::nan(""), 0)).status, SolveStatus::not_finite);
   EXPECT_EQ(lie_poisson_step(body, tumbling, 1).status, SolveStatus::not_converged);
+}
+
+/// A car that pays for rolling and for turning, and says nothing of its extremals.
+struct Car : GroupControl<Car, SE2, /*constraints*/ 1> {
+  template <class S> S l(const Vector<S, 3>& xi) const { return (xi(0) * xi(0) + xi(1) * xi(1)) * 0.5; }
+  template <class S> Vector<S, 1> psi(const Vector<S, 3>& xi) const { return Vector<S, 1>(xi(2)); }
+};
+
+TEST(GroupControl, NeedsNoMoreThanCostAndConstraint) {
+  Car car;
+  car.h = 0.05;
+  const auto quantities = car.quantities();
+  ASSERT_EQ(quantities.size(), 1U);
+  const Vector3 start(0.7, -0.9, 0.6);
+  auto integrator = walk(car, start);
+  for (int k = 0; k < 300; ++k) {
+    ASSERT_TRUE(integrator.advance().converged());
+    const auto& point = integrator.point();
+    Vector3 now;
+    quantities[0].evaluate(point, now.data());
+    EXPECT_LT((now - start).norm(), 1e-12);
+    EXPECT_LT(std::abs(car.velocity(point.step.arrow)(2)), 1e-14);
+  }
+  EXPECT_GT((integrator.point().state.momentum - start).norm(), 0.1);
 }
 
 /// The unit quaternions (w, x, y, z), with the algebra of the rotations that they stand for.

@@ -189,6 +189,38 @@ struct Wrong : MechanicalSystem<Wrong, 2> {
   }
 };
 
+TEST(LoopIntegral, IsTheAreaOfAnEllipse) {
+  std::vector<State<Pair<1>>> loop;
+  for (int i = 0; i < 15; ++i) {
+    const double t = 2 * std::numbers::pi * i / 15;
+    loop.push_back({Vector<double, 1>(1 + 2 * std::cos(t)), Vector<double, 1>(3 * std::sin(t))});
+  }
+  EXPECT_NEAR(loop_integral(loop), -6 * std::numbers::pi, 1e-13);
+  loop.pop_back();
+  EXPECT_THROW(loop_integral(loop), std::invalid_argument);
+}
+
+TEST(LoopIntegral, IsKeptByTheStepsOfASystemAndNotByEulers) {
+  Kepler orbit;
+  orbit.h = 0.05;
+  std::vector<State<Pair<2>>> loop;
+  for (int i = 0; i < 41; ++i) {
+    const double t = 2 * std::numbers::pi * i / 41;
+    loop.push_back({{1 + 0.02 * std::cos(t), 0.01 * std::sin(t)}, {0.01 * std::sin(t), 1 + 0.02 * std::sin(t)}});
+  }
+  const double area = loop_integral(loop);
+  const auto after = carried(orbit, loop, 100);
+  ASSERT_TRUE(after.has_value());
+  EXPECT_NEAR(loop_integral(*after), area, 1e-12);
+  // Explicit Euler.
+  for (auto& [q, p] : loop) {
+    const Eigen::Vector2d force = -q / std::pow(q.norm(), 3);
+    q += orbit.h * p;
+    p += orbit.h * force;
+  }
+  EXPECT_GT(std::abs(loop_integral(loop) - area), 1e-3 * std::abs(area));
+}
+
 TEST(MomentumLaw, CatchesAWrongPromise) {
   const auto report = laws::momentum_laws(Wrong{}, [] { return State<Pair<2>>{{1, 0.5}, laws::draw_vector<2>(1.0)}; });
   EXPECT_FALSE(report.holds()) << report;

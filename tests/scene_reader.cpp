@@ -125,6 +125,10 @@ TEST_F(Scene, OtherSystems) {
          {":3", "initial.position", "0.7071067812"});
   expect("system = \"spherical_pendulum\"\n[initial]\nposition = [1, 0, 0]\nmomentum = [1, 0, 1]\n",
          {":4", "initial.momentum", "tangent"});
+  expect("system = \"attitude_control\"\n[parameters]\nforbidden = [0, 0, 0]\n",
+         {":3", "parameters.forbidden", "no axis"});
+  expect("system = \"attitude_control\"\n[parameters]\nweights = [1, 0, 1]\n",
+         {":3", "parameters.weights", "positive"});
   expect("system = \"pendulum\"\n[initial]\nposition = [1]\nmomentum = [0]\n", {"missing key \"time\"", "[time]"});
 }
 
@@ -141,6 +145,15 @@ end = { position = [1, 0.5], attitude = [0.6, -0.3, 0.9] }
   expect(boundary, {"--set time.steps", "at least 3 steps"}, {"time.steps=1"});
   std::string no_end = boundary;
   no_end.erase(no_end.find("end ="));
+  const std::string far = R"(system = "unicycle"
+[time]
+duration = 1.0
+steps = 20
+[boundary]
+start = { position = [0, 0, 0] }
+end = { position = [1, 0.5, 0] }
+)";
+  expect(far, {":7", "boundary.end.position", "lies 1.11803 m from the start", "rolls 1 m"});
   expect(no_end, {"boundary", "missing key \"end\"", "[boundary.end]"});
 }
 

@@ -15,7 +15,7 @@ Task<Kepler> read_kepler(const Section& scene, const RunContext& context) {
     system.quadrature = read_quadrature(parameters, "trapezoid");
     return system;
   };
-  const auto off_centre = [](const Section& section, const Vector<double, 2>& q) {
+  const auto off_centre = [](const Kepler&, const Section& section, const Vector<double, 2>& q) {
     if (q.norm() == 0) section.fail("position", "lies on the centre of attraction; move it away from 0, 0");
     return q;
   };

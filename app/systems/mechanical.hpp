@@ -40,7 +40,8 @@ Presentation<Sys> vector_presentation(std::string name, std::vector<std::string>
   return p;
 }
 
-/// [boundary] start and end, each a position that `check(section, q)` refuses or returns, and the time between them.
+/// [boundary] start and end, each a position that `check(system, section, q)` refuses or returns, and the time between
+/// them.
 template <class Sys, int N, class Check>
 BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::string_view position,
                                         const Check& check) {
@@ -49,16 +50,17 @@ BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::s
   const Section boundary = scene.section("boundary", "start and end");
   const auto end = [&](std::string_view key) {
     const Section section = boundary.section(key, "position");
-    return check(section, Vector<double, N>(
-                              Eigen::Map<const Vector<double, N>>(section.numbers("position", N, position).data())));
+    return check(
+        system, section,
+        Vector<double, N>(Eigen::Map<const Vector<double, N>>(section.numbers("position", N, position).data())));
   };
   const Vector<double, N> from = end("start");
   return {{{system, PairArrow<double, N>{from, end("end")}}, std::size_t(grid.steps)},
           PairArrow<double, N>{from, from}};
 }
 
-/// Reads [initial] or [boundary]. `system(scene)` reads the parameters; `check(section, q)` refuses a position or
-/// returns it.
+/// Reads [initial] or [boundary]. `system(scene)` reads the parameters; `check(system, section, q)` refuses a position
+/// or returns it.
 template <class Sys, int N, class ReadSystem, class Check, class CheckState>
 Task<Sys> read_mechanical(const Section& scene, const RunContext& context, const Presentation<Sys>& p,
                           std::string_view position, std::string_view momentum, const ReadSystem& read_system,
@@ -70,8 +72,8 @@ Task<Sys> read_mechanical(const Section& scene, const RunContext& context, const
     });
   const Section section = scene.section("initial", "position and momentum");
   auto initial = read_vector_state<N>(section, position, momentum);
-  initial.object = check(section, initial.object);
-  check_state(section, initial);
+  initial.object = check(system, section, initial.object);
+  check_state(system, section, initial);
   const TimeGrid grid = read_time(scene);
   system.h = grid.step;
   const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
@@ -82,7 +84,7 @@ Task<Sys> read_mechanical(const Section& scene, const RunContext& context, const
 }
 
 /// Any position, any state.
-inline constexpr auto any_position = [](const Section&, const auto& q) { return q; };
-inline constexpr auto any_state = [](const Section&, const auto&) {};
+inline constexpr auto any_position = [](const auto&, const Section&, const auto& q) { return q; };
+inline constexpr auto any_state = [](const auto&, const Section&, const auto&) {};
 
 }  // namespace lagroid::app

@@ -5,16 +5,20 @@
 #include "../scene_reader.hpp"
 #include "../task.hpp"
 
+#include <lagroid/systems/attitude_control.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
+#include <lagroid/systems/unicycle.hpp>
 
 namespace lagroid::app {
 
 Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context);
+Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context);
+Task<AttitudeControl> read_attitude_control(const Section& scene, const RunContext& context);
 Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context);
 Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context);
 Task<Pendulum> read_pendulum(const Section& scene, const RunContext& context);

@@ -20,8 +20,9 @@ Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunC
     system.quadrature = read_quadrature(parameters, "trapezoid");
     return system;
   };
-  const double length = read_system(scene).length;
-  const auto on_sphere = [length](const Section& section, const Vector<double, 3>& q) -> Vector<double, 3> {
+  const auto on_sphere = [](const SphericalPendulum& system, const Section& section,
+                            const Vector<double, 3>& q) -> Vector<double, 3> {
+    const double length = system.length;
     const double norm = q.norm();
     if (norm == 0 || (std::abs(norm - length) > 1e-6 * length && !section.interpolated()))
       section.fail("position",
@@ -32,8 +33,8 @@ Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunC
                        : std::string("lies on the pivot"));
     return q * (length / norm);
   };
-  const auto tangent = [length](const Section& section, const State<Pair<3>>& s) {
-    const double radial = s.object.dot(s.momentum) / length;
+  const auto tangent = [](const SphericalPendulum& system, const Section& section, const State<Pair<3>>& s) {
+    const double radial = s.object.dot(s.momentum) / system.length;
     if (std::abs(radial) > 1e-6 * (1 + s.momentum.norm()))
       section.fail("momentum",
                    fmt::format("has a part {:.6g} along the rod; it must be tangent to the sphere", radial));

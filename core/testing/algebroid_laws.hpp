@@ -11,17 +11,19 @@ namespace lagroid::laws {
 
 namespace detail {
 
-/// A random section, of second degree in the object coordinates z: a + (1 + w.z) B z.
+/// A random section, of second degree in z, the object coordinates over their size: a + (1 + w.z) B z.
 template <Groupoid G> struct RandomSection {
   static constexpr int size = G::object_coordinate_count();
   const G* groupoid;
   Vector<double, G::dimension> constant;
   Matrix<double, G::dimension, size> linear;
   Vector<double, size> weight;
+  double length;
 
   template <class Q> auto operator()(const Q& q) const {
-    const auto z = groupoid->coordinates_of_object(q);
+    auto z = groupoid->coordinates_of_object(q);
     using S = typename std::decay_t<decltype(z)>::Scalar;
+    for (int i = 0; i < size; ++i) z(i) = z(i) * (1 / length);
     Vector<S, G::dimension> out = constant.template cast<S>();
     if constexpr (size > 0) {
       const S factor = S(1.0) + weight.template cast<S>().dot(z);
@@ -30,8 +32,10 @@ template <Groupoid G> struct RandomSection {
     return out;
   }
 
-  static RandomSection draw(const G& groupoid, double large) {
-    RandomSection s{&groupoid, draw_vector<G::dimension>(large), {}, {}};
+  /// For objects of the size of q.
+  static RandomSection draw(const G& groupoid, const ObjectOf<G>& q, double large) {
+    RandomSection s{&groupoid, draw_vector<G::dimension>(large), {}, {}, 1};
+    if constexpr (size > 0) s.length = std::max(1.0, groupoid.coordinates_of_object(q).cwiseAbs().maxCoeff());
     for (int i = 0; i < s.linear.size(); ++i) s.linear(i) = draw_uniform();
     for (int i = 0; i < size; ++i) s.weight(i) = draw_uniform();
     return s;
@@ -51,7 +55,7 @@ LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const
   using Section = detail::RandomSection<G>;
   using detail::relative_defect;
   const LieAlgebroid<G> algebroid(groupoid);
-  const auto section = [&] { return Section::draw(groupoid, options.large); };
+  const auto section = [&] { return Section::draw(groupoid, draw_object(), options.large); };
   const auto arrow_from = [&](const Q& q) -> ArrowOf<G> {
     const ArrowOf<G> g = groupoid.tau(q, V(draw_vector<n>(options.large)));
     return groupoid.project(groupoid.multiply(g, groupoid.tau(groupoid.target(g), V(draw_vector<n>(options.large)))));

@@ -19,9 +19,9 @@ inline double matrix_defect(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) 
 /// [G] Theorem A.1, Def. 2.11 and what is said after it: the graph of the product is Lagrangian, the source is
 /// anti-Poisson, the target Poisson, their fibres orthogonal, the units Lagrangian. `Cotangent` is CotangentGroupoid<G>
 /// or, to see the suite fail, a subclass with other operations.
-template <Groupoid G, class DrawObject, class Cotangent = CotangentGroupoid<G>>
-LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const GroupoidLawOptions& options = {},
-                         const Cotangent& cotangent = Cotangent(G{})) {
+template <Groupoid G, class DrawObject, class Cotangent>
+LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const GroupoidLawOptions& options,
+                         const Cotangent& cotangent) {
   constexpr int n = G::dimension;
   constexpr int d = object_dimension_of<G>();
   constexpr int size = n + d;
@@ -142,6 +142,11 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
                          form(chart3, [&](const auto& y) { return cotangent.multiply(first(y), second(y)); }));
   });
   return report;
+}
+
+template <Groupoid G, class DrawObject>
+LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const GroupoidLawOptions& options = {}) {
+  return cotangent_laws(groupoid, draw_object, options, CotangentGroupoid<G>(groupoid));
 }
 
 /// The same for groupoids whose objects are vectors of R^n (or tuples of such), drawn at random.

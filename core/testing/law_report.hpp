@@ -29,7 +29,12 @@ struct Law {
   double worst = 0;
   double tolerance = 0;
   std::string first_failure;  ///< the exception or the sample that broke it, if any
-  bool holds() const { return samples > 0 && first_failure.empty() && worst <= tolerance; }
+  int skipped = 0;            ///< samples of which it could not be asked
+  std::string skipped_because;
+  bool unjudged = false;  ///< nearly all were skipped
+
+  bool holds() const { return samples > 0 && first_failure.empty() && worst <= tolerance && !unjudged; }
+  std::string verdict() const { return holds() ? "holds" : unjudged ? "unjudged" : "BROKEN"; }
 };
 
 /// Every law of a suite on one subject.
@@ -49,8 +54,9 @@ struct LawReport {
   friend std::ostream& operator<<(std::ostream& out, const LawReport& report) {
     out << report.subject << '\n';
     for (const Law& l : report.laws) {
-      out << (l.holds() ? "  holds   " : "  BROKEN  ") << l.name << ": worst defect " << l.worst << " (tolerance "
-          << l.tolerance << ") over " << l.samples << " samples";
+      out << "  " << l.verdict() << "  " << l.name << ": worst defect " << l.worst << " (tolerance " << l.tolerance
+          << ") over " << l.samples << " samples";
+      if (l.skipped > 0) out << ", " << l.skipped << " skipped: " << l.skipped_because;
       if (!l.first_failure.empty()) out << "; " << l.first_failure;
       out << '\n';
     }

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 namespace lagroid::laws {
@@ -29,15 +30,26 @@ template <int N> Vector<double, N> draw_vector(double large) {
   return v;
 }
 
+/// Thrown by a law that cannot be asked of the sample drawn: it is passed over and another drawn.
+struct NotSampled : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Runs `defect` (which draws its sample with RapidCheck and returns a relative error) and records the worst value.
 /// (Any law's defect in one type: RapidCheck's machinery is then compiled once.)
 inline Law check_law(const std::string& name, double tolerance, const std::function<double()>& defect) {
   fix_seed();
-  Law law{name, 0, 0, tolerance, {}};
+  Law law;
+  law.name = name;
+  law.tolerance = tolerance;
   const bool passed = rc::check(name, [&] {
     double d = std::numeric_limits<double>::infinity();
     try {
       d = defect();
+    } catch (const NotSampled& error) {
+      ++law.skipped;
+      law.skipped_because = error.what();
+      RC_DISCARD("not sampled");
     } catch (const std::exception& error) {
       if (law.first_failure.empty()) law.first_failure = error.what();
       throw;
@@ -46,7 +58,7 @@ inline Law check_law(const std::string& name, double tolerance, const std::funct
     if (!(d <= law.worst)) law.worst = std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
     RC_ASSERT(d <= tolerance);
   });
-  if (!passed && law.first_failure.empty() && law.worst <= tolerance) law.first_failure = "RapidCheck gave up";
+  law.unjudged = !passed && law.first_failure.empty() && law.worst <= tolerance;
   return law;
 }
 

@@ -8,9 +8,21 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <limits>
 
 namespace lagroid::laws {
+
+namespace detail {
+
+/// The difference of two momenta of a step, relative to their size or to that of their round-off.
+template <DiscreteSystem Sys, class M>
+double momentum_defect(const Sys& system, const Step<Sys>& step, const M& x, const M& y) {
+  const double noise = size_of_round_off(system, step, two_sided(system, step.arrow, step.multipliers));
+  return relative_defect(x, y) / std::max(1.0, noise / (1 + y.cwiseAbs().maxCoeff()));
+}
+
+}  // namespace detail
 
 /// At steps from random states: Sigma_L is Lagrangian ([G] Theorem 3.1), the discrete Legendre transforms are the
 /// source and target of T*G (Def. 3.3) and have equal rank (Theorem 2.16, Corollary 3.4, Remark 2.17), the step is a
@@ -33,8 +45,9 @@ LawReport dynamics_laws(const Sys& system, const Draw& draw, double tolerance = 
     const Step<Sys> s = step();
     const CotangentGroupoid<G> cotangent(groupoid);
     const auto mu = submanifold.template covector<double>(s.arrow, Submanifold::multipliers(s));
-    return worst({detail::relative_defect(cotangent.source(mu).momentum, legendre_minus(system, s).momentum),
-                  detail::relative_defect(cotangent.target(mu).momentum, legendre_plus(system, s).momentum)});
+    return worst(
+        {detail::momentum_defect(system, s, cotangent.source(mu).momentum, legendre_minus(system, s).momentum),
+         detail::momentum_defect(system, s, cotangent.target(mu).momentum, legendre_plus(system, s).momentum)});
   });
   law("Legendre transforms have equal rank", 0, [&] {
     const LegendreRanks ranks = legendre_ranks(submanifold.tangent(step()));
@@ -62,10 +75,11 @@ LawReport dynamics_laws(const Sys& system, const Draw& draw, double tolerance = 
         return submanifold.template covector<double>(s.arrow, Submanifold::multipliers(s));
       };
       const auto product = cotangent.multiply(covector(first), covector(second));
-      return worst(
-          {lagrangian_defect(tangent),
-           detail::relative_defect(cotangent.source(product).momentum, legendre_minus(system, first).momentum),
-           detail::relative_defect(cotangent.target(product).momentum, legendre_plus(system, second).momentum)});
+      return worst({lagrangian_defect(tangent),
+                    detail::momentum_defect(system, first, cotangent.source(product).momentum,
+                                            legendre_minus(system, first).momentum),
+                    detail::momentum_defect(system, second, cotangent.target(product).momentum,
+                                            legendre_plus(system, second).momentum)});
     });
   law("the step reverses", tolerance, [&] {
     // Back from a guess off by a thousandth. Object constraints leave momenta free along their normals: compared are

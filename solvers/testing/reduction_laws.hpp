@@ -29,8 +29,8 @@ LawReport reduction_laws(const Phi& phi, const Sys& system, const Reduced& reduc
     auto below = detail::newton_integrator(reduced, State<H>{phi.object(q), momentum});
     Pair out;
     for (int k = 0; k < steps; ++k) {
-      if (!above.advance().converged() || !below.advance().converged())
-        throw std::runtime_error("a step from a drawn state was not solved");
+      if (const auto report = above.advance(); !report.converged()) throw detail::no_step(report);
+      if (const auto report = below.advance(); !report.converged()) throw detail::no_step(report);
       out.full.push_back(above.point().step.arrow);
       out.reduced.push_back(below.point().step.arrow);
       const auto& z = above.point().state;

@@ -10,6 +10,8 @@
 #include <Eigen/SVD>
 
 #include <cstddef>
+#include <limits>
+#include <utility>
 
 namespace lagroid::laws {
 
@@ -18,7 +20,7 @@ namespace detail {
 /// Columns that span the kernel of `a`; all of the space where it has no rows.
 inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
   if (a.rows() == 0) return Eigen::MatrixXd::Identity(a.cols(), a.cols());
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullV);
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(a.rowwise().normalized(), Eigen::ComputeFullV);
   svd.setThreshold(1e-9);
   return svd.matrixV().rightCols(a.cols() - svd.rank());
 }
@@ -30,8 +32,27 @@ struct FirstVariation {
   Eigen::VectorXd conditions;
   Eigen::MatrixXd derivative;
   Eigen::VectorXd action;
-  double size = 0;  ///< of the terms of the action's derivative
+  /// Of the terms of the action's derivative; no less than what makes a hundred times their round-off 1e-10 of it.
+  double size = 0;
 };
+
+/// The derivatives of L at g as its source and its target are displaced along the fibre's basis, by the groupoid's own
+/// operations: they share nothing with the derivatives that the solvers use.
+template <DiscreteSystem Sys>
+std::pair<AlgebroidVector<typename Sys::GroupoidType>, AlgebroidVector<typename Sys::GroupoidType>>
+lagrangian_derivatives(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  using V = AlgebroidVector<typename Sys::GroupoidType>;
+  const auto& groupoid = system.groupoid;
+  const auto gd = groupoid.template cast<Dual<double>>(g);
+  std::pair<V, V> out;
+  for (int i = 0; i < V::SizeAtCompileTime; ++i) {
+    const auto e = infinitesimal(V(V::Unit(i)));
+    const auto before = groupoid.inverse(groupoid.tau(groupoid.source(gd), e));
+    out.first(i) = system.lagrangian(groupoid.multiply(before, gd)).derivative;
+    out.second(i) = system.lagrangian(groupoid.multiply(gd, groupoid.tau(groupoid.target(gd), e))).derivative;
+  }
+  return out;
+}
 
 template <DiscreteSystem Sys> FirstVariation first_variation(const Sys& system, const Path<Sys>& path) {
   constexpr int n = Sys::dimension;
@@ -44,21 +65,23 @@ template <DiscreteSystem Sys> FirstVariation first_variation(const Sys& system, 
   out.action.setZero((count - 1) * n);
   Eigen::Index row = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const auto d = two_sided(system, path[std::size_t(k)].arrow, Sys::Multipliers::Zero().eval());
+    const Step<Sys>& step = path[std::size_t(k)];
+    const auto d = two_sided(system, step.arrow, step.multipliers);
+    const auto [at_source, at_target] = lagrangian_derivatives(system, step.arrow);
     const bool has_target = k + 1 < count;
     out.conditions.segment(row, phis) = d.constraint.template head<phis>();
     if (k > 0) {
-      out.action.template segment<n>((k - 1) * n) += d.source_gradient;
+      out.action.template segment<n>((k - 1) * n) += at_source;
       out.derivative.block(row, (k - 1) * n, phis, n) = d.constraint_source.template leftCols<phis>().transpose();
     }
     if (has_target) {
-      out.action.template segment<n>(k * n) += d.target_gradient;
+      out.action.template segment<n>(k * n) += at_target;
       out.derivative.block(row, k * n, phis, n) = d.constraint_target.template topRows<phis>();
       out.conditions.segment(row + phis, objects) = d.constraint.template tail<objects>();
       out.derivative.block(row + phis, k * n, objects, n) = d.constraint_target.template bottomRows<objects>();
     }
     row += phis + (has_target ? objects : 0);
-    out.size = std::max({out.size, d.source_gradient.norm(), d.target_gradient.norm()});
+    out.size = worst({out.size, at_source.norm(), at_target.norm(), size_of_round_off(system, step, d)});
   }
   return out;
 }
@@ -66,8 +89,10 @@ template <DiscreteSystem Sys> FirstVariation first_variation(const Sys& system, 
 /// How far a trajectory is from critical: the derivative of the action along admissible variations, those that keep the
 /// constraints to first order, relative to its terms.
 inline double criticality_defect(const FirstVariation& v) {
+  if (!v.derivative.allFinite() || !v.action.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::MatrixXd admissible = kernel_of(v.derivative);
-  return admissible.cols() == 0 ? 0 : (admissible.transpose() * v.action).norm() / v.size;
+  const double left = admissible.cols() == 0 ? 0 : (admissible.transpose() * v.action).norm();
+  return left == 0 ? 0 : left / v.size;
 }
 
 /// The variation of n - 1 nodes with the coordinates v.
@@ -92,7 +117,7 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
     auto integrator = detail::newton_integrator(system, draw());
     Path<Sys> path;
     for (std::size_t k = 0; k < arrows; ++k) {
-      if (!integrator.advance().converged()) throw std::runtime_error("a step from a drawn state was not solved");
+      if (const auto report = integrator.advance(); !report.converged()) throw detail::no_step(report);
       path.push_back(integrator.point().step);
     }
     return path;
@@ -152,7 +177,8 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
       image.col(j).tail(size) = basis.template components<double>(
           path[1].arrow, basis.template right<double>(second, AlgebroidVector<G>(-v)));
     }
-    return fibre.cols() == 0 ? 0.0 : (all * image).cwiseAbs().maxCoeff() / all.cwiseAbs().maxCoeff();
+    const Eigen::MatrixXd moved = all * image / all.cwiseAbs().maxCoeff();
+    return detail::relative_defect(moved, Eigen::MatrixXd::Zero(moved.rows(), moved.cols()).eval());
   });
   law("two arrows of the dynamics are critical", tolerance,
       [&] { return detail::criticality_defect(detail::first_variation(system, trajectory(2))); });
@@ -164,16 +190,19 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
     auto v = detail::first_variation(system, path);
     const Eigen::MatrixXd admissible = detail::kernel_of(v.derivative);
     if (admissible.cols() == 0) return 0.0;
-    // Off by a thousandth, and back to the constraints.
-    Eigen::VectorXd step = 1e-3 * admissible.rowwise().sum();
+    // Off by a fiftieth of an arrow, and back to the constraints.
+    double length = 0;
+    for (const auto& s : path) length = worst({length, 0.02 * groupoid.tau_inverse(s.arrow).norm()});
+    if (length == 0) length = 1e-3;
+    Eigen::VectorXd step = length * admissible.rowwise().sum().normalized();
     for (int iteration = 0; iteration < 6; ++iteration) {
       path = displaced(problem, path, detail::variation_of<Sys>(step), 1.0);
       v = detail::first_variation(system, path);
       if (v.conditions.size() == 0) break;
       step = -v.derivative.completeOrthogonalDecomposition().solve(v.conditions);
     }
-    const bool on_constraints = v.conditions.size() == 0 || v.conditions.cwiseAbs().maxCoeff() < 1e-10;
-    return double(!on_constraints || detail::criticality_defect(v) < 1e-6);
+    const bool on_constraints = v.conditions.size() == 0 || v.conditions.norm() < 1e-6 * length * v.derivative.norm();
+    return double(!on_constraints || detail::criticality_defect(v) < 10 * tolerance);
   });
   return report;
 }

@@ -1,0 +1,71 @@
+#include "../boundary_value.hpp"
+#include "readers.hpp"
+#include "rotating.hpp"
+
+namespace lagroid::app {
+
+namespace {
+
+AttitudeControl read_system(const Section& scene) {
+  const Section parameters = scene.section_or_empty("parameters");
+  AttitudeControl system;
+  if (parameters.has("weights")) system.weights = read_positive(parameters, "weights", "weights");
+  if (parameters.has("forbidden")) {
+    const auto axis = parameters.numbers("forbidden", 3, "the forbidden axis in the body");
+    system.forbidden = Eigen::Map<const Vector<double, 3>>(axis.data());
+    if (system.forbidden.norm() == 0) parameters.fail("forbidden", "no axis: give a direction other than 0, 0, 0");
+    system.forbidden.normalize();
+  }
+  system.map = read_rotation_map(parameters);
+  system.h = read_time(scene).step;
+  return system;
+}
+
+BoundaryScene<AttitudeControl> read_boundary(const Section& scene) {
+  const Section boundary = scene.section("boundary", "start and end");
+  const Matrix<double, 3, 3> start = read_rotation(boundary.section("start", "attitude"));
+  const Matrix<double, 3, 3> end = read_rotation(boundary.section("end", "attitude"));
+  return {{{read_system(scene), SO3::project(Matrix<double, 3, 3>(start.transpose() * end))},
+           std::size_t(read_time(scene).steps)},
+          start};
+}
+
+}  // namespace
+
+Task<AttitudeControl> read_attitude_control(const Section& scene, const RunContext& context) {
+  using Point = TrajectoryPoint<AttitudeControl>;
+  Presentation<AttitudeControl> p;
+  p.name = "attitude_control";
+  p.has_attitude = true;
+  p.momentum = {"M1", "M2", "M3"};
+  p.momentum_unit = "rad/s times the weights' unit";
+  p.multipliers = {"lambda"};
+  p.position_of = [](const Point&) { return std::vector<double>{}; };
+  p.attitude_of = [](const Point& point) { return quaternion_of(point.configuration); };
+  const AttitudeControl system = read_system(scene);
+  p.extras = {{{"controls", {"w1", "w2", "w3"}, "rad/s", "angular velocity over the arrow", true, {}},
+               [system](const Point& point, double* out) {
+                 Eigen::Map<Vector<double, 3>> w(out);
+                 w = system.velocity(point.step.arrow);
+               }}};
+  p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"},
+                   {"momentum", "body momentum M = W w + lambda n"},
+                   {"multipliers", "sign of L + <lambda, phi>, phi = h n.w"}};
+  p.panels = {{"angular velocity in the body", "t", "w", "t", {"w1", "w2", "w3"}},
+              {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
+              {"spatial momentum error", "t", "deviation", "t", {"drift spatial momentum"}}};
+
+  if (is_boundary_value(scene, "attitude and momentum"))
+    return boundary_value<AttitudeControl>(scene, context, p, read_boundary);
+  const Section initial = scene.section("initial", "attitude and momentum");
+  State<SO3> state;
+  state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
+  const Matrix<double, 3, 3> attitude = read_rotation(initial);
+  const long steps = read_time(scene).steps;
+  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
+  const long every = read_every(scene, context);
+  scene.finish();
+  return simulation(system, p, state, attitude, steps, choice, every, context);
+}
+
+}  // namespace lagroid::app

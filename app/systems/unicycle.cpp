@@ -1,0 +1,79 @@
+#include "../boundary_value.hpp"
+#include "group_map.hpp"
+#include "readers.hpp"
+
+namespace lagroid::app {
+
+namespace {
+
+Unicycle read_system(const Section& scene) {
+  const Section parameters = scene.section_or_empty("parameters");
+  Unicycle system;
+  system.speed = parameters.number_or("speed", 1, positive);
+  system.map = read_group_map(parameters, "map");
+  system.h = read_time(scene).step;
+  return system;
+}
+
+/// The pose at x, y with the heading in radians, and back.
+Matrix<double, 3, 3> read_pose(const Section& section) {
+  const auto pose = section.numbers("position", 3, "x, y, heading");
+  return SE2::homogeneous<double>(SO2::exp(Vector<double, 1>(pose[2])), {pose[0], pose[1]});
+}
+std::vector<double> position_of(const TrajectoryPoint<Unicycle>& point) {
+  const auto& pose = point.configuration;
+  return {pose(0, 2), pose(1, 2), std::atan2(pose(1, 0), pose(0, 0))};
+}
+
+BoundaryScene<Unicycle> read_boundary(const Section& scene) {
+  const Section boundary = scene.section("boundary", "start and end");
+  const Matrix<double, 3, 3> start = read_pose(boundary.section("start", "position"));
+  const Matrix<double, 3, 3> end = read_pose(boundary.section("end", "position"));
+  const Unicycle system = read_system(scene);
+  const long steps = read_time(scene).steps;
+  const double distance = (end - start).topRightCorner<2, 1>().norm();
+  const double length = system.speed * system.h * double(steps);
+  if (distance > length)
+    boundary.section("end", "position")
+        .fail("position",
+              fmt::format("lies {:.6g} m from the start; in the time given it rolls {:.6g} m", distance, length));
+  return {{{system, SE2::project(SE2::multiply(SE2::inverse(start), end))}, std::size_t(steps)}, start};
+}
+
+}  // namespace
+
+Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context) {
+  Presentation<Unicycle> p;
+  p.name = "unicycle";
+  p.position = {"x", "y", "heading"};
+  p.position_unit = "m for x, y; rad for the heading";
+  p.momentum = {"M", "p1", "p2"};
+  p.momentum_unit = "1/s for M; 1/(m s) for p";
+  p.multipliers = {"lambda1", "lambda2"};
+  p.position_of = position_of;
+  const Unicycle system = read_system(scene);
+  p.extras = {
+      {{"controls", {"w"}, "rad/s", "turning rate over the arrow", true, {}},
+       [system](const TrajectoryPoint<Unicycle>& point, double* out) { *out = system.velocity(point.step.arrow)(0); }}};
+  p.conventions = {{"position", "pose A_k = A_{k-1} g_k: x, y and the angle from the x axis to where it rolls"},
+                   {"momentum", "body momentum: M = w and the force p ahead and to the left"},
+                   {"multipliers", "sign of L + <lambda, phi>, phi = h (v1 - speed, v2)"}};
+  p.panels = {{"path", "x", "y", "x", {"y"}, true},
+              {"turning rate", "t", "w", "t", {"w"}},
+              {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
+              {"spatial momentum error", "t", "deviation", "t", {"drift spatial momentum"}}};
+
+  if (is_boundary_value(scene, "position and momentum"))
+    return boundary_value<Unicycle>(scene, context, p, read_boundary);
+  const Section initial = scene.section("initial", "position and momentum");
+  State<SE2> state;
+  state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M, p1, p2").data());
+  const Matrix<double, 3, 3> pose = read_pose(initial);
+  const long steps = read_time(scene).steps;
+  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
+  const long every = read_every(scene, context);
+  scene.finish();
+  return simulation(system, p, state, pose, steps, choice, every, context);
+}
+
+}  // namespace lagroid::app
