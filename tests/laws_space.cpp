@@ -13,7 +13,7 @@ namespace {
 template <class G> class GroupoidLaws : public ::testing::Test {};
 
 using Subjects = ::testing::Types<SO3, SpecialOrthogonal3<Retraction::cayley>, SE3,
-                                  SpecialEuclidean3<Retraction::cayley>, Orthogonal<3>, Orthogonal<4>, Orthogonal<5>>;
+                                  SpecialEuclidean3<Retraction::cayley>, Orthogonal<3>, Orthogonal<4>>;
 TYPED_TEST_SUITE(GroupoidLaws, Subjects);
 
 TYPED_TEST(GroupoidLaws, Hold) {

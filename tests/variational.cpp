@@ -1,4 +1,5 @@
 // The action principle: what is no trajectory is found out. (Trajectories of the library's systems: certificates.cpp.)
+#include <lagroid/groupoids/pair.hpp>
 #include <lagroid/solvers/testing/variational_laws.hpp>
 
 #include "affine.hpp"
