@@ -1,5 +1,6 @@
 // The other systems: order against references, closed forms, conserved quantities, hidden constraints.
 #include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/loop_integral.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 #include <lagroid/systems/kepler.hpp>

@@ -17,10 +17,11 @@ namespace lagroid::laws {
 
 namespace detail {
 
-/// Columns that span the kernel of `a`; all of the space where it has no rows.
+/// Columns that span the kernel of `a`, which must be finite; all of the space where it has no rows.
 inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
   if (a.rows() == 0) return Eigen::MatrixXd::Identity(a.cols(), a.cols());
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(a.rowwise().normalized(), Eigen::ComputeFullV);
+  const Eigen::VectorXd scale = a.rowwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scale.asDiagonal() * a, Eigen::ComputeFullV);
   svd.setThreshold(1e-9);
   return svd.matrixV().rightCols(a.cols() - svd.rank());
 }
@@ -165,7 +166,9 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
           submanifold.conditions_at(g2);
       return equations;
     });
-    const Eigen::MatrixXd fibre = detail::kernel_of(detail::first_variation(system, path).derivative);
+    const Eigen::MatrixXd conditions = detail::first_variation(system, path).derivative;
+    if (!all.allFinite() || !conditions.allFinite()) return std::numeric_limits<double>::infinity();
+    const Eigen::MatrixXd fibre = detail::kernel_of(conditions);
     if (detail::kernel_of(all).cols() != fibre.cols()) return 1.0;
     const TangentBasis<G> basis(groupoid);
     const auto second = groupoid.template cast<Dual<double>>(path[1].arrow);
@@ -188,6 +191,7 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
     auto path = trajectory(count);
     const BoundaryProblem<Sys> problem{system, product(path)};
     auto v = detail::first_variation(system, path);
+    if (!v.derivative.allFinite()) return 1.0;
     const Eigen::MatrixXd admissible = detail::kernel_of(v.derivative);
     if (admissible.cols() == 0) return 0.0;
     // Off by a fiftieth of an arrow, and back to the constraints.
