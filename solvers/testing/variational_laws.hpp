@@ -2,6 +2,7 @@
 /// The discrete constrained action principle as a property that any system runs by naming itself. [G] section 5
 
 #include <lagroid/core/lagrangian.hpp>
+#include <lagroid/core/step_equations.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/solvers/boundary_problem.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
@@ -17,13 +18,20 @@ namespace lagroid::laws {
 
 namespace detail {
 
-/// Columns that span the kernel of `a`, which must be finite; all of the space where it has no rows.
+/// Columns of length one that span the kernel of `a`, which must be finite; all of the space where it has no rows.
+/// Throws NotSampled where rows are nearly dependent, as constraints are beside abnormal paths: the kernel is then
+/// noise.
 inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
   if (a.rows() == 0) return Eigen::MatrixXd::Identity(a.cols(), a.cols());
-  const Eigen::VectorXd scale = a.rowwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scale.asDiagonal() * a, Eigen::ComputeFullV);
-  svd.setThreshold(1e-9);
-  return svd.matrixV().rightCols(a.cols() - svd.rank());
+  const auto balance = Scaling<Eigen::Dynamic, Eigen::Dynamic>::equilibrate(a);
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(balance.apply(a), Eigen::ComputeFullV);
+  svd.setThreshold(singular_threshold);
+  for (const double sigma : svd.singularValues())
+    if (sigma > singular_threshold * svd.singularValues()(0) && sigma < 1e-5 * svd.singularValues()(0))
+      throw NotSampled("constraints nearly dependent along a path from the state drawn");
+  Eigen::MatrixXd kernel = balance.column.asDiagonal() * svd.matrixV().rightCols(a.cols() - svd.rank());
+  kernel.colwise().normalize();
+  return kernel;
 }
 
 /// The first variation of a trajectory g_1 ... g_n with a fixed product, in the displacements v_1 ... v_{n-1} of its
@@ -194,10 +202,11 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
     if (!v.derivative.allFinite()) return 1.0;
     const Eigen::MatrixXd admissible = detail::kernel_of(v.derivative);
     if (admissible.cols() == 0) return 0.0;
-    // Off by a fiftieth of an arrow, and back to the constraints.
+    // Off by a fiftieth of an arrow, or where arrows vanish by many round-offs of them, and back to the constraints.
     double length = 0;
-    for (const auto& s : path) length = worst({length, 0.02 * groupoid.tau_inverse(s.arrow).norm()});
-    if (length == 0) length = 1e-3;
+    for (const auto& s : path)
+      length = worst({length, 0.02 * groupoid.tau_inverse(s.arrow).norm(),
+                      1e6 * std::numeric_limits<double>::epsilon() * groupoid.coordinates_of_arrow(s.arrow).norm()});
     Eigen::VectorXd step = length * admissible.rowwise().sum().normalized();
     for (int iteration = 0; iteration < 6; ++iteration) {
       path = displaced(problem, path, detail::variation_of<Sys>(step), 1.0);
