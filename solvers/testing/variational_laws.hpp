@@ -25,10 +25,10 @@ inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
   if (a.rows() == 0) return Eigen::MatrixXd::Identity(a.cols(), a.cols());
   const auto balance = Scaling<Eigen::Dynamic, Eigen::Dynamic>::equilibrate(a);
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(balance.apply(a), Eigen::ComputeFullV);
-  svd.setThreshold(singular_threshold);
-  for (const double sigma : svd.singularValues())
-    if (sigma > singular_threshold * svd.singularValues()(0) && sigma < 1e-5 * svd.singularValues()(0))
-      throw NotSampled("constraints nearly dependent along a path from the state drawn");
+  svd.setThreshold(1e-12);
+  const auto& sigma = svd.singularValues();
+  for (Eigen::Index i = 0; i < svd.rank(); ++i)
+    if (sigma(i) < 1e-5 * sigma(0)) throw NotSampled("constraints nearly dependent along a path from the state drawn");
   Eigen::MatrixXd kernel = balance.column.asDiagonal() * svd.matrixV().rightCols(a.cols() - svd.rank());
   kernel.colwise().normalize();
   return kernel;
