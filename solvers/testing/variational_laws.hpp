@@ -28,7 +28,7 @@ inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
   svd.setThreshold(1e-12);
   const auto& sigma = svd.singularValues();
   for (Eigen::Index i = 0; i < svd.rank(); ++i)
-    if (sigma(i) < 1e-5 * sigma(0)) throw NotSampled("constraints nearly dependent along a path from the state drawn");
+    if (sigma(i) < 1e-9 * sigma(0)) throw NotSampled("constraints nearly dependent along a path from the state drawn");
   Eigen::MatrixXd kernel = balance.column.asDiagonal() * svd.matrixV().rightCols(a.cols() - svd.rank());
   kernel.colwise().normalize();
   return kernel;
@@ -177,7 +177,11 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
     const Eigen::MatrixXd conditions = detail::first_variation(system, path).derivative;
     if (!all.allFinite() || !conditions.allFinite()) return std::numeric_limits<double>::infinity();
     const Eigen::MatrixXd fibre = detail::kernel_of(conditions);
-    if (detail::kernel_of(all).cols() != fibre.cols()) return 1.0;
+    if (detail::kernel_of(all).cols() != fibre.cols()) {
+      if (fibre.cols() > conditions.cols() - conditions.rows())
+        throw NotSampled("constraints dependent along a path from the state drawn");
+      return 1.0;
+    }
     const TangentBasis<G> basis(groupoid);
     const auto second = groupoid.template cast<Dual<double>>(path[1].arrow);
     Eigen::MatrixXd image(2 * size, fibre.cols());
@@ -207,6 +211,7 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
     for (const auto& s : path)
       length = worst({length, 0.02 * groupoid.tau_inverse(s.arrow).norm(),
                       1e6 * std::numeric_limits<double>::epsilon() * groupoid.coordinates_of_arrow(s.arrow).norm()});
+    if (length == 0) length = 1e-3;
     Eigen::VectorXd step = length * admissible.rowwise().sum().normalized();
     for (int iteration = 0; iteration < 6; ++iteration) {
       path = displaced(problem, path, detail::variation_of<Sys>(step), 1.0);
