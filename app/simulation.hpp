@@ -77,12 +77,16 @@ RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
   return result;
 }
 
-/// The same, to be run later.
+/// The same, to be run later: [time] steps, [solver] and [output] are read from the scene, which must hold no key
+/// besides those read.
 template <DiscreteSystem Sys>
-Task<Sys> simulation(const Sys& system, const Presentation<Sys>& presentation,
-                     const State<typename Sys::GroupoidType>& initial,
-                     const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const StepperChoice& choice,
-                     long every, const RunContext& context) {
+Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys& system,
+                     const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
+                     const ArrowOf<typename Sys::GroupoidType>& configuration) {
+  const long steps = read_time(scene).steps;
+  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
+  const long every = read_every(scene, context);
+  scene.finish();
   return {system, [=](const Observer<Sys>& observer) {
             return simulate(system, presentation, initial, configuration, steps, choice, every, context, observer);
           }};

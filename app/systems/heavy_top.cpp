@@ -1,4 +1,3 @@
-#include "../boundary_value.hpp"
 #include "readers.hpp"
 #include "rotating.hpp"
 
@@ -61,11 +60,7 @@ Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context) {
   State<HeavyTop::GroupoidType> state;
   state.object = system.groupoid.target(configuration);
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
-  const long steps = read_time(scene).steps;
-  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
-  const long every = read_every(scene, context);
-  scene.finish();
-  return simulation(system, p, state, configuration, steps, choice, every, context);
+  return simulation(scene, context, system, p, state, configuration);
 }
 
 }  // namespace lagroid::app

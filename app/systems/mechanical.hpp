@@ -74,13 +74,8 @@ Task<Sys> read_mechanical(const Section& scene, const RunContext& context, const
   auto initial = read_vector_state<N>(section, position, momentum);
   initial.object = check(system, section, initial.object);
   check_state(system, section, initial);
-  const TimeGrid grid = read_time(scene);
-  system.h = grid.step;
-  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
-  const long every = read_every(scene, context);
-  scene.finish();
-  return simulation(system, p, initial, PairArrow<double, N>{initial.object, initial.object}, grid.steps, choice, every,
-                    context);
+  system.h = read_time(scene).step;
+  return simulation(scene, context, system, p, initial, PairArrow<double, N>{initial.object, initial.object});
 }
 
 /// Any position, any state.

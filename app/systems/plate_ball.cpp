@@ -54,18 +54,14 @@ ArrowOf<G> end_point(const Section& end) {
   return {PairArrow<double, 2>{at, at}, read_rotation(end)};
 }
 
-Task<PlateBall> initial_value(const Section& scene, const RunContext& context, const PlateBall& system, long steps) {
+Task<PlateBall> initial_value(const Section& scene, const RunContext& context, const PlateBall& system) {
   const Section initial = scene.section("initial", "position, attitude and momentum");
   const ArrowOf<G> configuration = end_point(initial);
   State<G> state;
   std::get<0>(state.object) = std::get<0>(configuration).source;
   state.momentum = Eigen::Map<const Vector<double, 5>>(initial.numbers("momentum", 5, "px, py, M1, M2, M3").data());
-  const Section solver = scene.section_or_empty("solver");
-  const StepperChoice choice = read_stepper(solver);
-  read_multistart(solver);
-  const long every = read_every(scene, context);
-  scene.finish();
-  return simulation(system, presentation(system), state, configuration, steps, choice, every, context);
+  read_multistart(scene.section_or_empty("solver"));
+  return simulation(scene, context, system, presentation(system), state, configuration);
 }
 
 /// [parameters] and [time].
@@ -112,7 +108,7 @@ Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context)
   const PlateBall system = read_system(scene);
   if (is_boundary_value(scene, "position, attitude, momentum"))
     return boundary_value<PlateBall>(scene, context, presentation(system), read_boundary, search);
-  return initial_value(scene, context, system, read_time(scene).steps);
+  return initial_value(scene, context, system);
 }
 
 }  // namespace lagroid::app

@@ -1,4 +1,3 @@
-#include "../boundary_value.hpp"
 #include "readers.hpp"
 #include "rotating.hpp"
 
@@ -15,14 +14,7 @@ RigidBody read_system(const Section& scene) {
   return system;
 }
 
-BoundaryScene<RigidBody> read_boundary(const Section& scene) {
-  const Section boundary = scene.section("boundary", "start and end");
-  const Matrix<double, 3, 3> start = read_rotation(boundary.section("start", "attitude"));
-  const Matrix<double, 3, 3> end = read_rotation(boundary.section("end", "attitude"));
-  return {{{read_system(scene), SO3::project(Matrix<double, 3, 3>(start.transpose() * end))},
-           std::size_t(read_time(scene).steps)},
-          start};
-}
+BoundaryScene<RigidBody> read_boundary(const Section& scene) { return read_turn(scene, read_system(scene)); }
 
 }  // namespace
 
@@ -46,11 +38,7 @@ Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context)
   State<SO3> state;
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
   const Matrix<double, 3, 3> attitude = read_rotation(initial);
-  const long steps = read_time(scene).steps;
-  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
-  const long every = read_every(scene, context);
-  scene.finish();
-  return simulation(system, p, state, attitude, steps, choice, every, context);
+  return simulation(scene, context, system, p, state, attitude);
 }
 
 }  // namespace lagroid::app

@@ -1,6 +1,7 @@
 #pragma once
 /// What scenes say of bodies that turn about a fixed point.
 
+#include "../boundary_value.hpp"
 #include "attitude.hpp"
 #include "group_map.hpp"
 
@@ -25,5 +26,14 @@ inline Vector<double, 3> read_inertia(const Section& parameters) {
 }
 /// `rotation`: exp, which is the default, or cayley.
 inline RotationMap read_rotation_map(const Section& parameters) { return read_group_map(parameters, "rotation"); }
+
+/// [boundary] of a system on SO(3): the attitudes at the start and at the end.
+template <class Sys> BoundaryScene<Sys> read_turn(const Section& scene, const Sys& system) {
+  const Section boundary = scene.section("boundary", "start and end");
+  const Matrix<double, 3, 3> start = read_rotation(boundary.section("start", "attitude"));
+  const Matrix<double, 3, 3> end = read_rotation(boundary.section("end", "attitude"));
+  return {{{system, SO3::project(Matrix<double, 3, 3>(start.transpose() * end))}, std::size_t(read_time(scene).steps)},
+          start};
+}
 
 }  // namespace lagroid::app

@@ -69,11 +69,7 @@ Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context) {
   State<SE2> state;
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M, p1, p2").data());
   const Matrix<double, 3, 3> pose = read_pose(initial);
-  const long steps = read_time(scene).steps;
-  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
-  const long every = read_every(scene, context);
-  scene.finish();
-  return simulation(system, p, state, pose, steps, choice, every, context);
+  return simulation(scene, context, system, p, state, pose);
 }
 
 }  // namespace lagroid::app
