@@ -53,8 +53,6 @@ template <AlphaFibre F, class Field> class ImplicitStep {
     return m;
   }
   double norm(const Vector& f) const { return fibre_.norm(f); }
-  /// The next iterate of (1.2): v = h g(y).
-  Vector fixed_point(const Point& y) const { return h_ * field_.g(y); }
 
  private:
   F fibre_;
@@ -121,7 +119,7 @@ LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, typename E::Fib
         out.v -= equation.chart_differential(out.y, out.v).partialPivLu().solve(f);
         out.y = fibre.at(out.v);
         break;
-      case LieIteration::fixed_point:
+      case LieIteration::fixed_point:  // v - f(y) = h g(y)
         out.v -= f;
         out.y = fibre.at(out.v);
         break;

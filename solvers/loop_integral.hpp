@@ -1,7 +1,6 @@
 #pragma once
 /// Poincare's relative invariant: the loop integral of p dq, which symplectic steps on pair groupoids keep.
 
-#include <lagroid/groupoids/pair.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 
@@ -15,8 +14,9 @@
 namespace lagroid {
 
 /// The integral of p dq around a smooth closed curve of states, given at an odd number of equally spaced values of its
-/// parameter: exact for the trigonometric polynomial through them. Throws std::invalid_argument for an even number.
-template <int N> double loop_integral(const std::vector<State<Pair<N>>>& loop) {
+/// parameter, on a pair groupoid G = Pair<n>: exact for the trigonometric polynomial through them. Throws
+/// std::invalid_argument for an even number.
+template <class G> double loop_integral(const std::vector<State<G>>& loop) {
   const int count = int(loop.size());
   if (count % 2 == 0) throw std::invalid_argument("loop_integral: the number of states must be odd");
   double sum = 0;
