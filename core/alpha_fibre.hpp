@@ -18,8 +18,10 @@ namespace lagroid {
 ///     fibre.at(v)            z tau(v)
 ///     fibre.coordinates(y)   v with z tau(v) = y, on the principal branch; nothing where y is out of reach
 ///     fibre.moved(y, u)      y tau(u)
+///     fibre.around(y)        the fibre again, y its centre
 ///     fibre.dtau(v)          the matrix of dtau_v(u) = d/dt tau(v)^{-1} tau(v + t u)
 ///     fibre.dtau_inverse(v)  its inverse
+///     fibre.norm(u)          by which elements of the algebra are judged
 template <class F>
 concept AlphaFibre = requires(const F& fibre, const typename F::Point& y, const typename F::Vector& v) {
   { fibre.dimension() } -> std::convertible_to<Eigen::Index>;
@@ -29,6 +31,8 @@ concept AlphaFibre = requires(const F& fibre, const typename F::Point& y, const 
   { fibre.moved(y, v) } -> std::convertible_to<typename F::Point>;
   { fibre.dtau(v) } -> std::convertible_to<typename F::Matrix>;
   { fibre.dtau_inverse(v) } -> std::convertible_to<typename F::Matrix>;
+  { fibre.norm(v) } -> std::convertible_to<double>;
+  { fibre.around(y) } -> std::convertible_to<F>;
 };
 
 /// The fibre of any groupoid of ours. Differentials are G's closed forms where the retraction is exp and G has them,
@@ -41,7 +45,9 @@ template <Groupoid G> class GroupoidFibre {
   using Matrix = lagroid::Matrix<double, n, n>;
 
   explicit GroupoidFibre(const Point& z, const G& groupoid = {}) : groupoid_(groupoid), z_(z) {}
+  GroupoidFibre around(const Point& y) const { return GroupoidFibre(y, groupoid_); }
 
+  const G& groupoid() const { return groupoid_; }
   Eigen::Index dimension() const { return n; }
   const Point& centre() const { return z_; }
   Point at(const Vector& v) const { return groupoid_.multiply(z_, groupoid_.tau(groupoid_.target(z_), v)); }
@@ -75,6 +81,16 @@ template <Groupoid G> class GroupoidFibre {
     } else {
       return dtau(v).inverse();
     }
+  }
+  /// The matrix of [v, .], on a Lie group.
+  Matrix ad(const Vector& v) const requires requires { G::template ad<double>(v); }
+  { return G::template ad<double>(v); }
+  /// The Euclidean norm of the coordinates.
+  double norm(const Vector& v) const { return v.norm(); }
+  /// y tau(e u), e the infinitesimal.
+  auto displaced(const Point& y, const Vector& u) const {
+    const auto arrow = groupoid_.template cast<Dual<double>>(y);
+    return groupoid_.multiply(arrow, groupoid_.tau(groupoid_.target(arrow), infinitesimal(u)));
   }
 
  private:

@@ -2,32 +2,23 @@
 
 namespace lagroid {
 
-namespace {
-
-/// The matrix of a linear map of skew-symmetric matrices.
-template <class Map> Eigen::MatrixXd matrix_of(Eigen::Index n, const Map& map) {
-  const Eigen::Index q = n * (n - 1) / 2;
-  Eigen::MatrixXd out(q, q);
-  for (Eigen::Index i = 0; i < q; ++i) out.col(i) = skew_entries(map(skew(Eigen::VectorXd::Unit(q, i), n)));
-  return out;
-}
-
-}  // namespace
-
-std::optional<Eigen::VectorXd> RotationFibre::coordinates(const Point& y) const {
-  const auto log = principal_log(z_.transpose() * y);
+template <class S> auto RotationFibre<S>::coordinates(const Point& y) const -> std::optional<Vector> {
+  const auto log = principal_log<S>(z_.transpose() * y);
   if (!log) return std::nullopt;
   return skew_entries(*log);
 }
 
-Eigen::MatrixXd RotationFibre::dtau(const Vector& v) const {
-  const SkewSpectrum spectrum(skew(v, size()));
-  return matrix_of(size(), [&](const Eigen::MatrixXd& u) { return spectrum.dexp(u); });
+template <class S> auto RotationFibre<S>::ad(const Vector& v) const -> Matrix {
+  const Matrix x = skew(v, size());
+  Matrix out(dimension(), dimension());
+  for (Eigen::Index i = 0; i < dimension(); ++i) {
+    const Matrix e = skew<S>(Vector::Unit(dimension(), i), size());
+    out.col(i) = skew_entries<S>(x * e - e * x);
+  }
+  return out;
 }
 
-Eigen::MatrixXd RotationFibre::dtau_inverse(const Vector& v) const {
-  const SkewSpectrum spectrum(skew(v, size()));
-  return matrix_of(size(), [&](const Eigen::MatrixXd& u) { return spectrum.dexp_inverse(u); });
-}
+template class RotationFibre<double>;
+template class RotationFibre<long double>;
 
 }  // namespace lagroid

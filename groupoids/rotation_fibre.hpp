@@ -7,27 +7,37 @@
 namespace lagroid {
 
 /// O(N) around a rotation or reflection z, y = z exp(v): the component of z. Coordinates are the entries of a
-/// skew-symmetric matrix above its diagonal (`skew`).
-class RotationFibre {
+/// skew-symmetric matrix above its diagonal (`skew`). Compiled for S = double and long double.
+template <class S = double> class RotationFibre {
  public:
-  using Point = Eigen::MatrixXd;
-  using Vector = Eigen::VectorXd;
-  using Matrix = Eigen::MatrixXd;
+  using Point = Eigen::MatrixX<S>;
+  using Vector = Eigen::VectorX<S>;
+  using Matrix = Eigen::MatrixX<S>;
 
   explicit RotationFibre(Point z) : z_(std::move(z)) {}
+  RotationFibre around(const Point& y) const { return RotationFibre(y); }
 
   Eigen::Index size() const { return z_.rows(); }
   Eigen::Index dimension() const { return size() * (size() - 1) / 2; }
   const Point& centre() const { return z_; }
-  Point at(const Vector& v) const { return z_ * SkewSpectrum(skew(v, size())).exp(); }
+  Point at(const Vector& v) const { return moved(z_, v); }
   std::optional<Vector> coordinates(const Point& y) const;
-  Point moved(const Point& y, const Vector& u) const { return y * SkewSpectrum(skew(u, size())).exp(); }
-  Matrix dtau(const Vector& v) const;
-  Matrix dtau_inverse(const Vector& v) const;
+  Point moved(const Point& y, const Vector& u) const { return y * spectrum(u).exp(); }
+  Matrix dtau(const Vector& v) const { return spectrum(v).dexp_matrix(); }
+  Matrix dtau_inverse(const Vector& v) const { return spectrum(v).dexp_inverse_matrix(); }
+  /// The matrix of [v, .].
+  Matrix ad(const Vector& v) const;
+  /// y exp(e u), e the infinitesimal.
+  Eigen::MatrixX<Dual<S>> displaced(const Point& y, const Vector& u) const {
+    const Matrix change = y * skew(u, size());
+    return y.binaryExpr(change, [](S value, S derivative) { return Dual<S>{value, derivative}; });
+  }
   /// The spectral norm of the matrix.
-  double norm(const Vector& v) const { return SkewSpectrum(skew(v, size())).radius(); }
+  double norm(const Vector& v) const { return double(spectrum(v).radius()); }
 
  private:
+  SkewSpectrum<S> spectrum(const Vector& v) const { return SkewSpectrum<S>(skew(v, size())); }
+
   Point z_;
 };
 

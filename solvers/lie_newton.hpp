@@ -8,7 +8,7 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
+#include <optional>
 
 namespace lagroid {
 
@@ -37,18 +37,21 @@ template <AlphaFibre F, class Field> class ImplicitStep {
   using Point = typename F::Point;
   using Vector = typename F::Vector;
   using Matrix = typename F::Matrix;
+  using Scalar = typename Vector::Scalar;
 
   ImplicitStep(F fibre, Field field, double h) : fibre_(std::move(fibre)), field_(std::move(field)), h_(h) {}
 
   const F& fibre() const { return fibre_; }
   const Field& field() const { return field_; }
   double step() const { return h_; }
-  Vector residual(const Point& y, const Vector& v) const { return v - h_ * field_.g(y); }
+  Vector residual(const Point& y, const Vector& v) const { return v - Scalar(h_) * field_.g(y); }
   /// dtau_v^{-1} - h dg_y ([N] (3.8)).
-  Matrix differential(const Point& y, const Vector& v) const { return fibre_.dtau_inverse(v) - h_ * field_.dg(y); }
+  Matrix differential(const Point& y, const Vector& v) const {
+    return fibre_.dtau_inverse(v) - Scalar(h_) * field_.dg(y);
+  }
   /// 1 - h dg_y dtau_v ([N] (3.22)).
   Matrix chart_differential(const Point& y, const Vector& v) const {
-    Matrix m = -h_ * field_.dg(y) * fibre_.dtau(v);
+    Matrix m = -Scalar(h_) * (field_.dg(y) * fibre_.dtau(v));
     m.diagonal().array() += 1;
     return m;
   }
@@ -60,71 +63,108 @@ template <AlphaFibre F, class Field> class ImplicitStep {
   double h_;
 };
 
-/// Version 1 moves y by tau(u) on the fibre; version 2 moves the coordinates, v + u; the fixed point iteration is
-/// (1.2).
-enum class LieIteration { version1, version2, fixed_point };
+/// How an iterate y = z tau(v) is improved:
+///
+///     version1           df_y u = -f,                    y tau(u)                                    [N] (3.5)
+///     version1_by_chart  df_y dtau_v w = -f, u = dtau_v w, y tau(u): the same, without dtau_v^{-1}   [N] (3.13),
+///     (3.14) version2           df_y dtau_v w = -f,             z tau(v + w)                                [N] (3.20)
+///     fixed_point        w = -f,                         z tau(v + w)                                [N] (1.2)
+enum class LieIteration { version1, version1_by_chart, version2, fixed_point };
 
 struct LieNewtonOptions {
   LieIteration iteration = LieIteration::version1;
   double tolerance = 1e-13;
   int max_iterations = 100;
+  /// Damping: an update that does not lower the norm of f is halved up to this many times, and then refused: the
+  /// iteration ends as `stagnated` where it stands. 0: every update is taken.
+  int halvings = 0;
+  /// Step control: a longer update (in the fibre's norm) is shortened to this.
+  double longest_update = std::numeric_limits<double>::infinity();
 };
 
-/// How an iteration went. `residuals` has the norm of f at the start and after each iteration.
+/// How an iteration ended, and its last iterate, whatever the status.
 template <class F> struct LieNewtonResult {
   SolveStatus status = SolveStatus::not_converged;
   typename F::Point y;
-  typename F::Vector
-      v;  ///< coordinates of y: below the principal branch's reach in version 1, of any size in version 2
-  std::vector<double> residuals;
-  int iterations() const { return int(residuals.size()) - 1; }
+  /// Coordinates of y: on the principal branch in version 1, of any size in version 2.
+  typename F::Vector v;
+  double residual = 0;  ///< the norm of f there
+  int iterations = 0;
+  long evaluations = 0;  ///< of f
   bool converged() const { return status == SolveStatus::converged; }
 };
 
-/// Iterates from y = z tau(v). The iterate with the last residual is returned, whatever the status:
-/// `left_domain` where y has no coordinates any more, `not_finite`, `not_converged` at the limit.
-template <FibreEquation E>
-LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, typename E::Fibre::Vector v,
-                                              const LieNewtonOptions& options = {}) {
-  using Vector = typename E::Fibre::Vector;
-  const auto& fibre = equation.fibre();
-  LieNewtonResult<typename E::Fibre> out;
-  out.y = fibre.at(v);
-  out.v = v;
-  while (true) {
-    const Vector f = equation.residual(out.y, out.v);
-    out.residuals.push_back(equation.norm(f));
-    if (!std::isfinite(out.residuals.back())) {
-      out.status = SolveStatus::not_finite;
-      return out;
-    }
-    if (out.residuals.back() <= options.tolerance) {
-      out.status = SolveStatus::converged;
-      return out;
-    }
-    if (out.iterations() == options.max_iterations) return out;
+/// The iteration from y = z tau(v); `observe` is told the norm of f at the start and after each iteration.
+/// `left_domain` where y has no coordinates any more, `singular` where the differential has no inverse, `not_finite`,
+/// `stagnated` where damping refused, `not_converged` at the limit.
+template <FibreEquation E, class Observe>
+LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, const typename E::Fibre::Vector& start,
+                                              const LieNewtonOptions& options, const Observe& observe) {
+  using Fibre = typename E::Fibre;
+  using Vector = typename Fibre::Vector;
+  const Fibre& fibre = equation.fibre();
+  LieNewtonResult<Fibre> out;
+  out.y = fibre.at(start);
+  out.v = start;
+
+  const auto update = [&](const Vector& f) -> Vector {
     switch (options.iteration) {
-      case LieIteration::version1: {
-        const Vector u = equation.differential(out.y, out.v).partialPivLu().solve(f);
-        out.y = fibre.moved(out.y, -u);
-        const auto coordinates = fibre.coordinates(out.y);
-        if (!coordinates) {
-          out.status = SolveStatus::left_domain;
-          return out;
-        }
-        out.v = *coordinates;
-        break;
-      }
+      case LieIteration::version1:
+        return -equation.differential(out.y, out.v).partialPivLu().solve(f);
+      case LieIteration::version1_by_chart:
+        return -(fibre.dtau(out.v) * equation.chart_differential(out.y, out.v).partialPivLu().solve(f));
       case LieIteration::version2:
-        out.v -= equation.chart_differential(out.y, out.v).partialPivLu().solve(f);
-        out.y = fibre.at(out.v);
-        break;
-      case LieIteration::fixed_point:  // v - f(y) = h g(y)
-        out.v -= f;
-        out.y = fibre.at(out.v);
+        return -equation.chart_differential(out.y, out.v).partialPivLu().solve(f);
+      case LieIteration::fixed_point:
         break;
     }
+    return -f;
+  };
+  const bool on_the_fibre =
+      options.iteration == LieIteration::version1 || options.iteration == LieIteration::version1_by_chart;
+
+  Vector f = equation.residual(out.y, out.v);
+  out.evaluations = 1;
+  out.residual = equation.norm(f);
+  observe(out.residual);
+  for (; std::isfinite(out.residual) && out.residual > options.tolerance; ++out.iterations) {
+    if (out.iterations == options.max_iterations) return out;
+    Vector u = update(f);
+    if (!u.allFinite()) {
+      out.status = SolveStatus::singular;
+      return out;
+    }
+    if (const double size = equation.fibre().norm(u); size > options.longest_update) u *= options.longest_update / size;
+    for (int halving = 0;; ++halving) {
+      const auto y = on_the_fibre ? fibre.moved(out.y, u) : fibre.at(out.v + u);
+      const auto v = on_the_fibre ? fibre.coordinates(y) : std::optional<Vector>(out.v + u);
+      if (v) {
+        f = equation.residual(y, *v);
+        ++out.evaluations;
+        const double residual = equation.norm(f);
+        if (options.halvings == 0 || residual < out.residual) {
+          out.y = y;
+          out.v = *v;
+          out.residual = residual;
+          break;
+        }
+      }
+      if (halving == options.halvings) {
+        out.status = v ? SolveStatus::stagnated : SolveStatus::left_domain;
+        return out;
+      }
+      u *= 0.5;
+    }
+    observe(out.residual);
   }
+  out.status = std::isfinite(out.residual) ? SolveStatus::converged : SolveStatus::not_finite;
+  return out;
+}
+
+template <FibreEquation E>
+LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, const typename E::Fibre::Vector& start,
+                                              const LieNewtonOptions& options = {}) {
+  return lie_newton(equation, start, options, [](double) {});
 }
 
 }  // namespace lagroid

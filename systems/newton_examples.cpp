@@ -8,64 +8,88 @@ namespace lagroid {
 
 namespace {
 
-Eigen::MatrixXd sine(const Eigen::MatrixXd& y) { return y.array().sin(); }
+template <class S> Eigen::MatrixX<S> sine(const Eigen::MatrixX<S>& y) { return y.array().sin(); }
 
-/// What g makes of a change of y.
-Eigen::VectorXd beside_the_diagonal(const Eigen::MatrixXd& y) {
-  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(y.rows(), y.cols());
+/// What the first g makes of a change of y.
+template <class S> Eigen::VectorX<S> beside_the_diagonal(const Eigen::MatrixX<S>& y) {
+  Eigen::MatrixX<S> u = Eigen::MatrixX<S>::Zero(y.rows(), y.cols());
   u.diagonal(1) = y.diagonal(1);
-  return skew_entries(u - u.transpose());
+  return skew_entries<S>(u - u.transpose());
+}
+
+/// The matrix with the columns change(r, c), for y E with E the generator (r, c): y E has y's column r as its column c
+/// and minus y's column c as its column r.
+template <class S, class Change> Eigen::MatrixX<S> along_generators(Eigen::Index n, const Change& change) {
+  Eigen::MatrixX<S> out(n * (n - 1) / 2, n * (n - 1) / 2);
+  Eigen::Index i = 0;
+  for (Eigen::Index r = 0; r < n; ++r)
+    for (Eigen::Index c = r + 1; c < n; ++c) out.col(i++) = change(r, c);
+  return out;
+}
+
+template <class S> Eigen::MatrixX<S> dg_of_first(const Eigen::MatrixX<S>& y) {
+  const Eigen::Index n = y.rows();
+  return along_generators<S>(n, [&](Eigen::Index r, Eigen::Index c) {
+    Eigen::MatrixX<S> change = Eigen::MatrixX<S>::Zero(n, n);
+    change.col(c) = y.col(r);
+    change.col(r) = -y.col(c);
+    return beside_the_diagonal(change);
+  });
+}
+
+template <class S> Eigen::MatrixX<S> dg_of_second(const Eigen::MatrixX<S>& y) {
+  using Matrix = Eigen::MatrixX<S>;
+  const Matrix s = sine(y);
+  const Matrix cosine = y.array().cos();
+  const Matrix square = y * y;
+  const Matrix polynomial = 2 * y - 5 * square;
+  const Matrix sy = s * y;
+  const Matrix right = 2 * sy - 5 * (s * square);
+  return along_generators<S>(y.rows(), [&](Eigen::Index r, Eigen::Index c) {
+    // cos(y) o (y E) (2 y - 5 y^2) + sin(y) (2 y E - 5 (y E y + y y E)), all of rank two.
+    Matrix u = cosine.col(c).cwiseProduct(y.col(r)) * polynomial.row(c) -
+               cosine.col(r).cwiseProduct(y.col(c)) * polynomial.row(r) -
+               5 * (sy.col(r) * y.row(c) - sy.col(c) * y.row(r));
+    u.col(c) += right.col(r);
+    u.col(r) -= right.col(c);
+    return skew_entries<S>(u - u.transpose());
+  });
 }
 
 }  // namespace
 
-Eigen::VectorXd ExampleField::g(const Eigen::MatrixXd& y) const {
+template <class S> Eigen::VectorX<S> ExampleField<S>::g(const Eigen::MatrixX<S>& y) const {
   if (example_ == NewtonExample::first) return beside_the_diagonal(y);
-  const Eigen::MatrixXd u = sine(y) * (2 * y - 5 * y * y);
-  return skew_entries(u - u.transpose());
+  const Eigen::MatrixX<S> u = sine(y) * (2 * y - 5 * y * y);
+  return skew_entries<S>(u - u.transpose());
 }
 
-Eigen::MatrixXd ExampleField::dg(const Eigen::MatrixXd& y) const {
-  const Eigen::Index n = y.rows();
-  Eigen::MatrixXd out(n * (n - 1) / 2, n * (n - 1) / 2);
-  const Eigen::MatrixXd s = sine(y);
-  const Eigen::MatrixXd polynomial = 2 * y - 5 * y * y;
-  const Eigen::MatrixXd cosine = y.array().cos();
-  Eigen::Index i = 0;
-  for (Eigen::Index r = 0; r < n; ++r)
-    for (Eigen::Index c = r + 1; c < n; ++c, ++i) {
-      // y E with E the generator (r, c): column c is y's column r, column r minus its column c.
-      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(n, n);
-      change.col(c) = y.col(r);
-      change.col(r) = -y.col(c);
-      if (example_ == NewtonExample::first) {
-        out.col(i) = beside_the_diagonal(change);
-      } else {
-        const Eigen::MatrixXd u =
-            cosine.cwiseProduct(change) * polynomial + s * (2 * change - 5 * (change * y + y * change));
-        out.col(i) = skew_entries(u - u.transpose());
-      }
-    }
-  return out;
+template <class S> Eigen::MatrixX<S> ExampleField<S>::dg(const Eigen::MatrixX<S>& y) const {
+  return example_ == NewtonExample::first ? dg_of_first(y) : dg_of_second(y);
 }
 
-Eigen::MatrixXd random_orthogonal(Eigen::Index n, std::uint64_t seed) {
+template <class S> Eigen::MatrixX<S> random_orthogonal(Eigen::Index n, std::uint64_t seed) {
   std::uint64_t state = seed * 1000003U + std::uint64_t(n);
   const auto uniform = [&state] {
     std::uint64_t z = (state += 0x9E3779B97F4A7C15U);
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
     z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
     z ^= z >> 31;
-    return double(z >> 11) * 0x1p-53;
+    return S(z >> 11) * S(0x1p-53);
   };
-  Eigen::MatrixXd a(n, n);
+  Eigen::MatrixX<S> a(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) a(i, j) = uniform();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(a);
-  Eigen::MatrixXd q = qr.householderQ();
+  const Eigen::HouseholderQR<Eigen::MatrixX<S>> qr(a);
+  Eigen::MatrixX<S> q = qr.householderQ();
   for (Eigen::Index j = 0; j < n; ++j)
     if (qr.matrixQR()(j, j) < 0) q.col(j) *= -1;
   return q;
 }
+
+template class ExampleField<double>;
+template class ExampleField<long double>;
+template Eigen::MatrixX<double> random_orthogonal(Eigen::Index, std::uint64_t);
+template Eigen::MatrixX<long double> random_orthogonal(Eigen::Index, std::uint64_t);
 
 }  // namespace lagroid

@@ -1,5 +1,5 @@
 #pragma once
-/// The fields and starting points of [N] section 5.
+/// The fields and starting points of [N] section 5. Compiled for S = double and long double.
 
 #include <lagroid/groupoids/rotations.hpp>
 
@@ -13,12 +13,12 @@ namespace lagroid {
 ///     second   u = sin(y) (2 y - 5 y^2), sin entry by entry
 enum class NewtonExample { first, second };
 
-class ExampleField {
+template <class S = double> class ExampleField {
  public:
   explicit ExampleField(NewtonExample example) : example_(example) {}
-  Eigen::VectorXd g(const Eigen::MatrixXd& y) const;
+  Eigen::VectorX<S> g(const Eigen::MatrixX<S>& y) const;
   /// The matrix of dg_y(u) = d/dt g(y exp(t u)).
-  Eigen::MatrixXd dg(const Eigen::MatrixXd& y) const;
+  Eigen::MatrixX<S> dg(const Eigen::MatrixX<S>& y) const;
 
  private:
   NewtonExample example_;
@@ -26,6 +26,6 @@ class ExampleField {
 
 /// A random element of O(N): the orthogonal factor, with a positive diagonal of the other, of a matrix of numbers
 /// uniform in [0, 1) (splitmix64 from seed * 1000003 + N, row by row).
-Eigen::MatrixXd random_orthogonal(Eigen::Index n, std::uint64_t seed);
+template <class S = double> Eigen::MatrixX<S> random_orthogonal(Eigen::Index n, std::uint64_t seed);
 
 }  // namespace lagroid

@@ -12,7 +12,7 @@ using namespace lagroid;
 
 namespace {
 
-using Step = ImplicitStep<RotationFibre, ExampleField>;
+using Step = ImplicitStep<RotationFibre<>, ExampleField<>>;
 
 Step example(NewtonExample which, Eigen::Index n, std::uint64_t seed, double h) {
   return {RotationFibre(random_orthogonal(n, seed)), ExampleField(which), h};

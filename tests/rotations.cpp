@@ -23,7 +23,7 @@ class Rotations : public testing::TestWithParam<int> {
     for (double& c : x) c = size * normal_(generator_) / std::sqrt(n());
     return skew(x, n());
   }
-  Eigen::MatrixXd random_rotation() { return SkewSpectrum(random_skew(3)).exp(); }
+  Eigen::MatrixXd random_rotation() { return SkewSpectrum<double>(random_skew(3)).exp(); }
   std::mt19937 generator_{7};
   std::normal_distribution<double> normal_;
 };
@@ -31,11 +31,11 @@ class Rotations : public testing::TestWithParam<int> {
 TEST_P(Rotations, ExpIsOrthogonalAndSatisfiesItsEquation) {
   for (const double size : {1e-9, 1e-3, 0.5, 3.0, 30.0}) {
     const Eigen::MatrixXd x = random_skew(size);
-    const SkewSpectrum spectrum(x);
+    const SkewSpectrum<double> spectrum(x);
     const Eigen::MatrixXd q = spectrum.exp();
     EXPECT_LT((q.transpose() * q - Eigen::MatrixXd::Identity(n(), n())).norm(), 10 * bound());
     // exp(X) = exp(X/2)^2, and exp(-X) exp(X) = I.
-    const Eigen::MatrixXd half = SkewSpectrum(Eigen::MatrixXd(0.5 * x)).exp();
+    const Eigen::MatrixXd half = SkewSpectrum<double>(Eigen::MatrixXd(0.5 * x)).exp();
     EXPECT_LT((half * half - q).norm(), 10 * bound() * (1 + size));
   }
 }
@@ -43,8 +43,8 @@ TEST_P(Rotations, ExpIsOrthogonalAndSatisfiesItsEquation) {
 TEST_P(Rotations, LogInvertsExpToAllDigits) {
   for (const double size : {1e-12, 1e-6, 1e-3, 0.3, 1.0}) {
     Eigen::MatrixXd x = random_skew(size);
-    if (SkewSpectrum(x).radius() > 3) x *= 3 / SkewSpectrum(x).radius();
-    const auto log = principal_log(SkewSpectrum(x).exp());
+    if (SkewSpectrum<double>(x).radius() > 3) x *= 3 / SkewSpectrum<double>(x).radius();
+    const auto log = principal_log(SkewSpectrum<double>(x).exp());
     ASSERT_TRUE(log.has_value());
     EXPECT_LT((*log - x).norm(), 20 * bound() * x.norm()) << size;
   }
@@ -59,11 +59,11 @@ TEST_P(Rotations, LogOfEigenvaluesAtAndNearMinusOne) {
       x(i + 1, i) = pi - off * (1 + i);
       x(i, i + 1) = -x(i + 1, i);
     }
-    const Eigen::MatrixXd q = SkewSpectrum(Eigen::MatrixXd(u * x * u.transpose())).exp();
+    const Eigen::MatrixXd q = SkewSpectrum<double>(Eigen::MatrixXd(u * x * u.transpose())).exp();
     const auto log = principal_log(q);
     ASSERT_TRUE(log.has_value()) << off;
-    EXPECT_LT((SkewSpectrum(*log).exp() - q).norm(), 20 * bound()) << off;
-    EXPECT_NEAR(SkewSpectrum(*log).radius(), pi - off, 1e-13);
+    EXPECT_LT((SkewSpectrum<double>(*log).exp() - q).norm(), 20 * bound()) << off;
+    EXPECT_NEAR(SkewSpectrum<double>(*log).radius(), pi - off, 1e-13);
   }
 }
 
@@ -77,9 +77,9 @@ TEST_P(Rotations, DexpIsTheDifferentialOfExp) {
   for (const double size : {1e-9, 0.5, 3.0}) {
     const Eigen::MatrixXd x = random_skew(size);
     const Eigen::MatrixXd y = random_skew(1);
-    const SkewSpectrum spectrum(x);
+    const SkewSpectrum<double> spectrum(x);
     const double t = 1e-5;
-    const auto at = [&](double s) { return SkewSpectrum(Eigen::MatrixXd(x + s * y)).exp(); };
+    const auto at = [&](double s) { return SkewSpectrum<double>(Eigen::MatrixXd(x + s * y)).exp(); };
     const Eigen::MatrixXd quotient = spectrum.exp().transpose() * (at(t) - at(-t)) / (2 * t);
     EXPECT_LT((quotient - spectrum.dexp(y)).norm(), 1e-8 * (1 + y.norm()));
     EXPECT_LT((spectrum.dexp(spectrum.dexp_inverse(y)) - y).norm(), 1e-12 * y.norm());
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, Rotations, testing::Values(2, 3, 4, 5, 8, 1
 TEST(Rotations3, AreRodrigues) {
   const Vector<double, 3> w(0.3, -1.1, 0.7);
   const Eigen::MatrixXd x = SO3::hat(w);
-  const SkewSpectrum spectrum(x);
+  const SkewSpectrum<double> spectrum(x);
   EXPECT_LT((spectrum.exp() - SO3::exp(w)).norm(), 1e-14);
   const Vector<double, 3> u(-0.2, 0.5, 0.1);
   const Vector<double, 3> differential = SO3::dexp(w) * u;
