@@ -35,6 +35,12 @@ concept AlphaFibre = requires(const F& fibre, const typename F::Point& y, const 
   { fibre.around(y) } -> std::convertible_to<F>;
 };
 
+/// A matrix and its change, as one matrix of dual numbers.
+template <class S>
+Eigen::MatrixX<Dual<S>> infinitesimally_moved(const Eigen::MatrixX<S>& y, const Eigen::MatrixX<S>& change) {
+  return y.binaryExpr(change, [](S value, S derivative) { return Dual<S>{value, derivative}; });
+}
+
 /// The fibre of any groupoid of ours. Differentials are G's closed forms where the retraction is exp and G has them,
 /// else exact by dual numbers.
 template <Groupoid G> class GroupoidFibre {

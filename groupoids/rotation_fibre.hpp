@@ -22,15 +22,18 @@ template <class S = double> class RotationFibre {
   const Point& centre() const { return z_; }
   Point at(const Vector& v) const { return moved(z_, v); }
   std::optional<Vector> coordinates(const Point& y) const;
-  Point moved(const Point& y, const Vector& u) const { return y * spectrum(u).exp(); }
+  /// The orthogonal matrix nearest to y exp(u), to first order: one Newton-Schulz step.
+  Point moved(const Point& y, const Vector& u) const {
+    const Matrix g = y * spectrum(u).exp();
+    return (3 * g - g * (g.transpose() * g)) / 2;
+  }
   Matrix dtau(const Vector& v) const { return spectrum(v).dexp_matrix(); }
   Matrix dtau_inverse(const Vector& v) const { return spectrum(v).dexp_inverse_matrix(); }
   /// The matrix of [v, .].
   Matrix ad(const Vector& v) const;
   /// y exp(e u), e the infinitesimal.
   Eigen::MatrixX<Dual<S>> displaced(const Point& y, const Vector& u) const {
-    const Matrix change = y * skew(u, size());
-    return y.binaryExpr(change, [](S value, S derivative) { return Dual<S>{value, derivative}; });
+    return infinitesimally_moved(y, Matrix(y * skew(u, size())));
   }
   /// The spectral norm of the matrix.
   double norm(const Vector& v) const { return double(spectrum(v).radius()); }

@@ -1,5 +1,6 @@
 // The groupoid laws on shipped groupoids.
 #include <lagroid/core/testing/groupoid_laws.hpp>
+#include <lagroid/groupoids/linear.hpp>
 #include <lagroid/groupoids/orthogonal.hpp>
 #include <lagroid/groupoids/se3.hpp>
 #include <lagroid/groupoids/so3.hpp>
@@ -19,6 +20,19 @@ TYPED_TEST_SUITE(GroupoidLaws, Subjects);
 TYPED_TEST(GroupoidLaws, Hold) {
   const auto report = laws::groupoid_laws<TypeParam>();
   EXPECT_TRUE(report.holds()) << report;
+}
+
+/// exp makes elements of these groups that are far from orthogonal, and as badly conditioned.
+template <class G> void expect_laws_near_the_identity() {
+  laws::GroupoidLawOptions options;
+  options.large = 0.5;
+  options.local = 0.5;
+  const auto report = laws::groupoid_laws(G{}, options);
+  EXPECT_TRUE(report.holds()) << report;
+}
+TEST(LinearGroups, Hold) {
+  expect_laws_near_the_identity<Linear<2>>();
+  expect_laws_near_the_identity<SpecialLinear<3>>();
 }
 
 /// The suite draws what the retraction reaches: here are products with a reflection, det g = -1.

@@ -49,22 +49,48 @@ double median(std::vector<double> x) {
   return x[x.size() / 2];
 }
 
-// Records with h <= 4: beyond, the tolerance is near the round-off of h g, and when it is met is chance.
-TEST(LieNewton, CountsIterationsAsTheReferenceFileDoes) {
+template <class S> struct ReferenceCount {
+  int records = 0;
+  int wrong_outcome = 0;
+  int wrong_count = 0;  ///< by more than one iteration
+  int wrong_count_above =
+      0;  ///< of these, where the record's own order says that its last iterations were no round-off
+};
+/// The records against iterations over S.
+template <class S> ReferenceCount<S> count_against_references() {
   const auto cases = nlohmann::json::parse(std::ifstream(LAGROID_TEST_DATA "/lie-newton.json"));
   const std::map<std::string, LieIteration> methods{
       {"FP", LieIteration::fixed_point}, {"V1", LieIteration::version1}, {"V2", LieIteration::version2}};
+  ReferenceCount<S> out;
   for (const auto& record : cases) {
-    const double h = std::ldexp(1.0, record.at("log2h").get<int>());
+    const Eigen::Index n = record.at("N");
     const auto which = record.at("ex") == 1 ? NewtonExample::first : NewtonExample::second;
-    const Step step = example(which, record.at("N"), record.at("seed"), h);
+    const ImplicitStep step{RotationFibre(random_orthogonal<S>(n, record.at("seed"))), ExampleField<S>(which),
+                            std::ldexp(1.0, record.at("log2h").get<int>())};
     LieNewtonOptions options;
     options.iteration = methods.at(record.at("method"));
-    const auto result = lie_newton(step, zero(step), options);
-    EXPECT_EQ(result.converged(), record.at("conv") == 1) << record << to_string(result.status);
-    if (!result.converged()) continue;
-    EXPECT_LE(std::abs(result.iterations - record.at("its").get<int>()), 1) << record;
+    const auto result = lie_newton(step, Eigen::VectorX<S>::Zero(n * (n - 1) / 2), options);
+    ++out.records;
+    if (result.converged() != (record.at("conv") == 1)) {
+      ++out.wrong_outcome;
+    } else if (result.converged() && std::abs(result.iterations - record.at("its").get<int>()) > 1) {
+      ++out.wrong_count;
+      const double order = record.at("order").is_null() ? 2.0 : record.at("order").get<double>();
+      out.wrong_count_above += order > 1.5 && order < 3;
+    }
   }
+  return out;
+}
+
+// For large h the tolerance lies below the round-off of h g(y) in double precision, and when an iteration meets it is
+// chance. With more digits only the records keep that chance.
+TEST(LieNewton, CountsIterationsAsTheReferenceFileDoes) {
+  const auto extended = count_against_references<long double>();
+  EXPECT_EQ(extended.wrong_outcome, 0);
+  EXPECT_EQ(extended.wrong_count_above, 0);
+  EXPECT_LE(extended.wrong_count, extended.records / 200);
+  const auto plain = count_against_references<double>();
+  EXPECT_LE(plain.wrong_outcome + plain.wrong_count, plain.records / 50);
 }
 
 TEST(LieNewton, OrdersAreTwoAndTheFixedPointsOne) {
