@@ -30,9 +30,9 @@ template <class F> struct ArclengthResult {
 /// The solutions of y = z tau(h g(y)) that are connected to y = z at h = 0: pseudo-arclength continuation of
 /// v = h g(z tau(v)) in (v, s), h = sinh(s). The path may turn back in h, and v may leave the principal branch: it is
 /// then of any size. A step along the path is taken when Newton's corrector contracts well and the tangent has not
-/// turned far, and when the determinant of (Df, tangent) keeps its sign, as it does along a path of regular points: a
-/// corrector that landed on another stretch of the path, on which h runs the other way, is found out by it. Else the
-/// step is halved. (Ours; [N] stops where its iterations do.)
+/// turned far, and when the determinant of (Df, tangent) keeps its sign and h its own, as they do along a path of
+/// regular points (h = 0 has the one solution v = 0): a corrector that landed on another stretch of the path, on which
+/// h runs the other way, is found out by it. Else the step is halved. (Ours; [N] stops where its iterations do.)
 template <AlphaFibre F, class Field> class SolutionPath {
  public:
   /// The path sets out towards h > 0, or where `direction` is -1 towards h < 0.
@@ -41,8 +41,8 @@ template <AlphaFibre F, class Field> class SolutionPath {
         field_(field),
         options_(options),
         n_(fibre.dimension()),
-        step_(options.first_step),
-        orientation_(direction) {
+        direction_(direction),
+        step_(options.first_step) {
     x_ = VectorXd::Zero(n_ + 1);
     next_ = x_;
     tangent_.resize(n_ + 1);
@@ -80,8 +80,9 @@ template <AlphaFibre F, class Field> class SolutionPath {
   struct Corrected {
     bool converged = false;
     double contraction = 0;
-    VectorXd tangent;        ///< at x, on the side of the normal
-    double orientation = 0;  ///< the sign of det(Df, tangent), constant along a path of regular points
+    VectorXd tangent;  ///< at x, on the side of the normal
+    double orientation =
+        0;  ///< the sign of det(Df, tangent), constant along a path of regular points: that of h at its start
   };
   static double sign_of_determinant(const Eigen::PartialPivLU<MatrixXd>& lu) {
     return lu.permutationP().determinant() * lu.matrixLU().diagonal().array().sign().prod();
@@ -147,7 +148,7 @@ template <AlphaFibre F, class Field> class SolutionPath {
       VectorXd next = x_ + step_ * tangent_;
       const Corrected corrected = correct(next, tangent_, factorisations_);
       if (!corrected.converged || corrected.contraction > 0.3 || corrected.tangent.dot(tangent_) < 0.7 ||
-          corrected.orientation != orientation_) {
+          corrected.orientation != direction_ || next(n_) * direction_ <= 0) {
         step_ *= 0.5;
         if (step_ < 1e-8) return SolveStatus::stagnated;
         continue;
@@ -166,11 +167,11 @@ template <AlphaFibre F, class Field> class SolutionPath {
   Field field_;
   ArclengthOptions options_;
   Eigen::Index n_;
+  double direction_;
   double step_;
   VectorXd x_;     ///< (v, s) at the start of the segment that was followed last
   VectorXd next_;  ///< and at its end
   VectorXd tangent_;
-  double orientation_;
   int steps_ = 0;
   long factorisations_ = 0;
 };
