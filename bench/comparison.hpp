@@ -55,6 +55,8 @@ void timed(benchmark::State& state, const std::function<void(long)>& steps);
 /// What each file contributes.
 std::vector<Subject> step_subjects();
 std::vector<Goal> step_goals();
+std::vector<Subject> lie_newton_subjects();
+std::vector<Goal> lie_newton_goals();
 std::vector<Subject> boundary_subjects();
 std::vector<Goal> boundary_goals();
 /// Markdown: seconds to compile the files of bench/user, with the build's own command.

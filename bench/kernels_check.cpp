@@ -14,6 +14,7 @@
 #include "kernels/rigid_body_derivatives.hpp"
 #include "kernels/so3_cayley.hpp"
 #include "kernels/spherical_pendulum.hpp"
+#include "lie_newton_case.hpp"
 
 #include <gtest/gtest.h>
 
@@ -234,6 +235,20 @@ TEST(PlateBallBoundaryKernel, IsTheFramework) {
       ASSERT_LT((kernel.attitudes()[k] - reference.attitude[k]).norm(), 1e-11);
       ASSERT_LT((kernel.multipliers(k) - reference.multipliers[k]).norm(), 1e-9);
     }
+  }
+}
+
+TEST(RodriguesNewton, IsTheFramework) {
+  for (const auto& z : bench::lie_newton_starts()) {
+    Matrix3d y;
+    const auto one = bench::lie_newton_on_so3(z, LieIteration::version1);
+    ASSERT_TRUE(one.converged());
+    EXPECT_EQ(kernels::RodriguesNewton::version1(z, bench::lie_newton_step, y), one.iterations);
+    EXPECT_LT((y - one.y).norm(), close);
+    const auto two = bench::lie_newton_on_so3(z, LieIteration::version2);
+    ASSERT_TRUE(two.converged());
+    EXPECT_EQ(kernels::RodriguesNewton::version2(z, bench::lie_newton_step, y), two.iterations);
+    EXPECT_LT((y - two.y).norm(), close);
   }
 }
 

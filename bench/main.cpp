@@ -2,6 +2,7 @@
 #include "comparison.hpp"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <cstring>
 #include <ctime>
@@ -59,6 +60,7 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres says of boundary values that it fails is in the table
   std::string part;
   bool write_page = false;
   for (int i = 1; i < argc; ++i) {
@@ -77,24 +79,29 @@ int main(int argc, char** argv) try {
   }
   const auto steps = bench::matching(bench::step_subjects(), part);
   const auto boundary = bench::matching(bench::boundary_subjects(), part);
-  if (steps.empty() && boundary.empty()) {
+  const auto groups = bench::matching(bench::lie_newton_subjects(), part);
+  if (steps.empty() && boundary.empty() && groups.empty()) {
     fmt::print(stderr, "lagroid bench: no subject's name contains \"{}\"; docs/performance.md shows the names\n", part);
     return 2;
   }
   bench::Results results = bench::run(steps, 21, 0.02);
   results.merge(bench::run(boundary, 7, 0.02));
+  results.merge(bench::run(groups, 21, 0.02));
   std::vector<bench::Goal> goals = bench::step_goals();
   for (auto& goal : bench::boundary_goals()) goals.push_back(std::move(goal));
+  for (auto& goal : bench::lie_newton_goals()) goals.push_back(std::move(goal));
   const std::string step_tables = bench::table(steps, results);
   const std::string boundary_tables = bench::table(boundary, results);
+  const std::string group_tables = bench::table(groups, results);
   const std::string goals_reached = bench::goals_table(goals, results, /*every=*/part.empty());
-  fmt::print("{}{}\n{}", step_tables, boundary_tables, goals_reached);
+  fmt::print("{}{}{}\n{}", step_tables, boundary_tables, group_tables, goals_reached);
   if (write_page) {
     std::string page = file_contents(LAGROID_SOURCE "/bench/performance.md.in");
     put(page, "@MACHINE@", machine());
     put(page, "@GOALS@", goals_reached);
     put(page, "@STEPS@", step_tables);
     put(page, "@BOUNDARY@", boundary_tables);
+    put(page, "@LIE_NEWTON@", group_tables);
     put(page, "@COMPILE@", bench::compile_times());
     write_whole(LAGROID_SOURCE "/docs/performance.md", page);
     fmt::print("\nwritten: docs/performance.md\n");
