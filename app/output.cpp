@@ -6,18 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <charconv>
-#include <csignal>
-#include <cstdio>
 #include <fstream>
 #include <string_view>
-#include <system_error>
 
 namespace lagroid::app {
 
@@ -28,22 +19,6 @@ namespace fs = std::filesystem;
 /// All that a run can leave in its folder.
 constexpr std::array<const char*, 7> output_files{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt",
                                                   "plot.gp",       "plot.svg",       "plot.png"};
-
-constexpr std::string_view staging_prefix = ".partial-";
-
-/// Removes the stagings of runs that were killed: those of processes that are no more.
-void remove_stale_stagings(const fs::path& folder) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(staging_prefix)) continue;
-    pid_t owner = 0;
-    const char* end = name.data() + name.size();
-    const auto [rest, error] = std::from_chars(name.data() + staging_prefix.size(), end, owner);
-    if (error == std::errc{} && rest == end && owner > 0 && kill(owner, 0) != 0 && errno == ESRCH)
-      fs::remove_all(entry.path(), ignored);
-  }
-}
 
 /// Row `node` of a series; series on arrows have none at the first node.
 const double* row(const Series& s, std::size_t node) {
@@ -77,13 +52,6 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
     line.push_back('\n');
     out.write(line.data(), std::streamsize(line.size()));
   }
-  out.close();
-  if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
-}
-
-void write_text(std::string_view text, const fs::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  out.write(text.data(), std::streamsize(text.size()));
   out.close();
   if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
 }
@@ -171,75 +139,19 @@ std::string gnuplot_script(const RunResult& result) {
   return out;
 }
 
-/// Runs gnuplot in `folder`; false with a reason when there is none or it fails.
-bool run_gnuplot(const fs::path& folder, std::string& reason) {
-  const pid_t child = fork();
-  if (child < 0) {
-    reason = "could not start a process";
-    return false;
-  }
-  if (child == 0) {
-    if (chdir(folder.c_str()) != 0) _exit(126);
-    if (std::freopen("plot.log", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
-      _exit(126);
-    execlp("gnuplot", "gnuplot", "plot.gp", static_cast<char*>(nullptr));
-    _exit(127);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && fs::exists(folder / "plot.svg") &&
-      fs::exists(folder / "plot.png"))
-    return true;
-  std::ifstream log(folder / "plot.log");
-  std::string first;
-  for (std::string line; std::getline(log, line);)
-    if (line.find("line") != std::string::npos && first.empty()) first = line;
-  reason =
-      WIFEXITED(status) && WEXITSTATUS(status) == 127
-          ? "gnuplot is not installed (Debian package gnuplot-nox); run `gnuplot plot.gp` in the output folder later"
-          : fmt::format("gnuplot failed{}", first.empty() ? "" : ": " + first);
-  return false;
-}
-
 }  // namespace
 
-void require_writable(const fs::path& folder) {
-  if (folder.empty()) throw OutputError("--out: the folder's name is empty; give one, as in --out out/run");
-  std::error_code error;
-  fs::path existing = fs::absolute(folder);
-  while (!fs::exists(existing, error) && existing.has_parent_path() && existing != existing.parent_path())
-    existing = existing.parent_path();
-  if (!fs::is_directory(existing, error))
-    throw OutputError(
-        fmt::format("--out {}: {} is not a folder; choose another place", folder.string(), existing.string()));
-  // Permissions do not tell everything (read-only file systems, /proc): a folder is made there, and removed.
-  const fs::path probe = existing / fmt::format("{}{}", staging_prefix, getpid());
-  fs::create_directory(probe, error);
-  if (error)
-    throw OutputError(fmt::format("--out {}: nothing can be written in {} ({}); choose another place", folder.string(),
-                                  existing.string(), error.message()));
-  fs::remove(probe, error);
-  for (const char* name : output_files)
-    if (fs::is_directory(folder / name, error))
-      throw OutputError(
-          fmt::format("--out {}: {} is a folder where a file is to be written; move it away or choose another place",
-                      folder.string(), (folder / name).string()));
-}
+void require_writable(const fs::path& folder) { require_writable(folder, output_files); }
 
 std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
-  // Staged inside the folder itself: the same file system, and no need to write beside it.
-  const fs::path staging = folder / fmt::format("{}{}", staging_prefix, getpid());
-  try {
-    fs::create_directories(staging);
-    remove_stale_stagings(folder);
+  return write_whole(folder, output_files, [&](const fs::path& staging) {
     std::vector<std::string> names{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt"};
     write_hdf5(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
     if (result.trajectory.time.size() > 1) {
       write_text(gnuplot_script(result), staging / "plot.gp");
       names.emplace_back("plot.gp");
-      std::string reason;
-      if (run_gnuplot(staging, reason)) {
+      if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); reason.empty()) {
         names.insert(names.end(), {"plot.svg", "plot.png"});
       } else {
         result.notes.push_back("no pictures: " + reason);
@@ -247,26 +159,8 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
     }
     write_text(json_report(result) + "\n", staging / "summary.json");
     write_text(text_report(result), staging / "summary.txt");
-    std::vector<fs::path> written;
-    for (const auto& name : names) {
-      fs::rename(staging / name, folder / name);
-      written.push_back(folder / name);
-    }
-    for (const char* name : output_files)
-      if (std::find(names.begin(), names.end(), name) == names.end()) fs::remove(folder / name);  // of an earlier run
-    fs::remove_all(staging);
-    return written;
-  } catch (const fs::filesystem_error& error) {
-    std::error_code ignored;
-    fs::remove_all(staging, ignored);
-    const fs::path& file = error.path2().empty() ? error.path1() : error.path2();
-    throw OutputError(fmt::format("--out {}: {} could not be written ({}); choose another place", folder.string(),
-                                  file.string(), error.code().message()));
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(staging, ignored);
-    throw;
-  }
+    return names;
+  });
 }
 
 }  // namespace lagroid::app
