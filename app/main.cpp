@@ -5,6 +5,7 @@
 #include "output.hpp"
 #include "registry.hpp"
 #include "report.hpp"
+#include "reproduce.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -74,6 +75,9 @@ int main(int argc, char** argv) {
   check_command->prefix_command();
   CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
   list_command->add_flag("--json", options.json, "print one JSON array and nothing else on standard output");
+  ReproduceOptions papers;
+  CLI::App* reproduce_command = app.add_subcommand("reproduce", "carry out the experiments of a paper, and more");
+  add_reproductions(*reproduce_command, papers, options.json);
   app.require_subcommand(0, 1);
   return command_line(app, argc, argv, options, [&] {
     if (list_command->parsed()) {
@@ -82,7 +86,8 @@ int main(int argc, char** argv) {
     }
     if (check_command->parsed()) return check(options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options);
+    if (reproduce_command->parsed()) return reproduce(papers, options.json);
     return refuse(options, exit_bad_input, "invalid_command_line",
-                  "name a command: run, check or list; see lagroid --help");
+                  "name a command: run, check, list or reproduce; see lagroid --help");
   });
 }

@@ -331,6 +331,39 @@ TEST_F(CommandLine, AnUnknownCommandIsNamed) {
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
 }
 
+TEST_F(CommandLine, ReproducesNewtonOnLieGroups) {
+  const fs::path out = folder_ / "newton";
+  const Outcome r =
+      run("reproduce newton-on-lie-groups --largest 4 --seeds 2 --first-seed 40 --json --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json.at("steps"), 2 * 3 * 2 * 21);
+  for (const char* example : {"example 1", "example 2"}) {
+    const auto& solved = json.at("solved").at(example);
+    EXPECT_EQ(solved.at("Newton and path"), 1.0);
+    EXPECT_LT(solved.at("fixed point"), 0.7);
+    EXPECT_GT(solved.at("version 1"), solved.at("version 2"));
+  }
+  std::ifstream csv(out / "cells.csv");
+  std::string line;
+  int lines = 0;
+  while (std::getline(csv, line)) ++lines;
+  EXPECT_EQ(lines, 1 + 7 * 2 * 3 * 2 * 21);
+  for (const char* file : {"report.md", "tables.md", "figure_5_1.svg", "figure_5_2.svg", "solved.svg", "time.svg"})
+    EXPECT_TRUE(fs::exists(out / file)) << file;
+}
+
+TEST_F(CommandLine, ReproduceRefusesWhatItCannotDo) {
+  EXPECT_EQ(run("reproduce").code, 2);
+  EXPECT_EQ(run("reproduce some-other-paper").code, 2);
+  EXPECT_EQ(run("reproduce newton-on-lie-groups --largest 1").code, 2);
+  const Outcome crossed = run("reproduce newton-on-lie-groups --smallest 5 --largest 4 --json");
+  EXPECT_EQ(crossed.code, 2);
+  EXPECT_EQ(nlohmann::json::parse(crossed.out).at("status"), "invalid_command_line");
+  EXPECT_EQ(run("reproduce newton-on-lie-groups --out /proc/here").code, 2);
+  EXPECT_EQ(entries(), 1U) << "nothing but the file of standard error";
+}
+
 TEST_F(CommandLine, OneCommandAtATime) {
   EXPECT_EQ(run("run " + example("pendulum") + " list").code, 2);
   EXPECT_EQ(run("--help >/dev/full").code, 3);

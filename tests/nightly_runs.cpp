@@ -1,8 +1,11 @@
 // Too long for every test run: millions of steps, and boundary values over many seeds.
 #include "run_watch.hpp"
 
+#include <lagroid/groupoids/rotation_fibre.hpp>
+#include <lagroid/solvers/arclength.hpp>
 #include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/newton_examples.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/plate_ball_boundary.hpp>
 #include <lagroid/systems/rigid_body.hpp>
@@ -47,6 +50,26 @@ TEST(Nightly, MillionsOfSteps) {
   const auto ball = watch(plate, s, 1'000'000);
   ASSERT_FALSE(ball.empty());
   EXPECT_LT(ball.at("spatial momentum A M").drift, 1e-11);
+}
+
+TEST(Nightly, PathsReachEveryStepOnOrthogonalGroupsUpTo15) {
+  int cells = 0;
+  int solved = 0;
+  for (const auto which : {NewtonExample::first, NewtonExample::second})
+    for (Eigen::Index n = 2; n <= 15; ++n)
+      for (std::uint64_t seed = 1000; seed < 1004; ++seed) {
+        const RotationFibre fibre(random_orthogonal(n, seed));
+        const ExampleField field(which);
+        SolutionPath<RotationFibre<>, ExampleField<>> path(fibre, field);
+        for (int log2h = -10; log2h <= 10; ++log2h) {
+          const double h = std::ldexp(1.0, log2h);
+          const auto found = path.reach(h);
+          const ImplicitStep step{fibre, field, h};
+          ++cells;
+          solved += found.converged() && step.norm(step.residual(fibre.at(found.v), found.v)) <= 2e-13 * (1 + h);
+        }
+      }
+  EXPECT_GE(solved, 0.99 * cells);
 }
 
 TEST(Nightly, EverySeedFindsTheBestMinimum) {

@@ -1,0 +1,106 @@
+#include "reproduce.hpp"
+
+#include "output_folder.hpp"
+#include "progress.hpp"
+#include "reproductions/newton_report.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+constexpr const char* newton_name = "newton-on-lie-groups";
+
+/// Shares of steps solved, by example and method.
+nlohmann::ordered_json solved(const NewtonFindings& findings) {
+  nlohmann::ordered_json out;
+  for (const auto example : {NewtonExample::first, NewtonExample::second})
+    for (int m = 0; m < newton_methods; ++m) {
+      const auto method = NewtonMethod(m);
+      out[example == NewtonExample::first ? "example 1" : "example 2"][name_of(method)] =
+          solved_share(findings, example, method);
+    }
+  return out;
+}
+
+int reproduce_newton(const ReproduceOptions& options, bool json) {
+  const NewtonStudy& study = options.newton;
+  SceneOptions as_asked;
+  as_asked.json = json;
+  if (study.smallest > study.largest)
+    return refuse(as_asked, exit_bad_input, "invalid_command_line",
+                  fmt::format("--smallest {} is above --largest {}", study.smallest, study.largest));
+  try {
+    require_writable(options.newton_out, newton_report_files);
+  } catch (const OutputError& error) {
+    return refuse(as_asked, exit_bad_input, "invalid_command_line", error.what());
+  }
+  const auto start = std::chrono::steady_clock::now();
+  NewtonFindings findings;
+  findings.study = study;
+  findings.command =
+      fmt::format("./lagroid reproduce {} --smallest {} --largest {} --seeds {} --first-seed {} --out {}", newton_name,
+                  study.smallest, study.largest, study.seeds, study.first_seed, options.newton_out);
+  {
+    Progress progress(newton_name, 2L * study.seeds * (study.largest - study.smallest + 1), !json);
+    findings.cells = run_newton_study(study, [&](long done, long) { progress.update(done); });
+  }
+  findings.times = time_newton_iterations(study.largest);
+  findings.integrators = measure_implicit_integrators();
+  std::string note;
+  const auto files = write_newton_report(findings, options.newton_out, note);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  nlohmann::ordered_json result;
+  result["status"] = "done";
+  result["steps"] = findings.cells.size() / std::size_t(newton_methods);
+  result["seconds"] = seconds;
+  result["solved"] = solved(findings);
+  for (const auto& file : files) result["files"].push_back(file.string());
+  if (!note.empty()) result["notes"].push_back("no pictures: " + note);
+  if (json) {
+    print(result.dump(2) + "\n");
+    return 0;
+  }
+  std::string text = fmt::format("{}: {} steps by {} methods in {:.3g} s\n", newton_name, result["steps"].get<long>(),
+                                 newton_methods, seconds);
+  for (const auto& [example, shares] : result["solved"].items()) {
+    text += fmt::format("  {}, solved to 1e-13 (1 + h)\n", example);
+    for (const auto& [method, share] : shares.items())
+      text += fmt::format("    {:<20} {:6.2f} %\n", method, 100 * share.get<double>());
+  }
+  if (!note.empty()) text += fmt::format("  note: no pictures: {}\n", note);
+  for (const auto& file : files) text += fmt::format("  wrote {}\n", file.string());
+  print(text);
+  return 0;
+}
+
+}  // namespace
+
+void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json) {
+  command.require_subcommand(1);
+  CLI::App* newton = command.add_subcommand(
+      newton_name, "Owren and Welfert, section 5: Newton, fixed point, Ceres and the path on O(N), and what they cost");
+  newton->add_option("--out", options.newton_out, "the folder for report.md, tables, CSV and figures")
+      ->capture_default_str();
+  newton->add_option("--smallest", options.newton.smallest, "the least N")
+      ->check(CLI::Range(2, 50))
+      ->capture_default_str();
+  newton->add_option("--largest", options.newton.largest, "the greatest N; large ones take long (N^6)")
+      ->check(CLI::Range(2, 50))
+      ->capture_default_str();
+  newton->add_option("--seeds", options.newton.seeds, "how many random starting points for each N")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  newton->add_option("--first-seed", options.newton.first_seed, "the first of their seeds")->capture_default_str();
+  newton->add_flag("--json", json, "print one JSON object and nothing else on standard output");
+}
+
+int reproduce(const ReproduceOptions& options, bool json) { return reproduce_newton(options, json); }
+
+}  // namespace lagroid::app
