@@ -74,6 +74,13 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return out;
 }
 
+/// The page without its fenced blocks.
+std::string prose_of(std::string page) {
+  for (auto at = page.find("```"); at != std::string::npos; at = page.find("```", at))
+    page.erase(at, page.find("```", at + 3) + 3 - at);
+  return page;
+}
+
 /// The files, tests and identifiers in `backquotes` and the laws in "quotes" that do not exist.
 std::vector<std::string> unknown_names(const std::string& page) {
   const std::string headers = text_of({"core", "groupoids", "solvers", "systems"}, ".hpp");
@@ -162,6 +169,11 @@ TEST(BrokenPage, AnAlteredBlockIsFoundOut) {
 }
 
 TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathematics.md")), none); }
+
+TEST(Newton, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/newton.md"))), none); }
+TEST(Newton, ItsCodeIsThatOfTheExample) {
+  EXPECT_EQ(foreign_blocks(read("docs/newton.md"), "cpp", read("examples/implicit_step.cpp")), none);
+}
 
 TEST(Mathematics, ItNamesEveryLaw) {
   const auto named = matches(read("docs/mathematics.md"), "\"([^\"]+)\"");
