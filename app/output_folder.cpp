@@ -75,6 +75,8 @@ void require_writable(const fs::path& folder, std::span<const char* const> files
   fs::path existing = fs::absolute(folder);
   while (!fs::exists(existing, error) && existing.has_parent_path() && existing != existing.parent_path())
     existing = existing.parent_path();
+  if (fs::is_symlink(folder, error) && !fs::exists(folder, error))
+    throw OutputError(fmt::format("--out {}: a link to nothing; choose another place", folder.string()));
   if (!fs::is_directory(existing, error))
     throw OutputError(
         fmt::format("--out {}: {} is not a folder; choose another place", folder.string(), existing.string()));

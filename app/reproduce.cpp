@@ -16,6 +16,15 @@ namespace {
 
 constexpr const char* newton_name = "newton-on-lie-groups";
 
+/// As a word of the shell.
+std::string quoted(const std::string& text) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:=@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {
   nlohmann::ordered_json out;
@@ -45,7 +54,7 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
   findings.study = study;
   findings.command =
       fmt::format("./lagroid reproduce {} --smallest {} --largest {} --seeds {} --first-seed {} --out {}", newton_name,
-                  study.smallest, study.largest, study.seeds, study.first_seed, options.newton_out);
+                  study.smallest, study.largest, study.seeds, study.first_seed, quoted(options.newton_out));
   {
     Progress progress(newton_name, 2L * study.seeds * (study.largest - study.smallest + 1), !json);
     findings.cells = run_newton_study(study, [&](long done, long) { progress.update(done); });
@@ -97,7 +106,9 @@ void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json)
   newton->add_option("--seeds", options.newton.seeds, "how many random starting points for each N")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  newton->add_option("--first-seed", options.newton.first_seed, "the first of their seeds")->capture_default_str();
+  newton->add_option("--first-seed", options.newton.first_seed, "the first of their seeds")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   newton->add_flag("--json", json, "print one JSON object and nothing else on standard output");
 }
 

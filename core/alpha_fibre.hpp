@@ -22,6 +22,11 @@ namespace lagroid {
 ///     fibre.dtau(v)          the matrix of dtau_v(u) = d/dt tau(v)^{-1} tau(v + t u)
 ///     fibre.dtau_inverse(v)  its inverse
 ///     fibre.norm(u)          by which elements of the algebra are judged
+///
+/// and, for truncated series and for automatic differentials (solvers/lie_differentials.hpp),
+///
+///     fibre.ad(v)            the matrix of [v, .]
+///     fibre.displaced(y, u)  y tau(e u) over dual numbers, e the infinitesimal
 template <class F>
 concept AlphaFibre = requires(const F& fibre, const typename F::Point& y, const typename F::Vector& v) {
   { fibre.dimension() } -> std::convertible_to<Eigen::Index>;

@@ -60,13 +60,15 @@ struct LinearGroup : MatrixGroup<Derived, N, Dimension, Retraction::exponential>
     return sum + Matrix<S, N, N>::Identity();
   }
   /// The principal logarithm: square roots (Denman and Beavers 1976) until the matrix is near the identity, where it is
-  /// 2 artanh((g + I)^{-1} (g - I)).
-  template <class S> static Vector<S, rank> log(Matrix<S, N, N> g) {
+  /// 2 artanh((r + I)^{-1} (r - I)). Near matrices without one the roots lose digits: where exp of the result is not g
+  /// to 1e-11, relatively, it is not a number.
+  template <class S> static Vector<S, rank> log(const Matrix<S, N, N>& g) {
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
+    Matrix<S, N, N> root = g;
     double scale = 2;
-    for (; !(size_of(Matrix<S, N, N>(g - one)) <= 0.25); scale *= 2)
-      if (scale > 1e4 || !take_square_root(g)) return not_a_number<S>();
-    const Matrix<S, N, N> c = (g + one).eval().inverse() * (g - one);
+    for (; !(size_of(Matrix<S, N, N>(root - one)) <= 0.25); scale *= 2)
+      if (scale > 1e4 || !take_square_root(root)) return not_a_number<S>();
+    const Matrix<S, N, N> c = (root + one).eval().inverse() * (root - one);
     const Matrix<S, N, N> square = c * c;
     Matrix<S, N, N> power = c;
     Matrix<S, N, N> sum = c;
@@ -74,7 +76,8 @@ struct LinearGroup : MatrixGroup<Derived, N, Dimension, Retraction::exponential>
       power = (power * square).eval();
       sum += power * S(1.0 / k);
     }
-    return vee(Matrix<S, N, N>(sum * S(scale)));
+    const Vector<S, rank> x = vee(Matrix<S, N, N>(sum * S(scale)));
+    return size_of(Matrix<S, N, N>(exp(x) - g)) <= 1e-11 * size_of(g) ? x : not_a_number<S>();
   }
 
  private:
@@ -96,8 +99,11 @@ struct LinearGroup : MatrixGroup<Derived, N, Dimension, Retraction::exponential>
     Matrix<S, N, N> inverse_root = Matrix<S, N, N>::Identity();
     int settled = 0;
     for (int k = 0; k < 40 && settled < 3; ++k) {  // derivatives settle after the values
-      const Matrix<S, N, N> next = (g + inverse_root.eval().inverse()) * S(0.5);
-      inverse_root = ((inverse_root + g.eval().inverse()) * S(0.5)).eval();
+      const Matrix<S, N, N> other = inverse_root.eval().inverse();
+      // Scaled to equal sizes, so that very large and very small matrices settle as soon.
+      const double s = settled > 0 ? 1 : std::sqrt(size_of(other) / size_of(g));
+      const Matrix<S, N, N> next = (g * S(s) + other * S(1 / s)) * S(0.5);
+      inverse_root = ((inverse_root * S(s) + g.eval().inverse() * S(1 / s)) * S(0.5)).eval();
       const double change = size_of(Matrix<S, N, N>(next - g));
       settled = change <= 1e-14 * size_of(next) ? settled + 1 : 0;
       g = next;
@@ -113,8 +119,8 @@ template <int N> struct Linear : LinearGroup<Linear<N>, N, N * N> {
   static std::string name() { return "GL(" + std::to_string(N) + ")"; }
 };
 
-/// Arrows: N x N matrices of determinant 1. Algebra: matrices of trace 0, by columns without the last entry, which is
-/// minus the sum of the others on the diagonal.
+/// Arrows: N x N matrices of determinant 1; the logarithm requires that. Algebra: matrices of trace 0, by columns
+/// without the last entry, which is minus the sum of the others on the diagonal.
 template <int N> struct SpecialLinear : LinearGroup<SpecialLinear<N>, N, N * N - 1> {
   static_assert(N >= 2);
   static constexpr int basis(int i, int r, int c) {

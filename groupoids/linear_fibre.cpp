@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include <cmath>
+
 namespace lagroid {
 
 Eigen::MatrixXd LinearFibre::hat(const Vector& v) const {
@@ -19,6 +21,7 @@ std::optional<Eigen::VectorXd> LinearFibre::coordinates(const Point& y) const {
     if (eigenvalue.imag() == 0 && eigenvalue.real() <= 0) return std::nullopt;
   const Matrix x = g.log();
   if (!x.allFinite()) return std::nullopt;
+  if (determinant_ == Determinant::kept && std::abs(x.trace()) > 1e-8 * (1 + x.norm())) return std::nullopt;
   return vee(x);
 }
 

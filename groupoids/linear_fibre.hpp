@@ -7,7 +7,8 @@ namespace lagroid {
 
 /// The matrices y = z exp(v). Coordinates: the entries of v by columns; for SL(n) without the last one, which makes the
 /// trace zero. exp is not onto: `coordinates` has nothing for y where z^{-1} y has an eigenvalue on the closed negative
-/// real axis, and then no principal logarithm.
+/// real axis, and then no principal logarithm, nor on SL(n) where the determinants of y and z differ. Differentials
+/// take n^2 exponentials of 2n x 2n matrices.
 class LinearFibre {
  public:
   using Point = Eigen::MatrixXd;

@@ -1,6 +1,15 @@
 #include <lagroid/groupoids/rotation_fibre.hpp>
 
+#include <stdexcept>
+#include <utility>
+
 namespace lagroid {
+
+template <class S> RotationFibre<S>::RotationFibre(Point z) : z_(std::move(z)) {
+  const Matrix defect = z_.transpose() * z_ - Matrix::Identity(z_.cols(), z_.cols());
+  if (z_.rows() != z_.cols() || !(defect.norm() <= S(1e-6)))
+    throw std::invalid_argument("RotationFibre: the centre is not an orthogonal matrix");
+}
 
 template <class S> auto RotationFibre<S>::coordinates(const Point& y) const -> std::optional<Vector> {
   const auto log = principal_log<S>(z_.transpose() * y);

@@ -14,7 +14,8 @@ template <class S = double> class RotationFibre {
   using Vector = Eigen::VectorX<S>;
   using Matrix = Eigen::MatrixX<S>;
 
-  explicit RotationFibre(Point z) : z_(std::move(z)) {}
+  /// Requires an orthogonal z; throws std::invalid_argument where z^T z is further than 1e-6 from the identity.
+  explicit RotationFibre(Point z);
   RotationFibre around(const Point& y) const { return RotationFibre(y); }
 
   Eigen::Index size() const { return z_.rows(); }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -49,6 +50,12 @@ template <class S> Eigen::VectorX<S> skew_entries(const Eigen::MatrixX<S>& a) {
 }
 
 template <class S> SkewSpectrum<S>::SkewSpectrum(const Matrix& x) : basis_(x.rows(), x.cols()), angles_(x.rows() / 2) {
+  if (x.size() == 0) return;
+  if (!x.allFinite()) {  // which RealSchur would pass over
+    basis_.setConstant(std::numeric_limits<S>::quiet_NaN());
+    angles_.setConstant(std::numeric_limits<S>::quiet_NaN());
+    return;
+  }
   const Eigen::RealSchur<Matrix> schur(x);
   const Matrix& t = schur.matrixT();
   const Eigen::Index n = x.rows();

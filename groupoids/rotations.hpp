@@ -19,6 +19,7 @@ template <class S> class SkewSpectrum {
  public:
   using Matrix = Eigen::MatrixX<S>;
 
+  /// Not a number where an entry of x is not finite.
   explicit SkewSpectrum(const Matrix& x);
 
   /// exp(X).
@@ -27,8 +28,8 @@ template <class S> class SkewSpectrum {
   /// anticommute with J, for each pair of planes, by the difference and the sum of their w; with d half of either,
   /// dexp multiplies them by exp(-i d) sin(d) / d, i for J ([N] (2.10)).
   Matrix dexp(const Matrix& y) const;
-  /// dexp_X^{-1}(Y). Requires that no two w have a non-zero multiple of 2 pi as difference or sum; entries are not
-  /// finite there.
+  /// dexp_X^{-1}(Y). Requires that no two w have a non-zero multiple of 2 pi as difference or sum; entries are huge or
+  /// not finite there.
   Matrix dexp_inverse(const Matrix& y) const;
   /// These maps in the coordinates of `skew_entries`.
   Matrix dexp_matrix() const;
@@ -39,7 +40,7 @@ template <class S> class SkewSpectrum {
   /// Q diag(f(w) J) Q^T, f odd.
   template <class F> Matrix apply(const F& f) const { return with_angles(angles_.unaryExpr(f)); }
   /// The largest |w|. Below pi, X is the principal logarithm of exp(X).
-  S radius() const { return angles_.size() == 0 ? S(0) : angles_.cwiseAbs().maxCoeff(); }
+  S radius() const { return angles_.size() == 0 ? S(0) : angles_.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>(); }
 
  private:
   Matrix with_angles(const Eigen::VectorX<S>& angles) const;

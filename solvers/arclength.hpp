@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace lagroid {
 
@@ -35,34 +36,42 @@ template <class F> struct ArclengthResult {
 /// h runs the other way, is found out by it. Else the step is halved. (Ours; [N] stops where its iterations do.)
 template <AlphaFibre F, class Field> class SolutionPath {
  public:
-  /// The path sets out towards h > 0, or where `direction` is -1 towards h < 0.
+  /// The path sets out towards h > 0, or where `direction` is negative towards h < 0.
   SolutionPath(const F& fibre, const Field& field, const ArclengthOptions& options = {}, double direction = 1)
       : fibre_(fibre),
         field_(field),
         options_(options),
         n_(fibre.dimension()),
-        direction_(direction),
+        direction_(std::copysign(1.0, direction)),
         step_(options.first_step) {
-    x_ = VectorXd::Zero(n_ + 1);
+    x_ = Column::Zero(n_ + 1);
     next_ = x_;
     tangent_.resize(n_ + 1);
     tangent_ << field_.g(fibre_.centre()), 1;
-    tangent_ *= direction / tangent_.norm();
+    tangent_ *= direction_ / tangent_.norm();
   }
 
   /// Follows the path until it first meets the step h. Several steps are to be asked for in the order in which the path
-  /// meets them first, those further from zero later. `not_converged` at the limit of steps, `stagnated`
-  /// where no step along the path is small enough; `h` and `v` then tell how far it was followed.
+  /// meets them first, those further from zero later; throws std::invalid_argument for others. `not_converged` at the
+  /// limit of steps, `stagnated` where no step along the path is small enough, `ill_conditioned` where the path meets h
+  /// but round-off is above the tolerance; `h` and `v` then tell how far it was followed.
   ArclengthResult<F> reach(double h) {
     ArclengthResult<F> out;
-    const double goal = std::asinh(h);
+    if (!std::isfinite(h)) {
+      out.status = SolveStatus::not_finite;
+      return out;
+    }
+    if (direction_ * h < furthest_)
+      throw std::invalid_argument("SolutionPath: a step that lies nearer to zero than one already reached");
+    furthest_ = direction_ * h;
+    const auto goal = std::asinh(Scalar(h));
     const auto between = [&] { return x_(n_) != next_(n_) && (x_(n_) - goal) * (next_(n_) - goal) <= 0; };
     while (!(between() && arrive(h, x_ + (goal - x_(n_)) / (next_(n_) - x_(n_)) * (next_ - x_), out))) {
       out.status = advance();
       if (out.status != SolveStatus::converged) {
         out.v = x_.head(n_);
         out.y = fibre_.at(out.v);
-        out.h = std::sinh(x_(n_));
+        out.h = double(std::sinh(x_(n_)));
         out.residual = fibre_.norm(ImplicitStep<F, Field>(fibre_, field_, out.h).residual(out.y, out.v));
         out.factorisations = factorisations_;
         break;
@@ -73,38 +82,39 @@ template <AlphaFibre F, class Field> class SolutionPath {
   }
 
  private:
-  using MatrixXd = Eigen::MatrixXd;
-  using VectorXd = Eigen::VectorXd;
+  using Scalar = typename F::Vector::Scalar;
+  using Square = Eigen::MatrixX<Scalar>;
+  using Column = Eigen::VectorX<Scalar>;
 
   /// Newton's iteration in the plane through x across `normal`.
   struct Corrected {
     bool converged = false;
-    double contraction = 0;
-    VectorXd tangent;  ///< at x, on the side of the normal
-    double orientation =
-        0;  ///< the sign of det(Df, tangent), constant along a path of regular points: that of h at its start
+    Scalar contraction = 0;
+    Column tangent;  ///< at x, on the side of the normal
+    /// The sign of det(Df, tangent), constant along a path of regular points: that of h at its start.
+    double orientation = 0;
   };
-  static double sign_of_determinant(const Eigen::PartialPivLU<MatrixXd>& lu) {
+  static double sign_of_determinant(const Eigen::PartialPivLU<Square>& lu) {
     return lu.permutationP().determinant() * lu.matrixLU().diagonal().array().sign().prod();
   }
-  Corrected correct(VectorXd& x, const VectorXd& normal, long& factorisations) const {
+  Corrected correct(Column& x, const Column& normal, long& factorisations) const {
     Corrected result;
-    const VectorXd plane = x;
-    MatrixXd matrix(n_ + 1, n_ + 1);
-    VectorXd right(n_ + 1);
-    double last = 0;
+    const Column plane = x;
+    Square matrix(n_ + 1, n_ + 1);
+    Column right(n_ + 1);
+    Scalar last = 0;
     for (int k = 0; k < 10; ++k) {
       const typename F::Vector v = x.head(n_);
-      const ImplicitStep<F, Field> equation(fibre_, field_, std::sinh(x(n_)));
+      const ImplicitStep<F, Field> equation(fibre_, field_, double(std::sinh(x(n_))));
       const auto y = fibre_.at(v);
       matrix.topLeftCorner(n_, n_) = equation.chart_differential(y, v);
       matrix.topRightCorner(n_, 1) = -std::cosh(x(n_)) * field_.g(y);
       matrix.bottomRows(1) = normal.transpose();
       right << equation.residual(y, v), normal.dot(x - plane);
-      const Eigen::PartialPivLU<MatrixXd> lu(matrix);
+      const Eigen::PartialPivLU<Square> lu(matrix);
       ++factorisations;
-      const VectorXd move = lu.solve(right);
-      const double size = move.norm();
+      const Column move = lu.solve(right);
+      const Scalar size = move.norm();
       if (!std::isfinite(size)) return result;
       if (k == 1) result.contraction = size / last;
       if (k > 0 && size > 0.5 * last && size > 1e-9) return result;
@@ -112,7 +122,7 @@ template <AlphaFibre F, class Field> class SolutionPath {
       x -= move;
       if (size < 1e-7 * (1 + x.norm())) {
         result.converged = true;
-        result.tangent = lu.solve(VectorXd::Unit(n_ + 1, n_)).normalized();
+        result.tangent = lu.solve(Column::Unit(n_ + 1, n_)).normalized();
         result.orientation = sign_of_determinant(lu);
         return result;
       }
@@ -120,24 +130,24 @@ template <AlphaFibre F, class Field> class SolutionPath {
     return result;
   }
 
-  /// A solution at h from a point of the path near it.
-  bool arrive(double h, VectorXd x, ArclengthResult<F>& out) const {
+  /// Whether the path meets h near x: the solution there, or what comes nearest to one.
+  bool arrive(double h, Column x, ArclengthResult<F>& out) const {
     const ImplicitStep<F, Field> equation(fibre_, field_, h);
     out.factorisations = factorisations_;
-    x(n_) = std::asinh(h);
-    if (!correct(x, VectorXd::Unit(n_ + 1, n_), out.factorisations).converged) return false;
+    x(n_) = std::asinh(Scalar(h));
+    if (!correct(x, Column::Unit(n_ + 1, n_), out.factorisations).converged) return false;
     LieNewtonOptions polish;
     polish.iteration = LieIteration::version2;
     polish.tolerance = options_.tolerance * (1 + std::abs(h));
     polish.max_iterations = 4;
     const auto solved = lie_newton(equation, typename F::Vector(x.head(n_)), polish);
     out.factorisations += solved.iterations;
-    out.status = solved.status;
+    out.status = solved.converged() ? SolveStatus::converged : SolveStatus::ill_conditioned;
     out.y = solved.y;
     out.v = solved.v;
     out.h = h;
     out.residual = solved.residual;
-    return solved.converged();
+    return true;
   }
 
   /// One step further: the path runs from x_ to next_.
@@ -145,7 +155,7 @@ template <AlphaFibre F, class Field> class SolutionPath {
     x_ = next_;
     while (steps_ < options_.max_steps) {
       ++steps_;
-      VectorXd next = x_ + step_ * tangent_;
+      Column next = x_ + step_ * tangent_;
       const Corrected corrected = correct(next, tangent_, factorisations_);
       if (!corrected.converged || corrected.contraction > 0.3 || corrected.tangent.dot(tangent_) < 0.7 ||
           corrected.orientation != direction_ || next(n_) * direction_ <= 0) {
@@ -169,9 +179,10 @@ template <AlphaFibre F, class Field> class SolutionPath {
   Eigen::Index n_;
   double direction_;
   double step_;
-  VectorXd x_;     ///< (v, s) at the start of the segment that was followed last
-  VectorXd next_;  ///< and at its end
-  VectorXd tangent_;
+  Column x_;     ///< (v, s) at the start of the segment that was followed last
+  Column next_;  ///< and at its end
+  Column tangent_;
+  double furthest_ = 0;  ///< the last step asked for, along the direction
   int steps_ = 0;
   long factorisations_ = 0;
 };

@@ -45,7 +45,7 @@ LieNewtonResult<typename E::Fibre> solve_by_ceres(const E& equation, const typen
   out.v = root.v;
   out.y = fibre.at(out.v);
   out.iterations = root.iterations;
-  out.residual = equation.norm(equation.residual(out.y, out.v));
+  out.residual = norm_of(equation, equation.residual(out.y, out.v));
   if (!std::isfinite(out.residual)) {
     out.status = SolveStatus::not_finite;
   } else if (out.residual <= options.tolerance) {

@@ -4,6 +4,7 @@
 
 #include <lagroid/solvers/arclength.hpp>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,38 +53,48 @@ template <AlphaFibre F, class Field> class LieIntegrator {
   using Point = typename F::Point;
   using Vector = typename F::Vector;
 
-  /// The centre of the fibre is where the march begins.
+  /// The centre of the fibre is where the march begins. Throws std::invalid_argument for a method whose matrix is not
+  /// square, lower triangular and of as many rows as b.
   LieIntegrator(CrouchGrossman method, F fibre, Field field, ArclengthOptions options = {})
-      : method_(std::move(method)), fibre_(std::move(fibre)), field_(std::move(field)), options_(options) {}
+      : method_(std::move(method)), fibre_(std::move(fibre)), field_(std::move(field)), options_(options) {
+    const auto stages = method_.b.size();
+    if (method_.a.rows() != stages || method_.a.cols() != stages || !method_.a.isLowerTriangular(0))
+      throw std::invalid_argument("LieIntegrator: a is no lower triangular matrix with a row for each entry of b");
+  }
 
   const Point& y() const { return fibre_.centre(); }
 
   LieStepReport advance(double h) {
     LieStepReport report;
-    const auto stages = method_.b.size();
     std::vector<Vector> k;
-    for (Eigen::Index i = 0; i < stages; ++i) {
-      Point y = fibre_.centre();
-      for (Eigen::Index j = 0; j < i; ++j) y = fibre_.moved(y, h * method_.a(i, j) * k[std::size_t(j)]);
+    for (Eigen::Index i = 0; i < method_.b.size(); ++i) {
+      Point y = moved(h * method_.a.row(i).head(i).transpose(), k);
       if (method_.a(i, i) != 0) {
         const auto stage =
             solve_implicit_step(ImplicitStep<F, Field>(fibre_.around(y), field_, h * method_.a(i, i)), options_);
         report.factorisations += stage.factorisations;
-        if (!stage.converged()) {
-          report.status = stage.status;
-          return report;
-        }
+        report.status = stage.status;
+        if (!report.converged()) return report;
         y = stage.y;
       }
       k.push_back(field_.g(y));
+      if (!(h * k.back()).allFinite()) {
+        report.status = SolveStatus::not_finite;
+        return report;
+      }
     }
-    Point y = fibre_.centre();
-    for (Eigen::Index i = 0; i < stages; ++i) y = fibre_.moved(y, h * method_.b(i) * k[std::size_t(i)]);
-    fibre_ = fibre_.around(y);
+    fibre_ = fibre_.around(moved(h * method_.b, k));
     return report;
   }
 
  private:
+  /// y tau(c_1 K_1) tau(c_2 K_2) ...
+  Point moved(const Eigen::VectorXd& c, const std::vector<Vector>& k) const {
+    Point y = fibre_.centre();
+    for (Eigen::Index j = 0; j < c.size(); ++j) y = fibre_.moved(y, typename Vector::Scalar(c(j)) * k[std::size_t(j)]);
+    return y;
+  }
+
   CrouchGrossman method_;
   F fibre_;
   Field field_;

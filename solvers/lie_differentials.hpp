@@ -13,7 +13,7 @@ namespace lagroid {
 
 /// E with quotients of f along the basis for its differentials: along the fibre by (3.18), in coordinates by the
 /// quotient of (3.19), of which (3.15) is the case f = v - h g. Columns where the displaced y has no coordinates are
-/// not finite.
+/// not finite, and the iteration then `singular`.
 template <FibreEquation E> class FiniteDifferences : public E {
  public:
   using Point = typename E::Fibre::Point;
@@ -80,8 +80,13 @@ template <AlphaFibre F> class QuotientFibre : public F {
 };
 
 /// F with the series of dexp_v (2.10) and of its inverse (3.9) cut off after the power `order` of ad_v: order 0 is
-/// (3.10) and (3.16), order 1 (3.11) and (3.17). Requires that tau is exp, or that order < 2 and tau(v)^{-1} = tau(-v).
-template <AlphaFibre F> class TruncatedFibre : public F {
+/// (3.10) and (3.16), order 1 (3.11) and (3.17). Requires F::ad, and that tau is exp, or that order < 2 and
+/// tau(v)^{-1} = tau(-v).
+template <AlphaFibre F>
+requires requires(const F& fibre, const typename F::Vector& v) {
+  { fibre.ad(v) } -> std::convertible_to<typename F::Matrix>;
+}
+class TruncatedFibre : public F {
  public:
   using Vector = typename F::Vector;
   using Matrix = typename F::Matrix;
@@ -129,7 +134,10 @@ template <FibreEquation E> class TruncatedTransport : public E {
 };
 
 /// A field for ImplicitStep with an exact dg by dual numbers: `function` maps points, over any scalar, to vectors.
-template <AlphaFibre F, class Function> class AutomaticField {
+/// Requires F::displaced.
+template <AlphaFibre F, class Function>
+requires requires(const F& fibre, const typename F::Point& y, const typename F::Vector& u) { fibre.displaced(y, u); }
+class AutomaticField {
  public:
   using Point = typename F::Point;
   using Vector = typename F::Vector;

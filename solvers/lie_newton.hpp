@@ -63,22 +63,22 @@ template <AlphaFibre F, class Field> class ImplicitStep {
   double h_;
 };
 
-/// How an iterate y = z tau(v) is improved:
+/// How an iterate y = z tau(v) is improved ([N]):
 ///
-///     version1           df_y u = -f,                    y tau(u)                                    [N] (3.5)
-///     version1_by_chart  df_y dtau_v w = -f, u = dtau_v w, y tau(u): the same, without dtau_v^{-1}   [N] (3.13),
-///     (3.14) version2           df_y dtau_v w = -f,             z tau(v + w)                                [N] (3.20)
-///     fixed_point        w = -f,                         z tau(v + w)                                [N] (1.2)
+///     version1             df_y u = -f, then y tau(u)                              (3.5)
+///     version1_by_chart    df_y dtau_v w = -f, then y tau(dtau_v w): the same      (3.13), (3.14)
+///     version2             df_y dtau_v w = -f, then z tau(v + w)                   (3.20)
+///     fixed_point          w = -f, then z tau(v + w)                               (1.2)
 enum class LieIteration { version1, version1_by_chart, version2, fixed_point };
 
 struct LieNewtonOptions {
   LieIteration iteration = LieIteration::version1;
   double tolerance = 1e-13;
-  int max_iterations = 100;
+  int max_iterations = 100;  ///< at least 0
   /// Damping: an update that does not lower the norm of f is halved up to this many times, and then refused: the
   /// iteration ends as `stagnated` where it stands. 0: every update is taken.
   int halvings = 0;
-  /// Step control: a longer update (in the fibre's norm) is shortened to this.
+  /// Step control: a longer update (in the fibre's norm) is shortened to this, which is not negative.
   double longest_update = std::numeric_limits<double>::infinity();
 };
 
@@ -93,6 +93,11 @@ template <class F> struct LieNewtonResult {
   long evaluations = 0;  ///< of f
   bool converged() const { return status == SolveStatus::converged; }
 };
+
+/// The norm of f, which a norm of its own may pass over where it is not a number.
+template <FibreEquation E> double norm_of(const E& equation, const typename E::Fibre::Vector& f) {
+  return f.allFinite() ? equation.norm(f) : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// The iteration from y = z tau(v); `observe` is told the norm of f at the start and after each iteration.
 /// `left_domain` where y has no coordinates any more, `singular` where the differential has no inverse, `not_finite`,
@@ -125,23 +130,23 @@ LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, const typename 
 
   Vector f = equation.residual(out.y, out.v);
   out.evaluations = 1;
-  out.residual = equation.norm(f);
+  out.residual = norm_of(equation, f);
   observe(out.residual);
-  for (; std::isfinite(out.residual) && out.residual > options.tolerance; ++out.iterations) {
-    if (out.iterations == options.max_iterations) return out;
+  for (; std::isfinite(out.residual) && !(out.residual <= options.tolerance); ++out.iterations) {
+    if (out.iterations >= options.max_iterations) return out;
     Vector u = update(f);
     if (!u.allFinite()) {
       out.status = SolveStatus::singular;
       return out;
     }
-    if (const double size = equation.fibre().norm(u); size > options.longest_update) u *= options.longest_update / size;
+    if (const double size = fibre.norm(u); size > options.longest_update) u *= options.longest_update / size;
     for (int halving = 0;; ++halving) {
       const auto y = on_the_fibre ? fibre.moved(out.y, u) : fibre.at(out.v + u);
       const auto v = on_the_fibre ? fibre.coordinates(y) : std::optional<Vector>(out.v + u);
       if (v) {
         f = equation.residual(y, *v);
         ++out.evaluations;
-        const double residual = equation.norm(f);
+        const double residual = norm_of(equation, f);
         if (options.halvings == 0 || residual < out.residual) {
           out.y = y;
           out.v = *v;

@@ -2,12 +2,14 @@
 #include <lagroid/groupoids/rotation_fibre.hpp>
 #include <lagroid/solvers/arclength.hpp>
 #include <lagroid/solvers/ceres_lie.hpp>
+#include <lagroid/solvers/crouch_grossman.hpp>
 #include <lagroid/systems/newton_examples.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 using namespace lagroid;
 
@@ -35,15 +37,49 @@ TEST(Arclength, ReachesEveryStepSize) {
 }
 
 TEST(Arclength, SolvesWhatEveryIterationOfThePaperMisses) {
-  const Step step = example(NewtonExample::first, 8, 0, 16);
-  for (const auto iteration : {LieIteration::version1, LieIteration::version2, LieIteration::fixed_point}) {
-    LieNewtonOptions options;
-    options.iteration = iteration;
-    options.tolerance = 1e-13 * (1 + step.step());
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(step.fibre().dimension());
-    EXPECT_FALSE(lie_newton(step, zero, options).converged());
-  }
-  EXPECT_TRUE(solve_along_path(step).converged());
+  int missed = 0;
+  int steps = 0;
+  for (std::uint64_t seed = 0; seed < 3; ++seed)
+    for (int log2h = 4; log2h <= 10; log2h += 2) {
+      const Step step = example(NewtonExample::first, 10, seed, std::ldexp(1.0, log2h));
+      const auto converges = [&](LieIteration iteration) {
+        LieNewtonOptions options;
+        options.iteration = iteration;
+        options.tolerance = 1e-13 * (1 + step.step());
+        return lie_newton(step, Eigen::VectorXd::Zero(step.fibre().dimension()), options).converged();
+      };
+      ++steps;
+      missed += !converges(LieIteration::version1) && !converges(LieIteration::version2) &&
+                !converges(LieIteration::fixed_point);
+      EXPECT_TRUE(solve_along_path(step).converged()) << seed << ' ' << log2h;
+    }
+  EXPECT_GT(missed, steps / 2);
+}
+
+TEST(Arclength, InExtendedPrecisionToo) {
+  const RotationFibre fibre(random_orthogonal<long double>(5, 2));
+  const ExampleField<long double> field(NewtonExample::second);
+  ArclengthOptions options;
+  options.tolerance = 1e-16;
+  const auto found = SolutionPath(fibre, field, options).reach(3);
+  ASSERT_TRUE(found.converged()) << to_string(found.status);
+  EXPECT_LT(found.residual, 4e-16);
+  LieIntegrator integrator(CrouchGrossman::dirk3(), fibre, field, options);
+  EXPECT_TRUE(integrator.advance(0.1).converged());
+}
+
+TEST(Arclength, AStepBehindThePathOrBelowRoundOffIsRefused) {
+  const Step step = example(NewtonExample::first, 4, 1, 1);
+  SolutionPath path(step.fibre(), step.field());
+  EXPECT_TRUE(path.reach(2).converged());
+  EXPECT_THROW(path.reach(1), std::invalid_argument);
+  EXPECT_TRUE(path.reach(2).converged());
+  ArclengthOptions exact;
+  exact.tolerance = 0;
+  const auto nearly = SolutionPath(step.fibre(), step.field(), exact).reach(2);
+  EXPECT_EQ(nearly.status, SolveStatus::ill_conditioned);
+  EXPECT_LT(nearly.residual, 1e-14);
+  EXPECT_EQ(SolutionPath(step.fibre(), step.field()).reach(HUGE_VAL).status, SolveStatus::not_finite);
 }
 
 TEST(Arclength, CeresFindsTheSameSolutionsWhereItFindsOne) {

@@ -1,8 +1,7 @@
 // Implicit integrators on Lie groups and homogeneous spaces: order conditions, measured orders, what they keep.
-#include <lagroid/groupoids/action.hpp>
 #include <lagroid/groupoids/linear_fibre.hpp>
+#include <lagroid/groupoids/rotated.hpp>
 #include <lagroid/groupoids/rotation_fibre.hpp>
-#include <lagroid/groupoids/so3.hpp>
 #include <lagroid/solvers/crouch_grossman.hpp>
 #include <lagroid/solvers/lie_differentials.hpp>
 #include <lagroid/systems/newton_examples.hpp>
@@ -12,6 +11,8 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <stdexcept>
 
 using namespace lagroid;
 
@@ -112,18 +113,9 @@ TEST(CrouchGrossman, TheMidpointRuleIsSymmetricAndOthersAreNot) {
   }
 }
 
-/// R^3 with rotations from the right, m R = R^T m: its orbits are the spheres.
-struct Body {
-  template <class S> using Point = Vector<S, 3>;
-  template <class S> static Vector<S, 3> act(const Vector<S, 3>& m, const Matrix<S, 3, 3>& r) {
-    return r.transpose() * m;
-  }
-  static std::string name() { return "body"; }
-};
-
 TEST(CrouchGrossman, OrdersOnASphereThroughTheActionGroupoid) {
   // Euler's equations m' = m x I^{-1} m: m turns by xi(m) = I^{-1} m.
-  using G = Action<SO3, Body>;
+  using G = Action<SO3, RotatedVectors>;
   const Vector<double, 3> start(0.4, -0.8, 0.7);
   const auto xi = [](const auto& arrow) {
     const auto m = G::target(arrow);
@@ -191,6 +183,25 @@ TEST(CrouchGrossman, AStepThatFailsAdvancesNothing) {
   const auto report = integrator.advance(500);
   EXPECT_EQ(report.status, SolveStatus::not_converged);
   EXPECT_EQ(integrator.y(), start);
+}
+
+TEST(CrouchGrossman, MethodsThatAreNotTriangularAreRefused) {
+  CrouchGrossman gauss = CrouchGrossman::dirk2();
+  gauss.a(0, 1) = 0.1;
+  EXPECT_THROW(LieIntegrator(gauss, RotationFibre(random_orthogonal(3, 0)), ExampleField(NewtonExample::first)),
+               std::invalid_argument);
+  EXPECT_THROW(RotationFibre(Eigen::MatrixXd(2 * random_orthogonal(3, 0))), std::invalid_argument);
+}
+
+TEST(CrouchGrossman, ExplicitStagesAreTakenAndFailWhereTheyAreNotFinite) {
+  const CrouchGrossman euler{"explicit Euler", 1, false, Eigen::MatrixXd{{0}}, Eigen::VectorXd{{1}}};
+  const Eigen::MatrixXd start = random_orthogonal(3, 0);
+  const ExampleField field(NewtonExample::first);
+  LieIntegrator integrator(euler, RotationFibre(start), field);
+  EXPECT_EQ(integrator.advance(std::numeric_limits<double>::infinity()).status, SolveStatus::not_finite);
+  EXPECT_EQ(integrator.y(), start);
+  EXPECT_TRUE(integrator.advance(0.1).converged());
+  EXPECT_LT((integrator.y() - RotationFibre(start).at(0.1 * field.g(start))).norm(), 1e-15);
 }
 
 TEST(CrouchGrossman, StepsOfAnySizeAreTaken) {

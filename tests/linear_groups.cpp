@@ -76,6 +76,28 @@ TEST(LinearGroups, OfFixedSizeAreThoseOfRunTimeSize) {
   }
 }
 
+TEST(LinearGroups, LogarithmsNearTheNegativeAxisAreRightOrNone) {
+  int refused = 0;
+  for (const double off : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
+    const double angle = M_PI - off;
+    Matrix<double, 4, 4> g;  // two equal pairs of eigenvalues, not diagonalisable
+    g << std::cos(angle), -std::sin(angle), 1, 0, std::sin(angle), std::cos(angle), 0, 1, 0, 0, std::cos(angle),
+        -std::sin(angle), 0, 0, std::sin(angle), std::cos(angle);
+    const Vector<double, 16> x = Linear<4>::log(g);
+    if (x.allFinite()) {
+      EXPECT_LT((Linear<4>::exp(x) - g).norm(), 1e-10) << off;
+    } else {
+      ++refused;
+    }
+    EXPECT_TRUE(at_identity(4, Determinant::any).coordinates(g).has_value()) << off;
+  }
+  EXPECT_LT(refused, 5);
+  const Matrix<double, 2, 2> large = 1e100 * Matrix<double, 2, 2>::Identity();
+  EXPECT_NEAR(Linear<2>::log(large)(0), std::log(1e100), 1e-10);
+  EXPECT_FALSE(at_identity(2, Determinant::kept).coordinates(2 * Eigen::Matrix2d::Identity()).has_value())
+      << "not of the same determinant";
+}
+
 /// y = z exp(h g(y)) with g(y) = y^T y - 1 and its like of trace zero.
 template <class Fibre> struct Stretch {
   Fibre fibre;
@@ -133,7 +155,7 @@ struct HalfTurn {
   double norm(const Eigen::VectorXd& f) const { return f.norm(); }
 };
 TEST(LinearGroups, LeavingTheReachOfExpIsTyped) {
-  // exp(goal) = -diag(e, 1 / e) would need an eigenvalue on the negative axis; half a turn and a stretch come near it.
+  // Half a turn, whose exponential is -I.
   HalfTurn equation;
   equation.goal = Eigen::Vector4d(0, M_PI, -M_PI, 0);
   LieNewtonOptions options;

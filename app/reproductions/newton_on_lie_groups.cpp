@@ -11,11 +11,11 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <mutex>
 #include <numbers>
 #include <optional>
-#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -42,7 +42,7 @@ LieNewtonOptions options_of(NewtonMethod method) {
   options.max_iterations = 100;
   if (method == NewtonMethod::fixed_point) options.iteration = LieIteration::fixed_point;
   if (method == NewtonMethod::version2 || method == NewtonMethod::damped2) options.iteration = LieIteration::version2;
-  if (method == NewtonMethod::damped1 || method == NewtonMethod::damped2) options.halvings = 10;
+  if (method == NewtonMethod::damped1 || method == NewtonMethod::damped2) options.halvings = 20;
   return options;
 }
 
@@ -78,7 +78,7 @@ class StartingPoint {
     out.converged = result.converged();
     out.residual = result.residual;
     out.solved = out.residual <= success(std::ldexp(1.0, log2h));
-    out.beyond = out.solved && fibre_.norm(result.v) > std::numbers::pi;
+    out.beyond = out.solved && fibre_.norm(result.v) > std::numbers::pi;  // of the last iterate
     out.order = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
@@ -114,6 +114,7 @@ class StartingPoint {
     const auto newton = solve_plainly(equation, ArclengthOptions{}.tolerance);
     if (newton.converged()) {
       NewtonCell out = cell(NewtonMethod::path, log2h, newton);
+      out.plain = true;
       out.iterations = newton.iterations;
       out.factorisations = newton.iterations;
       return out;
@@ -156,25 +157,26 @@ std::string name_of(NewtonMethod method) {
 }
 
 std::vector<NewtonCell> run_newton_study(const NewtonStudy& study, const std::function<void(long, long)>& done) {
-  std::vector<StartingPoint> starts;
-  for (int n = study.largest; n >= study.smallest; --n)  // the long ones first
-    for (const auto example : {NewtonExample::first, NewtonExample::second})
-      for (int s = 0; s < study.seeds; ++s) starts.emplace_back(example, n, study.first_seed + std::uint64_t(s));
-  std::vector<std::vector<NewtonCell>> cells(starts.size());
-  std::atomic<std::size_t> next = 0;
+  const int sizes = study.largest - study.smallest + 1;
+  const int starts = 2 * sizes * study.seeds;
+  std::vector<std::vector<NewtonCell>> cells(static_cast<std::size_t>(starts));
+  std::atomic<int> next = 0;
   std::atomic<long> finished = 0;
   std::mutex telling;
   const auto work = [&] {
-    for (std::size_t i = next++; i < starts.size(); i = next++) {
-      cells[i] = starts[i].cells();
+    for (int i = next++; i < starts; i = next++) {
+      const int n = study.largest - i / (2 * study.seeds);  // the long ones first
+      const auto example = i % 2 == 0 ? NewtonExample::first : NewtonExample::second;
+      const auto seed = std::uint64_t(study.first_seed + i / 2 % study.seeds);
+      cells[std::size_t(i)] = StartingPoint(example, n, seed).cells();
       ++finished;
       const std::lock_guard lock(telling);
-      done(finished, long(starts.size()));
+      done(finished, starts);
     }
   };
-  std::thread other(work);
+  auto other = std::async(std::launch::async, work);
   work();
-  other.join();
+  other.get();
   std::vector<NewtonCell> out;
   for (auto part = cells.rbegin(); part != cells.rend(); ++part) out.insert(out.end(), part->begin(), part->end());
   return out;

@@ -16,7 +16,7 @@ struct NewtonStudy {
   int smallest = 2;
   int largest = 15;
   int seeds = 3;
-  std::uint64_t first_seed = 0;
+  std::int64_t first_seed = 0;
 };
 
 inline constexpr int least_log2h = -10;
@@ -42,7 +42,8 @@ struct NewtonCell {
   double residual = 0;      ///< the least that was reached
   double order = 0;         ///< the paper's ratio of logarithms; NaN where fewer than three iterations converged
   long factorisations = 0;  ///< of Jacobians
-  bool beyond = false;      ///< solved, with a spectral radius of v above pi: beyond the principal logarithm
+  bool plain = false;       ///< of `path`: plain Newton was enough
+  bool beyond = false;      ///< the last iterate solves, with a spectral radius of v above pi: beyond the logarithm
 };
 
 /// All cells; `done` is told how many of how many starting points are through. Two threads.

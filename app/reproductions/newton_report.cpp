@@ -106,21 +106,23 @@ std::string solved_table(const NewtonFindings& f, NewtonExample example) {
   return out;
 }
 
+/// How many solved steps have a solution beyond the logarithm, for the methods that can find such.
 std::string beyond_table(const NewtonFindings& f) {
+  constexpr NewtonMethod free[] = {NewtonMethod::fixed_point, NewtonMethod::version2, NewtonMethod::damped2,
+                                   NewtonMethod::ceres, NewtonMethod::path};
   std::vector<std::string> head{"N"};
-  for (const auto example : examples) {
-    head.push_back(fmt::format("example {}: solved", number_of(example)));
-    head.push_back("of these beyond");
-  }
+  for (const auto example : examples)
+    for (const auto method : free) head.push_back(fmt::format("{}: {}", number_of(example), name_of(method)));
   std::string out = header(head);
   for (const int n : sizes(f)) {
     std::vector<std::string> entries{std::to_string(n)};
-    for (const auto example : examples) {
-      const Cells cells = select(
-          f, [&](const NewtonCell& c) { return c.example == example && c.n == n && c.method == NewtonMethod::path; });
-      entries.push_back(fmt::format("{:.0f}", share(cells, &NewtonCell::solved) * double(cells.size())));
-      entries.push_back(fmt::format("{:.0f}", share(cells, &NewtonCell::beyond) * double(cells.size())));
-    }
+    for (const auto example : examples)
+      for (const auto method : free) {
+        const Cells cells = select(
+            f, [&](const NewtonCell& c) { return c.example == example && c.n == n && c.method == method && c.solved; });
+        entries.push_back(
+            fmt::format("{:.0f} of {}", share(cells, &NewtonCell::beyond) * double(cells.size()), cells.size()));
+      }
     out += row(entries);
   }
   return out;
@@ -133,9 +135,8 @@ std::string cost_table(const NewtonFindings& f) {
       const Cells cells = select(
           f, [&](const NewtonCell& c) { return c.example == example && c.n == n && c.method == NewtonMethod::path; });
       const auto cost = values(cells, [](const NewtonCell& c) { return std::optional<double>(c.factorisations); });
-      const auto plain = std::count_if(cost.begin(), cost.end(), [](double x) { return x <= 15; });
       out += row({std::to_string(number_of(example)), std::to_string(n),
-                  fmt::format("{:.0f} %", 100.0 * double(plain) / double(std::max<std::size_t>(1, cost.size()))),
+                  fmt::format("{:.0f} %", 100 * share(cells, &NewtonCell::plain)),
                   fmt::format("{:.0f}", quantile(cost, 0.5)), fmt::format("{:.0f}", quantile(cost, 0.9)),
                   fmt::format("{:.0f}", quantile(cost, 1))});
     }
@@ -157,15 +158,18 @@ std::string order_table(const NewtonFindings& f) {
   return out;
 }
 
-/// The slope of log(time) over log(N) by least squares, N >= 6.
-double slope(const std::vector<IterationTime>& times, double IterationTime::*time) {
+constexpr int fit_from = 6;
+constexpr int fit_to = 15;
+
+/// The slope of log(time) over log(N) by least squares between two N; NaN of fewer than two times.
+double slope(const std::vector<IterationTime>& times, double IterationTime::*time, int from, int to) {
   double count = 0;
   double sx = 0;
   double sy = 0;
   double sxx = 0;
   double sxy = 0;
   for (const auto& t : times) {
-    if (t.n < 6 || !(t.*time > 0)) continue;
+    if (t.n < from || t.n > to || !(t.*time > 0)) continue;
     const double x = std::log(t.n);
     const double y = std::log(t.*time);
     count += 1;
@@ -174,6 +178,7 @@ double slope(const std::vector<IterationTime>& times, double IterationTime::*tim
     sxx += x * x;
     sxy += x * y;
   }
+  if (count < 2) return std::numeric_limits<double>::quiet_NaN();
   return (count * sxy - sx * sy) / (count * sxx - sx * sx);
 }
 
@@ -198,10 +203,16 @@ std::string time_table(const NewtonFindings& f) {
                                                : "-");
     out += row(entries);
   }
-  std::vector<std::string> entries{"slope from N = 6", ""};
-  for (const auto& [name, time] : clocks) entries.push_back(fmt::format("{:.1f}", slope(f.times, time)));
-  entries.emplace_back("");
-  return out + row(entries);
+  const auto slopes = [&](int from, int to) {
+    std::vector<std::string> entries{fmt::format("exponent, N = {} to {}", from, to), ""};
+    for (const auto& [name, time] : clocks) {
+      const double exponent = slope(f.times, time, from, to);
+      entries.push_back(std::isfinite(exponent) ? fmt::format("{:.1f}", exponent) : "-");
+    }
+    entries.emplace_back("");
+    return row(entries);
+  };
+  return out + slopes(fit_from, fit_to) + slopes(20, 30);
 }
 
 std::string integrator_table(const NewtonFindings& f) {
@@ -300,9 +311,8 @@ std::string figures(const NewtonFindings& f) {
         "z\n",
         cells(example, method, "N"), value);
   };
-  std::vector<int> curves;
-  for (const int n : {2, 3, 5, 8, 10, 15})
-    if (n >= first && n <= last) curves.push_back(n);
+  std::vector<int> curves;  // at most six
+  for (int n = first; n <= last; n += 1 + (last - first) / 6) curves.push_back(n);
   for (const auto example : examples) {
     const int number = number_of(example);
     out += fmt::format(
@@ -368,8 +378,8 @@ std::string figures(const NewtonFindings& f) {
         "set title 'example 1, h = 0.1'\nset xlabel 'N'\nset ylabel 'seconds for one iteration'\nplot ";
     bool comma = false;
     for (const auto& [name, time] : clocks) {
-      out += fmt::format("{}'times.csv' using 'N':'{}' with linespoints pointtype 7 pointsize 0.5 title '{}, N^{:.1f}'",
-                         comma ? ", " : "", name, name, slope(f.times, time));
+      out += fmt::format("{}'times.csv' using 'N':'{}' with linespoints pointtype 7 pointsize 0.5 title '{}'",
+                         comma ? ", " : "", name, name);
       comma = true;
     }
     out += "\n";
@@ -416,7 +426,7 @@ std::string report(const NewtonFindings& f, bool pictures) {
   out +=
       "Solutions beyond the principal logarithm (a spectral radius of v above pi) solve the step, but no iteration "
       "that "
-      "takes logarithms can find them. Among those of *Newton and path*:\n\n" +
+      "takes logarithms can find them. Among the steps solved, by example and method:\n\n" +
       beyond_table(f) + "\n";
   out +=
       "## What it costs\n\n"
