@@ -31,17 +31,17 @@ int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options,
     }
     // The flag may not have been read before the mistake was met.
     options.json = asks_for_json(argc, argv);
-    return refuse(options, exit_bad_input, "invalid_command_line",
+    return refuse(options.json, exit_bad_input, "invalid_command_line",
                   fmt::format("{}; see {} --help", error.what(), app.get_name()));
   } catch (const SceneError& error) {
-    return refuse(options, exit_bad_input, "invalid_scene", error.what());
+    return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
   } catch (const OutputError&) {
     throw;
   } catch (const std::bad_alloc&) {
-    return refuse(options, exit_failed, "out_of_memory",
+    return refuse(options.json, exit_failed, "out_of_memory",
                   fmt::format("{}: out of memory; lower time.steps, or raise output.every", options.scene));
   } catch (const std::exception& error) {
-    return refuse(options, exit_internal_error, "internal_error",
+    return refuse(options.json, exit_internal_error, "internal_error",
                   fmt::format("internal error: {}; please report it with the scene", error.what()));
   }
 }
@@ -64,9 +64,9 @@ void print(const std::string& text) {
     throw OutputError("standard output could not be written");
 }
 
-int refuse(const SceneOptions& options, int code, const std::string& status, const std::string& message) {
+int refuse(bool json, int code, const std::string& status, const std::string& message) {
   fmt::print(stderr, "lagroid: {}\n", message);
-  if (options.json) print(json_error(status, message) + "\n");
+  if (json) print(json_error(status, message) + "\n");
   return code;
 }
 

@@ -28,8 +28,8 @@ bool asks_for_json(int argc, char** argv);
 /// Prints on standard output, or throws OutputError.
 void print(const std::string& text);
 
-/// Ends a command that has no result: one line, and one JSON object where that was asked for. Returns `code`.
-int refuse(const SceneOptions& options, int code, const std::string& status, const std::string& message);
+/// Ends a command that has no result: one line, and one JSON object where `json` is asked for. Returns `code`.
+int refuse(bool json, int code, const std::string& status, const std::string& message);
 
 /// Reads the command line with the named `app`, then serves it. What goes wrong becomes one line and an exit code.
 int command_line(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve);

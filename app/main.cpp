@@ -32,7 +32,7 @@ int run(const RunOptions& options) {
     if (options.out) require_writable(*options.out);
     result = run_scene(scene, {.record = options.out.has_value(), .progress = !options.json});
   } catch (const OutputError& error) {
-    return refuse(options, exit_bad_input, "invalid_scene", error.what());
+    return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
   }
   std::string report;
   if (options.out) {
@@ -56,7 +56,7 @@ int check(SceneOptions options, int argc, char** argv) {
   options.json = asks_for_json(argc, argv);
   const auto program = std::filesystem::canonical("/proc/self/exe").parent_path() / "lagroid-check";
   ::execv(program.c_str(), argv);
-  return refuse(options, exit_internal_error, "internal_error",
+  return refuse(options.json, exit_internal_error, "internal_error",
                 fmt::format("{}: {}; build the target lagroid_check", program.string(), std::strerror(errno)));
 }
 
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     if (check_command->parsed()) return check(options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options);
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
-    return refuse(options, exit_bad_input, "invalid_command_line",
+    return refuse(options.json, exit_bad_input, "invalid_command_line",
                   "name a command: run, check, list or reproduce; see lagroid --help");
   });
 }

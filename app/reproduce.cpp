@@ -28,26 +28,21 @@ std::string quoted(const std::string& text) {
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {
   nlohmann::ordered_json out;
-  for (const auto example : {NewtonExample::first, NewtonExample::second})
-    for (int m = 0; m < newton_methods; ++m) {
-      const auto method = NewtonMethod(m);
-      out[example == NewtonExample::first ? "example 1" : "example 2"][name_of(method)] =
-          solved_share(findings, example, method);
-    }
+  for (const auto example : newton_examples)
+    for (const auto method : newton_methods)
+      out[fmt::format("example {}", number_of(example))][name_of(method)] = solved_share(findings, example, method);
   return out;
 }
 
 int reproduce_newton(const ReproduceOptions& options, bool json) {
   const NewtonStudy& study = options.newton;
-  SceneOptions as_asked;
-  as_asked.json = json;
   if (study.smallest > study.largest)
-    return refuse(as_asked, exit_bad_input, "invalid_command_line",
+    return refuse(json, exit_bad_input, "invalid_command_line",
                   fmt::format("--smallest {} is above --largest {}", study.smallest, study.largest));
   try {
     require_writable(options.newton_out, newton_report_files);
   } catch (const OutputError& error) {
-    return refuse(as_asked, exit_bad_input, "invalid_command_line", error.what());
+    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
   }
   const auto start = std::chrono::steady_clock::now();
   NewtonFindings findings;
@@ -67,7 +62,7 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
 
   nlohmann::ordered_json result;
   result["status"] = "done";
-  result["steps"] = findings.cells.size() / std::size_t(newton_methods);
+  result["steps"] = findings.cells.size() / newton_methods.size();
   result["seconds"] = seconds;
   result["solved"] = solved(findings);
   for (const auto& file : files) result["files"].push_back(file.string());
@@ -77,7 +72,7 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
     return 0;
   }
   std::string text = fmt::format("{}: {} steps by {} methods in {:.3g} s\n", newton_name, result["steps"].get<long>(),
-                                 newton_methods, seconds);
+                                 newton_methods.size(), seconds);
   for (const auto& [example, shares] : result["solved"].items()) {
     text += fmt::format("  {}, solved to 1e-13 (1 + h)\n", example);
     for (const auto& [method, share] : shares.items())

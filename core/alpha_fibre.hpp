@@ -58,7 +58,6 @@ template <Groupoid G> class GroupoidFibre {
   explicit GroupoidFibre(const Point& z, const G& groupoid = {}) : groupoid_(groupoid), z_(z) {}
   GroupoidFibre around(const Point& y) const { return GroupoidFibre(y, groupoid_); }
 
-  const G& groupoid() const { return groupoid_; }
   Eigen::Index dimension() const { return n; }
   const Point& centre() const { return z_; }
   Point at(const Vector& v) const { return groupoid_.multiply(z_, groupoid_.tau(groupoid_.target(z_), v)); }

@@ -35,8 +35,6 @@ template <class S> class SkewSpectrum {
   Matrix dexp_matrix() const;
   Matrix dexp_inverse_matrix() const;
 
-  /// The w of the planes, of any sign and order.
-  const Eigen::VectorX<S>& angles() const { return angles_; }
   /// Q diag(f(w) J) Q^T, f odd.
   template <class F> Matrix apply(const F& f) const { return with_angles(angles_.unaryExpr(f)); }
   /// The largest |w|. Below pi, X is the principal logarithm of exp(X).
@@ -49,7 +47,7 @@ template <class S> class SkewSpectrum {
   template <class F> Matrix matrix_of(const F& factor) const;
 
   Matrix basis_;
-  Eigen::VectorX<S> angles_;
+  Eigen::VectorX<S> angles_;  ///< the w, of any sign and order
 };
 
 /// The principal logarithm of an orthogonal matrix: skew-symmetric, of spectral radius at most pi; nothing where the

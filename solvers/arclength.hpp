@@ -11,7 +11,8 @@ namespace lagroid {
 
 /// How far and how finely a path is followed.
 struct ArclengthOptions {
-  double tolerance = 1e-13;  ///< the norm of f at the end is at most tolerance * (1 + h)
+  double tolerance = 1e-13;   ///< the norm of f at the end is at most tolerance * (1 + h)
+  int plain_iterations = 15;  ///< of Newton before the path (solve_implicit_step)
   int max_steps = 20000;
   double first_step = 0.1;
   double largest_step = 1.0;
@@ -72,7 +73,8 @@ template <AlphaFibre F, class Field> class SolutionPath {
         out.v = x_.head(n_);
         out.y = fibre_.at(out.v);
         out.h = double(std::sinh(x_(n_)));
-        out.residual = fibre_.norm(ImplicitStep<F, Field>(fibre_, field_, out.h).residual(out.y, out.v));
+        const ImplicitStep<F, Field> equation(fibre_, field_, out.h);
+        out.residual = norm_of(equation, equation.residual(out.y, out.v));
         out.factorisations = factorisations_;
         break;
       }
@@ -196,17 +198,17 @@ ArclengthResult<F> solve_along_path(const ImplicitStep<F, Field>& equation, cons
 
 /// Plain Newton (version 1) for a few iterations.
 template <AlphaFibre F, class Field>
-LieNewtonResult<F> solve_plainly(const ImplicitStep<F, Field>& equation, double tolerance) {
+LieNewtonResult<F> solve_plainly(const ImplicitStep<F, Field>& equation, const ArclengthOptions& options = {}) {
   LieNewtonOptions plain;
-  plain.tolerance = tolerance * (1 + std::abs(equation.step()));
-  plain.max_iterations = 15;
+  plain.tolerance = options.tolerance * (1 + std::abs(equation.step()));
+  plain.max_iterations = options.plain_iterations;
   return lie_newton(equation, F::Vector::Zero(equation.fibre().dimension()), plain);
 }
 
 /// The default for implicit steps: plain Newton, then the path.
 template <AlphaFibre F, class Field>
 ArclengthResult<F> solve_implicit_step(const ImplicitStep<F, Field>& equation, const ArclengthOptions& options = {}) {
-  const auto newton = solve_plainly(equation, options.tolerance);
+  const auto newton = solve_plainly(equation, options);
   if (!newton.converged()) {
     auto path = solve_along_path(equation, options);
     path.factorisations += newton.iterations;

@@ -37,7 +37,6 @@ LieNewtonResult<typename E::Fibre> solve_by_ceres(const E& equation, const typen
         const typename Fibre::Vector v = x;
         const auto y = fibre.at(v);
         f = equation.residual(y, v);
-        ++out.evaluations;
         if (derivative != nullptr) *derivative = equation.chart_differential(y, v);
         return f.allFinite() && (derivative == nullptr || derivative->allFinite());
       },

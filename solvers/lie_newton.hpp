@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace lagroid {
 
@@ -90,13 +91,20 @@ template <class F> struct LieNewtonResult {
   typename F::Vector v;
   double residual = 0;  ///< the norm of f there
   int iterations = 0;
-  long evaluations = 0;  ///< of f
   bool converged() const { return status == SolveStatus::converged; }
 };
 
 /// The norm of f, which a norm of its own may pass over where it is not a number.
 template <FibreEquation E> double norm_of(const E& equation, const typename E::Fibre::Vector& f) {
   return f.allFinite() ? equation.norm(f) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The order that the norms of f show, at the start and after each iteration ([N] section 5): the last one left out,
+/// which may be round-off. NaN for fewer than three iterations.
+inline double observed_order(const std::vector<double>& norms) {
+  if (norms.size() < 4) return std::numeric_limits<double>::quiet_NaN();
+  const auto last = norms.end();
+  return std::log(last[-2] / last[-3]) / std::log(last[-3] / last[-4]);
 }
 
 /// The iteration from y = z tau(v); `observe` is told the norm of f at the start and after each iteration.
@@ -129,7 +137,6 @@ LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, const typename 
       options.iteration == LieIteration::version1 || options.iteration == LieIteration::version1_by_chart;
 
   Vector f = equation.residual(out.y, out.v);
-  out.evaluations = 1;
   out.residual = norm_of(equation, f);
   observe(out.residual);
   for (; std::isfinite(out.residual) && !(out.residual <= options.tolerance); ++out.iterations) {
@@ -145,7 +152,6 @@ LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, const typename 
       const auto v = on_the_fibre ? fibre.coordinates(y) : std::optional<Vector>(out.v + u);
       if (v) {
         f = equation.residual(y, *v);
-        ++out.evaluations;
         const double residual = norm_of(equation, f);
         if (options.halvings == 0 || residual < out.residual) {
           out.y = y;

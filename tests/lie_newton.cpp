@@ -43,12 +43,6 @@ Recorded<E> record(const E& equation, const typename E::Fibre::Vector& start, co
   return {std::move(result), std::move(residuals)};
 }
 
-/// The observed order from three residuals, as [N] section 5 defines it.
-double observed_order(const std::vector<double>& r) {
-  const std::size_t p = r.size() - 1;
-  return std::log(r[p - 1] / r[p - 2]) / std::log(r[p - 2] / r[p - 3]);
-}
-
 double median(std::vector<double> x) {
   std::nth_element(x.begin(), x.begin() + std::ptrdiff_t(x.size() / 2), x.end());
   return x[x.size() / 2];

@@ -29,20 +29,13 @@ using Step = ImplicitStep<Fibre, Field>;
 
 double success(double h) { return 1e-13 * (1 + h); }
 
-/// [N] section 5, from the norms of f at the start and after each iteration.
-double observed_order(const std::vector<double>& r) {
-  if (r.size() < 4) return std::numeric_limits<double>::quiet_NaN();
-  const std::size_t p = r.size() - 1;
-  return std::log(r[p - 1] / r[p - 2]) / std::log(r[p - 2] / r[p - 3]);
-}
-
 LieNewtonOptions options_of(NewtonMethod method) {
   LieNewtonOptions options;
   options.tolerance = 1e-13;
-  options.max_iterations = 100;
+  options.max_iterations = paper_iterations;
   if (method == NewtonMethod::fixed_point) options.iteration = LieIteration::fixed_point;
   if (method == NewtonMethod::version2 || method == NewtonMethod::damped2) options.iteration = LieIteration::version2;
-  if (method == NewtonMethod::damped1 || method == NewtonMethod::damped2) options.halvings = 20;
+  if (method == NewtonMethod::damped1 || method == NewtonMethod::damped2) options.halvings = damping_halvings;
   return options;
 }
 
@@ -100,7 +93,7 @@ class StartingPoint {
   NewtonCell by_ceres(int log2h) const {
     LieNewtonOptions options;
     options.tolerance = success(std::ldexp(1.0, log2h));
-    options.max_iterations = 200;
+    options.max_iterations = ceres_iterations;
     const auto result = solve_by_ceres(step(log2h), zero(), options);
     NewtonCell out = cell(NewtonMethod::ceres, log2h, result);
     out.iterations = result.iterations;
@@ -111,7 +104,7 @@ class StartingPoint {
   /// What `solve_implicit_step` does, with one path for all steps. Its cost is counted as if this were the only one.
   NewtonCell by_path(int log2h, SolutionPath<Fibre, Field>& path) const {
     const Step equation = step(log2h);
-    const auto newton = solve_plainly(equation, ArclengthOptions{}.tolerance);
+    const auto newton = solve_plainly(equation);
     if (newton.converged()) {
       NewtonCell out = cell(NewtonMethod::path, log2h, newton);
       out.plain = true;
@@ -135,6 +128,8 @@ class StartingPoint {
 };
 
 }  // namespace
+
+int number_of(NewtonExample example) { return example == NewtonExample::first ? 1 : 2; }
 
 std::string name_of(NewtonMethod method) {
   switch (method) {

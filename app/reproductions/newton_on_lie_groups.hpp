@@ -3,6 +3,7 @@
 
 #include <lagroid/systems/newton_examples.hpp>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -25,7 +26,15 @@ inline constexpr int most_log2h = 10;
 /// The paper's three iterations with its tolerance 1e-13 and limit of 100; versions 1 and 2 damped; Ceres; and plain
 /// Newton followed by the path.
 enum class NewtonMethod { fixed_point, version1, version2, damped1, damped2, ceres, path };
-inline constexpr int newton_methods = 7;
+inline constexpr std::array newton_methods{NewtonMethod::fixed_point, NewtonMethod::version1, NewtonMethod::version2,
+                                           NewtonMethod::damped1,     NewtonMethod::damped2,  NewtonMethod::ceres,
+                                           NewtonMethod::path};
+inline constexpr std::array newton_examples{NewtonExample::first, NewtonExample::second};
+/// Where they give up.
+inline constexpr int paper_iterations = 100;
+inline constexpr int damping_halvings = 20;
+inline constexpr int ceres_iterations = 200;
+int number_of(NewtonExample example);
 std::string name_of(NewtonMethod method);
 
 /// One step by one method.

@@ -2,11 +2,12 @@
 
 #include "../output_folder.hpp"
 
+#include <lagroid/solvers/arclength.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -22,20 +23,17 @@ namespace {
 
 using Cells = std::vector<const NewtonCell*>;
 
-constexpr NewtonExample examples[] = {NewtonExample::first, NewtonExample::second};
-constexpr NewtonMethod all_methods[] = {NewtonMethod::fixed_point, NewtonMethod::version1, NewtonMethod::version2,
-                                        NewtonMethod::damped1,     NewtonMethod::damped2,  NewtonMethod::ceres,
-                                        NewtonMethod::path};
 /// Those of the figures.
 constexpr NewtonMethod shown[] = {NewtonMethod::fixed_point, NewtonMethod::version1, NewtonMethod::version2,
                                   NewtonMethod::path};
 
-int number_of(NewtonExample example) { return example == NewtonExample::first ? 1 : 2; }
-
-Cells select(const NewtonFindings& f, const std::function<bool(const NewtonCell&)>& wanted) {
+/// The cells of one method, for every N and h or for one.
+Cells select(const NewtonFindings& f, NewtonExample example, NewtonMethod method, std::optional<int> n = {},
+             std::optional<int> log2h = {}) {
   Cells out;
-  for (const auto& cell : f.cells)
-    if (wanted(cell)) out.push_back(&cell);
+  for (const auto& c : f.cells)
+    if (c.example == example && c.method == method && c.n == n.value_or(c.n) && c.log2h == log2h.value_or(c.log2h))
+      out.push_back(&c);
   return out;
 }
 
@@ -47,10 +45,11 @@ double quantile(std::vector<double> x, double p) {
   return *at;
 }
 
+std::ptrdiff_t count(const Cells& cells, bool NewtonCell::*property) {
+  return std::count_if(cells.begin(), cells.end(), [&](const NewtonCell* c) { return c->*property; });
+}
 double share(const Cells& cells, bool NewtonCell::*property) {
-  if (cells.empty()) return 0;
-  const auto count = std::count_if(cells.begin(), cells.end(), [&](const NewtonCell* c) { return c->*property; });
-  return double(count) / double(cells.size());
+  return cells.empty() ? 0 : double(count(cells, property)) / double(cells.size());
 }
 
 template <class Get> std::vector<double> values(const Cells& cells, const Get& get) {
@@ -91,18 +90,18 @@ std::vector<int> sizes(const NewtonFindings& f) {
 
 std::string solved_table(const NewtonFindings& f, NewtonExample example) {
   std::vector<std::string> head{"N"};
-  for (const auto method : all_methods) head.push_back(name_of(method));
+  for (const auto method : newton_methods) head.push_back(name_of(method));
   std::string out = header(head);
-  const auto line = [&](const std::string& name, int n) {
+  const auto line = [&](const std::string& name, std::optional<int> n) {
     std::vector<std::string> entries{name};
-    for (const auto method : all_methods) {
+    for (const auto method : newton_methods) {
       const double s = solved_share(f, example, method, n);
       entries.push_back(fmt::format("{:.{}f} %", 100 * s, s > 0.985 && s < 1 ? 2 : 0));
     }
     out += row(entries);
   };
   for (const int n : sizes(f)) line(std::to_string(n), n);
-  line("all", 0);
+  line("all", std::nullopt);
   return out;
 }
 
@@ -111,17 +110,16 @@ std::string beyond_table(const NewtonFindings& f) {
   constexpr NewtonMethod free[] = {NewtonMethod::fixed_point, NewtonMethod::version2, NewtonMethod::damped2,
                                    NewtonMethod::ceres, NewtonMethod::path};
   std::vector<std::string> head{"N"};
-  for (const auto example : examples)
+  for (const auto example : newton_examples)
     for (const auto method : free) head.push_back(fmt::format("{}: {}", number_of(example), name_of(method)));
   std::string out = header(head);
   for (const int n : sizes(f)) {
     std::vector<std::string> entries{std::to_string(n)};
-    for (const auto example : examples)
+    for (const auto example : newton_examples)
       for (const auto method : free) {
-        const Cells cells = select(
-            f, [&](const NewtonCell& c) { return c.example == example && c.n == n && c.method == method && c.solved; });
+        const Cells cells = select(f, example, method, n);
         entries.push_back(
-            fmt::format("{:.0f} of {}", share(cells, &NewtonCell::beyond) * double(cells.size()), cells.size()));
+            fmt::format("{} of {}", count(cells, &NewtonCell::beyond), count(cells, &NewtonCell::solved)));
       }
     out += row(entries);
   }
@@ -130,10 +128,9 @@ std::string beyond_table(const NewtonFindings& f) {
 
 std::string cost_table(const NewtonFindings& f) {
   std::string out = header({"example", "N", "plain Newton alone", "median", "90 %", "most"});
-  for (const auto example : examples)
+  for (const auto example : newton_examples)
     for (const int n : sizes(f)) {
-      const Cells cells = select(
-          f, [&](const NewtonCell& c) { return c.example == example && c.n == n && c.method == NewtonMethod::path; });
+      const Cells cells = select(f, example, NewtonMethod::path, n);
       const auto cost = values(cells, [](const NewtonCell& c) { return std::optional<double>(c.factorisations); });
       out += row({std::to_string(number_of(example)), std::to_string(n),
                   fmt::format("{:.0f} %", 100 * share(cells, &NewtonCell::plain)),
@@ -145,12 +142,11 @@ std::string cost_table(const NewtonFindings& f) {
 
 std::string order_table(const NewtonFindings& f) {
   std::string out = header({"example", "iteration", "steps", "lower quartile", "median", "upper quartile"});
-  for (const auto example : examples)
+  for (const auto example : newton_examples)
     for (const auto method : {NewtonMethod::fixed_point, NewtonMethod::version1, NewtonMethod::version2}) {
-      // Where the tolerance is above round-off.
-      const auto orders = values(
-          select(f, [&](const NewtonCell& c) { return c.example == example && c.method == method && c.log2h <= 0; }),
-          order_of);
+      const auto orders = values(select(f, example, method), [](const NewtonCell& c) {
+        return c.log2h <= 0 ? std::optional(c.order) : std::nullopt;  // the tolerance is above round-off
+      });
       out += row({std::to_string(number_of(example)), name_of(method), std::to_string(orders.size()),
                   fmt::format("{:.2f}", quantile(orders, 0.25)), fmt::format("{:.2f}", quantile(orders, 0.5)),
                   fmt::format("{:.2f}", quantile(orders, 0.75))});
@@ -236,7 +232,7 @@ std::string tables(const NewtonFindings& f) {
       "<!-- Written by the command below. -->\n# Iterations, step by step\n\n`" + f.command +
       "`\n\nMedian number of iterations over the seeds, of those that converged; `-` where fewer than half did. For "
       "\"Newton and path\" the number of Jacobians factorised.\n";
-  for (const auto example : examples)
+  for (const auto example : newton_examples)
     for (const auto method : shown) {
       out += fmt::format("\n## Example {}, {}\n\n", number_of(example), name_of(method));
       std::vector<std::string> head{"log2 h"};
@@ -245,9 +241,7 @@ std::string tables(const NewtonFindings& f) {
       for (int log2h = least_log2h; log2h <= most_log2h; ++log2h) {
         std::vector<std::string> entries{std::to_string(log2h)};
         for (const int n : sizes(f)) {
-          const double median = median_iterations(select(f, [&](const NewtonCell& c) {
-            return c.example == example && c.method == method && c.n == n && c.log2h == log2h;
-          }));
+          const double median = median_iterations(select(f, example, method, n, log2h));
           entries.push_back(std::isfinite(median) ? fmt::format("{:.0f}", median) : "-");
         }
         out += row(entries);
@@ -269,13 +263,11 @@ std::string cells_csv(const NewtonFindings& f) {
 /// What the figures show: medians over the seeds.
 std::string grid_csv(const NewtonFindings& f) {
   std::string out = "example,method,N,log2h,iterations,order,solved,beyond\n";
-  for (const auto example : examples)
-    for (const auto method : all_methods)
+  for (const auto example : newton_examples)
+    for (const auto method : newton_methods)
       for (const int n : sizes(f))
         for (int log2h = least_log2h; log2h <= most_log2h; ++log2h) {
-          const Cells cells = select(f, [&](const NewtonCell& c) {
-            return c.example == example && c.method == method && c.n == n && c.log2h == log2h;
-          });
+          const Cells cells = select(f, example, method, n, log2h);
           out += fmt::format("{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}\n", number_of(example), name_of(method), n, log2h,
                              median_iterations(cells), quantile(values(cells, order_of), 0.5),
                              share(cells, &NewtonCell::solved), share(cells, &NewtonCell::beyond));
@@ -313,7 +305,7 @@ std::string figures(const NewtonFindings& f) {
   };
   std::vector<int> curves;  // at most six
   for (int n = first; n <= last; n += 1 + (last - first) / 6) curves.push_back(n);
-  for (const auto example : examples) {
+  for (const auto example : newton_examples) {
     const int number = number_of(example);
     out += fmt::format(
         "\nset terminal svg size 1200,1280 background 'white' noenhanced font ',11'\nset output 'figure_5_{}.svg'\n"
@@ -357,14 +349,14 @@ std::string figures(const NewtonFindings& f) {
       "set multiplot layout 1,2\nunset logscale\nset yrange [0:1.05]\nset xtics auto\nset key below\n"
       "set xlabel 'N'\nset ylabel 'share of the steps h = 2^-10 .. 2^10 solved'\n" +
       fmt::format("set xrange [{}:{}]\n", first - 0.5, last + 0.5);
-  for (const auto example : examples) {
+  for (const auto example : newton_examples) {
     out += fmt::format("set title 'example {}'\nplot ", number_of(example));
-    for (std::size_t i = 0; i < std::size(all_methods); ++i) {
+    for (std::size_t i = 0; i < std::size(newton_methods); ++i) {
       out += fmt::format("{}'-' using 1:2 with linespoints pointtype 7 pointsize 0.5 title '{}'", i ? ", " : "",
-                         name_of(all_methods[i]));
+                         name_of(newton_methods[i]));
     }
     out += "\n";
-    for (const auto method : all_methods) {
+    for (const auto method : newton_methods) {
       for (const int n : sizes(f)) out += fmt::format("{},{:.6g}\n", n, solved_share(f, example, method, n));
       out += "e\n";
     }
@@ -401,11 +393,12 @@ std::string report(const NewtonFindings& f, bool pictures) {
       "z "
       "for each N and each of the two fields g: {} steps in all. Every single one is a line of `cells.csv`; "
       "[tables.md](tables.md) has the medians.\n\n"
-      "The paper iterates from y = z, at most 100 times, until |v - h g(y)| (spectral norm) is at most 1e-13. For "
-      "large "
-      "h that is below the round-off of h g(y), and whether an iteration meets it is chance; so *solved* means below "
+      "The paper iterates from y = z, at most {} times, until |v - h g(y)| (spectral norm) is at most 1e-13. For large "
+      "h "
+      "that is below the round-off of h g(y), and whether an iteration meets it is chance; so *solved* means below "
       "|v - h g(y)| <= 1e-13 (1 + h), at any iterate.\n\n",
-      f.command, f.study.smallest, f.study.largest, f.study.seeds, starts * std::size_t(most_log2h - least_log2h + 1));
+      f.command, f.study.smallest, f.study.largest, f.study.seeds, starts * std::size_t(most_log2h - least_log2h + 1),
+      paper_iterations);
   out +=
       "## Figures 5.1 and 5.2\n\n"
       "From top to bottom: the paper's three iterations, then ours. Blank: fewer than half of the random z "
@@ -415,18 +408,18 @@ std::string report(const NewtonFindings& f, bool pictures) {
   out +=
       "The paper reports that version 1 converges for larger steps than version 2 while N is small, that the "
       "fixed-point iteration does for small steps alone, and that for larger N the versions lose their advantage.\n\n";
-  out +=
+  out += fmt::format(
       "## What is solved\n\n"
-      "*Newton and path* is `solve_implicit_step`: version 1 for at most 15 iterations, then pseudo-arclength "
-      "continuation of v = h g(z exp v) from h = 0, h = sinh(s). *Damped* halves an update until |f| falls, at most "
-      "ten times, then refuses. *Ceres* is Levenberg-Marquardt in the coordinates v, at most 200 iterations.\n\n";
-  for (const auto example : examples)
+      "*Newton and path* is `solve_implicit_step`: version 1 for at most {} iterations, then pseudo-arclength "
+      "continuation of v = h g(z exp v) from h = 0, h = sinh(s). *Damped* halves an update until |f| falls, at most {} "
+      "times, then refuses. *Ceres* is Levenberg-Marquardt in the coordinates v, at most {} iterations.\n\n",
+      ArclengthOptions{}.plain_iterations, damping_halvings, ceres_iterations);
+  for (const auto example : newton_examples)
     out += fmt::format("**Example {}**\n\n{}\n", number_of(example), solved_table(f, example));
   out += picture("solved.svg", "share of steps solved") + "\n";
   out +=
       "Solutions beyond the principal logarithm (a spectral radius of v above pi) solve the step, but no iteration "
-      "that "
-      "takes logarithms can find them. Among the steps solved, by example and method:\n\n" +
+      "that takes logarithms can find them. Among the steps solved, by example and method:\n\n" +
       beyond_table(f) + "\n";
   out +=
       "## What it costs\n\n"
@@ -459,11 +452,8 @@ std::string report(const NewtonFindings& f, bool pictures) {
 
 }  // namespace
 
-double solved_share(const NewtonFindings& f, NewtonExample example, NewtonMethod method, int n) {
-  return share(
-      select(f,
-             [&](const NewtonCell& c) { return c.example == example && c.method == method && (n == 0 || c.n == n); }),
-      &NewtonCell::solved);
+double solved_share(const NewtonFindings& f, NewtonExample example, NewtonMethod method, std::optional<int> n) {
+  return share(select(f, example, method, n), &NewtonCell::solved);
 }
 
 std::vector<std::filesystem::path> write_newton_report(const NewtonFindings& f, const std::filesystem::path& folder,

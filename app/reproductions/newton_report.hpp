@@ -4,6 +4,7 @@
 #include "newton_on_lie_groups.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct NewtonFindings {
 };
 
 /// The share of steps that a method solved to |v - h g| <= 1e-13 (1 + h), over all N of the study or one of them.
-double solved_share(const NewtonFindings& findings, NewtonExample example, NewtonMethod method, int n = 0);
+double solved_share(const NewtonFindings& findings, NewtonExample example, NewtonMethod method,
+                    std::optional<int> n = {});
 
 /// report.md with its figures, tables.md, cells.csv, and what the figures are drawn from: all that `folder` can get.
 extern const std::vector<const char*> newton_report_files;
