@@ -88,7 +88,10 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
   recorder.observe(reported(system, point));
   for (const auto& step : path) {
     ++point.index;
-    if constexpr (HasTimeStep<Sys>) point.time = double(point.index) * system.h;
+    if constexpr (HasTimeStep<Sys>) {
+      point.time = double(point.index) * system.h;
+      point.step_size = system.h;
+    }
     point.step = step;
     point.configuration = system.groupoid.project(system.groupoid.compose(point.configuration, step.arrow));
     point.state = legendre_plus(system, step);

@@ -6,6 +6,7 @@
 #include "task.hpp"
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/stepped.hpp>
 #include <lagroid/core/two_sided.hpp>
 
 #include <algorithm>
@@ -50,9 +51,13 @@ template <DiscreteSystem Sys> class Recorder {
 
   /// `every` = 0 records nothing but the ledger and the endpoints.
   Recorder(const Sys& system, const Presentation<Sys>& presentation, long every, Observer<Sys> observer = nullptr)
+      : Recorder(system, presentation, system.quantities(), every, std::move(observer)) {}
+  /// With other quantities than the system's own.
+  Recorder(const Sys& system, const Presentation<Sys>& presentation, std::vector<Quantity<Sys>> quantities, long every,
+           Observer<Sys> observer = nullptr)
       : system_(system),
         presentation_(presentation),
-        quantities_(system.quantities()),
+        quantities_(std::move(quantities)),
         every_(every),
         observer_(std::move(observer)) {
     for (const auto& q : quantities_) {
@@ -76,27 +81,34 @@ template <DiscreteSystem Sys> class Recorder {
       const double size = q.size ? q.size(point) : norm(now_[i]);
       watches_[i].observe(now_[i].data(), size, noise * size);
     }
-    double residual = 0;
-    if (has_step) {
-      if constexpr (Sys::constraints > 0) {
-        const auto c = constraint_values(system_, point.step.arrow);
-        residual = c.allFinite() ? c.cwiseAbs().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
-        // The size of the constraints' terms changes slowly: looked at where a residual stands out.
-        if (!(residual <= largest_residual_) || point.index == 1) {
-          const auto d = two_sided(system_, point.step.arrow, point.step.multipliers);
-          constraint_size_ = std::max(
-              constraint_size_,
-              (d.constraint_target.cwiseAbs() * system_.groupoid.coordinate_scale(point.step.arrow)).maxCoeff());
-          largest_residual_ = residual;
-        }
-      }
-    }
+    const double residual = has_step ? watch_constraint(point.step, point.time - point.step_size, point.step_size) : 0;
     if (point.index == 0) initial_ = endpoint(point);
     if (point.index == 1) first_multipliers_ = list(point.step.multipliers);
     last_point_ = point;
     last_residual_ = residual;
     pending_ = every_ > 0 && point.index % every_ != 0;
     if (every_ > 0 && !pending_) record(point, residual);
+  }
+
+  /// The constraint residual of an arrow that starts at `start` and lasts `over`, for the ledger.
+  double watch_constraint(const Step<Sys>& step, double start, double over) {
+    if constexpr (Sys::constraints == 0) {
+      return 0;
+    } else {
+      if constexpr (HasTimeStep<Sys>) system_.h = over;
+      set_time(system_, start);
+      const auto c = constraint_values(system_, step.arrow);
+      const double residual = c.allFinite() ? c.cwiseAbs().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+      // The size of the constraints' terms changes slowly: looked at where a residual stands out.
+      if (!(residual <= largest_residual_) || constraint_size_ == 0) {
+        const auto d = two_sided(system_, step.arrow, step.multipliers);
+        constraint_size_ =
+            std::max(constraint_size_,
+                     (d.constraint_target.cwiseAbs() * system_.groupoid.coordinate_scale(step.arrow)).maxCoeff());
+        largest_residual_ = residual;
+      }
+      return residual;
+    }
   }
 
   /// Moves what was observed into the result.
@@ -204,7 +216,7 @@ template <DiscreteSystem Sys> class Recorder {
     }
   }
 
-  const Sys& system_;
+  Sys system_;
   const Presentation<Sys>& presentation_;
   std::vector<Quantity<Sys>> quantities_;
   std::vector<QuantityWatch> watches_;

@@ -1,5 +1,7 @@
 #include "simulation.hpp"
 
+#include <array>
+
 namespace lagroid::app {
 
 TimeGrid read_time(const Section& scene) {
@@ -8,17 +10,73 @@ TimeGrid read_time(const Section& scene) {
   TimeGrid grid;
   const bool has_duration = time.has("duration");
   const bool has_step = time.has("step");
+  constexpr double first_tried = 0.1;
   if (has_duration && has_step) time.fail("duration", "give step or duration, not both (steps goes with either)");
   grid.steps = time.integer("steps", 1, most);
-  grid.step = has_duration ? time.number("duration", positive) / double(grid.steps) : time.number("step", positive);
+  grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
+              : !has_step && time.has("accuracy") ? first_tried
+                                                  : time.number("step", positive);
   return grid;
 }
 
-StepperChoice read_stepper(const Section& solver) {
-  StepperChoice choice;
-  if (solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres") choice.method = StepMethod::ceres;
-  if (solver.has("max_iterations")) choice.options.max_iterations = int(solver.integer("max_iterations", 1, 100000));
-  choice.options.tolerance = solver.number_or("tolerance", 0, nonnegative);
+namespace {
+
+/// `order`, `method`: the composition of a fixed step.
+Composition read_composition(const Section& time) {
+  const long order = time.integer_or("order", 2, 2, 8);
+  if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6 or 8, got {}", order));
+  constexpr std::array defaults{compositions::single, compositions::suzuki, compositions::kahan_li_6,
+                                compositions::kahan_li_8};
+  const Composition& usual = defaults[std::size_t(order / 2 - 1)];
+  std::vector<std::string> names;
+  for (const auto& composition : compositions::all) names.emplace_back(composition.name);
+  const std::string name = time.choice_or("method", std::string(usual.name), names);
+  for (const auto& composition : compositions::all) {
+    if (composition.name != name) continue;
+    if (time.has("order") && composition.order != order)
+      time.fail("method", fmt::format("\"{}\" is of order {}, not {}; leave out order or method", name,
+                                      composition.order, order));
+    return composition;
+  }
+  return usual;
+}
+
+void read_stepper(const Section& solver, MarchOptions& options) {
+  if (solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres") options.method = StepMethod::ceres;
+  if (solver.has("max_iterations")) options.step.max_iterations = int(solver.integer("max_iterations", 1, 100000));
+  options.step.tolerance = solver.number_or("tolerance", 0, nonnegative);
+}
+
+}  // namespace
+
+MarchChoice read_march(const Section& scene, bool timed, bool has_time_scale) {
+  const Section time = scene.section("time", "step and steps, or duration and steps");
+  MarchChoice choice;
+  MarchOptions& options = choice.options;
+  const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled"});
+  const auto refuse = [&](std::string_view key, std::string_view what) {
+    time.fail(key, fmt::format("this system has no {}; use mode = \"fixed\"", what));
+  };
+  if (mode == "fixed") {
+    options.composition = read_composition(time);
+  } else if (mode == "adaptive") {
+    if (!timed) refuse("mode", "Lagrangian for every step size");
+    options.mode = TimeMode::adaptive;
+    const std::string instead = time.choice_or("without_root", "stop", {"stop", "constant", "controlled"});
+    if (instead == "controlled" && !has_time_scale) refuse("without_root", "time scale to control steps by");
+    options.without_root = instead == "stop"       ? WithoutRoot::stop
+                           : instead == "constant" ? WithoutRoot::constant
+                                                   : WithoutRoot::controlled;
+  } else {
+    if (!has_time_scale) refuse("mode", "time scale to control steps by");
+    options.mode = TimeMode::controlled;
+  }
+  if (time.has("accuracy")) {
+    choice.accuracy = time.number("accuracy", positive);
+    if (options.mode == TimeMode::fixed && options.composition.stages() > 1)
+      time.fail("accuracy", "chooses steps of order 2; give step, or leave out order and method");
+  }
+  read_stepper(scene.section_or_empty("solver"), options);
   return choice;
 }
 
@@ -40,6 +98,16 @@ std::string step_failure(const StepReport& report, long step, double time) {
           "{}: the step's matrix is singular, the system is not regular here; change the step or the state", where);
     case SolveStatus::not_finite:
       return fmt::format("{}: a number overflowed or became NaN; use a smaller step", where);
+    case SolveStatus::no_step:
+      return fmt::format(
+          "{}: no positive step size near the last keeps the energy (or follows the time scale); use another "
+          "quadrature or rotation, time.without_root = \"constant\", or mode = \"controlled\"",
+          where);
+    case SolveStatus::degenerate:
+      return fmt::format(
+          "{}: the discrete energy does not depend on the step size here, so it determines none; use mode = "
+          "\"fixed\" or \"controlled\", or another rotation",
+          where);
     case SolveStatus::not_converged:
       return fmt::format(
           "{}: no convergence after {} iterations (residual {:.3g}); use a smaller step or raise "
@@ -50,6 +118,11 @@ std::string step_failure(const StepReport& report, long step, double time) {
           "{}: the iteration stagnated at residual {:.3g}; no solution near this state, use a smaller step", where,
           report.residual);
   }
+}
+
+std::string without_root_note(long count, long steps, WithoutRoot instead) {
+  return fmt::format("{} of {} steps: no positive step size keeps the discrete energy; the size {} was taken", count,
+                     steps, instead == WithoutRoot::constant ? "of the first step" : "that the control gives");
 }
 
 }  // namespace lagroid::app

@@ -6,7 +6,10 @@
 #include "scene_reader.hpp"
 #include "task.hpp"
 
+#include <lagroid/core/discrete_energy.hpp>
 #include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/march.hpp>
+#include <lagroid/solvers/step_control.hpp>
 
 #include <fmt/format.h>
 
@@ -16,25 +19,28 @@
 
 namespace lagroid::app {
 
-/// [time]: two of step, steps, duration.
+/// [time]: two of step, steps, duration. A step of which only the accuracy is given is the first to be tried.
 struct TimeGrid {
   double step = 0;
   long steps = 0;
 };
 TimeGrid read_time(const Section& scene);
 
-/// [solver] of an initial-value run.
-struct StepperChoice {
-  StepMethod method = StepMethod::newton;
-  StepOptions options;
+/// How time goes on in an initial-value run: the rest of [time], and [solver].
+struct MarchChoice {
+  MarchOptions options;
+  double accuracy = 0;  ///< of the first step; 0: its size is given
 };
-StepperChoice read_stepper(const Section& solver);
+/// Refuses modes that the system does not have.
+MarchChoice read_march(const Section& scene, bool timed, bool has_time_scale);
 
 /// [output]: every n-th node is recorded (and the last); 0 when nothing is.
 long read_every(const Section& scene, const RunContext& context);
 
 /// What to say of a step that failed.
 std::string step_failure(const StepReport& report, long step, double time);
+/// What to say of steps whose size was not what the mode asks for.
+std::string without_root_note(long count, long steps, WithoutRoot instead);
 
 /// The point with its momentum made tangent to the object constraints, as it is reported.
 template <DiscreteSystem Sys> TrajectoryPoint<Sys> reported(const Sys& system, TrajectoryPoint<Sys> point) {
@@ -42,36 +48,70 @@ template <DiscreteSystem Sys> TrajectoryPoint<Sys> reported(const Sys& system, T
   return point;
 }
 
+/// What the ledger watches: the system's own quantities, and E_d where the steps keep it or vary.
+template <DiscreteSystem Sys> std::vector<Quantity<Sys>> watched(const Sys& system, const MarchOptions& options) {
+  auto all = system.quantities();
+  if constexpr (Timed<Sys>) {
+    if (options.mode == TimeMode::adaptive && !TimeDependent<Sys>) {
+      const bool kept = options.without_root == WithoutRoot::stop;
+      all.push_back(discrete_energy_quantity(system, kept ? Promise::conserved : Promise::bounded));
+    }
+  }
+  return all;
+}
+
+/// The presentation with the step sizes, where they vary: a series and a panel.
+template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys> p, const MarchOptions& options) {
+  if (options.mode == TimeMode::fixed) return p;
+  p.extras.push_back({{"step_size", {"h"}, "s", "step size of the arrow", true, {}},
+                      [](const TrajectoryPoint<Sys>& point, double* out) { *out = point.step_size; }});
+  p.panels.push_back({"step size", "t", "h", "t", {"h"}});
+  return p;
+}
+
 /// Runs the system; a step that fails ends the run with what was computed so far.
 template <DiscreteSystem Sys>
-RunResult simulate(const Sys& system, const Presentation<Sys>& presentation,
-                   const State<typename Sys::GroupoidType>& initial,
-                   const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const StepperChoice& choice,
+RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typename Sys::GroupoidType>& initial,
+                   const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const MarchChoice& choice,
                    long every, const RunContext& context, const Observer<Sys>& observer) {
   const auto start = std::chrono::steady_clock::now();
+  const Presentation<Sys> presentation = with_step_sizes(own, choice.options);
   RunResult result;
   result.steps_asked = steps;
-  Recorder<Sys> recorder(system, presentation, every, observer);
-  Integrator<Sys> integrator(system, initial, configuration, make_step_solver(system, choice.method, choice.options));
-  recorder.observe(reported(system, integrator.point()));
+  if (choice.accuracy > 0) {
+    const double h = step_for_accuracy(system, initial, choice.accuracy, choice.options);
+    if (h > 0) {
+      system.h = h;
+      result.notes.push_back(fmt::format("first step {:.6g} for time.accuracy = {:.3g}", h, choice.accuracy));
+    }
+  }
+  Recorder<Sys> recorder(system, presentation, watched(system, choice.options), every, observer);
+  const auto march = make_march(system, initial, configuration, choice.options);
+  const auto watch_stage = [&](const Step<Sys>& step, double from, double size) {
+    recorder.watch_constraint(step, from, size);
+  };
+  recorder.observe(reported(system, march->point()));
   {
     Progress progress(presentation.name, steps, context.progress);
     for (long k = 1; k <= steps; ++k) {
-      const StepReport report = integrator.advance();
+      const StepReport report = march->advance();
       result.iterations += report.iterations;
       result.ledger.most_iterations = std::max(result.ledger.most_iterations, report.iterations);
       if (!report.converged()) {
         result.status = std::string(to_string(report.status));
         result.residual = report.residual;
-        result.message = step_failure(report, k, integrator.point().time);
+        result.message = step_failure(report, k, march->point().time);
         break;
       }
       result.steps = k;
-      recorder.observe(reported(system, integrator.point()));
+      march->for_each_inner_stage(watch_stage);
+      recorder.observe(reported(system, march->point()));
       progress.update(k);
     }
   }
   recorder.finish(result);
+  if (const long count = march->without_root(); count > 0)
+    result.notes.push_back(without_root_note(count, result.steps, choice.options.without_root));
   result.ledger.mean_iterations = result.steps > 0 ? double(result.iterations) / double(result.steps) : 0;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
@@ -84,7 +124,7 @@ Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys&
                      const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                      const ArrowOf<typename Sys::GroupoidType>& configuration) {
   const long steps = read_time(scene).steps;
-  const StepperChoice choice = read_stepper(scene.section_or_empty("solver"));
+  const MarchChoice choice = read_march(scene, Timed<Sys>, HasTimeScale<Sys>);
   const long every = read_every(scene, context);
   scene.finish();
   return {system, [=](const Observer<Sys>& observer) {

@@ -20,10 +20,12 @@ enum class Promise {
 ///
 /// `configuration` is the arrow g_0 g_1 ... g_k whose target is the current object, g_0 being the initial
 /// configuration (for SO(3) the attitude A_k = A_0 g_1 ... g_k, for a pair groupoid (q_0, q_k)).
-/// `step` is the arrow that led here, meaningless at k = 0.
+/// `step` is the arrow that led here, over `step_size`; both are meaningless at k = 0. Where a step is composed of
+/// several, it is the last of them.
 template <class Sys> struct TrajectoryPoint {
   long index = 0;
   double time = 0;
+  double step_size = 0;
   State<typename Sys::GroupoidType> state;
   ArrowOf<typename Sys::GroupoidType> configuration;
   Step<Sys> step;

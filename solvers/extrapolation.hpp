@@ -15,6 +15,7 @@ namespace lagroid {
 template <int Size, int MaxDegree> class Extrapolation {
  public:
   void clear() { known_ = 0; }
+  bool empty() const { return known_ == 0; }
 
   void push(const Vector<double, Size>& x) {
     newest_ = newest_ == 0 ? length - 1 : newest_ - 1;

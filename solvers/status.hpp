@@ -14,6 +14,8 @@ enum class SolveStatus {
   not_finite,       ///< a NaN or an infinity appeared
   not_converged,    ///< the iteration limit was reached
   ill_conditioned,  ///< near a solution, but the method's own arithmetic cannot come closer; another method can
+  no_step,          ///< no positive step size does what is asked of it
+  degenerate,       ///< what is to determine the step size does not depend on it
 };
 
 constexpr std::string_view to_string(SolveStatus status) {
@@ -32,6 +34,10 @@ constexpr std::string_view to_string(SolveStatus status) {
       return "not_converged";
     case SolveStatus::ill_conditioned:
       return "ill_conditioned";
+    case SolveStatus::no_step:
+      return "no_step";
+    case SolveStatus::degenerate:
+      return "degenerate";
   }
   return "unknown";
 }

@@ -49,19 +49,27 @@ template <class Derived, class G, int Constraints = 0> class GroupControl : publ
   Retraction map = Retraction::exponential;  ///< tau
 
   /// xi = tau^{-1}(g) / h.
-  template <class S> Algebra<S> velocity(const Element<S>& g) const {
+  template <class S, class T> Algebra<S> velocity(const Element<S>& g, const T& step) const {
     const Algebra<S> v = map == Retraction::exponential ? G::log(g) : G::cayley_inverse(g);
-    return v * (1 / h);
+    return v * (1 / step);
   }
+  template <class S> Algebra<S> velocity(const Element<S>& g) const { return velocity(g, h); }
   /// tau(h xi).
   Element<double> arrow(const Algebra<double>& xi) const {
     const Algebra<double> v = h * xi;
     return map == Retraction::exponential ? G::exp(v) : G::cayley(v);
   }
 
-  template <class S> S lagrangian(const Element<S>& g) const { return self().l(velocity(g)) * h; }
+  template <class S, class T> S lagrangian(const Element<S>& g, const T& step) const {
+    return self().l(velocity(g, step)) * step;
+  }
+  template <class S> S lagrangian(const Element<S>& g) const { return lagrangian(g, h); }
+  template <class S, class T>
+  Vector<S, Constraints> constraint(const Element<S>& g, const T& step) const requires(Constraints > 0) {
+    return self().psi(velocity(g, step)) * step;
+  }
   template <class S> Vector<S, Constraints> constraint(const Element<S>& g) const requires(Constraints > 0) {
-    return self().psi(velocity(g)) * h;
+    return constraint(g, h);
   }
 
   /// <mu, xi> - l(xi) at xi = xi(mu): the Hamiltonian of the continuous problem (Pontryagin).

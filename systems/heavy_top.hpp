@@ -18,11 +18,12 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   Vector<double, 3> weight{0, 0, 1};     ///< N m
   RotationMap rotation = RotationMap::exponential;
 
-  template <class S> S lagrangian(const Arrow<S>& g) const {
+  template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const Vector<S, 3> verticals = g.point + groupoid.target(g);
-    return rotational_action(g.element, inertia, h, rotation) -
-           (verticals(0) * weight(0) + verticals(1) * weight(1) + verticals(2) * weight(2)) * (0.5 * h);
+    return rotational_action(g.element, inertia, step, rotation) -
+           (verticals(0) * weight(0) + verticals(1) * weight(1) + verticals(2) * weight(2)) * (0.5 * step);
   }
+  template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
 
   /// M.I^{-1} M / 2 + w.v.
   double energy(const State<GroupoidType>& s) const {
@@ -35,6 +36,14 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   /// Kovalevskaya's integral |w^2 - c v / I3|^2 of the continuous top, with the complex numbers w = w1 + i w2 of the
   /// angular velocity, v = v1 + i v2 and c = weight1 + i weight2.
   double kovalevskaya_integral(const State<GroupoidType>& s) const;
+
+  /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = I^{-1} M, w0^2 = |weight| / max I.
+  double time_scale_rate(const State<GroupoidType>& s) const {
+    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
+    const Vector<double, 3> torque = s.momentum.cross(w) + s.object.cross(weight);
+    const double size = weight.norm() / inertia.maxCoeff() + w.squaredNorm();
+    return size > 0 ? -w.dot(torque.cwiseQuotient(inertia)) / size : 0;
+  }
 
   /// The rotation by h I^{-1} M, exact to second order in h.
   Step<HeavyTop> first_guess(const State<GroupoidType>& s) const {

@@ -8,18 +8,24 @@
 #include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 
 #define LAGROID_STEPS(prefix, Sys)                                                                                     \
   prefix GradientsOf<Sys> automatic_gradients(const Sys&, const ArrowOf<Sys::GroupoidType>&, const Sys::Multipliers&); \
   prefix TwoSidedOf<Sys> automatic_two_sided(const Sys&, const ArrowOf<Sys::GroupoidType>&, const Sys::Multipliers&);  \
   prefix class NewtonStep<Sys>;                                                                                        \
+  prefix class Stepper<Sys>;                                                                                           \
+  prefix class Walk<Sys>;                                                                                              \
   prefix class Integrator<Sys>
 
 #define LAGROID_SOLVERS(prefix, Sys)                                                                                \
   prefix SecondDerivativesOf<Sys> second_derivatives(const Sys&, const ArrowOf<Sys::GroupoidType>&,                 \
                                                      const Sys::Multipliers&);                                      \
   prefix std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys&, StepMethod, StepOptions);                    \
+  prefix std::unique_ptr<March<Sys>> make_march(const Sys&, const State<Sys::GroupoidType>&,                        \
+                                                const ArrowOf<Sys::GroupoidType>&, const MarchOptions&);            \
+  prefix double step_for_accuracy(const Sys&, const State<Sys::GroupoidType>&, double, const MarchOptions&);        \
   prefix std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod, BoundaryOptions, Seek);          \
   prefix MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>&, const BoundaryProblem<Sys>&, std::size_t, \
                                               const MultistartOptions&)

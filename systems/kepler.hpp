@@ -19,6 +19,11 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
     return S(-strength) / sqrt(q.squaredNorm());
   }
 
+  /// Of sigma = |q|^(3/2), Kepler's third law.
+  double time_scale_rate(const State<Pair<2>>& s) const {
+    return 1.5 * s.object.dot(s.momentum) / s.object.squaredNorm();
+  }
+
   /// Rotation about the centre.
   std::vector<Symmetry<Kepler>> symmetries() const {
     return {{"angular momentum", [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); }}};

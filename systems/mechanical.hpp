@@ -21,14 +21,15 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   double h = 0.01;
   Quadrature quadrature = Quadrature::midpoint;
 
-  template <class S> S lagrangian(const PairArrow<S, N>& g) const {
+  template <class S, class T> S lagrangian(const PairArrow<S, N>& g, const T& step) const {
     const Vector<S, N> dq = g.target - g.source;
-    const S kinetic = dq.squaredNorm() * (0.5 * self().mass() / h);
+    const S kinetic = dq.squaredNorm() * (0.5 * self().mass() / step);
     if (quadrature == Quadrature::midpoint) {
-      return kinetic - self().potential(Vector<S, N>((g.source + g.target) * 0.5)) * h;
+      return kinetic - self().potential(Vector<S, N>((g.source + g.target) * 0.5)) * step;
     }
-    return kinetic - (self().potential(g.source) + self().potential(g.target)) * (0.5 * h);
+    return kinetic - (self().potential(g.source) + self().potential(g.target)) * (0.5 * step);
   }
+  template <class S> S lagrangian(const PairArrow<S, N>& g) const { return lagrangian(g, h); }
 
   /// The continuous solution after time t: m q' = p, p' = -dU/dq (+ constraint force in the derived class).
   State<Pair<N>> reference(const State<Pair<N>>& start, double t) const requires(ObjectConstraints == 0) {

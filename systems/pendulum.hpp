@@ -22,6 +22,13 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
     return cos(q(0)) * (-bob_mass * gravity * length);
   }
 
+  /// Of sigma = (w0^2 + w^2)^(-1/2), w = q', w0^2 = |g| / l.
+  double time_scale_rate(const State<Pair<1>>& s) const {
+    using std::sin;
+    const double w = s.momentum(0) / mass();
+    return w * gravity / length * sin(s.object(0)) / (std::abs(gravity) / length + w * w);
+  }
+
   std::vector<Quantity<Pendulum>> quantities() const { return {energy_quantity()}; }
 };
 

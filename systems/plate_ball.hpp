@@ -37,19 +37,21 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   double spin = 0;        ///< c, the prescribed rate about the vertical, rad/s
   RotationForm rotation = RotationForm::trace;
 
-  template <class S> S lagrangian(const Arrow<S>& g) const {
+  template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const auto& [move, turn] = g;
-    return Vector<S, 2>(move.target - move.source).squaredNorm() * (0.5 / h);
+    return Vector<S, 2>(move.target - move.source).squaredNorm() * (0.5 / step);
   }
+  template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
 
-  template <class S> Vector<S, 3> constraint(const Arrow<S>& g) const {
+  template <class S, class T> Vector<S, 3> constraint(const Arrow<S>& g, const T& step) const {
     const auto& [move, turn] = g;
     const Vector<S, 2> d = move.target - move.source;
     const Vector<S, 2> middle = (move.source + move.target) * 0.5;
     const Vector<S, 3> w = rotation_vector(turn);
-    return {d(1) + w(0) * radius - middle(0) * (h * plate_rate), d(0) - w(1) * radius + middle(1) * (h * plate_rate),
-            S(h * spin) - w(2)};
+    return {d(1) + w(0) * radius - middle(0) * (step * plate_rate),
+            d(0) - w(1) * radius + middle(1) * (step * plate_rate), S(step * spin) - w(2)};
   }
+  template <class S> Vector<S, 3> constraint(const Arrow<S>& g) const { return constraint(g, h); }
 
   /// w(g) in the chosen form.
   template <class S> Vector<S, 3> rotation_vector(const Matrix<S, 3, 3>& turn) const {
@@ -74,6 +76,9 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// lambda = (M1/r, -M2/r, -M3), u = px - l2 - h Omega l1/2, v = py - l1 + h Omega l2/2: exact as h -> 0.
   Step<PlateBall> first_guess(const State<GroupoidType>& s) const;
 
+  /// Of sigma = 1 / |omega|, omega the angular velocity of the continuous extremal.
+  double time_scale_rate(const State<GroupoidType>& s) const;
+
   /// Why no trajectory of this system exists, or nothing: |c h| at or beyond the range of w3 in the chosen form, or
   /// parameters that make no sense.
   std::optional<std::string> infeasible() const;
@@ -83,9 +88,10 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// proportion to time, to end where it must. A starting guess, not a solution.
   Arrows path(const ArrowOf<GroupoidType>& boundary, long steps, const Eigen::Matrix2Xd& modes) const;
 
-  /// E = (u^2 + v^2)/2 + Omega (l1 x - l2 y) - c l3 on a step, (x, y) its midpoint: the integral of the continuous
-  /// problem (Pontryagin).
-  double energy(const Step<PlateBall>& step) const;
+  /// E = (u^2 + v^2)/2 + Omega (l1 x - l2 y) - c l3 on a step over the time h, (x, y) its midpoint: the integral of the
+  /// continuous problem (Pontryagin).
+  double energy(const Step<PlateBall>& step, double over) const;
+  double energy(const Step<PlateBall>& step) const { return energy(step, h); }
 
   /// The continuous extremal (Pontryagin) after time t: with l1 = M1/r, l2 = -M2/r,
   ///     x' = px - l2, y' = py - l1, px' = -Omega l1, py' = Omega l2, M' = M x omega, A' = A hat(omega).

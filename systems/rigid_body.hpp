@@ -14,13 +14,23 @@ struct RigidBody : System<RigidBody, SO3> {
   Vector<double, 3> inertia{1, 2, 3};  ///< principal moments, kg m^2
   RotationMap rotation = RotationMap::exponential;
 
-  template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const { return rotational_action(g, inertia, h, rotation); }
+  template <class S, class T> S lagrangian(const Matrix<S, 3, 3>& g, const T& step) const {
+    return rotational_action(g, inertia, step, rotation);
+  }
+  template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const { return lagrangian(g, h); }
 
   /// M.I^{-1} M / 2.
   double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
 
   /// The continuous solution after time t: M' = M x I^{-1} M, A' = A hat(I^{-1} M). Returns M and updates `attitude`.
   State<SO3> reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const;
+
+  /// Of sigma = 1 / |w|, w = I^{-1} M.
+  double time_scale_rate(const State<SO3>& s) const {
+    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
+    const double size = w.squaredNorm();
+    return size > 0 ? -w.dot(s.momentum.cross(w).cwiseQuotient(inertia)) / size : 0;
+  }
 
   /// The rotation by h I^{-1} M, exact to second order in h.
   Step<RigidBody> first_guess(const State<SO3>& s) const {

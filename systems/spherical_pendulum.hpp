@@ -25,6 +25,12 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   /// The continuous solution after time t: p' = -m g e3 + s q with s such that the rod keeps its length.
   State<Pair<3>> reference(const State<Pair<3>>& start, double t) const;
 
+  /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = p / (m l) the angular velocity, w0^2 = |g| / l.
+  double time_scale_rate(const State<Pair<3>>& s) const {
+    const double unit = bob_mass * length;
+    return bob_mass * gravity * s.momentum(2) / (std::abs(gravity) / length * unit * unit + s.momentum.squaredNorm());
+  }
+
   /// Rotation about the vertical.
   std::vector<Symmetry<SphericalPendulum>> symmetries() const {
     return {

@@ -38,7 +38,7 @@ Task<AttitudeControl> read_attitude_control(const Section& scene, const RunConte
   p.extras = {{{"controls", {"w1", "w2", "w3"}, "rad/s", "angular velocity over the arrow", true, {}},
                [system](const Point& point, double* out) {
                  Eigen::Map<Vector<double, 3>> w(out);
-                 w = system.velocity(point.step.arrow);
+                 w = system.velocity(point.step.arrow, point.step_size);
                }}};
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"},
                    {"momentum", "body momentum M = W w + lambda n"},

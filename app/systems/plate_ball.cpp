@@ -27,10 +27,10 @@ Presentation<PlateBall> presentation(const PlateBall& system) {
   };
   p.attitude_of = [](const Point& point) { return quaternion_of(std::get<1>(point.configuration)); };
   p.extras = {{{"controls", {"u", "v"}, "m/s", "velocity of the contact point over the arrow", true, {}},
-               [h = system.h](const Point& point, double* out) {
+               [](const Point& point, double* out) {
                  const auto& move = std::get<0>(point.step.arrow);
                  Eigen::Map<Vector<double, 2>> u(out);
-                 u = (move.target - move.source) / h;
+                 u = (move.target - move.source) / point.step_size;
                }}};
   p.panels = {{"path of the contact point", "x", "y", "x", {"y"}, true},
               {"controls", "t", "u, v", "t", {"u", "v"}},

@@ -52,9 +52,10 @@ Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context) {
   p.multipliers = {"lambda1", "lambda2"};
   p.position_of = position_of;
   const Unicycle system = read_system(scene);
-  p.extras = {
-      {{"controls", {"w"}, "rad/s", "turning rate over the arrow", true, {}},
-       [system](const TrajectoryPoint<Unicycle>& point, double* out) { *out = system.velocity(point.step.arrow)(0); }}};
+  p.extras = {{{"controls", {"w"}, "rad/s", "turning rate over the arrow", true, {}},
+               [system](const TrajectoryPoint<Unicycle>& point, double* out) {
+                 *out = system.velocity(point.step.arrow, point.step_size)(0);
+               }}};
   p.conventions = {{"position", "pose A_k = A_{k-1} g_k: x, y and the angle from the x axis to where it rolls"},
                    {"momentum", "body momentum: M = w and the force p ahead and to the left"},
                    {"multipliers", "sign of L + <lambda, phi>, phi = h (v1 - speed, v2)"}};

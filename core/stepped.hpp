@@ -1,0 +1,75 @@
+#pragma once
+/// Systems known for every step size, and systems that depend on time.
+
+#include <lagroid/core/system.hpp>
+
+namespace lagroid {
+
+/// A system that also writes, with the step size as an argument of any scalar,
+///
+///     S lagrangian(const Arrow<S>& g, const T& step) const
+///     Vector<S, ArrowConstraints> constraint(const Arrow<S>& g, const T& step) const      if there are any
+///
+/// equal to lagrangian(g) and constraint(g) at step = h. `T` is double or S. Negative steps run backwards; a
+/// discretisation is *self-adjoint*, hence of even order, when L(g^{-1}, -h) = -L(g, h) and phi(g^{-1}, -h) =
+/// -phi(g, h) up to the sign of each component.
+template <class Sys>
+concept StepDependent = HasTimeStep<Sys> &&
+    requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double step) {
+  { system.lagrangian(g, step) } -> std::convertible_to<double>;
+  requires Sys::arrow_constraints == 0 || requires {
+    { system.constraint(g, step) } -> std::convertible_to<Vector<double, Sys::arrow_constraints>>;
+  };
+};
+
+/// A system whose Lagrangian depends on the time at which an arrow starts: a driven motion. It writes
+///
+///     S lagrangian(const Arrow<S>& g, const T& start, const T& step) const
+///     Vector<S, ArrowConstraints> constraint(const Arrow<S>& g, const T& start, const T& step) const
+///
+/// and holds the start of the next arrow in a member `double time`, at which lagrangian(g) and constraint(g) are taken.
+template <class Sys>
+concept TimeDependent = HasTimeStep<Sys> &&
+    requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double start, double step) {
+  { system.lagrangian(g, start, step) } -> std::convertible_to<double>;
+  requires Sys::arrow_constraints == 0 || requires {
+    { system.constraint(g, start, step) } -> std::convertible_to<Vector<double, Sys::arrow_constraints>>;
+  };
+  system.time = 1.0;
+};
+
+/// The time at which a system's next arrow starts: zero where it depends on none.
+template <class Sys> double start_time(const Sys& system) {
+  if constexpr (TimeDependent<Sys>) {
+    return system.time;
+  } else {
+    return 0;
+  }
+}
+template <class Sys> void set_time(Sys& system, double time) {
+  if constexpr (TimeDependent<Sys>) system.time = time;
+}
+
+/// What can be extended by time.
+template <class Sys>
+concept Timed = DiscreteSystem<Sys> &&(StepDependent<Sys> || TimeDependent<Sys>);
+
+/// L over a step, and phi, of a system of either kind.
+template <Timed Sys, class A, class T>
+auto lagrangian_over(const Sys& system, const A& g, const T& start, const T& step) {
+  if constexpr (TimeDependent<Sys>) {
+    return system.lagrangian(g, start, step);
+  } else {
+    return system.lagrangian(g, step);
+  }
+}
+template <Timed Sys, class A, class T>
+auto constraint_over(const Sys& system, const A& g, const T& start, const T& step) {
+  if constexpr (TimeDependent<Sys>) {
+    return system.constraint(g, start, step);
+  } else {
+    return system.constraint(g, step);
+  }
+}
+
+}  // namespace lagroid

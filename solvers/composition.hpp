@@ -1,0 +1,100 @@
+#pragma once
+/// Steps of higher order, composed of steps of different length.
+
+#include <lagroid/core/stepped.hpp>
+#include <lagroid/solvers/compositions.hpp>
+#include <lagroid/solvers/method.hpp>
+#include <lagroid/solvers/stepper.hpp>
+#include <lagroid/solvers/walk.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// Psi_h = Phi_{gamma_s h} o ... o Phi_{gamma_1 h}, Phi the step of a discrete Lagrangian system whose discretisation
+/// is self-adjoint (see StepDependent). Psi conserves the momenta that Phi conserves, and is Poisson. With object
+/// constraints the state at the end of a step is to be projected (`tangent_momentum`): what a momentum has across
+/// C^{-1}(0) the next multiplier takes up.
+///
+/// Stages remember their own predecessors: each is continued from the same stage of earlier steps. A step one of whose
+/// stages does not converge leaves everything as it was.
+template <DiscreteSystem Sys> class CompositionIntegrator {
+ public:
+  using G = typename Sys::GroupoidType;
+  using MakeSolver = std::function<std::unique_ptr<StepSolver<Sys>>()>;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint).
+  CompositionIntegrator(const Sys& system, const State<G>& initial, const ArrowOf<G>& configuration,
+                        const Composition& composition, const MakeSolver& make_solver)
+      : h_(system.h),
+        start_(start_time(system)),
+        composition_(composition),
+        walk_(system.groupoid, initial, configuration, start_) {
+    for (const double fraction : composition.coefficients) {
+      Sys part = system;
+      part.h = fraction * h_;
+      stages_.push_back({Stepper<Sys>(part, make_solver()), {}});
+    }
+  }
+
+  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  MethodTraits traits() const { return {std::string(composition_.name), composition_.order, true, true, false}; }
+
+  /// The arrows of the last step but the last of them, each with its start and its size.
+  template <class Visit> void for_each_inner_stage(const Visit& visit) const {
+    double start = point().time - h_;
+    for (std::size_t i = 0; i + 1 < stages_.size(); ++i) {
+      const double size = stages_[i].stepper.system().h;
+      visit(stages_[i].last, start, size);
+      start += size;
+    }
+  }
+
+  StepReport advance();
+
+ private:
+  struct Stage {
+    Stepper<Sys> stepper;
+    Step<Sys> last;
+  };
+
+  double h_;
+  double start_;
+  Composition composition_;
+  std::vector<Stage> stages_;
+  Walk<Sys> walk_;
+};
+
+/// The report is that of the worst stage; iterations are those of all.
+template <DiscreteSystem Sys> StepReport CompositionIntegrator<Sys>::advance() {
+  const Walk<Sys> before = walk_;
+  StepReport report;
+  int iterations = 0;
+  double time = point().time;
+  for (auto& stage : stages_) {
+    StepSolution<Sys> solution;
+    set_time(stage.stepper.system(), time);
+    const StepReport found = stage.stepper.solve(point().state, solution);
+    iterations += found.iterations;
+    if (!found.converged()) {
+      walk_ = before;
+      for (auto& each : stages_) each.stepper.forget();
+      report = found;
+      report.iterations = iterations;
+      return report;
+    }
+    if (!report.converged() || found.excess > report.excess) report = found;
+    walk_.join(stage.stepper.system().groupoid, solution);
+    stage.last = solution.step;
+    time += stage.stepper.system().h;
+  }
+  walk_.arrive_at(start_ + double(point().index + 1) * h_, stages_.back().stepper.system().h);
+  report.iterations = iterations;
+  return report;
+}
+
+}  // namespace lagroid

@@ -1,0 +1,66 @@
+#pragma once
+/// Initial-value runs by a method chosen at run time.
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/core/stepped.hpp>
+#include <lagroid/solvers/compositions.hpp>
+#include <lagroid/solvers/method.hpp>
+#include <lagroid/solvers/step_solver.hpp>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace lagroid {
+
+/// How time goes on.
+enum class TimeMode {
+  fixed,       ///< by equal steps, each perhaps composed of several (CompositionIntegrator)
+  adaptive,    ///< by steps that keep the discrete energy (AdaptiveIntegrator)
+  controlled,  ///< by steps in proportion to the system's time scale, reversibly (ControlledIntegrator)
+};
+
+/// What becomes of an adaptive step whose energy equation has no root.
+enum class WithoutRoot {
+  stop,        ///< the march ends there, with a typed status
+  constant,    ///< that step has the size of the first
+  controlled,  ///< that step has the size a StepController gives; for systems with a time scale
+};
+
+struct MarchOptions {
+  TimeMode mode = TimeMode::fixed;
+  Composition composition = compositions::single;  ///< of fixed steps
+  WithoutRoot without_root = WithoutRoot::stop;    ///< of adaptive ones
+  StepMethod method = StepMethod::newton;
+  StepOptions step;
+};
+
+/// A trajectory in the making. A step that does not converge leaves everything as it was.
+template <DiscreteSystem Sys> class March {
+ public:
+  virtual ~March() = default;
+  virtual StepReport advance() = 0;
+  virtual const TrajectoryPoint<Sys>& point() const = 0;
+  virtual MethodTraits traits() const = 0;
+  /// The arrows before the last that make up the last step, where there are any: each with its start and its size.
+  using Visit = std::function<void(const Step<Sys>&, double start, double size)>;
+  virtual void for_each_inner_stage(const Visit&) const {}
+  /// Steps so far whose size was not what the mode asks for.
+  virtual long without_root() const { return 0; }
+};
+
+/// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one
+/// with a time scale for controlled steps (throws std::invalid_argument). Include `march_methods.hpp` for a system of
+/// your own; those of `systems/` are compiled.
+template <DiscreteSystem Sys>
+std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,
+                                       const ArrowOf<typename Sys::GroupoidType>& configuration,
+                                       const MarchOptions& options);
+
+/// The step size at which one step and two of half its size differ, relative to the motion over the step, by
+/// `accuracy`; searched from system.h. Zero where no step from the state could be solved.
+template <DiscreteSystem Sys>
+double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidType>& initial, double accuracy,
+                         const MarchOptions& options);
+
+}  // namespace lagroid

@@ -1,0 +1,110 @@
+#pragma once
+/// The marches that a user can name.
+
+#include <lagroid/solvers/adaptive.hpp>
+#include <lagroid/solvers/composition.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/march.hpp>
+#include <lagroid/solvers/step_control.hpp>
+#include <lagroid/solvers/step_methods.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace lagroid {
+
+namespace detail {
+
+/// Any integrator, behind the interface.
+template <DiscreteSystem Sys, class Integrating> class MarchOf final : public March<Sys> {
+ public:
+  template <class... As> explicit MarchOf(As&&... arguments) : integrator_(std::forward<As>(arguments)...) {}
+
+  StepReport advance() override { return integrator_.advance(); }
+  const TrajectoryPoint<Sys>& point() const override { return integrator_.point(); }
+  MethodTraits traits() const override { return integrator_.traits(); }
+  void for_each_inner_stage(const typename March<Sys>::Visit& visit) const override {
+    if constexpr (requires { integrator_.for_each_inner_stage(visit); }) integrator_.for_each_inner_stage(visit);
+  }
+  long without_root() const override {
+    if constexpr (requires { integrator_.without_root(); }) {
+      return integrator_.without_root();
+    } else {
+      return 0;
+    }
+  }
+
+ private:
+  Integrating integrator_;
+};
+
+}  // namespace detail
+
+template <DiscreteSystem Sys>
+std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,
+                                       const ArrowOf<typename Sys::GroupoidType>& configuration,
+                                       const MarchOptions& options) {
+  const auto solver = [&] { return make_step_solver(system, options.method, options.step); };
+  if constexpr (Timed<Sys>) {
+    if (options.mode == TimeMode::adaptive) {
+      if (options.without_root == WithoutRoot::controlled && !HasTimeScale<Sys>)
+        throw std::invalid_argument("controlled steps need a system with time_scale_rate");
+      return std::make_unique<detail::MarchOf<Sys, AdaptiveIntegrator<Sys>>>(
+          system, initial, configuration, solver(),
+          make_step_solver(FreeTime<Sys>(system), options.method, options.step),
+          AdaptiveOptions{.without_root = options.without_root});
+    }
+    if constexpr (HasTimeScale<Sys>)
+      if (options.mode == TimeMode::controlled)
+        return std::make_unique<detail::MarchOf<Sys, ControlledIntegrator<Sys>>>(system, initial, configuration,
+                                                                                 solver());
+  }
+  if (options.mode != TimeMode::fixed)
+    throw std::invalid_argument(options.mode == TimeMode::adaptive
+                                    ? "adaptive steps need a system with lagrangian(g, step)"
+                                    : "controlled steps need a system with time_scale_rate");
+  if constexpr (HasTimeStep<Sys>)
+    if (options.composition.stages() > 1)
+      return std::make_unique<detail::MarchOf<Sys, CompositionIntegrator<Sys>>>(system, initial, configuration,
+                                                                                options.composition, solver);
+  return std::make_unique<detail::MarchOf<Sys, Integrator<Sys>>>(system, initial, configuration, solver());
+}
+
+template <DiscreteSystem Sys>
+double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidType>& initial, double accuracy,
+                         const MarchOptions& options) {
+  using G = typename Sys::GroupoidType;
+  const G& groupoid = system.groupoid;
+  const auto error = [&](double h) {
+    const auto unit = groupoid.unit(initial.object);
+    Sys whole = system;
+    whole.h = h;
+    Sys half = system;
+    half.h = 0.5 * h;
+    Integrator<Sys> once(whole, initial, unit, make_step_solver(whole, options.method, options.step));
+    Integrator<Sys> twice(half, initial, unit, make_step_solver(half, options.method, options.step));
+    if (!once.advance().converged() || !twice.advance().converged() || !twice.advance().converged())
+      return std::numeric_limits<double>::infinity();
+    const auto& a = once.point();
+    const auto& b = twice.point();
+    const AlgebroidVector<G> between =
+        groupoid.tau_inverse(groupoid.multiply(groupoid.inverse(a.configuration), b.configuration));
+    const AlgebroidVector<G> moved = groupoid.tau_inverse(b.configuration);
+    return std::max(between.norm() / moved.norm(),
+                    (a.state.momentum - b.state.momentum).norm() / b.state.momentum.norm());
+  };
+  constexpr int order = 3;  // of the local error of a step of order two
+  constexpr double close = 1.1;
+  double h = system.h;
+  for (int trial = 0; trial < 40; ++trial) {
+    const double at = error(h);
+    const double factor = std::isfinite(at) ? std::clamp(std::pow(accuracy / at, 1.0 / order), 0.1, 4.0) : 0.25;
+    if (factor < close && factor > 1 / close) return h * factor;
+    h *= factor;
+  }
+  return 0;
+}
+
+}  // namespace lagroid

@@ -1,0 +1,81 @@
+#pragma once
+/// Reversible control of the step size.
+
+#include <lagroid/core/stepped.hpp>
+#include <lagroid/solvers/method.hpp>
+#include <lagroid/solvers/stepper.hpp>
+#include <lagroid/solvers/walk.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace lagroid {
+
+/// A system that knows how fast it moves: d log sigma / dt along its motion, where sigma(q, mu) is a time in which
+/// little changes and to which the step is to be proportional. sigma must be the same, its rate the opposite, when the
+/// motion is reversed.
+template <class Sys>
+concept HasTimeScale = requires(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  { system.time_scale_rate(state) } -> std::convertible_to<double>;
+};
+
+/// The integrating controller of Hairer and Soderlind (SIAM J. Sci. Comput. 26, 2005; Hairer, Lubich, Wanner VIII.3.2):
+/// a density rho of steps with
+///
+///     rho_{k+1/2} = rho_{k-1/2} - epsilon (d log sigma / dt)(z_k),    h_{k+1/2} = epsilon / rho_{k+1/2},
+///
+/// so that h follows sigma(z(t)) without evaluating it. The steps are those of a symmetric splitting of (z, rho), hence
+/// reversible when the method is symmetric; they are not symplectic.
+class StepController {
+ public:
+  /// `first_step` is the step at the start, up to the change over its first half; `rate` is that of the first state.
+  StepController(double first_step, double rate) : epsilon_(first_step), density_(1 - 0.5 * first_step * rate) {}
+
+  /// The step from the present state; not positive where the motion changes too fast for this epsilon.
+  double step() const { return epsilon_ / density_; }
+  /// Moves on to a state with this rate.
+  void pass(double rate) { density_ -= epsilon_ * rate; }
+
+ private:
+  double epsilon_;
+  double density_;
+};
+
+/// Marches with steps from a StepController. A step that does not converge leaves everything as it was.
+template <Timed Sys>
+requires HasTimeScale<Sys>
+class ControlledIntegrator {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint); `system.h` the first step.
+  ControlledIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
+                       std::unique_ptr<StepSolver<Sys>> solver)
+      : stepper_(std::move(system), std::move(solver)),
+        walk_(stepper_.system().groupoid, initial, configuration, start_time(stepper_.system())),
+        controller_(stepper_.system().h, stepper_.system().time_scale_rate(initial)) {}
+
+  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  static MethodTraits traits() { return {"controlled", 2, true, false, false}; }
+
+  StepReport advance() {
+    Sys& system = stepper_.system();
+    system.h = controller_.step();
+    if (!(system.h > 0)) return {SolveStatus::no_step};
+    set_time(system, point().time);
+    StepSolution<Sys> solution;
+    const StepReport report = stepper_.solve(point().state, solution);
+    if (!report.converged()) return report;
+    walk_.join(system.groupoid, solution);
+    walk_.arrive(system.h);
+    controller_.pass(system.time_scale_rate(point().state));
+    return report;
+  }
+
+ private:
+  Stepper<Sys> stepper_;
+  Walk<Sys> walk_;
+  StepController controller_;
+};
+
+}  // namespace lagroid
