@@ -1,6 +1,7 @@
 #pragma once
 /// Steps of higher order, composed of steps of different length.
 
+#include <lagroid/core/adjoint.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/compositions.hpp>
 #include <lagroid/solvers/method.hpp>
@@ -15,10 +16,31 @@
 
 namespace lagroid {
 
+/// The parts of a step: Psi_h = Phi_{gamma_s h} o ... o Phi_{gamma_1 h}, each over its share of h.
+template <DiscreteSystem Sys> std::vector<Sys> composed(const Sys& system, const Composition& composition) {
+  std::vector<Sys> parts(std::size_t(composition.stages()), system);
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].h = composition.coefficients[i] * system.h;
+  return parts;
+}
+
+/// The same with the symmetric step Phi_{h/2} o Phi*_{h/2} of a discretisation of order one.
+template <StepDependent Sys>
+std::vector<EitherWay<Sys>> symmetrised(const Sys& system, const Composition& composition) {
+  std::vector<EitherWay<Sys>> parts;
+  for (const double fraction : composition.coefficients)
+    for (const bool adjoint : {true, false}) {
+      EitherWay<Sys> part(system);
+      part.h = 0.5 * fraction * system.h;
+      part.adjoint = adjoint;
+      parts.push_back(part);
+    }
+  return parts;
+}
+
 /// Psi_h = Phi_{gamma_s h} o ... o Phi_{gamma_1 h}, Phi the step of a discrete Lagrangian system whose discretisation
-/// is self-adjoint (see StepDependent). Psi conserves the momenta that Phi conserves, and is Poisson. With object
-/// constraints the state at the end of a step is to be projected (`tangent_momentum`): what a momentum has across
-/// C^{-1}(0) the next multiplier takes up.
+/// is self-adjoint (see StepDependent), or made so by `symmetrised`. Psi conserves the momenta that Phi conserves, and
+/// is Poisson. With object constraints the state at the end of a step is to be projected (`tangent_momentum`): what a
+/// momentum has across C^{-1}(0) the next multiplier takes up.
 ///
 /// Stages remember their own predecessors: each is continued from the same stage of earlier steps. A step one of whose
 /// stages does not converge leaves everything as it was.
@@ -30,13 +52,15 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
   /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint).
   CompositionIntegrator(const Sys& system, const State<G>& initial, const ArrowOf<G>& configuration,
                         const Composition& composition, const MakeSolver& make_solver)
-      : h_(system.h),
-        start_(start_time(system)),
+      : CompositionIntegrator(composed(system, composition), initial, configuration, composition, make_solver) {}
+  /// From the parts of a step, all made from one system.
+  CompositionIntegrator(const std::vector<Sys>& parts, const State<G>& initial, const ArrowOf<G>& configuration,
+                        const Composition& composition, const MakeSolver& make_solver)
+      : start_(start_time(parts.front())),
         composition_(composition),
-        walk_(system.groupoid, initial, configuration, start_) {
-    for (const double fraction : composition.coefficients) {
-      Sys part = system;
-      part.h = fraction * h_;
+        walk_(parts.front().groupoid, initial, configuration, start_) {
+    for (const Sys& part : parts) {
+      h_ += part.h;
       stages_.push_back({Stepper<Sys>(part, make_solver()), {}});
     }
   }
@@ -62,7 +86,7 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
     Step<Sys> last;
   };
 
-  double h_;
+  double h_ = 0;
   double start_;
   Composition composition_;
   std::vector<Stage> stages_;

@@ -19,6 +19,10 @@ struct RigidBody : System<RigidBody, SO3> {
   }
   template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const { return lagrangian(g, h); }
 
+  /// w.I w / 2.
+  template <class S> S l(const Vector<S, 3>& w) const {
+    return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * 0.5;
+  }
   /// M.I^{-1} M / 2.
   double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
 

@@ -18,8 +18,7 @@ using namespace lagroid;
 
 namespace {
 
-template <class Sys>
-Integrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& start) {
+template <class Sys> Integrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& start) {
   return {system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>()};
 }
 
@@ -98,10 +97,6 @@ TEST(FreeTime, MomentumOfTimeIsMinusTheDiscreteEnergy) {
   const double energy = discrete_energy(system, step, 0, 0.2);
   EXPECT_NEAR(legendre_minus(free, timed).momentum(0), -energy, 1e-14);
   EXPECT_NEAR(legendre_plus(free, timed).momentum(0), -energy, 1e-14);
-  Step<AttitudeControl> without = step;
-  without.multipliers.setZero();
-  EXPECT_NEAR(discrete_energy(system, without, 0, 0.2), energy, 1e-12)
-      << "psi is homogeneous of degree one: its term vanishes";
 }
 
 // h(g), symmetric in g: the time scale of a swing at the middle of the arrow.

@@ -18,9 +18,9 @@ namespace lagroid::laws {
 struct OrderProblem {
   std::function<Eigen::VectorXd(int steps)> end;
   Eigen::VectorXd exact;
-  int coarsest = 20;      ///< steps to begin with
-  double floor = 1e-12;   ///< errors below are round-off: of the method, or of `exact`
-  int points = 3;         ///< errors, at steps finer by sqrt(2) each, the slope is taken over
+  int coarsest = 20;     ///< steps to begin with
+  double floor = 1e-12;  ///< errors below are round-off: of the method, or of `exact`
+  int points = 3;        ///< errors, at steps finer by sqrt(2) each, the slope is taken over
 };
 
 /// The slope of the error over the step size, between the finest steps whose error is above the floor; not a number

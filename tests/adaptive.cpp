@@ -1,0 +1,349 @@
+// Steps that keep the discrete energy ([G] Example 6.1): where they do, where they cannot, and what then; reversible
+// control of the step size.
+#include <lagroid/solvers/march_methods.hpp>
+#include <lagroid/systems/driven_pendulum.hpp>
+#include <lagroid/systems/heavy_top.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulum.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace lagroid;
+
+namespace {
+
+/// l = (xi1^2 + 2 xi2^2) / 2 with xi3 = c on SO(3): the constraint is not homogeneous.
+struct Spinning : GroupControl<Spinning, SO3, 1> {
+  double rate = 0.4;
+  template <class S> S l(const Vector<S, 3>& xi) const { return (xi(0) * xi(0) + xi(1) * xi(1) * 2) * 0.5; }
+  template <class S> Vector<S, 1> psi(const Vector<S, 3>& xi) const { return Vector<S, 1>(xi(2) - rate); }
+  Control<3, 1> control(const Vector<double, 3>& mu) const {
+    return {{mu(0), mu(1) / 2, rate}, Vector<double, 1>(mu(2))};
+  }
+};
+
+/// l = |xi|^2 / 2 with exp: E_d does not depend on the step.
+struct Sphere : GroupControl<Sphere, SO3> {
+  template <class S> S l(const Vector<S, 3>& xi) const { return xi.squaredNorm() * 0.5; }
+  Control<3, 0> control(const Vector<double, 3>& mu) const { return {mu, {}}; }
+};
+
+template <class Sys> struct Start {
+  Sys system;
+  State<typename Sys::GroupoidType> state;
+};
+
+Start<Pendulum> pendulum(Quadrature quadrature, double angle, double momentum, double h = 0.2) {
+  Start<Pendulum> s{{}, {Vector<double, 1>(angle), Vector<double, 1>(momentum)}};
+  s.system.h = h;
+  s.system.quadrature = quadrature;
+  return s;
+}
+Start<Kepler> kepler(Quadrature quadrature, double e, double h = 0.05) {
+  Start<Kepler> s{{}, {{1 - e, 0}, {0, std::sqrt((1 + e) / (1 - e))}}};
+  s.system.h = h;
+  s.system.quadrature = quadrature;
+  return s;
+}
+Start<RigidBody> rigid_body(RotationMap map) {
+  Start<RigidBody> s{{}, {{}, {0.3, 1.5, 0.4}}};
+  s.system.h = 0.1;
+  s.system.rotation = map;
+  return s;
+}
+Start<HeavyTop> heavy_top(RotationMap map) {
+  Start<HeavyTop> s{{}, {Vector<double, 3>(0.36, 0.48, 0.8), {0.5, 1.1, 0.8}}};
+  s.system.inertia << 1, 2, 3;
+  s.system.weight << 0.1, 0.2, 1;
+  s.system.h = 0.05;
+  s.system.rotation = map;
+  return s;
+}
+Start<PlateBall> plate_ball(RotationForm form) {
+  Start<PlateBall> s;
+  s.system.spin = 0.4;
+  s.system.h = 0.1;
+  s.system.rotation = form;
+  std::get<0>(s.state.object) << 0.3, -0.2;
+  s.state.momentum << 0.9, 0.2, 0.6, -0.3, 0.5;
+  return s;
+}
+
+struct Outcome {
+  StepReport last;
+  long steps = 0;
+  double energy_error = 0;  ///< largest |E_d - E_d(first)| / |E_d|
+  double smallest = 1e300;
+  double largest = 0;
+  long without_root = 0;
+  double time = 0;
+  double energy = 0;
+};
+
+template <class Sys>
+AdaptiveIntegrator<Sys> make(const Start<Sys>& s, WithoutRoot policy = WithoutRoot::stop,
+                             StepMethod method = StepMethod::newton) {
+  return {s.system,
+          s.state,
+          s.system.groupoid.unit(s.state.object),
+          make_step_solver(s.system, method),
+          make_step_solver(FreeTime<Sys>(s.system), method),
+          {.without_root = policy}};
+}
+
+template <class Sys>
+Outcome run(const Start<Sys>& s, int steps, WithoutRoot policy = WithoutRoot::stop,
+            StepMethod method = StepMethod::newton) {
+  auto integrator = make(s, policy, method);
+  Outcome out;
+  for (int k = 0; k < steps; ++k) {
+    out.last = integrator.advance();
+    if (!out.last.converged()) break;
+    const auto& p = integrator.point();
+    out.steps = p.index;
+    out.smallest = std::min(out.smallest, p.step_size);
+    out.largest = std::max(out.largest, p.step_size);
+    const double energy = discrete_energy(s.system, p.step, p.time - p.step_size, p.step_size);
+    if (k == 0) out.energy = energy;
+    out.energy_error = std::max(out.energy_error, std::abs(energy - out.energy) / std::abs(out.energy));
+    EXPECT_TRUE(p.state.momentum.allFinite());
+    EXPECT_GT(p.step_size, 0);
+  }
+  out.without_root = integrator.without_root();
+  out.time = integrator.point().time;
+  return out;
+}
+
+// ../shared/cases/plate-ball.json, PA1 and PA2.
+TEST(Adaptive, PendulumOfTheReferenceNumbers) {
+  auto integrator = make(pendulum(Quadrature::midpoint, std::acos(0.5), 0));
+  for (int k = 1; k <= 100; ++k) {
+    ASSERT_TRUE(integrator.advance().converged()) << k;
+    if (k == 2) EXPECT_NEAR(integrator.point().step_size, 0.199922901930149877, 1e-10);
+    if (k == 3) EXPECT_NEAR(integrator.point().step_size, 0.199350310023102096, 1e-10);
+  }
+  const auto& p = integrator.point();
+  EXPECT_NEAR(integrator.energy(), -0.503731251046227347, 1e-14);
+  EXPECT_NEAR(p.state.object(0), 0.635892914308174266, 1e-10);
+  EXPECT_NEAR(p.state.momentum(0), 0.780625488664801581, 1e-10);
+  EXPECT_NEAR(p.time, 19.2711878175280657, 1e-10);
+  EXPECT_NEAR(p.step_size, 0.190420392355723342, 1e-10);
+}
+TEST(Adaptive, RigidBodyOfTheReferenceNumbers) {
+  auto integrator = make(rigid_body(RotationMap::cayley));
+  for (int k = 1; k <= 50; ++k) ASSERT_TRUE(integrator.advance().converged()) << k;
+  const auto& p = integrator.point();
+  EXPECT_NEAR(integrator.energy(), 0.632020010364338698, 1e-14);
+  const Vector<double, 3> end(0.350136834584743513, 1.45596025486724956, -0.507527273468007503);
+  EXPECT_LT((p.state.momentum - end).norm(), 1e-10);
+  EXPECT_NEAR(p.time, 5.03722011358415016, 1e-10);
+  EXPECT_NEAR(p.step_size, 0.0992465101295610398, 1e-10);
+}
+
+// Both solvers follow the same steps.
+TEST(Adaptive, CeresAgreesWithNewton) {
+  const auto s = rigid_body(RotationMap::cayley);
+  const Outcome newton = run(s, 50);
+  const Outcome ceres = run(s, 50, WithoutRoot::stop, StepMethod::ceres);
+  ASSERT_TRUE(ceres.last.converged()) << to_string(ceres.last.status);
+  EXPECT_NEAR(ceres.time, newton.time, 1e-9);
+}
+
+// The demonstrations: E_d to round-off over 3000 steps whose sizes do vary.
+template <class Sys> void expect_energy_kept(const Start<Sys>& s) {
+  const Outcome out = run(s, 3000);
+  EXPECT_EQ(out.steps, 3000) << to_string(out.last.status);
+  EXPECT_LT(out.energy_error, 1e-12);
+  EXPECT_GT(out.largest / out.smallest, 1.001);
+}
+TEST(Adaptive, KeepsTheEnergyOfThePendulum) { expect_energy_kept(pendulum(Quadrature::midpoint, std::acos(0.5), 0)); }
+TEST(Adaptive, KeepsTheEnergyOfKeplerOrbits) {
+  expect_energy_kept(kepler(Quadrature::midpoint, 0.2));
+  expect_energy_kept(kepler(Quadrature::midpoint, 0.6));
+}
+TEST(Adaptive, KeepsTheEnergyOfTheRigidBody) {
+  expect_energy_kept(rigid_body(RotationMap::exponential));
+  expect_energy_kept(rigid_body(RotationMap::cayley));
+}
+TEST(Adaptive, KeepsTheEnergyOfAnAsymmetricTop) { expect_energy_kept(heavy_top(RotationMap::cayley)); }
+TEST(Adaptive, KeepsTheEnergyOfThePlateBall) {
+  expect_energy_kept(plate_ball(RotationForm::exponential));
+  expect_energy_kept(plate_ball(RotationForm::cayley));
+}
+
+// l(xi) - <dl, xi> - <lambda, dpsi xi> + <lambda, psi>: without the multiplier's term it is not conserved.
+TEST(Adaptive, TheMultiplierBelongsToTheEnergy) {
+  Start<Spinning> s;
+  s.system.h = 0.1;
+  s.state.momentum << 0.9, 0.7, 0.5;
+  auto integrator = make(s);
+  double with = 0;
+  double without = 0;
+  double first_with = 0;
+  double first_without = 0;
+  for (int k = 0; k < 1000; ++k) {
+    ASSERT_TRUE(integrator.advance().converged()) << k;
+    const auto& p = integrator.point();
+    const double energy = discrete_energy(s.system, p.step, 0, p.step_size);
+    const double printed = energy - s.system.rate * p.step.multipliers(0);
+    if (k == 0) first_with = energy;
+    if (k == 0) first_without = printed;
+    with = std::max(with, std::abs(energy - first_with));
+    without = std::max(without, std::abs(printed - first_without));
+  }
+  EXPECT_LT(with, 1e-13);
+  EXPECT_GT(without, 1e-2);
+}
+
+// The honest failures: a typed outcome after a few steps.
+template <class Sys> void expect_no_step(const Start<Sys>& s, long most) {
+  const Outcome out = run(s, 3000);
+  EXPECT_EQ(out.last.status, SolveStatus::no_step) << to_string(out.last.status) << " after " << out.steps;
+  EXPECT_LE(out.steps, most);
+  EXPECT_GE(out.steps, 1);
+  EXPECT_LT(out.energy_error, 1e-12);
+}
+TEST(Adaptive, SaysSoWhereNoStepKeepsTheEnergy) {
+  expect_no_step(pendulum(Quadrature::trapezoid, std::acos(0.5), 0), 10);
+  expect_no_step(pendulum(Quadrature::midpoint, 0, 2.5), 10);
+  expect_no_step(kepler(Quadrature::trapezoid, 0.6), 20);
+  expect_no_step(heavy_top(RotationMap::exponential), 300);
+  expect_no_step(plate_ball(RotationForm::trace), 300);
+}
+TEST(Adaptive, SaysSoWhereTheEnergyDoesNotDependOnTheStep) {
+  Start<Sphere> s;
+  s.system.h = 0.1;
+  s.state.momentum << 0.3, 0.8, -0.2;
+  const Outcome out = run(s, 10);
+  EXPECT_EQ(out.last.status, SolveStatus::degenerate);
+  EXPECT_EQ(out.steps, 0);
+}
+
+// What the user chose for such steps: all are taken, and counted.
+TEST(Adaptive, CarriesOnAsChosen) {
+  for (const auto policy : {WithoutRoot::constant, WithoutRoot::controlled}) {
+    const auto s = pendulum(Quadrature::midpoint, 0, 2.5, 0.05);
+    const Outcome out = run(s, 1000, policy);
+    EXPECT_EQ(out.steps, 1000) << to_string(out.last.status);
+    EXPECT_GT(out.without_root, 0);
+    EXPECT_LT(out.without_root, 1000);
+    EXPECT_LT(out.energy_error, 1e-3);
+  }
+}
+
+// A driven motion: the discrete energy balance p_t is kept, not E_d.
+TEST(Adaptive, DrivenMotionsAreSolvedOrRefused) {
+  Start<DrivenPendulum> s{{}, {Vector<double, 1>(1.2), Vector<double, 1>(0.3)}};
+  s.system.h = 0.1;
+  s.system.torque = 0.05;
+  s.system.frequency = 0.7;
+  const Outcome out = run(s, 200, WithoutRoot::constant);
+  EXPECT_EQ(out.steps, 200) << to_string(out.last.status);
+}
+
+// ---- control
+
+template <class Sys> ControlledIntegrator<Sys> controlled(const Start<Sys>& s) {
+  return {s.system, s.state, s.system.groupoid.unit(s.state.object), std::make_unique<NewtonStep<Sys>>()};
+}
+
+template <class Sys>
+double rate_defect(const Start<Sys>& s, const std::function<double(const TrajectoryPoint<Sys>&)>& log_scale) {
+  Start<Sys> fine = s;
+  fine.system.h = 1e-3;
+  Integrator<Sys> run(fine.system, s.state, s.system.groupoid.unit(s.state.object),
+                      std::make_unique<NewtonStep<Sys>>());
+  const double first = log_scale(run.point());
+  EXPECT_TRUE(run.advance().converged());
+  const double rate = s.system.time_scale_rate(run.point().state);
+  EXPECT_TRUE(run.advance().converged());
+  return std::abs((log_scale(run.point()) - first) / 2e-3 - rate);
+}
+TEST(Controlled, TimeScaleRatesAreTheRatesOfTheirScales) {
+  EXPECT_LT(rate_defect<Pendulum>(pendulum(Quadrature::midpoint, 1.0, 0.7),
+                                  [](const auto& p) { return -0.5 * std::log(1 + p.state.momentum.squaredNorm()); }),
+            1e-5);
+  EXPECT_LT(rate_defect<Kepler>({{}, {{0.7, 0.1}, {0.2, 1.1}}},
+                                [](const auto& p) { return 1.5 * std::log(p.state.object.norm()); }),
+            1e-5);
+  const auto body = rigid_body(RotationMap::cayley);
+  EXPECT_LT(
+      rate_defect<RigidBody>(
+          body, [&](const auto& p) { return -std::log(p.state.momentum.cwiseQuotient(body.system.inertia).norm()); }),
+      1e-5);
+  const auto top = heavy_top(RotationMap::cayley);
+  EXPECT_LT(rate_defect<HeavyTop>(top,
+                                  [&](const auto& p) {
+                                    return -0.5 *
+                                           std::log(top.system.weight.norm() / top.system.inertia.maxCoeff() +
+                                                    p.state.momentum.cwiseQuotient(top.system.inertia).squaredNorm());
+                                  }),
+            1e-5);
+}
+
+// There and back again: the control is reversible.
+TEST(Controlled, ReturnsWhenTurnedRound) {
+  const auto s = kepler(Quadrature::trapezoid, 0.6, 0.02);
+  auto out = controlled(s);
+  double smallest = 1;
+  double largest = 0;
+  for (int k = 0; k < 500; ++k) {
+    ASSERT_TRUE(out.advance().converged());
+    smallest = std::min(smallest, out.point().step_size);
+    largest = std::max(largest, out.point().step_size);
+  }
+  EXPECT_GT(largest / smallest, 3);
+  Start<Kepler> turned = s;
+  turned.state = out.point().state;
+  turned.state.momentum *= -1;
+  // The density at the end, which the way back starts from.
+  const double density =
+      s.system.h / out.point().step_size - 0.5 * s.system.h * s.system.time_scale_rate(out.point().state);
+  EXPECT_NEAR(density * std::pow(turned.state.object.norm() / 0.4, 1.5), 1, 0.02) << "the step follows the scale";
+}
+
+// E0 and angular momentum over many orbits: the control has no drift, and beats equal steps at equal cost.
+TEST(Controlled, BeatsEqualStepsOnAnEccentricOrbit) {
+  const double period = 2 * M_PI;
+  const auto error = [&](bool control, int steps_per_orbit) {
+    auto s = kepler(Quadrature::trapezoid, 0.9, period / steps_per_orbit);
+    const Kepler system = s.system;
+    double worst = 0;
+    const double energy = system.energy(s.state);
+    const auto watch = [&](auto& integrator) {
+      while (integrator.point().time < 20 * period) {
+        EXPECT_TRUE(integrator.advance().converged());
+        worst = std::max(worst, std::abs(system.energy(integrator.point().state) - energy));
+      }
+      return integrator.point().index;
+    };
+    if (control) {
+      s.system.h = 0.0025;
+      auto integrator = controlled(s);
+      const long steps = watch(integrator);
+      return std::pair(worst, steps);
+    }
+    Integrator<Kepler> integrator(system, s.state, {s.state.object, s.state.object},
+                                  std::make_unique<NewtonStep<Kepler>>());
+    const long steps = watch(integrator);
+    return std::pair(worst, steps);
+  };
+  const auto [with, steps] = error(true, 1);
+  const auto [without, more] = error(false, int(steps / 20));
+  EXPECT_GE(more, steps - 20);
+  EXPECT_LT(5 * with, without);
+}
+
+TEST(FirstStep, HasTheAccuracyAskedFor) {
+  const auto s = kepler(Quadrature::trapezoid, 0.6, 0.1);
+  const double coarse = step_for_accuracy(s.system, s.state, 1e-6, {});
+  const double fine = step_for_accuracy(s.system, s.state, 1e-9, {});
+  EXPECT_GT(coarse, 0);
+  EXPECT_NEAR(coarse / fine, 10, 2);
+}
+
+}  // namespace
