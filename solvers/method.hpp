@@ -1,0 +1,17 @@
+#pragma once
+/// What a one-step method declares of itself, and tests hold it to.
+
+#include <string>
+
+namespace lagroid {
+
+/// The traits of a one-step map z -> Phi_h(z) of A*G.
+struct MethodTraits {
+  std::string name;
+  int order;        ///< the error after a fixed time is O(h^order)
+  bool symmetric;   ///< Phi_{-h} o Phi_h is the identity
+  bool symplectic;  ///< Phi_h is a Poisson map of A*G; symplectic where that is a cotangent bundle
+  bool explicit_;   ///< explicit: no equations are solved
+};
+
+}  // namespace lagroid
