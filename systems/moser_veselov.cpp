@@ -61,8 +61,8 @@ std::array<Series, 2> inverse_moments(const Vector<double, 3>& inverse_inertia, 
     u1[k + 1] = integral(m3_squared * (w(2) - w(1)) * at(u2, u3));
     u2[k + 1] = integral((w(0) - w(2)) * at(u3, u1));
     u3[k + 1] = integral(m1_squared * (w(1) - w(0)) * at(u1, u2));
-    q[k + 1] = integral(-0.5 * (m1_squared * w(0) * at(p1, u1) + m13 * w(1) * at(p2, u2) +
-                                m3_squared * w(2) * at(p3, u3)));
+    q[k + 1] =
+        integral(-0.5 * (m1_squared * w(0) * at(p1, u1) + m13 * w(1) * at(p2, u2) + m3_squared * w(2) * at(p3, u3)));
     p1[k + 1] = integral(0.5 * (w(0) * at(q, u1) + m3_squared * (w(2) * at(p2, u3) - w(1) * at(p3, u2))));
     p2[k + 1] = integral(0.5 * (w(1) * at(q, u2) + w(0) * at(p3, u1) - w(2) * at(p1, u3)));
     p3[k + 1] = integral(0.5 * (w(2) * at(q, u3) + m1_squared * (w(1) * at(p1, u2) - w(0) * at(p2, u1))));
@@ -82,6 +82,9 @@ std::array<Series, 2> inverse_moments(const Vector<double, 3>& inverse_inertia, 
   };
   return {inverse(g1, u1), inverse(g3, u3)};
 }
+
+/// sum_{i<j} d_i d_j.
+double pairs_of(const Vector<double, 3>& d) { return d(0) * d(1) + d(1) * d(2) + d(2) * d(0); }
 
 }  // namespace
 
@@ -124,12 +127,60 @@ MoserVeselov MoserVeselov::preprocessed(const Vector<double, 3>& inertia, const 
   system.inertia = inertia;
   system.modified = preprocess(inertia, momentum, h, order);
   system.order = order;
+  if (!system.rodrigues(momentum))
+    throw std::domain_error(
+        fmt::format("discrete Moser-Veselov of order {}: there is no step of {} from this momentum", order, h));
   return system;
 }
 
+std::optional<Vector<double, 3>> MoserVeselov::rodrigues(const Vector<double, 3>& momentum) const {
+  const Vector<double, 3> u = 0.5 * h * momentum;
+  const double square = u.squaredNorm();
+  const double determinant = modified.prod();
+  const double trace = 0.5 * modified.sum();
+  const double e = pairs_of(weights());
+  const double constant = determinant * u.cwiseQuotient(modified).dot(u);
+  // Newton's iteration from the left, where f falls and is convex: up to `inflection` at most.
+  const double inflection = 0.5 * (trace - std::sqrt(std::max(0.0, (weights().squaredNorm() - 4 * square) / 3)));
+  double k = 0;
+  for (;;) {
+    const double b = square - k * trace + k * k;
+    const double f = b * b + (e * k - determinant) * k + constant;
+    const double slope = 2 * b * (2 * k - trace) + 2 * e * k - determinant;
+    if (!(slope < 0 && k < inflection)) return std::nullopt;
+    const double next = k - f / slope;
+    if (!(next > k)) break;
+    k = next;
+  }
+  const Matrix<double, 3, 3> matrix{
+      {modified(0) - k, u(2), -u(1)}, {-u(2), modified(1) - k, u(0)}, {u(1), -u(0), modified(2) - k}};
+  return Vector<double, 3>(matrix.inverse() * u);
+}
+
 bool MoserVeselov::admissible(const Matrix<double, 3, 3>& g) const {
-  const Matrix<double, 3, 3> y = g * weights().asDiagonal();
-  return y.trace() > 0 && (y.trace() * Matrix<double, 3, 3>::Identity() - y).determinant() > 0;
+  const Vector<double, 3> d = weights();
+  const double a = g.diagonal().dot(d);
+  // The characteristic polynomial of gD is x^3 - a x^2 + b x - det D.
+  const Matrix<double, 3, 3> y = g * d.asDiagonal();
+  const double b = 0.5 * (a * a - (y * y).trace());
+  return a > 0 && a * b > d.prod() && a * a + b > 0;
+}
+
+Step<MoserVeselov> MoserVeselov::first_guess(const State<SO3>& s) const {
+  const auto r = rodrigues(s.momentum);
+  return {r ? SO3::cayley(Vector<double, 3>(2 * *r)) : Matrix<double, 3, 3>::Identity(), {}};
+}
+
+StepReport MoserVeselovStep::solve(const MoserVeselov& system, const State<SO3>& state,
+                                   StepSolution<MoserVeselov>& solution) {
+  const auto r = system.rodrigues(state.momentum);
+  if (!r) return {};
+  const Vector<double, 3> moved = system.modified.cwiseProduct(*r);
+  solution.step.arrow = SO3::cayley(Vector<double, 3>(2 * *r));
+  solution.momentum_change = (4 / (system.h * (1 + r->squaredNorm()))) * moved.cross(*r);
+  StepReport report;
+  report.status = r->allFinite() ? SolveStatus::converged : SolveStatus::not_finite;
+  return report;
 }
 
 State<SO3> MoserVeselov::reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const {
