@@ -5,6 +5,7 @@
 #include <lagroid/groupoids/rotated.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/rotation_map.hpp>
+#include <lagroid/systems/rotation_splitting.hpp>
 
 namespace lagroid {
 
@@ -24,6 +25,21 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
            (verticals(0) * weight(0) + verticals(1) * weight(1) + verticals(2) * weight(2)) * (0.5 * step);
   }
   template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
+
+  /// The energy split into w.v, which kicks, and the kinetic energies of a symmetric body and a rest (SplitSystem,
+  /// RotationSplitting).
+  static constexpr int parts = 3;
+  template <int Part, class S>
+  FlowOf<GroupoidType, S> flow(double t, const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
+    if constexpr (Part == 0) {
+      const Vector<S, 3> w = weight.template cast<S>();
+      return {{Matrix<S, 3, 3>::Identity(), v}, v.cross(w) * S(t)};
+    } else {
+      const RotationSplitting kinetic(inertia);
+      const FlowOf<SO3, S> turn = Part == 1 ? kinetic.rest(t, mu) : kinetic.symmetric(t, mu);
+      return {{turn.arrow, v}, turn.momentum_change};
+    }
+  }
 
   /// M.I^{-1} M / 2 + w.v.
   double energy(const State<GroupoidType>& s) const {

@@ -2,6 +2,7 @@
 /// Point-mass mechanics on R^n: what pendulum, Kepler and spherical pendulum have in common.
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/split_system.hpp>
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/systems/reference.hpp>
@@ -44,6 +45,20 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
     return {y.head(N), y.tail(N)};
   }
 
+  /// H = U(q) + |p|^2 / (2 m): kick and drift (SplitSystem), whose Strang step is the trapezoid's, Stormer-Verlet.
+  static constexpr int parts = 2;
+  template <int Part, class S>
+  FlowOf<Pair<N>, S> flow(double t, const Vector<S, N>& q, const Vector<S, N>& p) const
+      requires(ObjectConstraints == 0) {
+    if constexpr (Part == 0) {
+      return {{q, q}, force(q) * S(t)};
+    } else {
+      const Vector<S, N> dq = p * S(t / self().mass());
+      const Vector<S, N> target = q + dq;
+      return {{q, target}, Vector<S, N>::Constant(S(0.0)), dq - (target - q)};
+    }
+  }
+
   /// H = |p|^2 / (2 m) + U(q).
   double energy(const State<Pair<N>>& s) const {
     return s.momentum.squaredNorm() / (2 * self().mass()) + self().potential(s.object);
@@ -51,13 +66,13 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
 
  protected:
   /// -dU/dq.
-  Vector<double, N> force(const Vector<double, N>& q) const {
-    Vector<double, N> f;
-    Vector<Dual<double>, N> x = q.template cast<Dual<double>>();
+  template <class S> Vector<S, N> force(const Vector<S, N>& q) const {
+    Vector<S, N> f;
+    Vector<Dual<S>, N> x = q.template cast<Dual<S>>();
     for (int i = 0; i < N; ++i) {
-      x(i).derivative = 1;
+      x(i).derivative = S(1.0);
       f(i) = -self().potential(x).derivative;
-      x(i).derivative = 0;
+      x(i).derivative = S(0.0);
     }
     return f;
   }

@@ -4,6 +4,7 @@
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/rotation_map.hpp>
+#include <lagroid/systems/rotation_splitting.hpp>
 
 namespace lagroid {
 
@@ -23,6 +24,15 @@ struct RigidBody : System<RigidBody, SO3> {
   template <class S> S l(const Vector<S, 3>& w) const {
     return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * 0.5;
   }
+
+  /// The energy split into that of a symmetric top and a rest (SplitSystem, RotationSplitting).
+  static constexpr int parts = 2;
+  template <int Part, class S> FlowOf<SO3, S> flow(double t, const Vector<S, 0>&, const Vector<S, 3>& mu) const {
+    const RotationSplitting kinetic(inertia);
+    if constexpr (Part == 0) return kinetic.rest(t, mu);
+    if constexpr (Part == 1) return kinetic.symmetric(t, mu);
+  }
+
   /// M.I^{-1} M / 2.
   double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
 

@@ -1,0 +1,47 @@
+#pragma once
+/// Systems whose energy is a sum of parts that can be integrated in closed form.
+
+#include <lagroid/core/system.hpp>
+
+#include <concepts>
+#include <type_traits>
+
+namespace lagroid {
+
+/// The way that a point (q, mu) of A*G goes along a flow: an arrow from q, and mu' - mu at its target.
+template <class Arrow, class S, int N> struct Flow {
+  Arrow arrow;
+  Vector<S, N> momentum_change;
+  /// What rounding took of the arrow, g tau(remainder), where the flow knows it.
+  Vector<S, N> remainder = Vector<S, N>::Constant(S(0.0));
+};
+template <class G, class S = double> using FlowOf = Flow<typename G::template Arrow<S>, S, G::dimension>;
+
+namespace detail {
+
+template <class Sys, int I>
+concept HasFlow = requires(const Sys& system, const State<typename Sys::GroupoidType>& z) {
+  { system.template flow<I>(1.0, z.object, z.momentum) } -> std::same_as<FlowOf<typename Sys::GroupoidType>>;
+};
+
+template <class Sys> constexpr bool has_flows() {
+  return []<int... I>(std::integer_sequence<int, I...>) { return (HasFlow<Sys, I> && ...); }
+  (std::make_integer_sequence<int, Sys::parts>{});
+}
+
+}  // namespace detail
+
+/// A system without constraints whose energy is H = H_0 + ... + H_{parts - 1}. It writes
+///
+///     static constexpr int parts
+///     template <int I, class S> FlowOf<G, S> flow(double t, const Object<S>& q, const Vector<S, n>& mu) const
+///
+/// Invariants (checked by tests, not by the compiler): flow<I>(t, z) follows the Hamiltonian vector field of H_I on A*G
+/// for the time t, of either sign, exactly: q' = rho(dH_I/dmu), mu' = -rho^* dH_I/dq + ad^*_{dH_I/dmu} mu; its arrow is
+/// that from q which the section dH_I/dmu leads along, g' = X<-(g). Hence flow<I> is a Poisson map, a flow in t, keeps
+/// H_I, and any composition of flows is Poisson and keeps the momenta of the symmetries that all parts share.
+template <class Sys>
+concept SplitSystem = DiscreteSystem<Sys> && Sys::constraints == 0 && HasTimeStep<Sys>&& Sys::parts >= 1 &&
+                      detail::has_flows<Sys>();
+
+}  // namespace lagroid

@@ -1,0 +1,9 @@
+#include <lagroid/solvers/boundary_methods.hpp>
+#include <lagroid/solvers/step_methods.hpp>
+#include <lagroid/systems/moser_veselov.hpp>
+
+namespace lagroid {
+
+LAGROID_SOLVERS(template, MoserVeselov);
+
+}  // namespace lagroid
