@@ -10,9 +10,10 @@ namespace lagroid {
 /// D_q = { X in A_qG : <omega^a, X> = 0 }. The reaction of the constraints is <lambda, omega>: it does no work on
 /// virtual displacements.
 ///
-/// Unless the system writes them, omega^a = d/dw phi^a(tau_q(w)) at w = 0: D_q is what T_{unit(q)} {phi = const} and
-/// A_qG have in common (Iglesias et al. 2008, section 3.1). For phi = h (a(q) v + b(q)) + O(h^2) along an arrow of
-/// velocity v, that is the distribution a(q) v = 0, whatever the affine term b.
+/// Unless the system writes them, omega^a = (dphi^a/dw - dphi^a/dv) / 2 at the unit of q. Where phi vanishes on units
+/// both terms are the same, and D_q is what A_qG and the tangent space of {phi = 0} have in common (Iglesias et al.
+/// 2008, section 3.1). For phi = h (a(q) v + b(q)) + O(h^3), evaluated symmetrically along an arrow of velocity v, it
+/// is the distribution a(q) v = 0 whatever the affine term b, of which the difference holds nothing.
 template <DiscreteSystem Sys>
 Matrix<double, Sys::dimension, Sys::arrow_constraints> annihilator(const Sys& system,
                                                                    const ObjectOf<typename Sys::GroupoidType>& q) {
@@ -20,14 +21,15 @@ Matrix<double, Sys::dimension, Sys::arrow_constraints> annihilator(const Sys& sy
     return system.annihilator(q);
   } else {
     constexpr int n = Sys::dimension;
-    using J = Jet<double, n>;
-    Vector<J, n> w;
-    for (int i = 0; i < n; ++i) w(i) = J::variable(0, i);
-    const auto& groupoid = system.groupoid;
+    using J = Jet<double, 2 * n>;
+    const auto unit = system.groupoid.unit(q);
     const Vector<J, Sys::arrow_constraints> phi =
-        system.constraint(groupoid.tau(groupoid.template cast_object<J>(q), w));
+        system.constraint(system.groupoid.template seed<J, End::source, End::target, 0, n>(unit));
     Matrix<double, n, Sys::arrow_constraints> omega;
-    for (int a = 0; a < Sys::arrow_constraints; ++a) omega.col(a) = phi(a).gradient();
+    for (int a = 0; a < Sys::arrow_constraints; ++a) {
+      const Vector<double, 2 * n> gradient = phi(a).gradient();
+      omega.col(a) = 0.5 * (gradient.template tail<n>() - gradient.template head<n>());
+    }
     return omega;
   }
 }

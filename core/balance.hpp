@@ -3,6 +3,7 @@
 
 #include <lagroid/core/noether.hpp>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -48,9 +49,9 @@ Quantity<Sys> balance(std::string name, Promise promise,
 /// The reaction is not in it: X must annihilate it, or the balance is broken. Where X leaves L unchanged and there are
 /// no forces the right side is zero, and J itself is conserved.
 template <DiscreteSystem Sys> Quantity<Sys> momentum_balance(const Sys& system, const Symmetry<Sys>& along) {
-  using State = State<typename Sys::GroupoidType>;
+  using Z = State<typename Sys::GroupoidType>;
   return balance<Sys>(
-      "momentum equation of " + along.name, Promise::conserved, [along](const State& z) { return along.momentum(z); },
+      "momentum equation of " + along.name, Promise::conserved, [along](const Z& z) { return along.momentum(z); },
       [system, along](const Step<Sys>& step) {
         const auto d = gradients(system, step.arrow, Sys::Multipliers::Zero().eval());
         return d.target_gradient.dot(along.section(system.groupoid.target(step.arrow))) +
@@ -59,19 +60,22 @@ template <DiscreteSystem Sys> Quantity<Sys> momentum_balance(const Sys& system, 
       [along](const TrajectoryPoint<Sys>& p) { return along.size(p.state); });
 }
 
-/// The work of the discrete forces along g: each half of the impulse times the displacement over the arrow, as seen
-/// from its end.
-template <Forced Sys> double work(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+/// The work of the discrete forces along g: the force, half of it seen from either end, times the displacement over the
+/// arrow.
+template <Forced Sys>
+requires HasTimeStep<Sys>
+double work(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
   const auto& groupoid = system.groupoid;
-  const Forces<double, Sys::dimension> force = system.forces(g);
-  return force.source.dot(groupoid.tau_inverse(g)) - force.target.dot(groupoid.tau_inverse(groupoid.inverse(g)));
+  const Forces<double, Sys::dimension> impulse = system.forces(g);
+  return (impulse.source.dot(groupoid.tau_inverse(g)) - impulse.target.dot(groupoid.tau_inverse(groupoid.inverse(g)))) /
+         system.h;
 }
 
 /// The energy less the work of the forces. The system's `energy(state)` is that of the continuous system, which the
 /// discrete flow keeps within a band.
 template <Forced Sys> Quantity<Sys> energy_balance(const Sys& system) {
-  using State = State<typename Sys::GroupoidType>;
-  const auto energy = [system](const State& z) { return system.energy(z); };
+  using Z = State<typename Sys::GroupoidType>;
+  const auto energy = [system](const Z& z) { return system.energy(z); };
   return balance<Sys>(
       "energy less work", Promise::bounded, energy,
       [system](const Step<Sys>& step) { return work(system, step.arrow); },

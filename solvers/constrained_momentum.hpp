@@ -12,7 +12,7 @@ namespace lagroid {
 /// phi; across D mu lacks the half and is of order one. The dynamics is the same with and without it.
 ///
 /// In terms of the unit arrow e at q, with W = (-d2L/dv dw)^{-1} at e the inverse mass times h: the displacement
-/// w = W (mu + <nu, omega> - mu_0) of one step keeps phi(e) + dphi w = 0. phi(e) is the affine term (a plate that
+/// w = W (mu + <nu, omega> - mu_0) of one step keeps <omega, w> + phi(e) = 0. phi(e) is the affine term (a plate that
 /// turns); mu_0 = (dL/dw - dL/dv) / 2 is the momentum at rest, zero unless L has terms linear in the velocity. A
 /// potential enters dL/dv and dL/dw alike and leaves it.
 ///
@@ -31,8 +31,8 @@ AlgebroidVector<typename Sys::GroupoidType> constrained_momentum(const Sys& syst
   const auto d = two_sided(system, unit, Sys::Multipliers::Zero().eval());
   const V w = mass.solve(state.momentum - at_rest);
   const Matrix<double, n, k> w_omega = mass.solve(d.constraint_source);
-  const Vector<double, k> nu =
-      (d.constraint_target * w_omega).partialPivLu().solve(d.constraint_target * w + d.constraint);
+  const Matrix<double, k, n> omega = d.constraint_source.transpose();
+  const Vector<double, k> nu = (omega * w_omega).partialPivLu().solve(omega * w + d.constraint);
   return state.momentum - d.constraint_source * nu;
 }
 

@@ -84,7 +84,7 @@ std::vector<Quantity<RollingBall>> RollingBall::quantities() const {
   for (const auto& symmetry : symmetries()) all.push_back(symmetry.quantity(size));
   all.push_back({plate_rate == 0 ? "energy" : "moving energy E - Omega J",
                  {plate_rate == 0 ? "E" : "E - Omega J"},
-                 Promise::bounded,
+                 Promise::conserved,
                  false,
                  [system = *this](const Point& p, double* out) { *out = system.moving_energy(p.state); },
                  [system = *this](const Point& p) {

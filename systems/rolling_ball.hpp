@@ -24,8 +24,8 @@ namespace lagroid {
 /// that the SO(3) part of the groupoid carries A = R^T: g = R_{k-1} R_k^T, h w = -log g, and M = -k m r^2 w.
 ///
 /// The centre moves on a circle, at the rate k Omega / (1 + k) whatever its start: 2 Omega / 7 for a homogeneous ball
-/// (Neimark & Fufaev, Dynamics of Nonholonomic Systems, 1972, chapter III). So does the discrete one, at the rate
-/// (2 / h) atan(h k Omega / (2 (1 + k))).
+/// (Neimark & Fufaev, Dynamics of Nonholonomic Systems, 1972, chapter III). The discrete one goes round the very same
+/// circle, through states of the continuous motion, at the rate (2 / h) atan(h k Omega / (2 (1 + k))).
 struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constraints*/ 2> {
   using GroupoidType = Product<Pair<2>, SO3>;
   static constexpr auto principle = Principle::nonholonomic;

@@ -17,7 +17,8 @@ namespace lagroid {
 ///
 ///     l = (m (v1^2 + v2^2) + J w^2 + I s^2) / 2,    v1 - R s = 0,    v2 = 0.
 ///
-/// It rolls at constant rates w and s, on a circle of radius R s / w or straight on; so does the discrete one, exactly.
+/// It rolls at constant rates w and s, on a circle of radius R s / w or straight on. So does the discrete one: w, s and
+/// the momentum are constant to round-off, the rates off by O(h^2).
 /// Momentum (J w, m v1, m v2, I s).
 struct RollingDisk : System<RollingDisk, Product<SE2, SO2>, /*arrow constraints*/ 2> {
   using GroupoidType = Product<SE2, SO2>;
