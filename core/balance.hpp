@@ -41,8 +41,9 @@ Quantity<Sys> balance(std::string name, Promise promise,
           std::move(size)};
 }
 
-/// The discrete nonholonomic momentum equation along a section X of D (Cortes & Martinez 2001, section 5; Iglesias et
-/// al. 2008, Theorem 3.7): with J_k = <mu_k, X(q_k)>, and f-, f+ the discrete forces if there are any,
+/// The discrete nonholonomic momentum equation along a section X of D (Cortes & Martinez 2001; Iglesias et al. 2008,
+/// on the discrete nonholonomic momentum map): with J_k = <mu_k, X(q_k)>, and f-, f+ the discrete forces if there are
+/// any,
 ///
 ///     J_k - J_{k-1} = X<-[L](g_k) - X->[L](g_k) + <f+(g_k), X(q_k)> + <f-(g_k), X(q_{k-1})>.
 ///

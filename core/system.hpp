@@ -22,7 +22,7 @@ enum class Principle {
 ///
 ///     F- = -df/dv - f-,    F+ = df/dw + f+
 ///
-/// (Marsden & West, Acta Numerica 2001, section 3.2). The method keeps order two when f-(g) with step h is -f+(g^{-1})
+/// (Marsden & West, Acta Numerica 2001, part 3). The method keeps order two when f-(g) with step h is -f+(g^{-1})
 /// with step -h: the same quadrature seen from either end. Half the impulse at one end alone is order one.
 template <class S, int N> struct Forces {
   Vector<S, N> source;

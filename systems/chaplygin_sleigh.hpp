@@ -11,7 +11,7 @@
 namespace lagroid {
 
 /// A rigid body that slides on the plane on a blade, which moves along its edge only. The centre of mass lies at the
-/// distance a ahead of the blade (Chaplygin 1911; Bloch, Nonholonomic Mechanics and Control, section 1.7). On SE(2),
+/// distance a ahead of the blade (Chaplygin 1911; Bloch, Nonholonomic Mechanics and Control, chapter 1). On SE(2),
 /// with xi = (w, v1, v2) the velocity of the blade in the body's frame, v1 along its edge,
 ///
 ///     l = (m v1^2 + m (v2 + a w)^2 + I w^2) / 2,    v2 = 0,

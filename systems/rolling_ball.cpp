@@ -1,10 +1,7 @@
 #include <lagroid/systems/reference.hpp>
 #include <lagroid/systems/rolling_ball.hpp>
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <numbers>
 
 namespace lagroid {
 
@@ -24,14 +21,6 @@ Step<RollingBall> RollingBall::first_guess(const State<GroupoidType>& s) const {
   const Vector<double, 2> velocity = s.momentum.head<2>() / mass;
   return {{PairArrow<double, 2>{q, q + h * velocity}, SO3::exp(Vector<double, 3>(-h * angular_velocity(s)))},
           Multipliers::Zero()};
-}
-
-std::optional<std::string> RollingBall::infeasible() const {
-  if (!(std::isfinite(radius) && std::isfinite(mass) && std::isfinite(inertia_factor) && std::isfinite(plate_rate)))
-    return "mass, radius, inertia_factor and plate_rate must be finite";
-  if (!(radius > 0 && mass > 0 && inertia_factor > 0 && h > 0))
-    return "mass, radius, inertia_factor and step must be positive";
-  return std::nullopt;
 }
 
 double RollingBall::energy(const State<GroupoidType>& s) const {

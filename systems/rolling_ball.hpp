@@ -7,8 +7,6 @@
 #include <lagroid/groupoids/so3.hpp>
 #include <lagroid/systems/instances.hpp>
 
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace lagroid {
@@ -24,7 +22,7 @@ namespace lagroid {
 /// that the SO(3) part of the groupoid carries A = R^T: g = R_{k-1} R_k^T, h w = -log g, and M = -k m r^2 w.
 ///
 /// The centre moves on a circle, at the rate k Omega / (1 + k) whatever its start: 2 Omega / 7 for a homogeneous ball
-/// (Neimark & Fufaev, Dynamics of Nonholonomic Systems, 1972, chapter III). The discrete one goes round the very same
+/// (Neimark & Fufaev, Dynamics of Nonholonomic Systems, 1972). The discrete one goes round the very same
 /// circle, through states of the continuous motion, at the rate (2 / h) atan(h k Omega / (2 (1 + k))).
 struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constraints*/ 2> {
   using GroupoidType = Product<Pair<2>, SO3>;
@@ -72,9 +70,6 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
 
   /// The displacement of a step at constant velocity.
   Step<RollingBall> first_guess(const State<GroupoidType>& s) const;
-
-  /// Why no trajectory of this system exists, or nothing.
-  std::optional<std::string> infeasible() const;
 
   /// m |v|^2 / 2 + k m r^2 |w|^2 / 2. A plate that turns does work.
   double energy(const State<GroupoidType>& s) const;

@@ -11,7 +11,7 @@
 namespace lagroid {
 
 /// A disk of mass m and radius R stays upright, rolls without slipping and turns about the vertical: the vertical
-/// rolling disk (Bloch, Nonholonomic Mechanics and Control, section 1.4), on the group SE(2) x SO(2). With
+/// rolling disk (Bloch, Nonholonomic Mechanics and Control, chapter 1), on the group SE(2) x SO(2). With
 /// xi = (w, v1, v2) the velocity of the point of contact in the disk's frame, v1 ahead, and s the rate at which it
 /// rolls, read from an arrow by log / h:
 ///
