@@ -7,10 +7,10 @@
 namespace lagroid {
 
 /// What phi says of the distribution: omega^a = (dphi^a/dw - dphi^a/dv) / 2 at the unit of q. Where phi vanishes on
-/// units both terms are the same, and D_q is what A_qG and the tangent space of {phi = 0} have in common, as Iglesias
-/// et al. 2008 ask of a discrete constraint. For phi = h (a(q) v + b(q)) + O(h^3), evaluated symmetrically along an
-/// arrow of velocity v, it is the distribution a(q) v = 0 whatever the affine term b, of which the difference holds
-/// nothing.
+/// units the two derivatives are opposite, and D_q is what A_qG and the tangent space of {phi = 0} have in common, as
+/// Iglesias et al. 2008 ask of a discrete constraint. For phi = h (a(q) v + b(q)) + O(h^3), evaluated symmetrically
+/// along an arrow of velocity v, it is the distribution a(q) v = 0 whatever the affine term b, of which the difference
+/// holds nothing.
 template <DiscreteSystem Sys>
 Matrix<double, Sys::dimension, Sys::arrow_constraints> deduced_annihilator(
     const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q) {
