@@ -160,7 +160,8 @@ template <DiscreteSystem Sys> class Recorder {
       s.push_back({"multipliers",
                    p.multipliers,
                    "action / unit of the constraint",
-                   "multipliers lambda of L + <lambda, phi>",
+                   Nonholonomic<Sys> ? "impulses lambda of the reaction <lambda, omega>"
+                                     : "multipliers lambda of L + <lambda, phi>",
                    true,
                    {}});
       s.push_back(

@@ -76,6 +76,42 @@ template <class Visit> void for_each_system(const Visit& visit) {
                                   {"length", "m", "1", "of the rod"},
                                   {"gravity", "m/s^2", "1", "acceleration"},
                                   with(quadrature, "trapezoid")}});
+  visit(Entry<RollingBall>{"rolling_ball",
+                           "ball rolling on a rotating plate (nonholonomic)",
+                           read_rolling_ball,
+                           {{"mass", "kg", "1", "of the ball"},
+                            {"radius", "m", "1", "of the ball"},
+                            {"inertia_factor", "1", "0.4", "moment of inertia over mass times radius squared"},
+                            {"plate_rate", "rad/s", "0", "angular velocity of the plate"}}});
+  visit(Entry<RollingDisk>{"rolling_disk",
+                           "upright disk rolling on the plane (nonholonomic)",
+                           read_rolling_disk,
+                           {{"mass", "kg", "1", "of the disk"},
+                            {"radius", "m", "1", "of the disk"},
+                            {"rolling_inertia", "kg m^2", "0.5", "about its axis"},
+                            {"turning_inertia", "kg m^2", "0.25", "about the vertical"}}});
+  visit(Entry<ChaplyginSleigh>{"chaplygin_sleigh",
+                               "body sliding on a blade (nonholonomic)",
+                               read_chaplygin_sleigh,
+                               {{"mass", "kg", "1", "of the body"},
+                                {"inertia", "kg m^2", "1", "about its centre of mass"},
+                                {"offset", "m", "1", "from the blade ahead to the centre of mass"},
+                                {"map", "", "exp", "how a motion becomes a velocity: exp or cayley"}}});
+  visit(Entry<DampedPendulum>{"damped_pendulum",
+                              "planar pendulum with damping",
+                              read_damped_pendulum,
+                              {{"mass", "kg", "1", "of the bob"},
+                               {"length", "m", "1", "of the rod"},
+                               {"gravity", "m/s^2", "1", "acceleration"},
+                               {"damping", "N m s", "0.1", "torque over angular velocity"},
+                               with(quadrature, "midpoint")}});
+  visit(Entry<DrivenBody>{"driven_body",
+                          "rigid body with thrust and drag on SO(3)",
+                          read_driven_body,
+                          {inertia,
+                           {"torque", "N m", "0, 0, 0", "of a thruster, fixed in the body"},
+                           {"drag", "N m s", "0.1", "torque over angular velocity"},
+                           rotation}});
 }
 
 /// What `visit(entry)` returns for the system that the scene names.

@@ -53,6 +53,8 @@ struct SubmanifoldTangent {
 /// constraints phi and, for object constraints C, by C o alpha and C o beta, each with its multipliers; so the
 /// dimension of Sigma_L is that of G.
 template <DiscreteSystem Sys> class GeneratedSubmanifold {
+  static_assert(Variational<Sys>, "no Lagrangian submanifold generates forces or nonholonomic reactions");
+
  public:
   using G = typename Sys::GroupoidType;
   static constexpr int size = total_dimension_of<G>();

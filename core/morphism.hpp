@@ -62,7 +62,7 @@ template <class Derived, class From, class To> struct Morphism {
 /// morphism of systems ([G] Def. 4.2, Example 4.3). Arrow constraints only.
 template <class Phi, class Reduced>
 struct PulledBack : System<PulledBack<Phi, Reduced>, typename Phi::Domain, Reduced::arrow_constraints> {
-  static_assert(Reduced::object_constraints == 0);
+  static_assert(Reduced::object_constraints == 0 && Variational<Reduced>);
   [[no_unique_address]] Phi morphism;
   Reduced reduced;
 

@@ -10,6 +10,7 @@ namespace lagroid {
 /// belongs to the object a step starts from, here q', and momenta agree up to multiples of dC o rho.)
 template <class Sys>
 struct Reversed : System<Reversed<Sys>, typename Sys::GroupoidType, Sys::arrow_constraints, Sys::object_constraints> {
+  static_assert(Variational<Sys>);
   Sys forward;
 
   explicit Reversed(const Sys& system) : forward(system) { this->groupoid = system.groupoid; }

@@ -6,6 +6,29 @@
 
 namespace lagroid {
 
+/// What arrow constraints phi(g) = 0 restrict, beside the trajectory itself. The two differ unless the constraints are
+/// integrable (Lewis & Murray, Int. J. Non-Linear Mech. 30, 1995).
+enum class Principle {
+  /// The paths that compete: the action is critical among those with phi = 0. Optimal control ([G] section 3).
+  vakonomic,
+  /// The virtual displacements, to a distribution D: the action is critical to first order along them. Rolling and
+  /// sliding bodies (Cortes & Martinez, Nonlinearity 14, 2001; on groupoids Iglesias, Marrero, Martin de Diego,
+  /// Martinez, J. Nonlinear Sci. 18, 2008).
+  nonholonomic
+};
+
+/// Discrete forces on an arrow: f-(g) in the dual of A_{alpha(g)}G and f+(g) in the dual of A_{beta(g)}G, half of the
+/// force's impulse each. They do the virtual work <f-, v> + <f+, w> in the displacement (v, w) of the ends, so that
+///
+///     F- = -df/dv - f-,    F+ = df/dw + f+
+///
+/// (Marsden & West, Acta Numerica 2001, part 3). The method keeps order two when f-(g) with step h is -f+(g^{-1})
+/// with step -h: the same quadrature seen from either end. Half the impulse at one end alone is order one.
+template <class S, int N> struct Forces {
+  Vector<S, N> source;
+  Vector<S, N> target;
+};
+
 /// Base of every system: a groupoid G, a discrete Lagrangian L : G -> R and constraints that cut out N.
 ///
 /// The derived class writes, as templates on the scalar S,
@@ -18,15 +41,24 @@ namespace lagroid {
 /// Object constraints C restrict to the full subgroupoid over C^{-1}(0) (holonomic constraints); their multipliers live
 /// on the objects between arrows. Multipliers enter as L + <lambda, phi> + <lambda, C> ([G]'s sign).
 ///
+/// A system that is not variational says so (docs/nonholonomic.md):
+///
+///     static constexpr auto principle = Principle::nonholonomic      what phi restricts; vakonomic by default
+///     Forces<S, n> forces(const Arrow<S>& g) const                   a template: discrete forces, see Forces
+///
 /// Optional members, used where present:
 ///
+///     Matrix<double, n, ArrowConstraints> annihilator(const Object<double>& q) const
+///         the distribution of a nonholonomic system, in place of the one deduced from phi (annihilator.hpp)
 ///     bool admissible(const ArrowOf<G>& g) const         whether g lies on the discretisation's own branch
 ///     Step<System> first_guess(const State<G>&) const    where the solve of a step without predecessor starts
-///     TwoSided<...> two_sided(g, lambda) const           analytic derivatives, in place of the automatic ones
+///     TwoSided<...> two_sided(g, lambda) const           analytic derivatives, in place of the automatic ones; forces
+///                                                        and reactions included
 ///     Gradients<...> gradients(g, lambda) const          analytic first derivatives alone, likewise
 ///     double h                                           the time step, if there is one
 template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraints = 0> class System {
  public:
+  static constexpr Principle principle = Principle::vakonomic;
   using GroupoidType = G;
   template <class S> using Arrow = typename G::template Arrow<S>;
   template <class S> using Object = typename G::template Object<S>;
@@ -58,7 +90,9 @@ template <class System> struct Step {
 /// Gradients of the augmented function f = L + <lambda, phi> + <lambda, C o alpha> in the two-sided displacement
 /// (v, w) -> f(tau(v)^{-1} g tau(w)) at v = w = 0.
 ///
-/// The discrete Legendre transforms are F- = -source_gradient and F+ = target_gradient ([G] Def. 3.3).
+/// The discrete Legendre transforms are F- = -source_gradient and F+ = target_gradient ([G] Def. 3.3). Discrete forces
+/// are part of both gradients. The reaction of nonholonomic constraints, <lambda, omega(alpha(g))>, is part of
+/// source_gradient in place of what <lambda, phi> adds to f, as that of object constraints is.
 template <int N, int M> struct Gradients {
   double value;                       ///< f(g), which is L(g) where the constraints hold
   Vector<double, N> source_gradient;  ///< df/dv
@@ -69,7 +103,7 @@ template <int N, int M> struct Gradients {
 /// The gradients with the mixed second derivative: the derivative of F- along the alpha-fibre is -mixed.
 template <int N, int M> struct TwoSided : Gradients<N, M> {
   Matrix<double, N, N> mixed;              ///< d2f / dv dw
-  Matrix<double, N, M> constraint_source;  ///< d(phi, C o alpha)/dv, column by column
+  Matrix<double, N, M> constraint_source;  ///< d(phi, C o alpha)/dv, column by column; omega for nonholonomic phi
   Matrix<double, M, N> constraint_target;  ///< d(phi, C o beta)/dw, row by row
 };
 
@@ -88,6 +122,23 @@ concept DiscreteSystem = Groupoid<typename Sys::GroupoidType> &&
   requires Sys::object_constraints == 0 || requires {
     { system.object_constraint(q) } -> std::convertible_to<Vector<double, Sys::object_constraints>>;
   };
+};
+
+template <class Sys>
+concept Nonholonomic = Sys::principle == Principle::nonholonomic;
+
+template <class Sys>
+concept Forced = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  { system.forces(g) } -> std::convertible_to<Forces<double, Sys::dimension>>;
+};
+
+/// Whether the dynamics is that of an action principle: Poisson on A*G, or symplectic on T*C^{-1}(0).
+template <class Sys>
+concept Variational = !Nonholonomic<Sys> && !Forced<Sys>;
+
+template <class Sys>
+concept HasAnnihilator = requires(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q) {
+  { system.annihilator(q) } -> std::convertible_to<Matrix<double, Sys::dimension, Sys::arrow_constraints>>;
 };
 
 template <class Sys>
@@ -116,6 +167,12 @@ concept HasTimeStep = requires(Sys& system) {
   system.h = 1.0;
 };
 
+/// Whether `forces` can be called at all, const or not.
+template <class Sys>
+concept SpeaksOfForces = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  system.forces(g);
+};
+
 /// Whether every optional member that the system has is one that will be used: a member of the right name that is not
 /// const, or does not take or return what it should, would otherwise be passed over without a word.
 template <class Sys>
@@ -123,12 +180,15 @@ inline constexpr bool optional_members_fit = (HasAnalyticDerivatives<Sys> || !re
                                              (HasAnalyticGradients<Sys> || !requires { &Sys::gradients; }) &&
                                              (HasBranch<Sys> || !requires { &Sys::admissible; }) &&
                                              (HasFirstGuess<Sys> || !requires { &Sys::first_guess; }) &&
-                                             (HasTimeStep<Sys> || !requires { &Sys::h; });
+                                             (HasTimeStep<Sys> || !requires { &Sys::h; }) &&
+                                             (HasAnnihilator<Sys> || !requires { &Sys::annihilator; }) &&
+                                             (Forced<Sys> || !SpeaksOfForces<Sys>);
 template <class Sys> constexpr void require_optional_members_to_fit() {
   static_assert(
       optional_members_fit<Sys>,
-      "two_sided, gradients, admissible, first_guess or h is there but does not fit (see System): is it const, "
-      "with the right arguments and result?");
+      "two_sided, gradients, admissible, first_guess, h, annihilator or forces is there but does not fit (see System): "
+      "is it const, with the right arguments and result?");
+  static_assert(!Nonholonomic<Sys> || Sys::arrow_constraints > 0, "a nonholonomic system has arrow constraints");
 }
 
 }  // namespace lagroid

@@ -1,6 +1,7 @@
 #pragma once
 /// The two-sided derivative: every first and second derivative the dynamics needs, in one evaluation.
 
+#include <lagroid/core/annihilator.hpp>
 #include <lagroid/core/arrow_frame.hpp>
 #include <lagroid/core/system.hpp>
 
@@ -8,11 +9,11 @@ namespace lagroid {
 
 namespace detail {
 
-/// f = L + <lambda, phi> + <lambda, C o alpha> over any scalar.
+/// f = L + <lambda, phi> + <lambda, C o alpha> over any scalar, without <lambda, phi> where phi is nonholonomic.
 template <class S, class Sys, class A>
 S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multipliers& lambda) {
   S f = system.lagrangian(g);
-  if constexpr (Sys::arrow_constraints > 0) {
+  if constexpr (Sys::arrow_constraints > 0 && !Nonholonomic<Sys>) {
     const auto phi = system.constraint(g);
     for (int a = 0; a < Sys::arrow_constraints; ++a) f += phi(a) * lambda(a);
   }
@@ -26,6 +27,19 @@ S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multip
 }  // namespace detail
 
 template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
+
+/// What acts on the two ends of g beside the Lagrangian: discrete forces, and at the source the reaction
+/// <lambda, omega>.
+template <DiscreteSystem Sys>
+Forces<double, Sys::dimension> impulses(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                                        const typename Sys::Multipliers& lambda) {
+  using V = Vector<double, Sys::dimension>;
+  Forces<double, Sys::dimension> out{V::Zero(), V::Zero()};
+  if constexpr (Forced<Sys>) out = system.forces(g);
+  if constexpr (Nonholonomic<Sys>)
+    out.source += annihilator(system, system.groupoid.source(g)) * lambda.template head<Sys::arrow_constraints>();
+  return out;
+}
 
 /// The gradients by first-order dual numbers: one pass through L, phi and C, along the arrow's frame or, where the
 /// groupoid supplies none, along the displacements of both ends.
@@ -45,7 +59,9 @@ LAGROID_FLATTEN GradientsOf<Sys> automatic_gradients(const Sys& system, const Ar
   }();
   GradientsOf<Sys> out;
   J f = system.lagrangian(gj);
-  if constexpr (Sys::arrow_constraints > 0) {
+  if constexpr (Nonholonomic<Sys>) {
+    out.constraint.template head<Sys::arrow_constraints>() = system.constraint(g);
+  } else if constexpr (Sys::arrow_constraints > 0) {
     const Vector<J, Sys::arrow_constraints> phi = system.constraint(gj);
     for (int a = 0; a < Sys::arrow_constraints; ++a) {
       f += phi(a) * lambda(a);
@@ -69,6 +85,11 @@ LAGROID_FLATTEN GradientsOf<Sys> automatic_gradients(const Sys& system, const Ar
     out.source_gradient = gradient.template head<n>();
     out.target_gradient = gradient.template tail<n>();
   }
+  if constexpr (!Variational<Sys>) {
+    const Forces<double, n> acting = impulses(system, g, lambda);
+    out.source_gradient += acting.source;
+    out.target_gradient += acting.target;
+  }
   return out;
 }
 
@@ -83,7 +104,7 @@ LAGROID_FLATTEN TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const Arr
   if constexpr (Sys::arrow_constraints > 0) {
     const Vector<M, Sys::arrow_constraints> phi = system.constraint(gm);
     for (int a = 0; a < Sys::arrow_constraints; ++a) {
-      f += phi(a) * lambda(a);
+      if constexpr (!Nonholonomic<Sys>) f += phi(a) * lambda(a);
       out.constraint(a) = phi(a).value;
       out.constraint_source.col(a) = phi(a).left();
       out.constraint_target.row(a) = phi(a).right().transpose();
@@ -104,6 +125,19 @@ LAGROID_FLATTEN TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const Arr
   out.source_gradient = f.left();
   out.target_gradient = f.right();
   out.mixed = f.mixed();
+  if constexpr (Nonholonomic<Sys>) {
+    constexpr int k = Sys::arrow_constraints;
+    out.constraint_source.template leftCols<k>() = annihilator(system, system.groupoid.source(g));
+    out.source_gradient += out.constraint_source.template leftCols<k>() * lambda.template head<k>();
+  }
+  if constexpr (Forced<Sys>) {
+    const Forces<M, Sys::dimension> force = system.forces(gm);
+    for (int i = 0; i < Sys::dimension; ++i) {
+      out.source_gradient(i) += force.source(i).value;
+      out.target_gradient(i) += force.target(i).value;
+      out.mixed.row(i) += force.source(i).right().transpose();
+    }
+  }
   return out;
 }
 
@@ -166,6 +200,22 @@ State<typename Sys::GroupoidType> legendre_minus(const Sys& system, const Step<S
 template <DiscreteSystem Sys>
 State<typename Sys::GroupoidType> legendre_plus(const Sys& system, const Step<Sys>& step) {
   return {system.groupoid.target(step.arrow), gradients(system, step.arrow, step.multipliers).target_gradient};
+}
+
+/// F+ - F-, the change of the momentum over a step with gradients d. The part that is due to the Lagrangian is the
+/// groupoid's `momentum_change`, which may know it without cancellation; impulses are added.
+template <DiscreteSystem Sys>
+AlgebroidVector<typename Sys::GroupoidType> momentum_change(const Sys& system, const Step<Sys>& step,
+                                                            const GradientsOf<Sys>& d) {
+  using V = AlgebroidVector<typename Sys::GroupoidType>;
+  if constexpr (Variational<Sys>) {
+    return system.groupoid.momentum_change(step.arrow, d.source_gradient, d.target_gradient);
+  } else {
+    const auto acting = impulses(system, step.arrow, step.multipliers);
+    const V change = system.groupoid.momentum_change(step.arrow, V(d.source_gradient - acting.source),
+                                                     V(d.target_gradient - acting.target));
+    return change + acting.source + acting.target;
+  }
 }
 
 }  // namespace lagroid

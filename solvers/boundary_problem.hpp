@@ -18,6 +18,7 @@ namespace lagroid {
 /// sum_k L(g_k) stationary ([G] section 5). Fixing the product fixes both end objects and, where G has isotropy, the
 /// displacement along it: for plate-ball g = (q_0, q_N, A_0^T A_N).
 template <DiscreteSystem Sys> struct BoundaryProblem {
+  static_assert(Variational<Sys>, "forced and nonholonomic systems have no action that their paths make stationary");
   Sys system;
   ArrowOf<typename Sys::GroupoidType> boundary;
 };

@@ -60,8 +60,7 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
     step.arrow = manifold_.arrow(arrow_.data());
     step.multipliers = multipliers_.template head<Sys::constraints>();
     const auto derivative = two_sided(system, step.arrow, step.multipliers);
-    solution.momentum_change =
-        system.groupoid.momentum_change(step.arrow, derivative.source_gradient, derivative.target_gradient);
+    solution.momentum_change = momentum_change(system, step, derivative);
     const ScaledResidual<Sys> final(system, state, step, derivative, cost_.scaling, /*rescale=*/false);
     report.residual = final.norm;
     report.excess = final.excess;

@@ -2,6 +2,7 @@
 /// The one-step map on A*G: (q, mu) -> g -> (q', mu').
 
 #include <lagroid/core/stepped.hpp>
+#include <lagroid/solvers/constrained_momentum.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/stepper.hpp>
 #include <lagroid/solvers/walk.hpp>
@@ -13,12 +14,15 @@ namespace lagroid {
 
 /// mu with the part removed that leaves C^{-1}(0) (RATTLE's second stage): mu + nu . dC o rho with nu such that
 /// dC o rho W mu = 0, where W = (-d2L/dv dw)^{-1} at the unit arrow is the inverse mass matrix up to a factor.
-/// The identity for systems without object constraints. The dynamics is the same with and without it; the projected
-/// momentum is the one in which the map is symplectic on T*C^{-1}(0).
+/// For nonholonomic and forced systems see constrained_momentum; the identity for others without object constraints.
+/// The dynamics is the same with and without it; the projected momentum is the one in which the map is symplectic on
+/// T*C^{-1}(0).
 template <DiscreteSystem Sys>
 AlgebroidVector<typename Sys::GroupoidType> tangent_momentum(const Sys& system,
                                                              const State<typename Sys::GroupoidType>& state) {
-  if constexpr (Sys::object_constraints == 0) {
+  if constexpr (Nonholonomic<Sys> || (Forced<Sys> && Sys::arrow_constraints == 0 && Sys::object_constraints > 0)) {
+    return constrained_momentum(system, state);
+  } else if constexpr (Sys::object_constraints == 0) {
     return state.momentum;
   } else {
     constexpr int k = Sys::object_constraints;

@@ -145,8 +145,7 @@ LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G
       solution.step = step;
       const Residual correction = inverse_.correction(residual);
       solution.remainder = correction.template head<Sys::dimension>();
-      solution.momentum_change =
-          system.groupoid.momentum_change(step.arrow, there.source_gradient, there.target_gradient);
+      solution.momentum_change = momentum_change(system, step, there);
       report.residual = norm_of(residual);
       report.excess = excess;
       return true;
@@ -197,8 +196,7 @@ template <DiscreteSystem Sys>
   auto derivative = two_sided(system, step.arrow, step.multipliers);
   ScaledResidual<Sys> current(system, state, step, derivative, scaling_, /*rescale=*/true);
   const auto at = [&](SolveStatus status, const Residual& correction) {
-    solution.momentum_change =
-        system.groupoid.momentum_change(step.arrow, derivative.source_gradient, derivative.target_gradient);
+    solution.momentum_change = momentum_change(system, step, derivative);
     solution.remainder = correction.template head<Sys::dimension>();
     report.residual = current.norm;
     report.excess = current.excess;

@@ -1,11 +1,16 @@
 // The certificate of every system of the library, at random states and in every form it has.
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/systems/certificates.hpp>
+#include <lagroid/systems/chaplygin_sleigh.hpp>
+#include <lagroid/systems/damped_pendulum.hpp>
+#include <lagroid/systems/driven_body.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rolling_ball.hpp>
+#include <lagroid/systems/rolling_disk.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
 #include "control_cases.hpp"
@@ -52,6 +57,25 @@ TEST(Certificate, RigidBodyInBothForms) {
     system.rotation = rotation;
     expect_certificate<RigidBody>(system, [] { return State<SO3>{{}, laws::draw_vector<3>(2.0)}; });
   }
+}
+
+TEST(Certificate, ForcedAndNonholonomicSystems) {
+  DampedPendulum pendulum;
+  expect_certificate<DampedPendulum>(pendulum, [] {
+    return State<Pair<1>>{laws::draw_vector<1>(2.0), laws::draw_vector<1>(1.0)};
+  });
+  DrivenBody body;
+  body.torque << 0.1, 0.2, -0.05;
+  expect_certificate<DrivenBody>(body, [] { return State<SO3>{{}, laws::draw_vector<3>(2.0)}; });
+  RollingBall ball;
+  ball.plate_rate = 1.3;
+  expect_certificate<RollingBall>(
+      ball, [&] { return ball.rolling(laws::draw_vector<2>(1.0), laws::draw_vector<2>(1.0), laws::draw_uniform()); });
+  const RollingDisk disk;
+  expect_certificate<RollingDisk>(disk, [&] { return disk.rolling(laws::draw_uniform(), 1.5 + laws::draw_uniform()); });
+  const ChaplyginSleigh sleigh;
+  expect_certificate<ChaplyginSleigh>(sleigh,
+                                      [&] { return sleigh.sliding(laws::draw_uniform(), 2 * laws::draw_uniform()); });
 }
 
 TEST(Certificate, HeavyTopInBothForms) {

@@ -175,8 +175,11 @@ TEST(Newton, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/newton.md"), "cpp", read("examples/implicit_step.cpp")), none);
 }
 
+TEST(Nonholonomic, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/nonholonomic.md"))), none); }
+TEST(Nonholonomic, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/nonholonomic.md")), none); }
+
 TEST(Mathematics, ItNamesEveryLaw) {
-  const auto named = matches(read("docs/mathematics.md"), "\"([^\"]+)\"");
+  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md"), "\"([^\"]+)\"");
   const auto laws = matches(text_of({"core/testing", "solvers/testing"}, ".hpp"), "law\\( ?\"([^\"]+)\"");
   EXPECT_GT(laws.size(), 50U);
   for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;

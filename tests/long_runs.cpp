@@ -1,4 +1,5 @@
 // A hundred thousand steps: momentum drift at round-off.
+#include "nonholonomic_runs.hpp"
 #include "run_watch.hpp"
 
 #include <lagroid/systems/plate_ball.hpp>
@@ -68,5 +69,7 @@ TEST(RigidBodyLong, MomentumAndEnergyHaveNoTrendOverAMillionSteps) {
   const auto& energy = seen.at("energy");
   EXPECT_LT(energy.trend, 1e-3 * energy.drift);
 }
+
+TEST(NonholonomicLong, EnergyAndMomentumOverAHundredThousandSteps) { expect_no_drift(100'000, 1e-12); }
 
 }  // namespace

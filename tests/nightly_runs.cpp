@@ -1,4 +1,5 @@
 // Too long for every test run: millions of steps, and boundary values over many seeds.
+#include "nonholonomic_runs.hpp"
 #include "run_watch.hpp"
 
 #include <lagroid/groupoids/rotation_fibre.hpp>
@@ -51,6 +52,8 @@ TEST(Nightly, MillionsOfSteps) {
   ASSERT_FALSE(ball.empty());
   EXPECT_LT(ball.at("spatial momentum A M").drift, 1e-11);
 }
+
+TEST(Nightly, NonholonomicSystemsOverAMillionSteps) { expect_no_drift(1'000'000, 1e-11); }
 
 TEST(Nightly, PathsReachEveryStepOnOrthogonalGroupsUpTo15) {
   int cells = 0;

@@ -42,13 +42,25 @@ struct WrongReaction : RollingBall {
 /// Derivatives by hand with a reaction that turns the sleigh too.
 struct ReactionWithTorque : ChaplyginSleigh {
   TwoSided<3, 1> two_sided(const Matrix<double, 3, 3>& g, const Multipliers& lambda) const {
-    auto d = automatic_two_sided(*this, g, lambda);
+    auto d = automatic_two_sided(static_cast<const ChaplyginSleigh&>(*this), g, lambda);
     const Vector<double, 3> omega(1, 0, 1);
     d.source_gradient += (omega - d.constraint_source.col(0)) * lambda(0);
     d.constraint_source.col(0) = omega;
     return d;
   }
   Step<ReactionWithTorque> first_guess(const State<SE2>& s) const {
+    return {ChaplyginSleigh::first_guess(s).arrow, Multipliers::Zero()};
+  }
+};
+
+/// Derivatives by hand that take a millimetre to the side for none.
+struct Sidling : ChaplyginSleigh {
+  TwoSided<3, 1> two_sided(const Matrix<double, 3, 3>& g, const Multipliers& lambda) const {
+    auto d = automatic_two_sided(static_cast<const ChaplyginSleigh&>(*this), g, lambda);
+    d.constraint(0) -= 1e-3;
+    return d;
+  }
+  Step<Sidling> first_guess(const State<SE2>& s) const {
     return {ChaplyginSleigh::first_guess(s).arrow, Multipliers::Zero()};
   }
 };
@@ -62,16 +74,16 @@ RollingBall ball_on_turning_plate() {
 }
 State<Plane> start_of(const RollingBall& ball) { return ball.rolling({0.3, -0.2}, {0.4, 0.1}, 0.7); }
 
-std::complex<double> centre_at(const State<Plane>& s) {
+std::complex<double> position_of(const State<Plane>& s) {
   const auto& q = std::get<0>(s.object);
   return {q(0), q(1)};
 }
 
-/// The centre of the continuous circle: v = i rate (z - c).
+/// The centre c of the continuous circle: velocity i rate (z - c) at z.
 std::complex<double> centre_of_circle(const RollingBall& ball, const State<Plane>& s) {
   const double rate = ball.plate_rate * ball.inertia_factor / (1 + ball.inertia_factor);
   const std::complex<double> v(s.momentum(0) / ball.mass, s.momentum(1) / ball.mass);
-  return centre_at(s) - v / std::complex<double>(0, rate);
+  return position_of(s) - v / std::complex<double>(0, rate);
 }
 
 TEST(RollingBall, ReferenceGoesRoundACircleAtTwoSeventhsOfThePlatesRate) {
@@ -81,8 +93,8 @@ TEST(RollingBall, ReferenceGoesRoundACircleAtTwoSeventhsOfThePlatesRate) {
   Matrix<double, 3, 3> attitude = Matrix<double, 3, 3>::Identity();
   const double t = 5;
   const auto end = ball.reference(start, attitude, t);
-  const auto exact = c + (centre_at(start) - c) * std::polar(1.0, 2.0 / 7 * ball.plate_rate * t);
-  EXPECT_LT(std::abs(centre_at(end) - exact), 1e-12);
+  const auto exact = c + (position_of(start) - c) * std::polar(1.0, 2.0 / 7 * ball.plate_rate * t);
+  EXPECT_LT(std::abs(position_of(end) - exact), 1e-12);
   EXPECT_NEAR(ball.moving_energy(end), ball.moving_energy(start), 1e-12);
 }
 
@@ -98,25 +110,27 @@ TEST(RollingBall, CentreGoesRoundThatCircleAtARateOfOrderTwo) {
       ball.h = h;
       const long steps = std::lround(4 / h);  // less than half a turn
       const auto end = march(ball, start, steps);
-      const auto turned = (centre_at(end.state) - c) / (centre_at(start) - c);
+      const auto turned = (position_of(end.state) - c) / (position_of(start) - c);
       EXPECT_NEAR(std::abs(turned), 1, 1e-13);
       const double measured = std::arg(turned) / (double(steps) * h);
       EXPECT_NEAR(measured, 2 / h * std::atan(h * rate / 2), 1e-13);
       errors.push_back(std::abs(measured - rate));
     }
-    for (int i = 0; i < 2; ++i) EXPECT_NEAR(std::log2(errors[i] / errors[i + 1]), 2, 0.01);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(std::log2(errors[i] / errors[i + 1]), 2, 0.01);
   }
 }
 
-TEST(RollingBall, OrderTwoAtEveryReportedQuantity) {
+TEST(RollingBall, OrderTwoInAllThatIsReported) {
   const RollingBall ball = ball_on_turning_plate();
   const auto start = start_of(ball);
   Matrix<double, 3, 3> attitude = Matrix<double, 3, 3>::Identity();
   const auto exact = ball.reference(start, attitude, 5.0);
-  const auto order = [&](const auto& error) { return measured_order(ball, start, 5.0, 50, error); };
   using Point = TrajectoryPoint<RollingBall>;
-  EXPECT_NEAR(order([&](const auto&, const Point& p) { return std::abs(centre_at(p.state) - centre_at(exact)); }), 2,
-              0.02);
+  const auto order = [&](const auto& error) {
+    return measured_order(ball, start, 5.0, 50, [&](const RollingBall& s, const Point& p) { return error(s, p); });
+  };
+  EXPECT_NEAR(order([&](const auto&, const Point& p) { return std::abs(position_of(p.state) - position_of(exact)); }),
+              2, 0.02);
   EXPECT_NEAR(order([&](const auto&, const Point& p) { return (std::get<1>(p.configuration) - attitude).norm(); }), 2,
               0.02);
   EXPECT_NEAR(order([&](const auto& s, const Point& p) { return (reported_momentum(s, p) - exact.momentum).norm(); }),
@@ -126,11 +140,11 @@ TEST(RollingBall, OrderTwoAtEveryReportedQuantity) {
 }
 
 TEST(RollingBall, PlateAtRestKeepsTheBallOnAStraightLine) {
-  RollingBall ball;
+  const RollingBall ball;
   const auto start = start_of(ball);
   const auto end = march(ball, start, 100);
   const std::complex<double> v(start.momentum(0), start.momentum(1));
-  EXPECT_LT(std::abs(centre_at(end.state) - centre_at(start) - v * (100 * ball.h)), 1e-12);
+  EXPECT_LT(std::abs(position_of(end.state) - position_of(start) - v * (100 * ball.h)), 1e-12);
   EXPECT_NEAR(ball.energy(end.state), ball.energy(start), 1e-14);
 }
 
@@ -139,26 +153,26 @@ TEST(BrokenReaction, ThatTurnsTheBallTheWrongWay) {
   ball.plate_rate = 1.3;
   const auto start = start_of(ball);
   const auto end = march(ball, start, 60);
-  EXPECT_GT(std::abs(ball.moving_energy({end.state.object, reported_momentum(ball, end)}) - ball.moving_energy(start)),
-            1e-2);
+  const double drift = ball.moving_energy({end.state.object, reported_momentum(ball, end)}) - ball.moving_energy(start);
+  EXPECT_GT(std::abs(drift), 1e-2);
   const auto report = laws::dalembert_laws(ball, [&] { return start; });
   EXPECT_FALSE(report.law("the distribution is that of the constraints").holds()) << report;
 }
 
 TEST(RollingBall, VakonomicPathsAreOthers) {
-  VakonomicBall optimal;
-  static_cast<RollingBall&>(optimal) = ball_on_turning_plate();
   const RollingBall rolling = ball_on_turning_plate();
+  VakonomicBall optimal;
+  static_cast<RollingBall&>(optimal) = rolling;
   const auto start = start_of(rolling);
-  const double horizon = 3;
   const auto distance = [&](double h, const State<Plane>& from) {
     RollingBall mechanics = rolling;
     VakonomicBall control = optimal;
     mechanics.h = control.h = h;
-    const auto a = march(mechanics, start, std::lround(horizon / h));
-    const auto b = march(control, from, std::lround(horizon / h));
+    const long steps = std::lround(3 / h);
+    const auto a = march(mechanics, start, steps);
+    const auto b = march(control, from, steps);
     EXPECT_LT(constraint_values(control, b.step.arrow).norm(), 1e-13);
-    return std::abs(centre_at(a.state) - centre_at(b.state));
+    return std::abs(position_of(a.state) - position_of(b.state));
   };
   // Both keep the same constraints and start with the same velocity, which leaves the vakonomic path its multipliers.
   for (const double l1 : {-0.5, 0.0, 0.5})
@@ -166,12 +180,12 @@ TEST(RollingBall, VakonomicPathsAreOthers) {
       State<Plane> from = start;
       from.momentum += rolling.annihilator(start.object) * Vector<double, 2>(l1, l2);
       const double coarse = distance(0.02, from);
-      EXPECT_GT(coarse, 0.05) << l1 << ' ' << l2;
+      EXPECT_GT(coarse, 0.02) << l1 << ' ' << l2;
       EXPECT_NEAR(distance(0.01, from), coarse, 0.02 * coarse) << "no matter of the step";
     }
 }
 
-/// A particle in the plane, attracted to the origin, and held to a line through a constraint on its velocity, which is
+/// A particle in the plane, attracted to the origin and held to a line by a constraint on its velocity, which is
 /// integrable.
 template <Principle P> struct OnALine : System<OnALine<P>, Pair<2>, 1> {
   static constexpr auto principle = P;
@@ -204,7 +218,7 @@ TEST(RollingDisk, RatesAndEnergyAreConstantAndTheCircleIsOfOrderTwo) {
     ASSERT_TRUE(integrator.advance().converged());
     const auto momentum = reported_momentum(disk, integrator.point());
     EXPECT_LT((momentum - start.momentum).norm(), 1e-14);
-    EXPECT_NEAR(disk.energy({{}, momentum}), disk.energy(start), 1e-14);
+    EXPECT_NEAR(disk.energy({start.object, momentum}), disk.energy(start), 1e-14);
   }
   ArrowOf<RollingDisk::GroupoidType> exact = disk.groupoid.unit(start.object);
   disk.reference(start, exact, 5.0);
@@ -224,7 +238,7 @@ TEST(ChaplyginSleigh, ReferenceIsTheClosedForm) {
   const auto start = sleigh.sliding(-0.8, -0.6);
   for (const double t : {0.5, 2.0, 8.0}) {
     Matrix<double, 3, 3> pose = Matrix<double, 3, 3>::Identity();
-    EXPECT_LT((sleigh.velocities(sleigh.reference(start, pose, t)) - sleigh.closed_form(start, t)).norm(), 1e-13) << t;
+    EXPECT_LT((sleigh.velocities(sleigh.reference(start, pose, t)) - sleigh.closed_form(start, t)).norm(), 1e-12) << t;
   }
 }
 
@@ -250,21 +264,21 @@ TEST(ChaplyginSleigh, ApproachesAStraightLineAndKeepsItsEnergyInABand) {
     sleigh.h = h;
     auto integrator = integrator_from(sleigh, start);
     double band = 0;
+    auto state = start;
     for (long k = 0; k < std::lround(40 / h); ++k) {
       ASSERT_TRUE(integrator.advance().converged());
-      auto state = integrator.point().state;
       state.momentum = reported_momentum(sleigh, integrator.point());
       band = std::max(band, std::abs(sleigh.energy(state) - sleigh.energy(start)));
     }
     bands.push_back(band);
-    const auto v = sleigh.velocities(integrator.point().state);
+    const auto v = sleigh.velocities(state);
     EXPECT_NEAR(v(0), 0, 1e-12);
     EXPECT_NEAR(v(1), std::sqrt(2 * sleigh.energy(start)), 2e-3);
   }
   EXPECT_NEAR(std::log2(bands[0] / bands[1]), 2, 0.05);
 }
 
-/// The largest deviation of a quantity over 300 steps.
+/// The largest deviation of a quantity over 300 steps, relative to its size.
 template <class Sys>
 double drift_of(const Quantity<Sys>& quantity, const Sys& system, const State<typename Sys::GroupoidType>& start) {
   return laws::detail::drift(system, quantity, start, 300);
@@ -296,7 +310,7 @@ TEST(Annihilator, OfAnAffineConstraintHoldsNothingOfTheAffineTerm) {
   const auto start = start_of(ball);
   EXPECT_LT((deduced_annihilator(ball, start.object) - ball.annihilator(start.object)).norm(), 1e-15);
   // The derivative at one end does: the plate turns under the midpoint.
-  const auto d = automatic_two_sided(ball, ball.groupoid.unit(start.object), RollingBall::Multipliers::Zero());
+  const auto d = automatic_two_sided(ball, ball.groupoid.unit(start.object), RollingBall::Multipliers::Zero().eval());
   EXPECT_GT((d.constraint_target.transpose() - ball.annihilator(start.object)).norm(), 0.5 * ball.h * ball.plate_rate);
 }
 
@@ -327,7 +341,15 @@ TEST(BrokenReaction, WithATorqueDoesVirtualWork) {
   const ReactionWithTorque sleigh;
   const auto report = laws::dalembert_laws(sleigh, [&] { return sleigh.sliding(1 + 0.5 * laws::draw_uniform(), 1.0); });
   EXPECT_FALSE(report.law("no virtual work").holds()) << report;
+  EXPECT_FALSE(report.law("reported momenta keep the constraints").holds()) << report;
   EXPECT_TRUE(report.law("arrows keep the constraints").holds()) << report;
+}
+
+TEST(BrokenConstraint, ArrowsThatMoveSideways) {
+  const Sidling sleigh;
+  const auto report = laws::dalembert_laws(sleigh, [&] { return sleigh.sliding(1.0, laws::draw_uniform()); });
+  EXPECT_FALSE(report.law("arrows keep the constraints").holds()) << report;
+  EXPECT_TRUE(report.law("no virtual work").holds()) << report;
 }
 
 TEST(Nonholonomic, MomentumChangeIsFplusLessFminus) {

@@ -1,9 +1,12 @@
 // One implicit step: Newton's status in every outcome, no allocation, agreement with Ceres, scaling.
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/systems/chaplygin_sleigh.hpp>
+#include <lagroid/systems/driven_body.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rolling_ball.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
 #include "allocation_counter.hpp"
@@ -49,6 +52,11 @@ TEST(NewtonStep, AllocatesNothing) {
   body.momentum << 0.3, 1.5, 0.4;
   expect_no_allocation(RigidBody{}, body);
   expect_no_allocation(Kepler{}, State<Pair<2>>{{0.5, 0}, {0, 1.7}});
+  RollingBall ball;
+  ball.plate_rate = 1.3;
+  expect_no_allocation(ball, ball.rolling({0.3, -0.2}, {0.4, 0.1}, 0.7));
+  expect_no_allocation(ChaplyginSleigh{}, ChaplyginSleigh{}.sliding(1, -0.6));
+  expect_no_allocation(DrivenBody{}, body);
   expect_no_allocation(SphericalPendulum{}, State<Pair<3>>{{0.6, 0, -0.8}, {0, 0.5, 0}});
 }
 

@@ -6,11 +6,16 @@
 #include "../task.hpp"
 
 #include <lagroid/systems/attitude_control.hpp>
+#include <lagroid/systems/chaplygin_sleigh.hpp>
+#include <lagroid/systems/damped_pendulum.hpp>
+#include <lagroid/systems/driven_body.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rolling_ball.hpp>
+#include <lagroid/systems/rolling_disk.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 #include <lagroid/systems/unicycle.hpp>
 
@@ -24,5 +29,10 @@ Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context);
 Task<Pendulum> read_pendulum(const Section& scene, const RunContext& context);
 Task<Kepler> read_kepler(const Section& scene, const RunContext& context);
 Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunContext& context);
+Task<RollingBall> read_rolling_ball(const Section& scene, const RunContext& context);
+Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& context);
+Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunContext& context);
+Task<DampedPendulum> read_damped_pendulum(const Section& scene, const RunContext& context);
+Task<DrivenBody> read_driven_body(const Section& scene, const RunContext& context);
 
 }  // namespace lagroid::app

@@ -1,5 +1,6 @@
 #include "../boundary_value.hpp"
 #include "group_map.hpp"
+#include "pose.hpp"
 #include "readers.hpp"
 
 namespace lagroid::app {
@@ -13,16 +14,6 @@ Unicycle read_system(const Section& scene) {
   system.map = read_group_map(parameters, "map");
   system.h = read_time(scene).step;
   return system;
-}
-
-/// The pose at x, y with the heading in radians, and back.
-Matrix<double, 3, 3> read_pose(const Section& section) {
-  const auto pose = section.numbers("position", 3, "x, y, heading");
-  return SE2::homogeneous<double>(SO2::exp(Vector<double, 1>(pose[2])), {pose[0], pose[1]});
-}
-std::vector<double> position_of(const TrajectoryPoint<Unicycle>& point) {
-  const auto& pose = point.configuration;
-  return {pose(0, 2), pose(1, 2), std::atan2(pose(1, 0), pose(0, 0))};
 }
 
 BoundaryScene<Unicycle> read_boundary(const Section& scene) {
@@ -50,7 +41,7 @@ Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context) {
   p.momentum = {"M", "p1", "p2"};
   p.momentum_unit = "1/s for M; 1/(m s) for p";
   p.multipliers = {"lambda1", "lambda2"};
-  p.position_of = position_of;
+  p.position_of = [](const TrajectoryPoint<Unicycle>& point) { return coordinates_of_pose(point.configuration); };
   const Unicycle system = read_system(scene);
   p.extras = {{{"controls", {"w"}, "rad/s", "turning rate over the arrow", true, {}},
                [system](const TrajectoryPoint<Unicycle>& point, double* out) {

@@ -14,6 +14,8 @@ TwoSidedOf<Sys> nested_two_sided(const Sys& system, const ArrowOf<typename Sys::
   using D = Dual<Dual<double>>;
   constexpr int n = Sys::dimension;
   TwoSidedOf<Sys> out;
+  Vector<double, n> force_source = Vector<double, n>::Zero();
+  Vector<double, n> force_target = Vector<double, n>::Zero();
   const auto gd = system.groupoid.template cast<D>(g);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
@@ -42,7 +44,20 @@ TwoSidedOf<Sys> nested_two_sided(const Sys& system, const ArrowOf<typename Sys::
         for (int a = 0; a < Sys::object_constraints; ++a)
           record(Sys::arrow_constraints + a, at_source(a), at_target(a));
       }
+      if constexpr (Forced<Sys>) {
+        const auto force = system.forces(moved);
+        force_source(i) = force.source(i).value.value;
+        force_target(j) = force.target(j).value.value;
+        out.mixed(i, j) += force.source(i).value.derivative;
+      }
     }
+  out.source_gradient += force_source;
+  out.target_gradient += force_target;
+  if constexpr (Nonholonomic<Sys>) {
+    constexpr int k = Sys::arrow_constraints;
+    out.constraint_source.template leftCols<k>() = annihilator(system, system.groupoid.source(g));
+    for (int a = 0; a < k; ++a) out.source_gradient += lambda(a) * out.constraint_source.col(a);
+  }
   return out;
 }
 

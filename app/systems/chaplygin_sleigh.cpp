@@ -1,0 +1,45 @@
+#include "../simulation.hpp"
+#include "group_map.hpp"
+#include "pose.hpp"
+#include "readers.hpp"
+
+namespace lagroid::app {
+
+Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunContext& context) {
+  using Point = TrajectoryPoint<ChaplyginSleigh>;
+  const Section parameters = scene.section_or_empty("parameters");
+  ChaplyginSleigh system;
+  system.mass = parameters.number_or("mass", 1, positive);
+  system.inertia = parameters.number_or("inertia", 1, positive);
+  system.offset = parameters.number_or("offset", 1);
+  system.map = read_group_map(parameters, "map");
+  system.h = read_time(scene).step;
+
+  Presentation<ChaplyginSleigh> p;
+  p.name = "chaplygin_sleigh";
+  p.position = {"x", "y", "heading"};
+  p.position_unit = "m for x, y; rad for the heading";
+  p.momentum = {"M", "p1", "p2"};
+  p.momentum_unit = "kg m^2/s for M; kg m/s for p";
+  p.multipliers = {"lambda"};
+  p.position_of = [](const Point& point) { return coordinates_of_pose(point.configuration); };
+  p.extras = {{{"velocities", {"w", "v1"}, "rad/s for w, m/s for v1", "turning, and the blade's ahead", false, {}},
+               [system](const Point& point, double* out) {
+                 Eigen::Map<Vector<double, 2>> velocities(out);
+                 velocities = system.velocities(point.state);
+               }}};
+  p.conventions = {{"position", "pose A_k = A_{k-1} g_k of the blade: x, y and the angle from the x axis to its edge"},
+                   {"momentum", "body momentum: about the blade, ahead, to the left"},
+                   {"multipliers", "impulse of the reaction at the object the arrow starts from"}};
+  p.panels = {{"path of the blade", "x", "y", "x", {"y"}, true},
+              {"velocities", "t", "w, v1", "t", {"w", "v1"}},
+              {"energy error", "t", "|E - E_0|", "t", {"drift energy"}},
+              {"momentum equation, error", "t", "deviation", "t", {"drift momentum equation of turning"}}};
+
+  const Section initial = scene.section("initial", "position and velocity");
+  const Matrix<double, 3, 3> pose = read_pose(initial);
+  const auto velocity = initial.numbers("velocity", 2, "turning (rad/s), ahead (m/s)");
+  return simulation(scene, context, system, p, system.sliding(velocity[0], velocity[1]), pose);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,28 @@
+#include "mechanical.hpp"
+#include "readers.hpp"
+
+namespace lagroid::app {
+
+Task<DampedPendulum> read_damped_pendulum(const Section& scene, const RunContext& context) {
+  auto p = vector_presentation<DampedPendulum, 1>("damped_pendulum", {"q"}, "rad", {"p"}, "kg m^2/s");
+  const Section parameters = scene.section_or_empty("parameters");
+  DampedPendulum system;
+  system.bob_mass = parameters.number_or("mass", 1, positive);
+  system.length = parameters.number_or("length", 1, positive);
+  system.gravity = parameters.number_or("gravity", 1);
+  system.damping = parameters.number_or("damping", 0.1, nonnegative);
+  system.quadrature = read_quadrature(parameters, "midpoint");
+  system.h = read_time(scene).step;
+  p.extras = {
+      {{"energy", {"H"}, "J", "p^2 / (2 m l^2) - m g l cos q", false, {}},
+       [system](const TrajectoryPoint<DampedPendulum>& point, double* out) { *out = system.energy(point.state); }}};
+  p.panels = {{"angle", "t", "q", "t", {"q"}},
+              {"phase plane", "q", "p", "q", {"p"}},
+              {"energy", "t", "H", "t", {"H"}},
+              {"energy less work, error", "t", "deviation", "t", {"drift energy less work"}}};
+  const Section section = scene.section("initial", "position and momentum");
+  const auto initial = read_vector_state<1>(section, "the angle from the downward vertical", "m l^2 dq/dt");
+  return simulation(scene, context, system, p, initial, PairArrow<double, 1>{initial.object, initial.object});
+}
+
+}  // namespace lagroid::app

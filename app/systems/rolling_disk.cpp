@@ -1,0 +1,52 @@
+#include "../simulation.hpp"
+#include "pose.hpp"
+#include "readers.hpp"
+
+namespace lagroid::app {
+
+Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& context) {
+  using Point = TrajectoryPoint<RollingDisk>;
+  const Section parameters = scene.section_or_empty("parameters");
+  RollingDisk system;
+  system.mass = parameters.number_or("mass", 1, positive);
+  system.radius = parameters.number_or("radius", 1, positive);
+  system.rolling_inertia = parameters.number_or("rolling_inertia", 0.5, positive);
+  system.turning_inertia = parameters.number_or("turning_inertia", 0.25, positive);
+  system.h = read_time(scene).step;
+
+  Presentation<RollingDisk> p;
+  p.name = "rolling_disk";
+  p.position = {"x", "y", "heading", "roll"};
+  p.position_unit = "m for x, y; rad for the angles";
+  p.momentum = {"M", "p1", "p2", "N"};
+  p.momentum_unit = "kg m^2/s for M, N; kg m/s for p";
+  p.multipliers = {"lambda1", "lambda2"};
+  p.position_of = [](const Point& point) {
+    const auto& [pose, roll] = point.configuration;
+    auto position = coordinates_of_pose(pose);
+    position.push_back(SO2::log(roll)(0));
+    return position;
+  };
+  p.extras = {{{"rates", {"w", "s"}, "rad/s", "of turning and of rolling", false, {}},
+               [system](const Point& point, double* out) {
+                 Eigen::Map<Vector<double, 2>> rates(out);
+                 rates = system.rates(point.state);
+               }}};
+  p.conventions = {{"position",
+                    "x, y of the point of contact, the angle from the x axis to where it rolls, and how far "
+                    "it has rolled, both from -pi to pi"},
+                   {"momentum", "in the disk's frame: about the vertical, ahead, to the left, about its axis"},
+                   {"multipliers", "impulses of the reaction at the object the arrow starts from"}};
+  p.panels = {{"path of the point of contact", "x", "y", "x", {"y"}, true},
+              {"rates", "t", "w, s", "t", {"w", "s"}},
+              {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
+              {"energy error", "t", "|E - E_0|", "t", {"drift energy"}}};
+
+  const Section initial = scene.section("initial", "position and rates");
+  const Matrix<double, 3, 3> pose = read_pose(initial);
+  const auto rates = initial.numbers("rates", 2, "turning, rolling (rad/s)");
+  const ArrowOf<RollingDisk::GroupoidType> configuration{pose, Matrix<double, 2, 2>::Identity()};
+  return simulation(scene, context, system, p, system.rolling(rates[0], rates[1]), configuration);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,29 @@
+#pragma once
+/// The damped planar pendulum.
+
+#include <lagroid/core/balance.hpp>
+#include <lagroid/systems/pendulum.hpp>
+
+namespace lagroid {
+
+/// The pendulum with the torque -c q' in its joint: p' = -dU/dq - c q', dE/dt = -c q'^2. On an arrow the impulse
+/// -c (q1 - q0) acts by halves on either end.
+struct DampedPendulum : Pendulum {
+  double damping = 0.1;  ///< c, N m s
+
+  template <class S, class T> Forces<S, 1> forces(const PairArrow<S, 1>& g, const T& /*step*/) const {
+    const Vector<S, 1> half = (g.target - g.source) * (-0.5 * damping);
+    return {half, half};
+  }
+  template <class S> Forces<S, 1> forces(const PairArrow<S, 1>& g) const { return forces(g, h); }
+
+  /// The continuous solution after time t.
+  State<Pair<1>> reference(const State<Pair<1>>& start, double t) const;
+
+  std::vector<Quantity<DampedPendulum>> quantities() const { return {energy_balance(*this)}; }
+};
+
+LAGROID_STEPS(extern template, DampedPendulum);
+LAGROID_STEP_SOLVERS(extern template, DampedPendulum);
+
+}  // namespace lagroid
