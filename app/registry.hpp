@@ -105,6 +105,15 @@ template <class Visit> void for_each_system(const Visit& visit) {
                                {"gravity", "m/s^2", "1", "acceleration"},
                                {"damping", "N m s", "0.1", "torque over angular velocity"},
                                with(quadrature, "midpoint")}});
+  visit(Entry<DrivenPendulum>{"driven_pendulum",
+                              "planar pendulum under a periodic torque or on a shaking support",
+                              read_driven_pendulum,
+                              {{"mass", "kg", "1", "of the bob"},
+                               {"length", "m", "1", "of the rod"},
+                               {"gravity", "m/s^2", "1", "acceleration"},
+                               {"frequency", "rad/s", "1", "of the drive"},
+                               {"torque", "N m", "0", "amplitude of the torque"},
+                               {"amplitude", "m", "0", "of the support's motion up and down"}}});
   visit(Entry<DrivenBody>{"driven_body",
                           "rigid body with thrust and drag on SO(3)",
                           read_driven_body,

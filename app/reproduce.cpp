@@ -3,6 +3,7 @@
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "reproductions/newton_report.hpp"
+#include "reproductions/time_steps.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@ namespace lagroid::app {
 namespace {
 
 constexpr const char* newton_name = "newton-on-lie-groups";
+constexpr const char* time_name = "time-steps";
 
 /// As a word of the shell.
 std::string quoted(const std::string& text) {
@@ -84,10 +86,57 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
   return 0;
 }
 
+int reproduce_time_steps(const ReproduceOptions& options, bool json) {
+  try {
+    require_writable(options.time_out, time_report_files);
+  } catch (const OutputError& error) {
+    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
+  }
+  const auto start = std::chrono::steady_clock::now();
+  TimeFindings findings;
+  {
+    Progress progress(time_name, 100, !json);
+    findings = run_time_study([&](long done, long all) { progress.update(100 * done / all); });
+  }
+  std::string note;
+  const auto files =
+      write_time_report(findings, fmt::format("./lagroid reproduce {} --out {}", time_name, quoted(options.time_out)),
+                        options.time_out, note);
+  nlohmann::ordered_json result;
+  result["status"] = "done";
+  result["runs"] = findings.runs.size();
+  result["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const auto& run : findings.runs)
+    if (run.method != "fixed")
+      result["gain_at_equal_cost"][run.problem][run.method] = gain_at_equal_cost(findings, run.problem, run.method);
+  for (const auto& file : files) result["files"].push_back(file.string());
+  if (!note.empty()) result["notes"].push_back("no pictures: " + note);
+  if (json) {
+    print(result.dump(2) + "\n");
+    return 0;
+  }
+  std::string text =
+      fmt::format("{}: {} runs in {:.3g} s\n", time_name, findings.runs.size(), result["seconds"].get<double>());
+  for (const auto& [problem, gains] : result["gain_at_equal_cost"].items()) {
+    text += fmt::format("  {}, error of fixed steps of order 2 over theirs at equal cost\n", problem);
+    for (const auto& [method, gain] : gains.items())
+      text += fmt::format("    {:<20} {:8.3g}\n", method, gain.get<double>());
+  }
+  if (!note.empty()) text += fmt::format("  note: no pictures: {}\n", note);
+  for (const auto& file : files) text += fmt::format("  wrote {}\n", file.string());
+  print(text);
+  return 0;
+}
+
 }  // namespace
 
 void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json) {
   command.require_subcommand(1);
+  CLI::App* time = command.add_subcommand(
+      time_name, "fixed, adaptive and controlled steps, composed and split ones: error against time and evaluations");
+  time->add_option("--out", options.time_out, "the folder for report.md, CSV and figures")->capture_default_str();
+  time->add_flag("--json", json, "print one JSON object and nothing else on standard output");
+  time->callback([&options] { options.name = time_name; });
   CLI::App* newton = command.add_subcommand(
       newton_name, "Owren and Welfert, section 5: Newton, fixed point, Ceres and the path on O(N), and what they cost");
   newton->add_option("--out", options.newton_out, "the folder for report.md, tables, CSV and figures")
@@ -105,8 +154,11 @@ void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json)
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   newton->add_flag("--json", json, "print one JSON object and nothing else on standard output");
+  newton->callback([&options] { options.name = newton_name; });
 }
 
-int reproduce(const ReproduceOptions& options, bool json) { return reproduce_newton(options, json); }
+int reproduce(const ReproduceOptions& options, bool json) {
+  return options.name == time_name ? reproduce_time_steps(options, json) : reproduce_newton(options, json);
+}
 
 }  // namespace lagroid::app

@@ -1,5 +1,5 @@
 #pragma once
-/// `lagroid reproduce`: the experiments of a paper, as report, tables, CSV and figures.
+/// `lagroid reproduce`: experiments, as report, tables, CSV and figures.
 
 #include "command.hpp"
 
@@ -8,11 +8,13 @@
 namespace lagroid::app {
 
 struct ReproduceOptions {
+  std::string name;  ///< of the one to carry out
   NewtonStudy newton;
   std::string newton_out = "out/newton-on-lie-groups";
+  std::string time_out = "out/time-steps";
 };
 
-/// The subcommands of `reproduce`, one for each paper.
+/// The subcommands of `reproduce`.
 void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json);
 
 /// Carries out the one that was named; returns the exit code.

@@ -21,7 +21,7 @@ TimeGrid read_time(const Section& scene) {
 
 namespace {
 
-/// `order`, `method`: the composition of a fixed step.
+/// `order`, `composition`: of a fixed step.
 Composition read_composition(const Section& time) {
   const long order = time.integer_or("order", 2, 2, 8);
   if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6 or 8, got {}", order));
@@ -30,12 +30,12 @@ Composition read_composition(const Section& time) {
   const Composition& usual = defaults[std::size_t(order / 2 - 1)];
   std::vector<std::string> names;
   for (const auto& composition : compositions::all) names.emplace_back(composition.name);
-  const std::string name = time.choice_or("method", std::string(usual.name), names);
+  const std::string name = time.choice_or("composition", std::string(usual.name), names);
   for (const auto& composition : compositions::all) {
     if (composition.name != name) continue;
     if (time.has("order") && composition.order != order)
-      time.fail("method", fmt::format("\"{}\" is of order {}, not {}; leave out order or method", name,
-                                      composition.order, order));
+      time.fail("composition", fmt::format("\"{}\" is of order {}, not {}; leave out order or composition", name,
+                                           composition.order, order));
     return composition;
   }
   return usual;
@@ -49,32 +49,36 @@ void read_stepper(const Section& solver, MarchOptions& options) {
 
 }  // namespace
 
-MarchChoice read_march(const Section& scene, bool timed, bool has_time_scale) {
+MarchChoice read_march(const Section& scene, const Abilities& able) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
   MarchChoice choice;
   MarchOptions& options = choice.options;
-  const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled"});
-  const auto refuse = [&](std::string_view key, std::string_view what) {
-    time.fail(key, fmt::format("this system has no {}; use mode = \"fixed\"", what));
+  const auto need = [&](bool has, std::string_view key, std::string_view what) {
+    if (!has) time.fail(key, fmt::format("this system has no {}; see docs/time.md for those that do", what));
   };
+  const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled"});
   if (mode == "fixed") {
+    options.splitting = time.choice_or("method", "variational", {"variational", "splitting"}) == "splitting";
+    if (options.splitting) need(able.split, "method", "explicit splitting");
     options.composition = read_composition(time);
   } else if (mode == "adaptive") {
-    if (!timed) refuse("mode", "Lagrangian for every step size");
+    need(able.timed, "mode", "Lagrangian for every step size");
     options.mode = TimeMode::adaptive;
     const std::string instead = time.choice_or("without_root", "stop", {"stop", "constant", "controlled"});
-    if (instead == "controlled" && !has_time_scale) refuse("without_root", "time scale to control steps by");
-    options.without_root = instead == "stop"       ? WithoutRoot::stop
-                           : instead == "constant" ? WithoutRoot::constant
-                                                   : WithoutRoot::controlled;
+    if (instead == "constant") options.without_root = WithoutRoot::constant;
+    if (instead == "controlled") {
+      need(able.time_scale, "without_root", "time scale to control steps by");
+      options.without_root = WithoutRoot::controlled;
+    }
   } else {
-    if (!has_time_scale) refuse("mode", "time scale to control steps by");
+    need(able.time_scale, "mode", "time scale to control steps by");
     options.mode = TimeMode::controlled;
   }
   if (time.has("accuracy")) {
     choice.accuracy = time.number("accuracy", positive);
-    if (options.mode == TimeMode::fixed && options.composition.stages() > 1)
-      time.fail("accuracy", "chooses steps of order 2; give step, or leave out order and method");
+    if (time.has("duration")) time.fail("accuracy", "chooses the step: leave out duration");
+    if (options.splitting || options.composition.stages() > 1)
+      time.fail("accuracy", "chooses steps of order 2; give step, or leave out order, method and composition");
   }
   read_stepper(scene.section_or_empty("solver"), options);
   return choice;

@@ -7,6 +7,7 @@
 #include "task.hpp"
 
 #include <lagroid/core/discrete_energy.hpp>
+#include <lagroid/core/split_system.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/step_control.hpp>
@@ -31,8 +32,16 @@ struct MarchChoice {
   MarchOptions options;
   double accuracy = 0;  ///< of the first step; 0: its size is given
 };
-/// Refuses modes that the system does not have.
-MarchChoice read_march(const Section& scene, bool timed, bool has_time_scale);
+/// Which of them a system has.
+struct Abilities {
+  bool timed = false;
+  bool time_scale = false;
+  bool split = false;
+};
+template <class Sys>
+inline constexpr Abilities abilities_of{Timed<Sys>, Timed<Sys>&& HasTimeScale<Sys>, SplitSystem<Sys>};
+/// Refuses what the system does not have.
+MarchChoice read_march(const Section& scene, const Abilities& able);
 
 /// [output]: every n-th node is recorded (and the last); 0 when nothing is.
 long read_every(const Section& scene, const RunContext& context);
@@ -124,7 +133,7 @@ Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys&
                      const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                      const ArrowOf<typename Sys::GroupoidType>& configuration) {
   const long steps = read_time(scene).steps;
-  const MarchChoice choice = read_march(scene, Timed<Sys>, HasTimeScale<Sys>);
+  const MarchChoice choice = read_march(scene, abilities_of<Sys>);
   const long every = read_every(scene, context);
   scene.finish();
   return {system, [=](const Observer<Sys>& observer) {

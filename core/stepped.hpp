@@ -50,9 +50,9 @@ template <class Sys> void set_time(Sys& system, double time) {
   if constexpr (TimeDependent<Sys>) system.time = time;
 }
 
-/// What can be extended by time.
+/// What can be extended by time: a variational system of either kind.
 template <class Sys>
-concept Timed = DiscreteSystem<Sys> &&(StepDependent<Sys> || TimeDependent<Sys>);
+concept Timed = DiscreteSystem<Sys> && Variational<Sys> &&(StepDependent<Sys> || TimeDependent<Sys>);
 
 /// L over a step, and phi, of a system of either kind.
 template <Timed Sys, class A, class T>

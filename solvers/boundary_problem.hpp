@@ -1,6 +1,7 @@
 #pragma once
 /// Boundary-value problems: critical points of the action over trajectories with a fixed product.
 
+#include <lagroid/core/stepped.hpp>
 #include <lagroid/core/two_sided.hpp>
 #include <lagroid/solvers/status.hpp>
 
@@ -19,6 +20,7 @@ namespace lagroid {
 /// displacement along it: for plate-ball g = (q_0, q_N, A_0^T A_N).
 template <DiscreteSystem Sys> struct BoundaryProblem {
   static_assert(Variational<Sys>, "forced and nonholonomic systems have no action that their paths make stationary");
+  static_assert(!TimeDependent<Sys>, "every arrow would be taken at the same time");
   Sys system;
   ArrowOf<typename Sys::GroupoidType> boundary;
 };

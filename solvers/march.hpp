@@ -29,6 +29,7 @@ enum class WithoutRoot {
 
 struct MarchOptions {
   TimeMode mode = TimeMode::fixed;
+  bool splitting = false;                          ///< fixed steps: explicit, of a SplitSystem
   Composition composition = compositions::single;  ///< of fixed steps
   WithoutRoot without_root = WithoutRoot::stop;    ///< of adaptive ones
   StepMethod method = StepMethod::newton;
@@ -41,6 +42,7 @@ template <DiscreteSystem Sys> class March {
   virtual ~March() = default;
   virtual StepReport advance() = 0;
   virtual const TrajectoryPoint<Sys>& point() const = 0;
+  /// Of the method for a variational system.
   virtual MethodTraits traits() const = 0;
   /// The arrows before the last that make up the last step, where there are any: each with its start and its size.
   using Visit = std::function<void(const Step<Sys>&, double start, double size)>;
@@ -50,8 +52,8 @@ template <DiscreteSystem Sys> class March {
 };
 
 /// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one
-/// with a time scale for controlled steps (throws std::invalid_argument). Include `march_methods.hpp` for a system of
-/// your own; those of `systems/` are compiled.
+/// with a time scale for controlled steps, a SplitSystem for splitting (throws std::invalid_argument). Include
+/// `march_methods.hpp` for a system of your own; those of `systems/` are compiled.
 template <DiscreteSystem Sys>
 std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,
                                        const ArrowOf<typename Sys::GroupoidType>& configuration,

@@ -5,6 +5,7 @@
 #include <lagroid/solvers/composition.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march.hpp>
+#include <lagroid/solvers/splitting.hpp>
 #include <lagroid/solvers/step_control.hpp>
 #include <lagroid/solvers/step_methods.hpp>
 
@@ -65,6 +66,11 @@ std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename S
     throw std::invalid_argument(options.mode == TimeMode::adaptive
                                     ? "adaptive steps need a system with lagrangian(g, step)"
                                     : "controlled steps need a system with time_scale_rate");
+  if constexpr (SplitSystem<Sys>)
+    if (options.splitting)
+      return std::make_unique<detail::MarchOf<Sys, SplittingIntegrator<Sys>>>(system, initial, configuration,
+                                                                              options.composition);
+  if (options.splitting) throw std::invalid_argument("splitting needs a system with flows");
   if constexpr (HasTimeStep<Sys>)
     if (options.composition.stages() > 1)
       return std::make_unique<detail::MarchOf<Sys, CompositionIntegrator<Sys>>>(system, initial, configuration,

@@ -92,7 +92,7 @@ template <SplitSystem Sys> class SplittingIntegrator {
 
   const TrajectoryPoint<Sys>& point() const { return point_; }
   const Sys& system() const { return system_; }
-  MethodTraits method() const {
+  MethodTraits traits() const {
     return {"Strang splitting, composition " + std::string(composition_.name), composition_.order, true, true, true};
   }
 
@@ -125,6 +125,7 @@ template <SplitSystem Sys> StepReport SplittingIntegrator<Sys>::advance() {
   point_.state.object = groupoid.target(point_.configuration);
   ++point_.index;
   point_.time = double(point_.index) * system_.h;
+  point_.step_size = system_.h;
   return report;
 }
 

@@ -54,6 +54,6 @@ struct DrivenPendulum : System<DrivenPendulum, Pair<1>> {
 };
 
 LAGROID_STEPS(extern template, DrivenPendulum);
-LAGROID_SOLVERS(extern template, DrivenPendulum);
+LAGROID_STEP_SOLVERS(extern template, DrivenPendulum);
 
 }  // namespace lagroid

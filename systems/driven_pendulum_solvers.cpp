@@ -1,9 +1,8 @@
-#include <lagroid/solvers/boundary_methods.hpp>
 #include <lagroid/solvers/march_methods.hpp>
 #include <lagroid/systems/driven_pendulum.hpp>
 
 namespace lagroid {
 
-LAGROID_SOLVERS(template, DrivenPendulum);
+LAGROID_STEP_SOLVERS(template, DrivenPendulum);
 
 }  // namespace lagroid

@@ -4,7 +4,8 @@
 /// A system's header ends with LAGROID_STEPS(extern template, Sys) and LAGROID_SOLVERS(extern template, Sys);
 /// its .cpp files hold the same lines without `extern`. Both stand in namespace lagroid. A system of your own needs
 /// neither: its templates are then compiled where they are used. A forced or nonholonomic system, which has no action
-/// whose critical points the boundary solvers would look for, holds LAGROID_STEP_SOLVERS in place of LAGROID_SOLVERS.
+/// whose critical points the boundary solvers would look for, holds LAGROID_STEP_SOLVERS in place of LAGROID_SOLVERS,
+/// and so does one that depends on time.
 
 #include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
@@ -20,16 +21,16 @@
   prefix class Walk<Sys>;                                                                                              \
   prefix class Integrator<Sys>
 
+#define LAGROID_STEP_SOLVERS(prefix, Sys)                                                                \
+  prefix std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys&, StepMethod, StepOptions);         \
+  prefix std::unique_ptr<March<Sys>> make_march(const Sys&, const State<Sys::GroupoidType>&,             \
+                                                const ArrowOf<Sys::GroupoidType>&, const MarchOptions&); \
+  prefix double step_for_accuracy(const Sys&, const State<Sys::GroupoidType>&, double, const MarchOptions&)
+
 #define LAGROID_SOLVERS(prefix, Sys)                                                                                \
+  LAGROID_STEP_SOLVERS(prefix, Sys);                                                                                \
   prefix SecondDerivativesOf<Sys> second_derivatives(const Sys&, const ArrowOf<Sys::GroupoidType>&,                 \
                                                      const Sys::Multipliers&);                                      \
-  prefix std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys&, StepMethod, StepOptions);                    \
-  prefix std::unique_ptr<March<Sys>> make_march(const Sys&, const State<Sys::GroupoidType>&,                        \
-                                                const ArrowOf<Sys::GroupoidType>&, const MarchOptions&);            \
-  prefix double step_for_accuracy(const Sys&, const State<Sys::GroupoidType>&, double, const MarchOptions&);        \
   prefix std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod, BoundaryOptions, Seek);          \
   prefix MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>&, const BoundaryProblem<Sys>&, std::size_t, \
                                               const MultistartOptions&)
-
-#define LAGROID_STEP_SOLVERS(prefix, Sys) \
-  prefix std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys&, StepMethod, StepOptions)

@@ -189,7 +189,7 @@ State<SO3> MoserVeselov::reference(const State<SO3>& start, Matrix<double, 3, 3>
   return body.reference(start, attitude, t);
 }
 
-MethodTraits MoserVeselov::method() const {
+MethodTraits MoserVeselov::traits() const {
   return {fmt::format("discrete Moser-Veselov, preprocessed to order {}", order), order, true, true, false};
 }
 

@@ -74,7 +74,7 @@ struct MoserVeselov : System<MoserVeselov, SO3> {
   /// The solution, or the unit where there is none.
   Step<MoserVeselov> first_guess(const State<SO3>& s) const;
 
-  MethodTraits method() const;
+  MethodTraits traits() const;
   std::vector<Quantity<MoserVeselov>> quantities() const;
 
  private:

@@ -1,5 +1,5 @@
 #include <lagroid/solvers/boundary_methods.hpp>
-#include <lagroid/solvers/step_methods.hpp>
+#include <lagroid/solvers/march_methods.hpp>
 #include <lagroid/systems/moser_veselov.hpp>
 
 namespace lagroid {

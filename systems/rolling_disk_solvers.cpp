@@ -1,4 +1,4 @@
-#include <lagroid/solvers/step_methods.hpp>
+#include <lagroid/solvers/march_methods.hpp>
 #include <lagroid/systems/rolling_disk.hpp>
 
 namespace lagroid {

@@ -143,6 +143,26 @@ TEST(Composition, FirstOrderStepsAreSymmetrisedByTheirAdjoints) {
   EXPECT_LT(observed(compositions::suzuki, false), 2.5);
 }
 
+TEST(BrokenMethod, DeclaresAnOrderItDoesNotHave) {
+  Pendulum system;
+  const State<Pair<1>> start{Vector<double, 1>(1.2), Vector<double, 1>(0.3)};
+  constexpr std::array coefficients{0.4, 0.2, 0.4};
+  const Composition made_up{"made up", 4, coefficients, ""};
+  laws::OrderProblem problem;
+  problem.exact = coordinates(system, system.reference(start, 5.0));
+  problem.coarsest = 100;
+  problem.floor = 1e-7;
+  problem.end = [&](int steps) {
+    system.h = 5.0 / steps;
+    auto run = make(system, start, made_up);
+    for (int k = 0; k < steps; ++k) EXPECT_TRUE(run.advance().converged());
+    return coordinates(system, run.point().state);
+  };
+  const auto report = laws::order_laws(make(system, start, made_up).traits(), problem);
+  EXPECT_FALSE(report.law("the error falls as declared").holds());
+  EXPECT_NEAR(laws::observed_order(problem), 2, 0.1);
+}
+
 // Momenta to round-off, energy better by orders, and back again.
 TEST(Composition, KeepsMomentaAndReturns) {
   Kepler system;

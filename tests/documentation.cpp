@@ -178,8 +178,12 @@ TEST(Newton, ItsCodeIsThatOfTheExample) {
 TEST(Nonholonomic, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/nonholonomic.md"))), none); }
 TEST(Nonholonomic, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/nonholonomic.md")), none); }
 
+TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time.md"))), none); }
+TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
+
 TEST(Mathematics, ItNamesEveryLaw) {
-  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md"), "\"([^\"]+)\"");
+  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md"),
+                             "\"([^\"]+)\"");
   const auto laws = matches(text_of({"core/testing", "solvers/testing"}, ".hpp"), "law\\( ?\"([^\"]+)\"");
   EXPECT_GT(laws.size(), 50U);
   for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;

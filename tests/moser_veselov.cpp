@@ -221,7 +221,7 @@ TEST(MoserVeselov, OrdersInMomentumAndAttitude) {
       const Moments start = momentum * inertia.mean() / 2;
       const auto slope =
           measured_orders(start, [&](double h) { return MoserVeselov::preprocessed(inertia, start, h, order); });
-      EXPECT_EQ(MoserVeselov::preprocessed(inertia, start, 0.1, order).method().order, order);
+      EXPECT_EQ(MoserVeselov::preprocessed(inertia, start, 0.1, order).traits().order, order);
       EXPECT_NEAR(slope.momentum, order, 0.1) << inertia.transpose();
       EXPECT_NEAR(slope.attitude, order, 0.1) << inertia.transpose();
     }

@@ -244,7 +244,7 @@ template <class Sys> double measured_order(const Problem<Sys>& problem, const Co
 
 template <class Sys> void expect_declared_orders(const Problem<Sys>& problem) {
   for (const auto& composition : compositions::all) {
-    const auto declared = make(problem.system, problem.start, composition).method();
+    const auto declared = make(problem.system, problem.start, composition).traits();
     EXPECT_EQ(declared.order, composition.order);
     EXPECT_NEAR(measured_order(problem, composition), declared.order, 0.1) << declared.name;
   }

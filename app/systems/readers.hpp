@@ -9,6 +9,7 @@
 #include <lagroid/systems/chaplygin_sleigh.hpp>
 #include <lagroid/systems/damped_pendulum.hpp>
 #include <lagroid/systems/driven_body.hpp>
+#include <lagroid/systems/driven_pendulum.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>
@@ -33,6 +34,7 @@ Task<RollingBall> read_rolling_ball(const Section& scene, const RunContext& cont
 Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& context);
 Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunContext& context);
 Task<DampedPendulum> read_damped_pendulum(const Section& scene, const RunContext& context);
+Task<DrivenPendulum> read_driven_pendulum(const Section& scene, const RunContext& context);
 Task<DrivenBody> read_driven_body(const Section& scene, const RunContext& context);
 
 }  // namespace lagroid::app

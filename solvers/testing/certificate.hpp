@@ -33,7 +33,8 @@ std::vector<LawReport> certificate(const Sys& system, const std::function<State<
   };
   if constexpr (Variational<Sys>) {
     reports.push_back(dynamics_laws(system, draw));
-    reports.push_back(variational_laws(system, draw));
+    // Paths between fixed ends, whose arrows a time-dependent system would take at one time.
+    if constexpr (!TimeDependent<Sys>) reports.push_back(variational_laws(system, draw));
   } else {
     reports.push_back(dalembert_laws(system, draw));
   }
