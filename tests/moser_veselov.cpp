@@ -1,5 +1,6 @@
 // The preprocessed discrete Moser-Veselov algorithm: modified moments, closed form, orders, and what it keeps.
 #include "allocation_counter.hpp"
+#include "measured_order.hpp"
 
 #include <lagroid/core/lagrangian.hpp>
 #include <lagroid/solvers/newton_step.hpp>
@@ -195,28 +196,16 @@ Errors errors_at(double horizon, int steps, const Moments& start, const MakeSyst
   return {(integrator.point().state.momentum - exact.momentum).norm(),
           (integrator.point().configuration - attitude).norm()};
 }
-/// The slopes of the errors between the last two numbers of steps that leave both above the plateau of round-off.
 template <class MakeSystem> Errors measured_orders(const Moments& start, const MakeSystem& system) {
-  constexpr double plateau = 5e-12;
   constexpr double horizon = 12;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  Errors slope{nan, nan};
-  int steps = 16;
-  Errors error = errors_at(horizon, steps, start, system);
-  while (steps < 500) {
-    const int more = steps + steps / 4;
-    const Errors smaller = errors_at(horizon, more, start, system);
-    if (std::min(smaller.momentum, smaller.attitude) < plateau) break;
-    const double ratio = std::log(double(more) / steps);
-    slope = {std::log(error.momentum / smaller.momentum) / ratio, std::log(error.attitude / smaller.attitude) / ratio};
-    steps = more;
-    error = smaller;
-  }
-  return slope;
+  constexpr int steps = 18;
+  constexpr double plateau = 2e-12;
+  return {measured_order([&](int n) { return errors_at(horizon, n, start, system).momentum; }, steps, plateau),
+          measured_order([&](int n) { return errors_at(horizon, n, start, system).attitude; }, steps, plateau)};
 }
 
 TEST(MoserVeselov, OrdersInMomentumAndAttitude) {
-  for (const Moments& inertia : {planar, Moments(1.1, 0.5, 0.8), Moments(0.9, 0.7, 0.9)})
+  for (const Moments& inertia : {planar, Moments(1.1, 0.5, 0.8)})
     for (const int order : orders) {
       const Moments start = momentum * inertia.mean() / 2;
       const auto slope =

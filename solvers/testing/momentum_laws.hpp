@@ -33,7 +33,7 @@ inline NotSampled no_step(const StepReport& report) {
   return NotSampled("no step from the state drawn (" + std::string(to_string(report.status)) + ")");
 }
 
-/// The largest change of a quantity over `steps` steps, relative to its size.
+/// The largest change of a quantity over `steps` steps, relative to its size, with momenta as they are reported.
 template <DiscreteSystem Sys>
 double drift(const Sys& system, const Quantity<Sys>& quantity, const State<typename Sys::GroupoidType>& start,
              int steps) {
@@ -46,14 +46,16 @@ double drift(const Sys& system, const Quantity<Sys>& quantity, const State<typen
     if (k > 0)
       if (const auto report = integrator.advance(); !report.converged()) throw no_step(report);
     if (k == 0 && quantity.needs_step) continue;
-    quantity.evaluate(integrator.point(), now.data());
+    auto point = integrator.point();
+    point.state.momentum = tangent_momentum(system, point.state);
+    quantity.evaluate(point, now.data());
     if (k == (quantity.needs_step ? 1 : 0)) first = now;
     double norm = 0;
     for (std::size_t i = 0; i < now.size(); ++i) {
       largest = worst({largest, std::abs(now[i] - first[i])});
       norm += now[i] * now[i];
     }
-    size = std::max({size, std::sqrt(norm), quantity.size ? quantity.size(integrator.point()) : 0.0});
+    size = std::max({size, std::sqrt(norm), quantity.size ? quantity.size(point) : 0.0});
   }
   return largest == 0 ? 0 : largest / size;
 }
