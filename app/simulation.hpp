@@ -75,6 +75,8 @@ template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys
   p.extras.push_back({{"step_size", {"h"}, "s", "step size of the arrow", true, {}},
                       [](const TrajectoryPoint<Sys>& point, double* out) { *out = point.step_size; }});
   p.panels.push_back({"step size", "t", "h", "t", {"h"}});
+  if (options.mode == TimeMode::adaptive && !TimeDependent<Sys>)
+    p.panels.push_back({"discrete energy error", "t", "|E_d - first|", "t", {"drift discrete energy E_d"}});
   return p;
 }
 
