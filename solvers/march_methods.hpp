@@ -101,7 +101,7 @@ double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidTy
     return std::max(between.norm() / moved.norm(),
                     (a.state.momentum - b.state.momentum).norm() / b.state.momentum.norm());
   };
-  constexpr int order = 3;  // of the local error of a step of order two
+  constexpr int order = 2;  // of the error O(h^3) over the motion O(h)
   constexpr double close = 1.1;
   double h = system.h;
   for (int trial = 0; trial < 40; ++trial) {

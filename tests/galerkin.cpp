@@ -31,7 +31,6 @@ void expect_order(const Base& base, const State<typename Base::GroupoidType>& st
   };
   problem.exact = list(exact);
   problem.coarsest = coarsest;
-  problem.floor = 2e-12;
   problem.end = [&](int steps) {
     Sys system(base);
     system.h = horizon / steps;

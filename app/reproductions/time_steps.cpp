@@ -42,19 +42,28 @@ struct Method {
   MarchOptions options;
   Quadrature quadrature;
 };
+Method fixed(std::string name, const Composition& composition, bool splitting) {
+  Method method{std::move(name), {}, Quadrature::trapezoid};
+  method.options.composition = composition;
+  method.options.splitting = splitting;
+  return method;
+}
+Method varying(std::string name, TimeMode mode, Quadrature quadrature) {
+  Method method{std::move(name), {}, quadrature};
+  method.options.mode = mode;
+  method.options.without_root = WithoutRoot::controlled;
+  return method;
+}
+
 const std::vector<Method>& methods() {
-  const auto fixed = [](const Composition& composition, bool splitting) {
-    return MarchOptions{.splitting = splitting, .composition = composition};
-  };
-  static const std::vector<Method> all{
-      {"fixed", fixed(compositions::single, false), Quadrature::trapezoid},
-      {"fixed, order 4", fixed(compositions::suzuki, false), Quadrature::trapezoid},
-      {"fixed, order 6", fixed(compositions::kahan_li_6, false), Quadrature::trapezoid},
-      {"fixed, order 8", fixed(compositions::kahan_li_8, false), Quadrature::trapezoid},
-      {"splitting", fixed(compositions::single, true), Quadrature::trapezoid},
-      {"splitting, order 8", fixed(compositions::kahan_li_8, true), Quadrature::trapezoid},
-      {"adaptive", {.mode = TimeMode::adaptive, .without_root = WithoutRoot::controlled}, Quadrature::midpoint},
-      {"controlled", {.mode = TimeMode::controlled}, Quadrature::trapezoid}};
+  static const std::vector<Method> all{fixed("fixed", compositions::single, false),
+                                       fixed("fixed, order 4", compositions::suzuki, false),
+                                       fixed("fixed, order 6", compositions::kahan_li_6, false),
+                                       fixed("fixed, order 8", compositions::kahan_li_8, false),
+                                       fixed("splitting", compositions::single, true),
+                                       fixed("splitting, order 8", compositions::kahan_li_8, true),
+                                       varying("adaptive", TimeMode::adaptive, Quadrature::midpoint),
+                                       varying("controlled", TimeMode::controlled, Quadrature::trapezoid)};
   return all;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 using G = PlateBall::GroupoidType;
 
-Presentation<PlateBall> presentation(const PlateBall& system) {
+Presentation<PlateBall> presentation() {
   using Point = TrajectoryPoint<PlateBall>;
   Presentation<PlateBall> p;
   p.name = "plate_ball";
@@ -61,7 +61,7 @@ Task<PlateBall> initial_value(const Section& scene, const RunContext& context, c
   std::get<0>(state.object) = std::get<0>(configuration).source;
   state.momentum = Eigen::Map<const Vector<double, 5>>(initial.numbers("momentum", 5, "px, py, M1, M2, M3").data());
   read_multistart(scene.section_or_empty("solver"));
-  return simulation(scene, context, system, presentation(system), state, configuration);
+  return simulation(scene, context, system, presentation(), state, configuration);
 }
 
 /// [parameters] and [time].
@@ -107,7 +107,7 @@ MultistartResult<PlateBall> search(const BoundarySolver<PlateBall>& solver, cons
 Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context) {
   const PlateBall system = read_system(scene);
   if (is_boundary_value(scene, "position, attitude, momentum"))
-    return boundary_value<PlateBall>(scene, context, presentation(system), read_boundary, search);
+    return boundary_value<PlateBall>(scene, context, presentation(), read_boundary, search);
   return initial_value(scene, context, system);
 }
 
