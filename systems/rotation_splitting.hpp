@@ -29,9 +29,9 @@ template <class S> FlowOf<SO3, S> axial_turn(int i, const S& angle, const Vector
 /// M.I^{-1} M / 2 = H_sym + H_rest with b the middle one of the principal moments, a that of the others whose inverse
 /// is nearer to its own, and c the third:
 ///
-///     H_sym = |M|^2 / (2 I_b) + (1/I_c - 1/I_b) M_c^2 / 2    a symmetric top: M = exp(-t w e_c) M_0,
-///                                                            g = exp(t M_0 / I_b) exp(t w e_c), w = (1/I_c - 1/I_b)
-///                                                            M_c
+///     H_sym = |M|^2 / (2 I_b) + (1/I_c - 1/I_b) M_c^2 / 2    a symmetric top: with w = (1/I_c - 1/I_b) M_c,
+///                                                            M = exp(-t w e_c) M_0,
+///                                                            g = exp(t M_0 / I_b) exp(t w e_c)
 ///     H_rest = (1/I_a - 1/I_b) M_a^2 / 2                     a rotation about e_a
 ///
 /// A symmetric body is all H_sym, and keeps M_c. (The rotations about three axes, of M_i^2 / (2 I_i), turn further and

@@ -48,7 +48,7 @@ void expect_declared_orders(Sys system, const State<typename Sys::GroupoidType>&
       return coordinates(system, run->point().state);
     };
     const auto report = laws::order_laws(make(system, start, composition)->traits(), problem);
-    EXPECT_TRUE(report.holds()) << report << " saw " << laws::observed_order(problem);
+    EXPECT_TRUE(report.holds()) << report << " saw " << laws::measured_order(problem);
   }
 }
 
@@ -113,7 +113,7 @@ double observed(const Composition& composition, bool with_adjoint) {
   const State<Pair<1>> start{Vector<double, 1>(1.2), Vector<double, 1>(0.3)};
   laws::OrderProblem problem;
   problem.exact = coordinates(system, system.reference(start, 5.0));
-  problem.coarsest = composition.order > 4 ? 8 : 60;
+  problem.coarsest = composition.order > 4 ? 8 : 40;
   problem.end = [&](int steps) {
     system.h = 5.0 / steps;
     const auto unit = system.groupoid.unit(start.object);
@@ -128,7 +128,7 @@ double observed(const Composition& composition, bool with_adjoint) {
     for (int k = 0; k < steps; ++k) EXPECT_TRUE(run->advance().converged());
     return coordinates(system, run->point().state);
   };
-  return laws::observed_order(problem);
+  return laws::measured_order(problem);
 }
 TEST(Composition, FirstOrderStepsAreSymmetrisedByTheirAdjoints) {
   EXPECT_NEAR(observed(compositions::single, true), 2, 0.1);
@@ -147,7 +147,7 @@ TEST(BrokenMethod, DeclaresAnOrderItDoesNotHave) {
   laws::OrderProblem problem;
   problem.exact = coordinates(system, system.reference(start, 5.0));
   problem.coarsest = 100;
-  problem.floor = 1e-7;
+  problem.plateau = 1e-7;
   problem.end = [&](int steps) {
     system.h = 5.0 / steps;
     const auto run = make(system, start, made_up);
@@ -156,7 +156,7 @@ TEST(BrokenMethod, DeclaresAnOrderItDoesNotHave) {
   };
   const auto report = laws::order_laws(make(system, start, made_up)->traits(), problem);
   EXPECT_FALSE(report.law("the error falls as declared").holds());
-  EXPECT_NEAR(laws::observed_order(problem), 2, 0.1);
+  EXPECT_NEAR(laws::measured_order(problem), 2, 0.1);
 }
 
 // Momenta to round-off, energy better by orders, and back again.

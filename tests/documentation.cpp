@@ -170,6 +170,9 @@ TEST(BrokenPage, AnAlteredBlockIsFoundOut) {
 
 TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathematics.md")), none); }
 
+TEST(HigherOrder, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/higher_order.md"))), none); }
+TEST(HigherOrder, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/higher_order.md")), none); }
+
 TEST(Newton, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/newton.md"))), none); }
 TEST(Newton, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/newton.md"), "cpp", read("examples/implicit_step.cpp")), none);
@@ -182,8 +185,9 @@ TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time
 TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
 
 TEST(Mathematics, ItNamesEveryLaw) {
-  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md"),
-                             "\"([^\"]+)\"");
+  const auto named = matches(
+      read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") + read("docs/higher_order.md"),
+      "\"([^\"]+)\"");
   const auto laws = matches(text_of({"core/testing", "solvers/testing"}, ".hpp"), "law\\( ?\"([^\"]+)\"");
   EXPECT_GT(laws.size(), 50U);
   for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;

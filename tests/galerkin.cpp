@@ -39,7 +39,7 @@ void expect_order(const Base& base, const State<typename Base::GroupoidType>& st
     return list(Sys::reduced(run.point().state));
   };
   const auto report = laws::order_laws(Sys::traits(), problem);
-  EXPECT_TRUE(report.holds()) << report << " saw " << laws::observed_order(problem);
+  EXPECT_TRUE(report.holds()) << report << " saw " << laws::measured_order(problem);
 }
 
 TEST(Galerkin, OrdersOnThePendulum) {

@@ -1,11 +1,12 @@
 // The preprocessed discrete Moser-Veselov algorithm: modified moments, closed form, orders, and what it keeps.
 #include "allocation_counter.hpp"
-#include "measured_order.hpp"
 
 #include <lagroid/core/lagrangian.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 #include <lagroid/systems/moser_veselov.hpp>
+
+#include <lagroid/solvers/testing/order_laws.hpp>
 
 #include <gtest/gtest.h>
 
@@ -200,8 +201,8 @@ template <class MakeSystem> Errors measured_orders(const Moments& start, const M
   constexpr double horizon = 12;
   constexpr int steps = 18;
   constexpr double plateau = 2e-12;
-  return {measured_order([&](int n) { return errors_at(horizon, n, start, system).momentum; }, steps, plateau),
-          measured_order([&](int n) { return errors_at(horizon, n, start, system).attitude; }, steps, plateau)};
+  return {laws::measured_order([&](int n) { return errors_at(horizon, n, start, system).momentum; }, steps, plateau),
+          laws::measured_order([&](int n) { return errors_at(horizon, n, start, system).attitude; }, steps, plateau)};
 }
 
 TEST(MoserVeselov, OrdersInMomentumAndAttitude) {

@@ -1,6 +1,5 @@
 // Explicit splittings: their flows, the orders of their compositions, and what they keep.
 #include "allocation_counter.hpp"
-#include "measured_order.hpp"
 
 #include <lagroid/solvers/newton_step.hpp>
 #include <lagroid/solvers/testing/splitting_laws.hpp>
@@ -10,6 +9,8 @@
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
+
+#include <lagroid/solvers/testing/order_laws.hpp>
 
 #include <gtest/gtest.h>
 
@@ -229,7 +230,7 @@ template <class Sys> double error_of(const Problem<Sys>& problem, const Composit
 }
 
 template <class Sys> double order_of(const Problem<Sys>& problem, const Composition& composition) {
-  return measured_order([&](int steps) { return error_of(problem, composition, steps); }, problem.steps);
+  return laws::measured_order([&](int steps) { return error_of(problem, composition, steps); }, problem.steps);
 }
 
 template <class Sys> void expect_declared_orders(const Problem<Sys>& problem) {
