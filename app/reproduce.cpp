@@ -96,12 +96,13 @@ int reproduce_time_steps(const ReproduceOptions& options, bool json) {
   TimeFindings findings;
   {
     Progress progress(time_name, 100, !json);
-    findings = run_time_study([&](long done, long all) { progress.update(100 * done / all); });
+    findings = run_time_study(options.refinements, [&](long done, long all) { progress.update(100 * done / all); });
   }
   std::string note;
-  const auto files =
-      write_time_report(findings, fmt::format("./lagroid reproduce {} --out {}", time_name, quoted(options.time_out)),
-                        options.time_out, note);
+  const auto files = write_time_report(findings,
+                                       fmt::format("./lagroid reproduce {} --refinements {} --out {}", time_name,
+                                                   options.refinements, quoted(options.time_out)),
+                                       options.time_out, note);
   nlohmann::ordered_json result;
   result["status"] = "done";
   result["runs"] = findings.runs.size();
@@ -135,6 +136,9 @@ void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json)
   CLI::App* time = command.add_subcommand(
       time_name, "fixed, adaptive and controlled steps, composed and split ones: error against time and evaluations");
   time->add_option("--out", options.time_out, "the folder for report.md, CSV and figures")->capture_default_str();
+  time->add_option("--refinements", options.refinements, "how many step sizes a method runs with")
+      ->check(CLI::Range(2, 12))
+      ->capture_default_str();
   time->add_flag("--json", json, "print one JSON object and nothing else on standard output");
   time->callback([&options] { options.name = time_name; });
   CLI::App* newton = command.add_subcommand(

@@ -12,6 +12,7 @@ struct ReproduceOptions {
   NewtonStudy newton;
   std::string newton_out = "out/newton-on-lie-groups";
   std::string time_out = "out/time-steps";
+  int refinements = 7;
 };
 
 /// The subcommands of `reproduce`.

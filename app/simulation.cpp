@@ -61,6 +61,8 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
     options.splitting = time.choice_or("method", "variational", {"variational", "splitting"}) == "splitting";
     if (options.splitting) need(able.split, "method", "explicit splitting");
     options.composition = read_composition(time);
+    if (options.composition.stages() > 1)
+      need(able.variational, time.has("order") ? "order" : "composition", "action principle, and no order above 2");
   } else if (mode == "adaptive") {
     need(able.timed, "mode", "Lagrangian for every step size");
     options.mode = TimeMode::adaptive;

@@ -34,12 +34,13 @@ struct MarchChoice {
 };
 /// Which of them a system has.
 struct Abilities {
+  bool variational = false;
   bool timed = false;
   bool time_scale = false;
   bool split = false;
 };
 template <class Sys>
-inline constexpr Abilities abilities_of{Timed<Sys>, Timed<Sys>&& HasTimeScale<Sys>, SplitSystem<Sys>};
+inline constexpr Abilities abilities_of{Variational<Sys>, Timed<Sys>, Timed<Sys>&& HasTimeScale<Sys>, SplitSystem<Sys>};
 /// Refuses what the system does not have.
 MarchChoice read_march(const Section& scene, const Abilities& able);
 

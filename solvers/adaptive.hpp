@@ -175,7 +175,8 @@ StepReport AdaptiveIntegrator<Sys>::by_newton(double h, const ArrowOf<G>& arrow,
   found.h = time.target(0);
   found.solution.step = {solved, solution.step.multipliers};
   found.solution.momentum_change = solution.momentum_change.template tail<Sys::dimension>();
-  found.solution.remainder = solution.remainder.template tail<Sys::dimension>();
+  // Of the next correction, most lies along the motion, where h is ill determined: the arrow is not nudged by it.
+  found.solution.remainder.setZero();
   found.time_momentum_change = solution.momentum_change(0);
   if (!in_reach(found.h)) report.status = SolveStatus::left_domain;
   return report;

@@ -33,7 +33,7 @@ struct MarchOptions {
   Composition composition = compositions::single;  ///< of fixed steps
   WithoutRoot without_root = WithoutRoot::stop;    ///< of adaptive ones
   StepMethod method = StepMethod::newton;
-  StepOptions step;
+  StepOptions step = {};
 };
 
 /// A trajectory in the making. A step that does not converge leaves everything as it was.
@@ -52,8 +52,9 @@ template <DiscreteSystem Sys> class March {
 };
 
 /// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one
-/// with a time scale for controlled steps, a SplitSystem for splitting (throws std::invalid_argument). Include
-/// `march_methods.hpp` for a system of your own; those of `systems/` are compiled.
+/// with a time scale for controlled steps, a SplitSystem for splitting and a variational one for orders above two
+/// (throws std::invalid_argument). Include `march_methods.hpp` for a system of your own; those of `systems/` are
+/// compiled.
 template <DiscreteSystem Sys>
 std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,
                                        const ArrowOf<typename Sys::GroupoidType>& configuration,

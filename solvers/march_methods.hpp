@@ -71,7 +71,9 @@ std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename S
       return std::make_unique<detail::MarchOf<Sys, SplittingIntegrator<Sys>>>(system, initial, configuration,
                                                                               options.composition);
   if (options.splitting) throw std::invalid_argument("splitting needs a system with flows");
-  if constexpr (HasTimeStep<Sys>)
+  if (options.composition.stages() > 1 && !Variational<Sys>)
+    throw std::invalid_argument("orders above two are for variational systems");
+  if constexpr (HasTimeStep<Sys> && Variational<Sys>)
     if (options.composition.stages() > 1)
       return std::make_unique<detail::MarchOf<Sys, CompositionIntegrator<Sys>>>(system, initial, configuration,
                                                                                 options.composition, solver);

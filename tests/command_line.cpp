@@ -353,10 +353,65 @@ TEST_F(CommandLine, ReproducesNewtonOnLieGroups) {
     EXPECT_TRUE(fs::exists(out / file)) << file;
 }
 
+TEST_F(CommandLine, ComparesTimeSteps) {
+  const fs::path out = folder_ / "time";
+  const Outcome r = run("reproduce time-steps --refinements 3 --json --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json.at("runs"), 2 * 8 * 3);
+  // Smaller errors than equal steps at equal cost on an orbit with e = 0.9.
+  EXPECT_GE(json.at("gain_at_equal_cost").at("kepler").at("controlled"), 5.0);
+  for (const char* file : {"report.md", "runs.csv", "steps.csv", "cost_kepler.svg", "steps_pendulum.svg"})
+    EXPECT_TRUE(fs::exists(out / file)) << file;
+}
+
+TEST_F(CommandLine, AdaptiveStepsKeepTheDiscreteEnergyOrSayThatNoneDoes) {
+  const fs::path out = folder_ / "adaptive";
+  const Outcome kept = run("run " + example("pendulum_adaptive") + " --json --out " + out.string());
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  bool found = false;
+  for (const auto& entry : nlohmann::json::parse(kept.out).at("ledger").at("entries"))
+    if (entry.at("name") == "discrete energy E_d") {
+      found = true;
+      EXPECT_EQ(entry.at("verdict"), "kept");
+      EXPECT_LT(entry.at("relative_drift"), 1e-12);
+    }
+  EXPECT_TRUE(found);
+  std::ifstream csv(out / "trajectory.csv");
+  std::string header;
+  std::getline(csv, header);
+  EXPECT_NE(header.find(",h"), std::string::npos) << header;
+
+  const Outcome none = run("run " + example("pendulum_adaptive") + " --json --set parameters.quadrature=trapezoid");
+  EXPECT_EQ(none.code, 3);
+  EXPECT_EQ(nlohmann::json::parse(none.out).at("status"), "no_step");
+  const Outcome carried = run("run " + example("pendulum_adaptive") +
+                              " --json --set parameters.quadrature=trapezoid --set time.without_root=constant");
+  EXPECT_EQ(carried.code, 0) << carried.err;
+  EXPECT_NE(carried.out.find("no positive step size keeps the discrete energy"), std::string::npos);
+}
+
+TEST_F(CommandLine, RefusesTimesThatTheSystemDoesNotHave) {
+  for (const char* wrong : {"kepler --set time.order=5", "kepler --set time.order=4 --set time.composition=kahan-li-8",
+                            "kepler_adaptive --set time.order=4", "rolling_ball --set time.mode=adaptive",
+                            "damped_pendulum --set time.order=4", "rigid_body_moser_veselov --set time.step=5",
+                            "spherical_pendulum --set time.method=splitting", "kepler_controlled --set time.accuracy=0",
+                            "driven_pendulum --set time.mode=controlled"}) {
+    const std::string words = wrong;
+    const auto space = words.find(' ');
+    const Outcome r = run("run " + example(words.substr(0, space)) + words.substr(space));
+    EXPECT_EQ(r.code, 2) << wrong;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_NE(r.err.find("time."), std::string::npos) << r.err;
+  }
+}
+
 TEST_F(CommandLine, ReproduceRefusesWhatItCannotDo) {
   EXPECT_EQ(run("reproduce").code, 2);
   EXPECT_EQ(run("reproduce some-other-paper").code, 2);
   EXPECT_EQ(run("reproduce newton-on-lie-groups --largest 1").code, 2);
+  EXPECT_EQ(run("reproduce time-steps --refinements 1").code, 2);
+  EXPECT_EQ(run("reproduce time-steps --out /proc/here").code, 2);
   const Outcome crossed = run("reproduce newton-on-lie-groups --smallest 5 --largest 4 --json");
   EXPECT_EQ(crossed.code, 2);
   EXPECT_EQ(nlohmann::json::parse(crossed.out).at("status"), "invalid_command_line");

@@ -15,7 +15,7 @@ struct TimeRun {
   double first_step = 0;
   long steps = 0;
   long evaluations = 0;  ///< of gradients, or of a splitting's Strang steps
-  double seconds = 0;    ///< median of three
+  double seconds = 0;    ///< median of three; of long runs, one
   double error = 0;      ///< of the state at the end, against the continuous solution at the time reached
   double energy_error = 0;
   long without_root = 0;
@@ -36,9 +36,9 @@ struct TimeFindings {
   std::vector<TimeSample> samples;
 };
 
-/// Kepler's problem with e = 0.9 over ten revolutions, and a pendulum that just passes its top over about three turns.
-/// `report(done, all)` is called after each run.
-TimeFindings run_time_study(const std::function<void(long, long)>& report);
+/// Kepler's problem with e = 0.9 over ten revolutions, and a pendulum that passes its top. Each method runs with as
+/// many (first) steps, each half the last, as `refinements` says. `report(done, all)` is called after each run.
+TimeFindings run_time_study(int refinements, const std::function<void(long, long)>& report);
 
 /// How much smaller the error of `method` is than that of fixed steps of order two at the same number of evaluations:
 /// the median over its runs that the fixed steps' costs enclose; zero where there are none.
