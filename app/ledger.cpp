@@ -87,4 +87,14 @@ LedgerEntry constraint_entry(double largest, double size) {
   return e;
 }
 
+LedgerEntry counted_entry(std::string name, long count, long all) {
+  LedgerEntry e;
+  e.name = std::move(name);
+  e.promise = "counted";
+  e.drift = double(count);
+  e.relative_drift = all > 0 ? double(count) / double(all) : 0;
+  e.verdict = "counted";
+  return e;
+}
+
 }  // namespace lagroid::app

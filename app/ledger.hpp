@@ -36,4 +36,7 @@ class QuantityWatch {
 /// size.
 LedgerEntry constraint_entry(double largest, double size);
 
+/// The entry for something that is counted: how often it happened, and in what share of all cases.
+LedgerEntry counted_entry(std::string name, long count, long all);
+
 }  // namespace lagroid::app

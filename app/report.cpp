@@ -89,6 +89,10 @@ std::string text_report(const RunResult& r) {
   for (const auto& note : r.notes) line("  note: " + note);
   line("  ledger");
   for (const auto& e : r.ledger.entries) {
+    if (e.promise == "counted") {
+      line(fmt::format("    {:<28} {:<9} {:.0f}, share {:.3g}", e.name, e.promise, e.drift, e.relative_drift));
+      continue;
+    }
     const std::string bound = e.bound > 0 ? fmt::format(" (bound {:.1e})", e.bound) : "";
     line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}", e.name, e.promise, e.drift,
                      e.relative_drift, bound, e.verdict));

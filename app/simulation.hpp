@@ -122,8 +122,10 @@ RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typenam
     }
   }
   recorder.finish(result);
-  if (const long count = march->without_root(); count > 0)
+  if (const long count = march->without_root(); count > 0) {
     result.notes.push_back(without_root_note(count, result.steps, choice.options.without_root));
+    result.ledger.entries.push_back(counted_entry("steps off the energy", count, result.steps));
+  }
   result.ledger.mean_iterations = result.steps > 0 ? double(result.iterations) / double(result.steps) : 0;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

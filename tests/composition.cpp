@@ -3,6 +3,7 @@
 #include <lagroid/solvers/composition.hpp>
 #include <lagroid/solvers/march_methods.hpp>
 #include <lagroid/solvers/testing/order_laws.hpp>
+#include <lagroid/systems/driven_pendulum.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>
@@ -86,6 +87,16 @@ TEST(Composition, OrdersOnThePlateBall) {
   start.momentum << 0.9, 0.2, 0.6, -0.3, 0.5;
   Matrix<double, 3, 3> attitude = Matrix<double, 3, 3>::Identity();
   expect_declared_orders(system, start, 8.0, system.reference(start, attitude, 8.0), 16);
+}
+// Time enters the Lagrangian: stages begin at their own times, back and forth.
+TEST(Composition, OrdersOnADrivenPendulum) {
+  DrivenPendulum system;
+  system.torque = 0.4;
+  system.amplitude = 0.1;
+  system.frequency = 2.3;
+  system.time = 0.7;
+  const State<Pair<1>> start{Vector<double, 1>(1.2), Vector<double, 1>(0.3)};
+  expect_declared_orders(system, start, 5.0, system.reference(start, 5.0), 12);
 }
 // Object constraints: the projected map is composed.
 TEST(Composition, OrdersOnTheSphericalPendulum) {

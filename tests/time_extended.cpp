@@ -102,15 +102,15 @@ TEST(FreeTime, MomentumOfTimeIsMinusTheDiscreteEnergy) {
 // h(g), symmetric in g: the time scale of a swing at the middle of the arrow.
 struct AtTheMiddle {
   double epsilon = 0.1;
-  template <class S> S operator()(const Pendulum&, const PairArrow<S, 1>& g) const {
+  template <class Base, class S> S operator()(const Base&, const PairArrow<S, 1>& g) const {
     using std::cos;
     return epsilon * (1.5 + cos((g.source(0) + g.target(0)) * 0.5));
   }
 };
-// The same at the source: neither symmetric nor of order two.
+// The same at the source: not symmetric.
 struct AtTheSource {
   double epsilon = 0.1;
-  template <class S> S operator()(const Pendulum&, const PairArrow<S, 1>& g) const {
+  template <class Base, class S> S operator()(const Base&, const PairArrow<S, 1>& g) const {
     using std::cos;
     return epsilon * (1.5 + cos(g.source(0)));
   }
@@ -143,6 +143,27 @@ template <class StepSize> double return_error() {
 TEST(PrescribedStep, ReturnsWhenTheStepSizeIsSymmetric) {
   EXPECT_LT(return_error<AtTheMiddle>(), 1e-11);
   EXPECT_GT(return_error<AtTheSource>(), 1e-4) << "the step size at the source is not symmetric";
+}
+
+// Explicit time and a step size function together.
+TEST(PrescribedStep, OfADrivenMotionIsOfOrderTwo) {
+  DrivenPendulum system;
+  system.torque = 0.4;
+  system.amplitude = 0.1;
+  system.frequency = 2.3;
+  const State<Pair<1>> start{Vector<double, 1>(1.2), Vector<double, 1>(0.3)};
+  std::vector<double> errors;
+  for (const double epsilon : {0.02, 0.01, 0.005}) {
+    const PrescribedStep<DrivenPendulum, AtTheMiddle> timed(system, AtTheMiddle{epsilon});
+    auto run = make(timed, extended<DrivenPendulum>(0, -system.energy(start, 0), start));
+    const auto time = [&] { return std::get<0>(run.point().state.object)(0); };
+    while (time() < 5) ASSERT_TRUE(run.advance().converged()) << time();
+    const auto exact = system.reference(start, time());
+    errors.push_back(std::abs(std::get<1>(run.point().state.object)(0) - exact.object(0)) +
+                     std::abs(run.point().state.momentum(1) - exact.momentum(0)));
+  }
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2, 0.1);
+  EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2, 0.1);
 }
 
 TEST(DrivenPendulum, FollowsTheReferenceToOrderTwo) {
