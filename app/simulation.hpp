@@ -95,6 +95,10 @@ RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typenam
     if (h > 0) {
       system.h = h;
       result.notes.push_back(fmt::format("first step {:.6g} for time.accuracy = {:.3g}", h, choice.accuracy));
+    } else {
+      result.status = std::string(to_string(SolveStatus::no_step));
+      result.message = "no step from the initial state has the accuracy asked for; give time.step in place of accuracy";
+      steps = 0;
     }
   }
   Recorder<Sys> recorder(system, presentation, watched(system, choice.options), every, observer);

@@ -73,6 +73,7 @@ template <Timed Sys> class AdaptiveIntegrator {
   using Unknowns = Vector<double, 1 + Sys::dimension + Sys::constraints>;
 
   StepReport first_step();
+  StepReport next_step();
   StepReport by_newton(double h, const ArrowOf<G>& arrow, const typename Sys::Multipliers& multipliers, Solved& found);
   StepReport by_search(Solved& found);
   StepReport off_the_energy();
@@ -100,6 +101,8 @@ template <Timed Sys> class AdaptiveIntegrator {
   Extrapolation<1 + Sys::dimension + Sys::constraints, 4> past_;
   double time_momentum_ = 0;  ///< p_t = -E_d
   double time_momentum_carry_ = 0;
+  bool degenerate_ = false;
+  int iterations_ = 0;  ///< of all solves since the step began
   long without_root_ = 0;
   long searched_ = 0;
 };
@@ -107,8 +110,14 @@ template <Timed Sys> class AdaptiveIntegrator {
 template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::advance() {
   extended_.origin = point().time;
   set_time(fixed_.system(), point().time);
-  if (point().index == 0) return first_step();
+  iterations_ = 0;
+  StepReport report = point().index == 0 ? first_step() : next_step();
+  report.iterations = iterations_;
+  return report;
+}
 
+template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::next_step() {
+  if (degenerate_) return off_the_energy();
   Solved found;
   StepReport report;
   if (!past_.empty()) {
@@ -118,20 +127,14 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::advance() {
                        predicted.template tail<Sys::constraints>(), found);
   }
   if (!report.converged()) {
-    const int iterations = report.iterations;
     report = by_search(found);
-    report.iterations += iterations;
     searched_ += report.converged();
   }
   if (report.converged()) {
     accept(found);
     return report;
   }
-  if (options_.without_root == WithoutRoot::stop) return report;
-  const int iterations = report.iterations;
-  report = off_the_energy();
-  report.iterations += iterations;
-  return report;
+  return options_.without_root == WithoutRoot::stop ? report : off_the_energy();
 }
 
 /// The step of the given size, from which the energy is taken.
@@ -139,6 +142,7 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::first_step() {
   Solved found;
   found.h = first_size_;
   StepReport report = fixed_.solve(point().state, found.solution);
+  iterations_ += report.iterations;
   if (!report.converged()) return report;
   const Step<Sys>& step = found.solution.step;
   const auto d = gradients(extended_, extended_step(found.h, step).arrow, step.multipliers);
@@ -151,10 +155,11 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::first_step() {
   fixed_.forget();
   const double power = std::abs(point().state.momentum.dot(fixed_.system().groupoid.tau_inverse(step.arrow))) / found.h;
   if (change && independent_of_step(*change, std::abs(time_momentum_) + power)) {
-    report.status = SolveStatus::degenerate;
-    if (options_.without_root == WithoutRoot::stop) return report;
-    ++without_root_;
-    report.status = SolveStatus::converged;
+    if (options_.without_root == WithoutRoot::stop) {
+      report.status = SolveStatus::degenerate;
+      return report;
+    }
+    degenerate_ = true;
   }
   accept(found);
   return report;
@@ -170,6 +175,7 @@ StepReport AdaptiveIntegrator<Sys>::by_newton(double h, const ArrowOf<G>& arrow,
   StepSolution<Extended> solution;
   solution.step = extended_step(h, {arrow, multipliers});
   StepReport report = free_->solve(extended_, state, solution);
+  iterations_ += report.iterations;
   if (!report.converged()) return report;
   const auto& [time, solved] = solution.step.arrow;
   found.h = time.target(0);
@@ -188,7 +194,9 @@ std::optional<double> AdaptiveIntegrator<Sys>::excess_energy(Stepper<Sys>& stepp
                                                              StepSolution<Sys>& solution) {
   stepper.system().h = h;
   stepper.forget();
-  if (!stepper.solve(point().state, solution).converged()) return std::nullopt;
+  const StepReport report = stepper.solve(point().state, solution);
+  iterations_ += report.iterations;
+  if (!report.converged()) return std::nullopt;
   const auto d = gradients(extended_, extended_step(h, solution.step).arrow, solution.step.multipliers);
   const double excess = time_momentum_ + d.source_gradient(0);
   return std::isfinite(excess) ? std::optional(excess) : std::nullopt;
@@ -238,6 +246,7 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::off_the_energy() {
   fixed_.forget();
   const StepReport report =
       found.h > 0 ? fixed_.solve(point().state, found.solution) : StepReport{SolveStatus::no_step};
+  iterations_ += report.iterations;
   if (!report.converged()) return report;
   const auto d =
       gradients(extended_, extended_step(found.h, found.solution.step).arrow, found.solution.step.multipliers);
@@ -261,7 +270,7 @@ template <Timed Sys> void AdaptiveIntegrator<Sys>::accept(const Solved& found) {
   unknowns << found.h, groupoid.chart(found.solution.step.arrow), found.solution.step.multipliers;
   past_.push(unknowns);
   if constexpr (HasTimeScale<Sys>)
-    if (controller_) controller_->pass(fixed_.system().time_scale_rate(point().state));
+    if (controller_) controller_->pass(fixed_.system().time_scale_rate(point().state), found.h);
 }
 
 }  // namespace lagroid

@@ -33,8 +33,8 @@ class StepController {
 
   /// The step from the present state; not positive where the motion changes too fast for this epsilon.
   double step() const { return epsilon_ / density_; }
-  /// Moves on to a state with this rate.
-  void pass(double rate) { density_ -= epsilon_ * rate; }
+  /// Moves on to a state with this rate, by a step of this size: epsilon / rho, unless another was taken.
+  void pass(double rate, double size) { density_ -= density_ * size * rate; }
 
  private:
   double epsilon_;
@@ -60,15 +60,16 @@ class ControlledIntegrator {
 
   StepReport advance() {
     Sys& system = stepper_.system();
-    system.h = controller_.step();
-    if (!(system.h > 0)) return {SolveStatus::no_step};
+    const double size = controller_.step();
+    if (!(size > 0)) return {SolveStatus::no_step};
+    system.h = size;
     set_time(system, point().time);
     StepSolution<Sys> solution;
     const StepReport report = stepper_.solve(point().state, solution);
     if (!report.converged()) return report;
     walk_.join(system.groupoid, solution);
     walk_.arrive(system.h);
-    controller_.pass(system.time_scale_rate(point().state));
+    controller_.pass(system.time_scale_rate(point().state), system.h);
     return report;
   }
 
