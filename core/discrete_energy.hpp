@@ -23,7 +23,8 @@ template <Timed Sys> double discrete_energy(const Sys& system, const Step<Sys>& 
   return energy;
 }
 
-/// E_d as a quantity of trajectory points. Its round-off is relative to the power that the momentum transports.
+/// E_d as a quantity of trajectory points. Its round-off is relative to the power of the momentum, were it to carry the
+/// arrow's coordinates along in one step: far from the origin, velocities lose digits.
 template <Timed Sys> Quantity<Sys> discrete_energy_quantity(const Sys& system, Promise promise) {
   using Point = TrajectoryPoint<Sys>;
   return {"discrete energy E_d",
@@ -34,9 +35,8 @@ template <Timed Sys> Quantity<Sys> discrete_energy_quantity(const Sys& system, P
             *out = discrete_energy(system, p.step, p.time - p.step_size, p.step_size);
           },
           [system](const Point& p) {
-            const auto v = system.groupoid.tau_inverse(p.step.arrow);
             return std::abs(discrete_energy(system, p.step, p.time - p.step_size, p.step_size)) +
-                   p.state.momentum.norm() * v.norm() / p.step_size;
+                   p.state.momentum.cwiseAbs().dot(system.groupoid.coordinate_scale(p.step.arrow)) / p.step_size;
           }};
 }
 

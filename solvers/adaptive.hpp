@@ -1,7 +1,6 @@
 #pragma once
 /// Steps that keep the energy: the step size as an unknown. [G] Example 6.1
 
-#include <lagroid/core/discrete_energy.hpp>
 #include <lagroid/groupoids/time_extended.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/step_control.hpp>

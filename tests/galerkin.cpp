@@ -45,10 +45,10 @@ void expect_order(const Base& base, const State<typename Base::GroupoidType>& st
 TEST(Galerkin, OrdersOnThePendulum) {
   const Pendulum base;
   const State<Pair<1>> start{Vector<double, 1>(1.2), Vector<double, 1>(0.3)};
-  const auto exact = base.reference(start, 5.0);
-  expect_order<GalerkinMechanics<Pendulum, 2>>(base, start, 5.0, exact, 20);
-  expect_order<GalerkinMechanics<Pendulum, 3>>(base, start, 5.0, exact, 8);
-  expect_order<GalerkinMechanics<Pendulum, 4>>(base, start, 5.0, exact, 5);
+  const auto exact = base.reference(start, 20.0);
+  expect_order<GalerkinMechanics<Pendulum, 2>>(base, start, 20.0, exact, 40);
+  expect_order<GalerkinMechanics<Pendulum, 3>>(base, start, 20.0, exact, 30);
+  expect_order<GalerkinMechanics<Pendulum, 4>>(base, start, 20.0, exact, 20);
 }
 TEST(Galerkin, OrdersOnAKeplerOrbit) {
   const Kepler base;
