@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 using namespace lagroid;
 
@@ -46,7 +47,11 @@ void expect_declared_orders(Sys system, const State<typename Sys::GroupoidType>&
     problem.end = [&](int steps) {
       system.h = horizon / steps;
       const auto run = make(system, start, composition);
-      for (int k = 0; k < steps; ++k) EXPECT_TRUE(run->advance().converged()) << composition.name << ' ' << k;
+      // Steps too long to be solved err without bound.
+      for (int k = 0; k < steps; ++k)
+        if (!run->advance().converged())
+          return Eigen::VectorXd(
+              Eigen::VectorXd::Constant(problem.exact.size(), std::numeric_limits<double>::infinity()));
       return coordinates(system, run->point().state);
     };
     const auto report = laws::order_laws(make(system, start, composition)->traits(), problem);

@@ -114,13 +114,17 @@ void sample(const Problem<Sys>& problem, const Method& method, double first_step
   const auto march = make_march(system, problem.start, system.groupoid.unit(problem.start.object), method.options);
   const double energy = system.energy(problem.start);
   double first = 0;
+  std::vector<TimeSample> all;
   while (march->point().time < end && march->advance().converged()) {
     const auto& p = march->point();
     const double discrete = discrete_energy(system, p.step, p.time - p.step_size, p.step_size);
     if (p.index == 1) first = discrete;
-    out.push_back({problem.name, method.name, p.time, p.step_size,
+    all.push_back({problem.name, method.name, p.time, p.step_size,
                    std::abs(adaptive ? discrete - first : system.energy(p.state) - energy)});
   }
+  constexpr std::size_t most = 800;  // as many as a picture shows
+  const std::size_t stride = all.size() / most + 1;
+  for (std::size_t j = 0; j < all.size(); j += stride) out.push_back(all[j]);
 }
 
 template <class Sys>
