@@ -370,7 +370,8 @@ TEST_F(CommandLine, AdaptiveStepsKeepTheDiscreteEnergyOrSayThatNoneDoes) {
   const Outcome kept = run("run " + example("pendulum_adaptive") + " --json --out " + out.string());
   ASSERT_EQ(kept.code, 0) << kept.err;
   bool found = false;
-  for (const auto& entry : nlohmann::json::parse(kept.out).at("ledger").at("entries"))
+  const auto summary = nlohmann::json::parse(kept.out);
+  for (const auto& entry : summary.at("ledger").at("entries"))
     if (entry.at("name") == "discrete energy E_d") {
       found = true;
       EXPECT_EQ(entry.at("verdict"), "kept");
