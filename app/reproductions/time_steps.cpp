@@ -57,11 +57,11 @@ Method varying(std::string name, TimeMode mode, Quadrature quadrature) {
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> all{fixed("fixed", compositions::single, false),
-                                       fixed("fixed, order 4", compositions::suzuki, false),
-                                       fixed("fixed, order 6", compositions::kahan_li_6, false),
-                                       fixed("fixed, order 8", compositions::kahan_li_8, false),
+                                       fixed("fixed order 4", compositions::suzuki, false),
+                                       fixed("fixed order 6", compositions::kahan_li_6, false),
+                                       fixed("fixed order 8", compositions::kahan_li_8, false),
                                        fixed("splitting", compositions::single, true),
-                                       fixed("splitting, order 8", compositions::kahan_li_8, true),
+                                       fixed("splitting order 8", compositions::kahan_li_8, true),
                                        varying("adaptive", TimeMode::adaptive, Quadrature::midpoint),
                                        varying("controlled", TimeMode::controlled, Quadrature::trapezoid)};
   return all;
@@ -168,10 +168,10 @@ std::string steps_csv(const TimeFindings& findings) {
 }
 
 std::string figures(const TimeFindings& findings) {
-  std::string out = "set datafile separator ','\nset grid\n";
+  std::string out = "set datafile separator ','\nset grid\nset autoscale xfix\n";
   for (const std::string problem : {"kepler", "pendulum"}) {
     out += fmt::format(
-        "set terminal svg size 1000,460 background 'white' noenhanced font ',11'\nset output 'cost_{}.svg'\n"
+        "set terminal svg size 1000,560 background 'white' noenhanced font ',11'\nset output 'cost_{}.svg'\n"
         "set multiplot layout 1,2\nset logscale xy\nset format '%.0e'\nset key below\n",
         problem);
     for (const auto& [column, label] : {std::pair("seconds", "time, s"), std::pair("evaluations", "evaluations")}) {
