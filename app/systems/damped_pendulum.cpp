@@ -7,9 +7,7 @@ Task<DampedPendulum> read_damped_pendulum(const Section& scene, const RunContext
   auto p = vector_presentation<DampedPendulum, 1>("damped_pendulum", {"q"}, "rad", {"p"}, "kg m^2/s");
   const Section parameters = scene.section_or_empty("parameters");
   DampedPendulum system;
-  system.bob_mass = parameters.number_or("mass", 1, positive);
-  system.length = parameters.number_or("length", 1, positive);
-  system.gravity = parameters.number_or("gravity", 1);
+  read_rod_and_bob(parameters, system);
   system.damping = parameters.number_or("damping", 0.1, nonnegative);
   system.quadrature = read_quadrature(parameters, "midpoint");
   system.h = read_time(scene).step;

@@ -7,9 +7,7 @@ Task<DrivenPendulum> read_driven_pendulum(const Section& scene, const RunContext
   auto p = vector_presentation<DrivenPendulum, 1>("driven_pendulum", {"q"}, "rad", {"p"}, "kg m^2/s");
   const Section parameters = scene.section_or_empty("parameters");
   DrivenPendulum system;
-  system.bob_mass = parameters.number_or("mass", 1, positive);
-  system.length = parameters.number_or("length", 1, positive);
-  system.gravity = parameters.number_or("gravity", 1);
+  read_rod_and_bob(parameters, system);
   system.frequency = parameters.number_or("frequency", 1);
   system.torque = parameters.number_or("torque", 0);
   system.amplitude = parameters.number_or("amplitude", 0);

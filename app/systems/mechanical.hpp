@@ -13,6 +13,13 @@ inline Quadrature read_quadrature(const Section& parameters, const std::string& 
                                                                                                : Quadrature::trapezoid;
 }
 
+/// [parameters] of every pendulum: mass, length, gravity.
+template <class Sys> void read_rod_and_bob(const Section& parameters, Sys& system) {
+  system.bob_mass = parameters.number_or("mass", 1, positive);
+  system.length = parameters.number_or("length", 1, positive);
+  system.gravity = parameters.number_or("gravity", 1);
+}
+
 /// [initial] position and momentum as vectors of R^n.
 template <int N>
 State<Pair<N>> read_vector_state(const Section& initial, std::string_view position, std::string_view momentum) {

@@ -11,9 +11,7 @@ Task<Pendulum> read_pendulum(const Section& scene, const RunContext& context) {
   const auto read_system = [](const Section& s) {
     const Section parameters = s.section_or_empty("parameters");
     Pendulum system;
-    system.bob_mass = parameters.number_or("mass", 1, positive);
-    system.length = parameters.number_or("length", 1, positive);
-    system.gravity = parameters.number_or("gravity", 1);
+    read_rod_and_bob(parameters, system);
     system.quadrature = read_quadrature(parameters, "midpoint");
     return system;
   };
