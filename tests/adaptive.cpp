@@ -289,6 +289,17 @@ TEST(Controlled, TimeScaleRatesAreTheRatesOfTheirScales) {
       rate_defect<RigidBody>(
           body, [&](const auto& p) { return -std::log(p.state.momentum.cwiseQuotient(body.system.inertia).norm()); }),
       1e-5);
+  auto ball = plate_ball(RotationForm::exponential);
+  ball.system.plate_rate = 0.7;
+  EXPECT_LT(rate_defect<PlateBall>(
+                ball,
+                [&](const auto& p) {
+                  const auto& q = std::get<0>(p.state.object);
+                  const auto& mu = p.state.momentum;
+                  const Vector<double, 2> v(mu(0) + mu(3), mu(1) - mu(2));
+                  return -std::log(Vector<double, 3>(0.7 * q(0) - v(1), v(0) + 0.7 * q(1), ball.system.spin).norm());
+                }),
+            1e-5);
   const auto top = heavy_top(RotationMap::cayley);
   EXPECT_LT(rate_defect<HeavyTop>(top,
                                   [&](const auto& p) {
