@@ -49,17 +49,13 @@ template <Timed Sys> class AdaptiveIntegrator {
         walk_(system.groupoid, initial, configuration, start_time(system)) {
     if constexpr (HasTimeScale<Sys>)
       if (options.without_root == WithoutRoot::controlled)
-        controller_.emplace(system.h, system.time_scale_rate(initial));
+        controller_.emplace(system.h, time_scale_rate(system, initial));
   }
 
   const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
   static MethodTraits traits() { return {"adaptive", 2, true, true, false}; }
-  /// E_d, to be kept; known after the first step.
-  double energy() const { return -time_momentum_; }
   /// Steps so far whose energy equation had no root.
   long without_root() const { return without_root_; }
-  /// Steps so far that were found by search.
-  long searched() const { return searched_; }
 
   StepReport advance();
 
@@ -76,11 +72,16 @@ template <Timed Sys> class AdaptiveIntegrator {
   StepReport by_newton(double h, const ArrowOf<G>& arrow, const typename Sys::Multipliers& multipliers, Solved& found);
   StepReport by_search(Solved& found);
   StepReport off_the_energy();
-  std::optional<double> excess_energy(Stepper<Sys>& stepper, double h, StepSolution<Sys>& solution);
+  std::optional<double> excess_energy(double h, StepSolution<Sys>& solution);
   void accept(const Solved& found);
 
   static Step<Extended> extended_step(double h, const Step<Sys>& step) {
     return {{PairArrow<double, 1>{Vector<double, 1>(0.0), Vector<double, 1>(h)}, step.arrow}, step.multipliers};
+  }
+  /// Their first components are dL/dt at either end of the time.
+  GradientsOf<Extended> extended_gradients(double h, const Step<Sys>& step) const {
+    const Step<Extended> extended = extended_step(h, step);
+    return gradients(extended_, extended.arrow, extended.multipliers);
   }
   bool in_reach(double h) const {
     return h <= options_.largest_change * last_size_ && last_size_ <= options_.largest_change * h;
@@ -103,7 +104,6 @@ template <Timed Sys> class AdaptiveIntegrator {
   bool degenerate_ = false;
   int iterations_ = 0;  ///< of all solves since the step began
   long without_root_ = 0;
-  long searched_ = 0;
 };
 
 template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::advance() {
@@ -125,10 +125,7 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::next_step() {
     report = by_newton(predicted(0), fixed_.system().groupoid.arrow_in_chart(point().state.object, v),
                        predicted.template tail<Sys::constraints>(), found);
   }
-  if (!report.converged()) {
-    report = by_search(found);
-    searched_ += report.converged();
-  }
+  if (!report.converged()) report = by_search(found);
   if (report.converged()) {
     accept(found);
     return report;
@@ -144,12 +141,12 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::first_step() {
   iterations_ += report.iterations;
   if (!report.converged()) return report;
   const Step<Sys>& step = found.solution.step;
-  const auto d = gradients(extended_, extended_step(found.h, step).arrow, step.multipliers);
+  const auto d = extended_gradients(found.h, step);
   time_momentum_ = -d.source_gradient(0);
   found.time_momentum_change = d.source_gradient(0) + d.target_gradient(0);
 
   StepSolution<Sys> halved;
-  const auto change = excess_energy(fixed_, 0.5 * first_size_, halved);
+  const auto change = excess_energy(0.5 * first_size_, halved);
   fixed_.system().h = first_size_;
   fixed_.forget();
   const double power = std::abs(point().state.momentum.dot(fixed_.system().groupoid.tau_inverse(step.arrow))) / found.h;
@@ -189,28 +186,26 @@ StepReport AdaptiveIntegrator<Sys>::by_newton(double h, const ArrowOf<G>& arrow,
 
 /// E_d(h) - E_d on the step of the momentum equation alone; nothing where that is not solved.
 template <Timed Sys>
-std::optional<double> AdaptiveIntegrator<Sys>::excess_energy(Stepper<Sys>& stepper, double h,
-                                                             StepSolution<Sys>& solution) {
-  stepper.system().h = h;
-  stepper.forget();
-  const StepReport report = stepper.solve(point().state, solution);
+std::optional<double> AdaptiveIntegrator<Sys>::excess_energy(double h, StepSolution<Sys>& solution) {
+  fixed_.system().h = h;
+  fixed_.forget();
+  const StepReport report = fixed_.solve(point().state, solution);
   iterations_ += report.iterations;
   if (!report.converged()) return std::nullopt;
-  const auto d = gradients(extended_, extended_step(h, solution.step).arrow, solution.step.multipliers);
-  const double excess = time_momentum_ + d.source_gradient(0);
+  const double excess = time_momentum_ + extended_gradients(h, solution.step).source_gradient(0);
   return std::isfinite(excess) ? std::optional(excess) : std::nullopt;
 }
 
 /// The root nearest the last step by the sign of E_d(h) - E_d on a ladder of steps around it, bisection, and Newton.
 template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::by_search(Solved& found) {
   StepSolution<Sys> solution;
-  const auto centre = excess_energy(fixed_, last_size_, solution);
+  const auto centre = excess_energy(last_size_, solution);
   if (!centre) return {SolveStatus::not_converged};
   const auto refine = [&](double from, double excess_from, double to) -> StepReport {
     StepReport report{SolveStatus::not_converged};
     for (int halving = 0; halving < 50; ++halving) {
       const double middle = 0.5 * (from + to);
-      const auto excess = excess_energy(fixed_, middle, solution);
+      const auto excess = excess_energy(middle, solution);
       if (!excess) return {SolveStatus::not_converged};
       report = by_newton(middle, solution.step.arrow, solution.step.multipliers, found);
       if (report.converged() && std::min(from, to) <= found.h && found.h <= std::max(from, to)) return report;
@@ -224,9 +219,9 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::by_search(Solved& found
   double excess_up = *centre;
   double excess_down = *centre;
   while (up <= options_.largest_change * last_size_) {
-    const auto higher = excess_energy(fixed_, up * options_.search_factor, solution);
+    const auto higher = excess_energy(up * options_.search_factor, solution);
     if (higher && (*higher > 0) != (excess_up > 0)) return refine(up, excess_up, up * options_.search_factor);
-    const auto lower = excess_energy(fixed_, down / options_.search_factor, solution);
+    const auto lower = excess_energy(down / options_.search_factor, solution);
     if (lower && (*lower > 0) != (excess_down > 0)) return refine(down, excess_down, down / options_.search_factor);
     if (!higher || !lower) break;
     up *= options_.search_factor;
@@ -247,8 +242,7 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::off_the_energy() {
       found.h > 0 ? fixed_.solve(point().state, found.solution) : StepReport{SolveStatus::no_step};
   iterations_ += report.iterations;
   if (!report.converged()) return report;
-  const auto d =
-      gradients(extended_, extended_step(found.h, found.solution.step).arrow, found.solution.step.multipliers);
+  const auto d = extended_gradients(found.h, found.solution.step);
   found.time_momentum_change = d.source_gradient(0) + d.target_gradient(0);
   past_.clear();
   accept(found);
@@ -269,7 +263,7 @@ template <Timed Sys> void AdaptiveIntegrator<Sys>::accept(const Solved& found) {
   unknowns << found.h, groupoid.chart(found.solution.step.arrow), found.solution.step.multipliers;
   past_.push(unknowns);
   if constexpr (HasTimeScale<Sys>)
-    if (controller_) controller_->pass(fixed_.system().time_scale_rate(point().state), found.h);
+    if (controller_) controller_->pass(time_scale_rate(fixed_.system(), point().state), found.h);
 }
 
 }  // namespace lagroid

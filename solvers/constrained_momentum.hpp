@@ -1,5 +1,5 @@
 #pragma once
-/// The momentum of a nonholonomic system at an object.
+/// Momenta at an object, with the velocity that keeps the constraints there.
 
 #include <lagroid/core/two_sided.hpp>
 
@@ -34,6 +34,30 @@ AlgebroidVector<typename Sys::GroupoidType> constrained_momentum(const Sys& syst
   const Matrix<double, k, n> omega = d.constraint_source.transpose();
   const Vector<double, k> nu = (omega * w_omega).partialPivLu().solve(omega * w + d.constraint);
   return state.momentum - d.constraint_source * nu;
+}
+
+/// mu with the part removed that leaves C^{-1}(0) (RATTLE's second stage): mu + nu . dC o rho with nu such that
+/// dC o rho W mu = 0, where W = (-d2L/dv dw)^{-1} at the unit arrow is the inverse mass matrix up to a factor.
+/// For nonholonomic and forced systems see constrained_momentum; the identity for others without object constraints.
+/// The dynamics is the same with and without it; the projected momentum is the one in which the map is symplectic on
+/// T*C^{-1}(0).
+template <DiscreteSystem Sys>
+AlgebroidVector<typename Sys::GroupoidType> tangent_momentum(const Sys& system,
+                                                             const State<typename Sys::GroupoidType>& state) {
+  if constexpr (Nonholonomic<Sys> || (Forced<Sys> && Sys::arrow_constraints == 0 && Sys::object_constraints > 0)) {
+    return constrained_momentum(system, state);
+  } else if constexpr (Sys::object_constraints == 0) {
+    return state.momentum;
+  } else {
+    constexpr int k = Sys::object_constraints;
+    const auto d = two_sided(system, system.groupoid.unit(state.object), Sys::Multipliers::Zero().eval());
+    const Matrix<double, Sys::dimension, k> normal = -d.constraint_source.template rightCols<k>();
+    const Eigen::PartialPivLU<Matrix<double, Sys::dimension, Sys::dimension>> mass(-d.mixed);
+    const Matrix<double, Sys::dimension, k> w_normal = mass.solve(normal);
+    const Vector<double, k> nu =
+        (normal.transpose() * w_normal).partialPivLu().solve(w_normal.transpose() * state.momentum);
+    return state.momentum - normal * nu;
+  }
 }
 
 }  // namespace lagroid

@@ -2,6 +2,7 @@
 /// Reversible control of the step size.
 
 #include <lagroid/core/stepped.hpp>
+#include <lagroid/solvers/constrained_momentum.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/stepper.hpp>
 #include <lagroid/solvers/walk.hpp>
@@ -18,6 +19,11 @@ template <class Sys>
 concept HasTimeScale = requires(const Sys& system, const State<typename Sys::GroupoidType>& state) {
   { system.time_scale_rate(state) } -> std::convertible_to<double>;
 };
+
+/// The rate at a state on its way, whose momentum may leave the object constraints.
+template <HasTimeScale Sys> double time_scale_rate(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  return system.time_scale_rate({state.object, tangent_momentum(system, state)});
+}
 
 /// The integrating controller of Hairer and Soderlind (SIAM J. Sci. Comput. 26, 2005; Hairer, Lubich, Wanner VIII.3.2):
 /// a density rho of steps with
@@ -53,7 +59,7 @@ class ControlledIntegrator {
                        std::unique_ptr<StepSolver<Sys>> solver)
       : stepper_(std::move(system), std::move(solver)),
         walk_(stepper_.system().groupoid, initial, configuration, start_time(stepper_.system())),
-        controller_(stepper_.system().h, stepper_.system().time_scale_rate(initial)) {}
+        controller_(stepper_.system().h, time_scale_rate(stepper_.system(), initial)) {}
 
   const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
   static MethodTraits traits() { return {"controlled", 2, true, false, false}; }
@@ -69,7 +75,7 @@ class ControlledIntegrator {
     if (!report.converged()) return report;
     walk_.join(system.groupoid, solution);
     walk_.arrive(system.h);
-    controller_.pass(system.time_scale_rate(point().state), system.h);
+    controller_.pass(time_scale_rate(system, point().state), system.h);
     return report;
   }
 

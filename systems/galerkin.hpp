@@ -82,9 +82,7 @@ struct GalerkinSystem
     std::get<0>(this->groupoid.factor) = base.groupoid;
   }
 
-  static MethodTraits traits() {
-    return {std::string("Lobatto ").append(std::to_string(Degree + 1)), 2 * Degree, true, true, false};
-  }
+  static MethodTraits traits() { return {"Lobatto " + std::to_string(Degree + 1), 2 * Degree, true, true, false}; }
 
   /// A state of `base`, the momentum of the nodes zero; and back.
   static State<Extended> extended(const State<typename Base::GroupoidType>& s) {

@@ -17,20 +17,12 @@ double HeavyTop::kovalevskaya_integral(const State<GroupoidType>& s) const {
 
 State<HeavyTop::GroupoidType> HeavyTop::reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude,
                                                   double t) const {
-  Eigen::VectorXd y(15);
-  y << start.momentum, start.object, attitude.reshaped();
-  y = integrate_reference(
-      [this](const Eigen::VectorXd& at, Eigen::VectorXd& out) {
-        const Vector<double, 3> m = at.head<3>();
-        const Vector<double, 3> v = at.segment<3>(3);
-        const Vector<double, 3> w = m.cwiseQuotient(inertia);
-        out.head<3>() = m.cross(w) + v.cross(weight);
-        out.segment<3>(3) = v.cross(w);
-        out.tail<9>() = (at.tail<9>().reshaped(3, 3) * SO3::hat(w)).reshaped();
-      },
-      y, t);
-  attitude = SO3::project(Matrix<double, 3, 3>(y.tail<9>().reshaped(3, 3)));
-  return {y.segment<3>(3), y.head<3>()};
+  const Vector<double, 3> vertical = attitude * start.object;
+  const Torque gravity = [&](const auto&, const Matrix<double, 3, 3>& a) {
+    return Vector<double, 3>((a.transpose() * vertical).cross(weight));
+  };
+  const Vector<double, 3> momentum = reference_turn(inertia, gravity, start.momentum, attitude, t);
+  return {attitude.transpose() * vertical, momentum};
 }
 
 std::vector<Symmetry<HeavyTop>> HeavyTop::symmetries() const {

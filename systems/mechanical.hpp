@@ -34,15 +34,9 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
 
   /// The continuous solution after time t: m q' = p, p' = -dU/dq (+ constraint force in the derived class).
   State<Pair<N>> reference(const State<Pair<N>>& start, double t) const requires(ObjectConstraints == 0) {
-    Eigen::VectorXd y(2 * N);
-    y << start.object, start.momentum;
-    y = integrate_reference(
-        [this](const Eigen::VectorXd& at, Eigen::VectorXd& out) {
-          out.head(N) = at.tail(N) / self().mass();
-          out.tail(N) = force(Vector<double, N>(at.head(N)));
-        },
-        y, t);
-    return {y.head(N), y.tail(N)};
+    using V = Vector<double, N>;
+    return reference_motion(
+        self().mass(), [&](const V& q, const V&, double) { return force(q); }, start, t);
   }
 
   /// H = U(q) + |p|^2 / (2 m): kick and drift (SplitSystem), whose Strang step is the trapezoid's, Stormer-Verlet.

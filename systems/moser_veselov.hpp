@@ -90,6 +90,10 @@ class MoserVeselovStep final : public StepSolver<MoserVeselov> {
 };
 
 LAGROID_STEPS(extern template, MoserVeselov);
-LAGROID_SOLVERS(extern template, MoserVeselov);
+
+/// By MoserVeselovStep, with steps of system.h.
+template <>
+std::unique_ptr<March<MoserVeselov>> make_march(const MoserVeselov& system, const State<SO3>& initial,
+                                                const Matrix<double, 3, 3>& configuration, const MarchOptions& options);
 
 }  // namespace lagroid

@@ -6,18 +6,8 @@ namespace lagroid {
 LAGROID_STEPS(template, RigidBody);
 
 State<SO3> RigidBody::reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const {
-  Eigen::VectorXd y(12);
-  y << start.momentum, attitude.reshaped();
-  y = integrate_reference(
-      [this](const Eigen::VectorXd& at, Eigen::VectorXd& out) {
-        const Vector<double, 3> m = at.head<3>();
-        const Vector<double, 3> w = m.cwiseQuotient(inertia);
-        out.head<3>() = m.cross(w);
-        out.tail<9>() = (at.tail<9>().reshaped(3, 3) * SO3::hat(w)).reshaped();
-      },
-      y, t);
-  attitude = SO3::project(Matrix<double, 3, 3>(y.tail<9>().reshaped(3, 3)));
-  return {{}, y.head<3>()};
+  const Torque none = [](const auto&, const auto&) { return Vector<double, 3>(0, 0, 0); };
+  return {{}, reference_turn(inertia, none, start.momentum, attitude, t)};
 }
 
 }  // namespace lagroid

@@ -9,6 +9,7 @@
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
 
 #include <gtest/gtest.h>
 
@@ -73,6 +74,12 @@ Start<PlateBall> plate_ball(RotationForm form) {
   s.system.rotation = form;
   std::get<0>(s.state.object) << 0.3, -0.2;
   s.state.momentum << 0.9, 0.2, 0.6, -0.3, 0.5;
+  return s;
+}
+
+Start<SphericalPendulum> swinging(double h = 0.02) {
+  Start<SphericalPendulum> s{{}, {{0.6, 0, -0.8}, {0.4, 0.5, 0.3}}};
+  s.system.h = h;
   return s;
 }
 
@@ -271,15 +278,23 @@ double rate_defect(const Start<Sys>& s, const std::function<double(const Traject
   fine.system.h = 1e-3;
   Integrator<Sys> run(fine.system, s.state, s.system.groupoid.unit(s.state.object),
                       std::make_unique<NewtonStep<Sys>>());
-  const double first = log_scale(run.point());
+  const auto log_scale_here = [&] {
+    auto point = run.point();
+    point.state.momentum = tangent_momentum(s.system, point.state);
+    return log_scale(point);
+  };
+  const double first = log_scale_here();
   EXPECT_TRUE(run.advance().converged());
-  const double rate = s.system.time_scale_rate(run.point().state);
+  const double rate = time_scale_rate(s.system, run.point().state);
   EXPECT_TRUE(run.advance().converged());
-  return std::abs((log_scale(run.point()) - first) / 2e-3 - rate);
+  return std::abs((log_scale_here() - first) / 2e-3 - rate);
 }
 TEST(Controlled, TimeScaleRatesAreTheRatesOfTheirScales) {
   EXPECT_LT(rate_defect<Pendulum>(pendulum(Quadrature::midpoint, 1.0, 0.7),
                                   [](const auto& p) { return -0.5 * std::log(1 + p.state.momentum.squaredNorm()); }),
+            1e-5);
+  EXPECT_LT(rate_defect<SphericalPendulum>(
+                swinging(), [](const auto& p) { return -0.5 * std::log(1 + p.state.momentum.squaredNorm()); }),
             1e-5);
   EXPECT_LT(rate_defect<Kepler>({{}, {{0.7, 0.1}, {0.2, 1.1}}},
                                 [](const auto& p) { return 1.5 * std::log(p.state.object.norm()); }),
@@ -310,6 +325,19 @@ TEST(Controlled, TimeScaleRatesAreTheRatesOfTheirScales) {
             1e-5);
 }
 
+/// As many steps back from a point as it is away from the start, beginning with the density there, end at the start.
+template <class Sys> void expect_return(const Start<Sys>& s, const TrajectoryPoint<Sys>& there) {
+  const double half_change = 0.5 * time_scale_rate(s.system, there.state);
+  Start<Sys> turned = s;
+  turned.system.h = 1 / (1 / there.step_size - half_change);
+  turned.state = {there.state.object, -tangent_momentum(s.system, there.state)};
+  const auto back = controlled(turned);
+  for (long k = 0; k < there.index; ++k) ASSERT_TRUE(back->advance().converged());
+  const auto& here = back->point().state;
+  EXPECT_LT((here.object - s.state.object).norm() + (tangent_momentum(s.system, here) + s.state.momentum).norm(), 1e-9);
+  EXPECT_NEAR(back->point().time, there.time, 1e-9);
+}
+
 // The step follows |q|^(3/2); and back again, from the density at the end: the control is reversible.
 TEST(Controlled, FollowsTheTimeScaleAndReturns) {
   const auto s = kepler(Quadrature::trapezoid, 0.6, 0.02);
@@ -323,17 +351,14 @@ TEST(Controlled, FollowsTheTimeScaleAndReturns) {
     EXPECT_NEAR(out->point().step_size / std::pow(out->point().state.object.norm() / 0.4, 1.5) / 0.02, 1, 0.1);
   }
   EXPECT_GT(largest / smallest, 3);
-  const double half_change = 0.5 * s.system.time_scale_rate(out->point().state);
-  Start<Kepler> turned = s;
-  turned.system.h = 1 / (1 / out->point().step_size - half_change);
-  turned.state = out->point().state;
-  turned.state.momentum *= -1;
-  const auto back = controlled(turned);
-  for (int k = 0; k < 500; ++k) ASSERT_TRUE(back->advance().converged());
-  EXPECT_LT(
-      (back->point().state.object - s.state.object).norm() + (back->point().state.momentum + s.state.momentum).norm(),
-      1e-9);
-  EXPECT_NEAR(back->point().time, out->point().time, 1e-9);
+  expect_return(s, out->point());
+}
+TEST(Controlled, ReturnsWithObjectConstraints) {
+  const auto s = swinging();
+  const auto out = controlled(s);
+  for (int k = 0; k < 500; ++k) ASSERT_TRUE(out->advance().converged());
+  EXPECT_GT(std::abs(out->point().step_size / s.system.h - 1), 0.01);
+  expect_return(s, out->point());
 }
 
 // Over twenty orbits with e = 0.9: the energy errs less than with as many equal steps.

@@ -3,12 +3,11 @@
 
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/solvers/testing/order_laws.hpp>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
-#include <vector>
 
 namespace lagroid {
 
@@ -30,17 +29,16 @@ TrajectoryPoint<Sys> march(const Sys& system, const State<typename Sys::Groupoid
   return integrator.point();
 }
 
-/// The slope of `error(system, end point)` over three halvings of the step from horizon / coarse, measured at the last
-/// two; zero where there is no error to speak of.
+/// laws::measured_order of `error(system, end point)` after `horizon`, from `coarse` steps on.
 template <class Sys, class Error>
-double measured_order(Sys system, const State<typename Sys::GroupoidType>& start, double horizon, long coarse,
+double measured_order(Sys system, const State<typename Sys::GroupoidType>& start, double horizon, int coarse,
                       const Error& error) {
-  std::vector<double> errors;
-  for (const long steps : {coarse, 2 * coarse, 4 * coarse}) {
-    system.h = horizon / double(steps);
-    errors.push_back(error(system, march(system, start, steps)));
-  }
-  return errors[2] < 1e-12 ? 0 : std::log2(errors[1] / errors[2]);
+  return laws::measured_order(
+      [&](int steps) {
+        system.h = horizon / steps;
+        return error(system, march(system, start, steps));
+      },
+      coarse);
 }
 
 /// The point's momentum as it is reported.

@@ -25,7 +25,7 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
   Presentation<RollingBall> p;
   p.name = "rolling_ball";
   p.position = {"x", "y"};
-  p.position_unit = std::string("m");
+  p.position_unit = "m";
   p.has_attitude = true;
   p.momentum = {"px", "py", "M1", "M2", "M3"};
   p.momentum_unit = "kg m/s for px, py; kg m^2/s for M";
