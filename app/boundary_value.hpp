@@ -269,6 +269,7 @@ Task<Sys> boundary_value(const Section& scene, const RunContext& context, const 
                        read_boundary_solver(scene.section_or_empty("solver")),
                        read_continuation(scene),
                        read_every(scene, context)};
+  refuse_accuracy(scene);
   scene.finish();
   const auto& problem = run.problem.stage;
   if (const auto why = inadmissible_ends(problem.problem)) scene.section_or_empty("boundary").fail("", *why);

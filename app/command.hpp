@@ -12,6 +12,7 @@ namespace lagroid::app {
 inline constexpr int exit_internal_error = 1;
 inline constexpr int exit_bad_input = 2;
 inline constexpr int exit_failed = 3;
+inline constexpr int exit_interrupted = 4;
 
 struct SceneOptions {
   std::string scene;

@@ -66,7 +66,7 @@ LedgerEntry QuantityWatch::entry() const {
     e.bound = noise;
     // Terms can outgrow the ones at the start so far that keeping to their round-off says nothing of the first value.
     const bool telling = first_size_ == 0 || noise <= first_size_;
-    e.verdict = !(e.drift <= noise) ? "BROKEN" : telling ? "kept" : "unjudged";
+    e.verdict = samples_ == 0 ? "unjudged" : !(e.drift <= noise) ? "BROKEN" : telling ? "kept" : "unjudged";
   } else {
     e.promise = "bounded";
     constexpr long enough = 1000;

@@ -6,6 +6,7 @@
 #include "registry.hpp"
 #include "report.hpp"
 #include "reproduce.hpp"
+#include "view.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,7 +49,20 @@ int run(const RunOptions& options) {
   print(options.json ? json_report(result) + "\n" : text_report(result) + report);
   if (!result.converged()) fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
   if (!result.output_error.empty()) fmt::print(stderr, "lagroid: {}\n", result.output_error);
+  if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
   return result.converged() && result.output_error.empty() ? 0 : exit_failed;
+}
+
+/// Writes something from a run's folder: `make` returns the files.
+int from_run(const std::function<std::vector<std::filesystem::path>()>& make) {
+  try {
+    std::string report;
+    for (const auto& file : make()) report += fmt::format("  wrote {}\n", file.string());
+    print(report);
+    return 0;
+  } catch (const RunError& error) {
+    return refuse(false, exit_bad_input, "invalid_run", error.what());
+  }
 }
 
 /// Hands over to lagroid-check, which stands beside this program: the laws of every system take long to compile, and
@@ -69,6 +84,16 @@ int main(int argc, char** argv) {
   CLI::App* run_command = app.add_subcommand("run", "run a scene (see docs/scenes.md)");
   add_scene_options(*run_command, options);
   run_command->add_option("--out", options.out, "write trajectory, plot and summary files into this folder");
+  ViewOptions view;
+  CLI::App* view_command = app.add_subcommand(
+      "view", "write view.html into a run's folder: bodies in motion, curves and ledger, for any browser");
+  view_command->add_option("run", view.run, "the folder that lagroid run --out wrote")->required();
+  view_command->add_option("--rows", view.most_rows, "of the trajectory, at most (default 4000)")
+      ->check(CLI::Range(2L, 1'000'000L));
+  std::string run_to_plot;
+  CLI::App* plot_command =
+      app.add_subcommand("plot", "draw plot.svg and plot.png of a run anew, by its plot.gp, which may be edited");
+  plot_command->add_option("run", run_to_plot, "the folder that lagroid run --out wrote")->required();
   CLI::App* check_command =
       app.add_subcommand("check", "ask a scene's system every law that applies: lagroid check --help");
   check_command->set_help_flag();
@@ -86,8 +111,10 @@ int main(int argc, char** argv) {
     }
     if (check_command->parsed()) return check(options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options);
+    if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });
+    if (plot_command->parsed()) return from_run([&] { return draw_plots(run_to_plot); });
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
     return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  "name a command: run, check, list or reproduce; see lagroid --help");
+                  "name a command: run, view, plot, check, list or reproduce; see lagroid --help");
   });
 }

@@ -41,6 +41,7 @@ template <class Sys> struct Presentation {
   std::function<std::array<double, 4>(const TrajectoryPoint<Sys>&)> attitude_of;
   std::vector<ExtraSeries<Sys>> extras;
   std::vector<Panel> panels;
+  std::vector<Shape> shapes;
   std::map<std::string, std::string> conventions;
 };
 
@@ -125,6 +126,7 @@ template <DiscreteSystem Sys> class Recorder {
     result.trajectory = std::move(trajectory_);
     result.trajectory.conventions = presentation_.conventions;
     result.panels = presentation_.panels;
+    result.shapes = presentation_.shapes;
   }
 
  private:
@@ -137,6 +139,7 @@ template <DiscreteSystem Sys> class Recorder {
 
   Endpoint endpoint(const TrajectoryPoint<Sys>& point) const {
     Endpoint e;
+    e.time = point.time;
     e.position = presentation_.position_of(point);
     e.momentum = list(point.state.momentum);
     if (presentation_.has_attitude) {

@@ -14,6 +14,7 @@ using Json = nlohmann::ordered_json;
 
 Json json(const Endpoint& e) {
   Json out;
+  out["time"] = e.time;
   out["position"] = e.position;
   if (e.attitude) out["attitude"] = *e.attitude;
   if (e.body_attitude) out["body_attitude"] = *e.body_attitude;
@@ -36,10 +37,39 @@ Json json(const LedgerEntry& e) {
   return out;
 }
 
+Json json(const Coordinate& c) {
+  return std::visit([](const auto& value) { return Json(value); }, c);
+}
+
+Json json(const std::vector<Coordinate>& coordinates) {
+  Json out = Json::array();
+  for (const auto& c : coordinates) out.push_back(json(c));
+  return out;
+}
+
+Json json(const Shape& s) {
+  Json turns = Json::array();
+  for (const auto& turn : s.turns)
+    turns.push_back({{"axis", turn.axis}, {"angle", json(turn.angle)}, {"rate", turn.rate}});
+  return {{"kind", s.kind},         {"size", s.size},   {"position", json(s.position)},
+          {"attitude", s.attitude}, {"turns", turns},   {"transposed", s.transposed},
+          {"offset", s.offset},     {"to", json(s.to)}, {"trail", s.trail}};
+}
+
+Json json(const Panel& p) {
+  return {{"title", p.title}, {"x_label", p.x_label}, {"y_label", p.y_label}, {"x", p.x}, {"curves", p.curves}};
+}
+
+template <class T> Json array_of(const std::vector<T>& items) {
+  Json out = Json::array();
+  for (const auto& item : items) out.push_back(json(item));
+  return out;
+}
+
 std::string numbers(const std::vector<double>& v) { return fmt::format("({:.10g})", fmt::join(v, ", ")); }
 
 std::string endpoint(const Endpoint& e) {
-  std::string out;
+  std::string out = fmt::format("t {:.8g}  ", e.time);
   if (!e.position.empty()) out += fmt::format("position {}  ", numbers(e.position));
   if (e.attitude) out += fmt::format("attitude ({:.8g})  ", fmt::join(*e.attitude, ", "));
   return out + fmt::format("momentum {}", numbers(e.momentum));
@@ -53,10 +83,10 @@ std::string run_message(const RunResult& r) {
 }
 
 /// The solver's own promise: every step, or the boundary value, solved within its iterations.
-std::string solver_verdict(const RunResult& r) { return r.converged() ? "kept" : "BROKEN"; }
+std::string solver_verdict(const RunResult& r) { return r.converged() || r.interrupted() ? "kept" : "BROKEN"; }
 
 std::string solved(const RunResult& r) {
-  if (r.converged()) return "every equation solved";
+  if (r.converged() || r.interrupted()) return "every equation solved";
   return r.status == "no_minimum" ? "no minimum found" : "not every equation solved";
 }
 
@@ -74,6 +104,7 @@ std::string text_report(const RunResult& r) {
   const auto line = [&](const std::string& text) { out += text + "\n"; };
   line(fmt::format("{}: {}, {} of {} steps in {:.3g} s", r.system, run_status(r), r.steps, r.steps_asked, r.seconds));
   if (const std::string message = run_message(r); !message.empty()) line("  " + message);
+  if (!r.method.empty()) line("  method    " + r.method);
   if (r.cost) line(fmt::format("  cost      {:.15g}", *r.cost));
   if (!r.initial.momentum.empty()) {
     line("  initial   " + endpoint(r.initial));
@@ -107,6 +138,7 @@ std::string json_report(const RunResult& r) {
   Json out;
   out["system"] = r.system;
   out["status"] = run_status(r);
+  if (!r.method.empty()) out["method"] = r.method;
   if (const std::string message = run_message(r); !message.empty()) out["message"] = message;
   out["steps"] = r.steps;
   out["steps_asked"] = r.steps_asked;
@@ -127,14 +159,13 @@ std::string json_report(const RunResult& r) {
                       {"negative_directions", m.negative_directions}});
   out["minima"] = minima;
   Json ledger;
-  Json entries = Json::array();
-  for (const auto& e : r.ledger.entries) entries.push_back(json(e));
-  ledger["entries"] = entries;
+  ledger["entries"] = array_of(r.ledger.entries);
   ledger["iterations"] = {
       {"mean", r.ledger.mean_iterations}, {"max", r.ledger.most_iterations}, {"verdict", solver_verdict(r)}};
   ledger["solver"] = {{"status", r.status}, {"verdict", solver_verdict(r)}};
   out["ledger"] = ledger;
   out["notes"] = r.notes;
+  out["picture"] = {{"shapes", array_of(r.shapes)}, {"panels", array_of(r.panels)}};
   return out.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 /// What a run produces, whatever the system: the common currency of reports, files and plots.
 
+#include "shape.hpp"
+
 #include <array>
 #include <cstdint>
 #include <map>
@@ -29,6 +31,7 @@ struct Trajectory {
 
 /// A state as users see it.
 struct Endpoint {
+  double time = 0;  ///< s
   std::vector<double> position;
   std::optional<std::array<double, 4>> attitude;       ///< A, unit quaternion w, x, y, z
   std::optional<std::array<double, 4>> body_attitude;  ///< A^T where the physical body is the transpose
@@ -73,8 +76,12 @@ struct Panel {
   bool equal_axes = false;
 };
 
+/// The status of a run that Ctrl-C or SIGTERM ended.
+inline constexpr const char* interrupted_status = "interrupted";
+
 struct RunResult {
   std::string system;
+  std::string method;                ///< of an initial value, and what it declares
   std::string status = "converged";  ///< of the solve: this or a typed failure
   std::string message;               ///< why, at which step, what to do
   std::string output_error;          ///< why the files of the run could not be written
@@ -93,8 +100,10 @@ struct RunResult {
   Ledger ledger;
   Trajectory trajectory;
   std::vector<Panel> panels;
+  std::vector<Shape> shapes;
 
   bool converged() const { return status == "converged"; }
+  bool interrupted() const { return status == interrupted_status; }
 };
 
 }  // namespace lagroid::app

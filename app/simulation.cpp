@@ -10,13 +10,20 @@ TimeGrid read_time(const Section& scene) {
   TimeGrid grid;
   const bool has_duration = time.has("duration");
   const bool has_step = time.has("step");
-  constexpr double first_tried = 0.1;
+  constexpr double first_tried = 0.01;
+  if (has_step && time.has("accuracy")) time.fail("accuracy", "finds the first step: leave out step or accuracy");
   if (has_duration && has_step) time.fail("duration", "give step or duration, not both (steps goes with either)");
   grid.steps = time.integer("steps", 1, most);
   grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
               : !has_step && time.has("accuracy") ? first_tried
                                                   : time.number("step", positive);
   return grid;
+}
+
+void refuse_accuracy(const Section& scene) {
+  const Section time = scene.section_or_empty("time");
+  if (time.has("accuracy"))
+    time.fail("accuracy", "finds the first of variational steps from [initial]; give step or duration here");
 }
 
 namespace {
@@ -56,6 +63,7 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
   const auto need = [&](bool has, std::string_view key, std::string_view what) {
     if (!has) time.fail(key, fmt::format("this system has no {}; see docs/time.md for those that do", what));
   };
+  const std::string_view timed = able.variational ? "Lagrangian for every step size" : "action principle";
   const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled"});
   if (mode == "fixed") {
     options.splitting = time.choice_or("method", "variational", {"variational", "splitting"}) == "splitting";
@@ -64,7 +72,7 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
     if (options.composition.stages() > 1)
       need(able.variational, time.has("order") ? "order" : "composition", "action principle, and no order above 2");
   } else if (mode == "adaptive") {
-    need(able.timed, "mode", "Lagrangian for every step size");
+    need(able.timed, "mode", timed);
     options.mode = TimeMode::adaptive;
     const std::string instead = time.choice_or("without_root", "stop", {"stop", "constant", "controlled"});
     if (instead == "constant") options.without_root = WithoutRoot::constant;
@@ -73,9 +81,17 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
       options.without_root = WithoutRoot::controlled;
     }
   } else {
-    need(able.time_scale, "mode", "time scale to control steps by");
+    need(able.time_scale, "mode", able.variational ? "time scale to control steps by" : timed);
     options.mode = TimeMode::controlled;
   }
+  if (mode != "fixed") {
+    for (const char* key : {"composition", "method"})
+      if (time.has(key)) time.fail(key, "goes with mode = \"fixed\"");
+    if (time.integer_or("order", 2, 2, 8) != 2) time.fail("order", "above 2 goes with mode = \"fixed\"");
+    if (time.has("duration"))
+      time.fail("duration", "is not kept by steps that vary: give step, the first one, and steps");
+  }
+  if (mode != "adaptive" && time.has("without_root")) time.fail("without_root", "goes with mode = \"adaptive\"");
   if (time.has("accuracy")) {
     choice.accuracy = time.number("accuracy", positive);
     if (time.has("duration")) time.fail("accuracy", "chooses the step: leave out duration");
@@ -91,7 +107,7 @@ long read_every(const Section& scene, const RunContext& context) {
   return context.record ? every : 0;
 }
 
-std::string step_failure(const StepReport& report, long step, double time) {
+std::string step_failure(const StepReport& report, long step, double time, TimeMode mode) {
   const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
   switch (report.status) {
     case SolveStatus::left_domain:
@@ -105,14 +121,17 @@ std::string step_failure(const StepReport& report, long step, double time) {
     case SolveStatus::not_finite:
       return fmt::format("{}: a number overflowed or became NaN; use a smaller step", where);
     case SolveStatus::no_step:
-      return fmt::format(
-          "{}: no positive step size near the last keeps the energy (or follows the time scale); use another "
-          "quadrature or rotation, time.without_root = \"constant\", or mode = \"controlled\"",
-          where);
+      return mode == TimeMode::controlled
+                 ? fmt::format("{}: the motion changes too fast for steps of this size; use a smaller time.step", where)
+                 : fmt::format(
+                       "{}: no positive step size near the last keeps the energy; use another quadrature or "
+                       "rotation, time.without_root = \"constant\", or mode = \"controlled\"",
+                       where);
     case SolveStatus::degenerate:
       return fmt::format(
-          "{}: the discrete energy does not depend on the step size here, so it determines none; use mode = "
-          "\"fixed\" or \"controlled\", or another rotation",
+          "{}: the discrete energy does not depend on the step size here, so it determines none (a state at rest, a "
+          "step so small that only round-off is left, or every step keeps it); use mode = \"fixed\" or \"controlled\", "
+          "or a larger step",
           where);
     case SolveStatus::not_converged:
       return fmt::format(
@@ -127,8 +146,13 @@ std::string step_failure(const StepReport& report, long step, double time) {
 }
 
 std::string without_root_note(long count, long steps, WithoutRoot instead) {
-  return fmt::format("{} of {} steps: no positive step size keeps the discrete energy; the size {} was taken", count,
-                     steps, instead == WithoutRoot::constant ? "of the first step" : "that the control gives");
+  return fmt::format("{} of {} steps: the discrete energy determines no positive step size; the size {} was taken",
+                     count, steps, instead == WithoutRoot::constant ? "of the first step" : "that the control gives");
+}
+
+std::string description(const MethodTraits& method) {
+  return fmt::format("{}, order {}{}{}, {}", method.name, method.order, method.symmetric ? ", symmetric" : "",
+                     method.symplectic ? ", symplectic" : "", method.explicit_ ? "explicit" : "implicit");
 }
 
 }  // namespace lagroid::app

@@ -1,6 +1,7 @@
 #pragma once
 /// Initial-value runs of any system.
 
+#include "interrupt.hpp"
 #include "progress.hpp"
 #include "recorder.hpp"
 #include "scene_reader.hpp"
@@ -26,6 +27,8 @@ struct TimeGrid {
   long steps = 0;
 };
 TimeGrid read_time(const Section& scene);
+/// Where the step is not searched for.
+void refuse_accuracy(const Section& scene);
 
 /// How time goes on in an initial-value run: the rest of [time], and [solver].
 struct MarchChoice {
@@ -48,9 +51,11 @@ MarchChoice read_march(const Section& scene, const Abilities& able);
 long read_every(const Section& scene, const RunContext& context);
 
 /// What to say of a step that failed.
-std::string step_failure(const StepReport& report, long step, double time);
+std::string step_failure(const StepReport& report, long step, double time, TimeMode mode);
 /// What to say of steps whose size was not what the mode asks for.
 std::string without_root_note(long count, long steps, WithoutRoot instead);
+/// In words, what a method declares of itself.
+std::string description(const MethodTraits& method);
 
 /// The point with its momentum made tangent to the object constraints, as it is reported.
 template <DiscreteSystem Sys> TrajectoryPoint<Sys> reported(const Sys& system, TrajectoryPoint<Sys> point) {
@@ -81,7 +86,7 @@ template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys
   return p;
 }
 
-/// Runs the system; a step that fails ends the run with what was computed so far.
+/// Runs the system; a step that fails, Ctrl-C or SIGTERM ends the run with what was computed so far.
 template <DiscreteSystem Sys>
 RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typename Sys::GroupoidType>& initial,
                    const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const MarchChoice& choice,
@@ -103,12 +108,14 @@ RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typenam
   }
   Recorder<Sys> recorder(system, presentation, watched(system, choice.options), every, observer);
   const auto march = make_march(system, initial, configuration, choice.options);
+  result.method = description(march->traits());
   const auto watch_stage = [&](const Step<Sys>& step, double from, double size) {
     recorder.watch_constraint(step, from, size);
   };
   recorder.observe(reported(system, march->point()));
   {
     Progress progress(presentation.name, steps, context.progress);
+    const InterruptGuard guard;
     for (long k = 1; k <= steps; ++k) {
       const StepReport report = march->advance();
       result.iterations += report.iterations;
@@ -116,13 +123,18 @@ RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typenam
       if (!report.converged()) {
         result.status = std::string(to_string(report.status));
         result.residual = report.residual;
-        result.message = step_failure(report, k, march->point().time);
+        result.message = step_failure(report, k, march->point().time, choice.options.mode);
         break;
       }
       result.steps = k;
       march->for_each_inner_stage(watch_stage);
       recorder.observe(reported(system, march->point()));
       progress.update(k);
+      if (guard.interrupted() && k < steps) {
+        result.status = interrupted_status;
+        result.message = fmt::format("interrupted after step {} of {}; what was computed is kept", k, steps);
+        break;
+      }
     }
   }
   recorder.finish(result);

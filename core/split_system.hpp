@@ -31,7 +31,7 @@ template <class Sys> constexpr bool has_flows() {
 
 }  // namespace detail
 
-/// A system without constraints whose energy is H = H_0 + ... + H_{parts - 1}. It writes
+/// A system without constraints or forces whose energy is H = H_0 + ... + H_{parts - 1}. It writes
 ///
 ///     static constexpr int parts
 ///     template <int I, class S> FlowOf<G, S> flow(double t, const Object<S>& q, const Vector<S, n>& mu) const
@@ -41,7 +41,7 @@ template <class Sys> constexpr bool has_flows() {
 /// that from q which the section dH_I/dmu leads along, g' = X<-(g). Hence flow<I> is a Poisson map, a flow in t, keeps
 /// H_I, and any composition of flows is Poisson and keeps the momenta of the symmetries that all parts share.
 template <class Sys>
-concept SplitSystem = DiscreteSystem<Sys> && Sys::constraints == 0 && HasTimeStep<Sys>&& Sys::parts >= 1 &&
-                      detail::has_flows<Sys>();
+concept SplitSystem = DiscreteSystem<Sys> && Variational<Sys> && Sys::constraints == 0 &&
+                      HasTimeStep<Sys>&& Sys::parts >= 1 && detail::has_flows<Sys>();
 
 }  // namespace lagroid

@@ -91,7 +91,10 @@ struct PrescribedStep : detail::OnTimeExtended<PrescribedStep<Base, StepSize>, B
     if constexpr (HasFirstGuess<Base>) {
       const auto of_base = this->base.first_guess({q, s.momentum.template tail<Base::dimension>()});
       arrow = of_base.arrow;
-      guess.multipliers.template head<Base::constraints>() = of_base.multipliers;
+      guess.multipliers.template head<Base::arrow_constraints>() =
+          of_base.multipliers.template head<Base::arrow_constraints>();
+      guess.multipliers.template tail<Base::object_constraints>() =
+          of_base.multipliers.template tail<Base::object_constraints>();
     }
     time = {t, t + Vector<double, 1>(step_size(this->base, arrow))};
     return guess;

@@ -53,7 +53,8 @@ template <Timed Sys> class AdaptiveIntegrator {
   }
 
   const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
-  static MethodTraits traits() { return {"adaptive", 2, true, true, false}; }
+  /// Not symplectic at a given h: on the extended phase space it is, as long as there are roots.
+  static MethodTraits traits() { return {"adaptive steps", 2, true, false, false}; }
   /// Steps so far whose energy equation had no root.
   long without_root() const { return without_root_; }
 
@@ -91,6 +92,7 @@ template <Timed Sys> class AdaptiveIntegrator {
   }
 
   AdaptiveOptions options_;
+  StepReport fixed_report_;  ///< of the last solve of the momentum equation alone
   double first_size_;
   double last_size_ = 0;
   Stepper<Sys> fixed_;
@@ -189,43 +191,46 @@ template <Timed Sys>
 std::optional<double> AdaptiveIntegrator<Sys>::excess_energy(double h, StepSolution<Sys>& solution) {
   fixed_.system().h = h;
   fixed_.forget();
-  const StepReport report = fixed_.solve(point().state, solution);
-  iterations_ += report.iterations;
-  if (!report.converged()) return std::nullopt;
+  fixed_report_ = fixed_.solve(point().state, solution);
+  iterations_ += fixed_report_.iterations;
+  if (!fixed_report_.converged()) return std::nullopt;
   const double excess = time_momentum_ + extended_gradients(h, solution.step).source_gradient(0);
   return std::isfinite(excess) ? std::optional(excess) : std::nullopt;
 }
 
-/// The root nearest the last step by the sign of E_d(h) - E_d on a ladder of steps around it, bisection, and Newton.
+/// The root nearest the last step by the sign of E_d(h) - E_d on a ladder of steps around it, bisection, and Newton. A
+/// change of sign without a root (E_d jumps there) is `no_step` as well.
 template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::by_search(Solved& found) {
   StepSolution<Sys> solution;
   const auto centre = excess_energy(last_size_, solution);
-  if (!centre) return {SolveStatus::not_converged};
+  if (!centre) return fixed_report_;
   const auto refine = [&](double from, double excess_from, double to) -> StepReport {
-    StepReport report{SolveStatus::not_converged};
     for (int halving = 0; halving < 50; ++halving) {
       const double middle = 0.5 * (from + to);
       const auto excess = excess_energy(middle, solution);
-      if (!excess) return {SolveStatus::not_converged};
-      report = by_newton(middle, solution.step.arrow, solution.step.multipliers, found);
+      if (!excess) return fixed_report_;
+      const StepReport report = by_newton(middle, solution.step.arrow, solution.step.multipliers, found);
       if (report.converged() && std::min(from, to) <= found.h && found.h <= std::max(from, to)) return report;
       ((*excess > 0) == (excess_from > 0) ? from : to) = middle;
     }
-    report.status = SolveStatus::stagnated;
-    return report;
+    return {SolveStatus::no_step};
   };
+  const double highest = options_.largest_change * last_size_;
+  const double lowest = last_size_ / options_.largest_change;
   double up = last_size_;
   double down = last_size_;
   double excess_up = *centre;
   double excess_down = *centre;
-  while (up <= options_.largest_change * last_size_) {
-    const auto higher = excess_energy(up * options_.search_factor, solution);
-    if (higher && (*higher > 0) != (excess_up > 0)) return refine(up, excess_up, up * options_.search_factor);
-    const auto lower = excess_energy(down / options_.search_factor, solution);
-    if (lower && (*lower > 0) != (excess_down > 0)) return refine(down, excess_down, down / options_.search_factor);
+  while (up < highest) {
+    const double next_up = std::min(up * options_.search_factor, highest);
+    const double next_down = std::max(down / options_.search_factor, lowest);
+    const auto higher = excess_energy(next_up, solution);
+    if (higher && (*higher > 0) != (excess_up > 0)) return refine(up, excess_up, next_up);
+    const auto lower = excess_energy(next_down, solution);
+    if (lower && (*lower > 0) != (excess_down > 0)) return refine(down, excess_down, next_down);
     if (!higher || !lower) break;
-    up *= options_.search_factor;
-    down /= options_.search_factor;
+    up = next_up;
+    down = next_down;
     excess_up = *higher;
     excess_down = *lower;
   }
@@ -235,11 +240,10 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::by_search(Solved& found
 /// A step that does not keep E_d, as the options say.
 template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::off_the_energy() {
   Solved found;
-  found.h = controller_ ? controller_->step() : first_size_;
+  found.h = controller_ && controller_->step() > 0 ? controller_->step() : first_size_;
   fixed_.system().h = found.h;
   fixed_.forget();
-  const StepReport report =
-      found.h > 0 ? fixed_.solve(point().state, found.solution) : StepReport{SolveStatus::no_step};
+  const StepReport report = fixed_.solve(point().state, found.solution);
   iterations_ += report.iterations;
   if (!report.converged()) return report;
   const auto d = extended_gradients(found.h, found.solution.step);
@@ -263,7 +267,11 @@ template <Timed Sys> void AdaptiveIntegrator<Sys>::accept(const Solved& found) {
   unknowns << found.h, groupoid.chart(found.solution.step.arrow), found.solution.step.multipliers;
   past_.push(unknowns);
   if constexpr (HasTimeScale<Sys>)
-    if (controller_) controller_->pass(time_scale_rate(fixed_.system(), point().state), found.h);
+    if (controller_) {
+      const double rate = time_scale_rate(fixed_.system(), point().state);
+      controller_->pass(rate, found.h);
+      if (!(controller_->step() > 0)) controller_.emplace(found.h, rate);  // too fast a change: control begins anew
+    }
 }
 
 }  // namespace lagroid

@@ -26,8 +26,14 @@ template <DiscreteSystem Sys> class Integrator {
 
   const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
   const Sys& system() const { return stepper_.system(); }
-  /// Of a self-adjoint discretisation.
-  static MethodTraits traits() { return {"fixed", 2, true, true, false}; }
+  /// The system's own, else those of a self-adjoint discretisation.
+  MethodTraits traits() const {
+    if constexpr (requires(const Sys& s) { s.traits(); }) {
+      return system().traits();
+    } else {
+      return {"equal steps", 2, true, Variational<Sys>, false};
+    }
+  }
 
   StepReport advance();
 

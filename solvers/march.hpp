@@ -61,7 +61,8 @@ std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename S
                                        const MarchOptions& options);
 
 /// The step size at which one step and two of half its size differ, relative to the motion over the step, by
-/// `accuracy`; searched from system.h. Zero where no step from the state could be solved.
+/// `accuracy`, up to a tenth; searched from system.h, and at most about a thousand times as large. Momenta are taken as
+/// they are reported. Zero where no such step was found.
 template <DiscreteSystem Sys>
 double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidType>& initial, double accuracy,
                          const MarchOptions& options);

@@ -97,17 +97,20 @@ double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidTy
       return std::numeric_limits<double>::infinity();
     const auto& a = once.point();
     const auto& b = twice.point();
+    const AlgebroidVector<G> momentum = tangent_momentum(whole, b.state);
     const AlgebroidVector<G> between =
         groupoid.tau_inverse(groupoid.multiply(groupoid.inverse(a.configuration), b.configuration));
     const AlgebroidVector<G> moved = groupoid.tau_inverse(b.configuration);
     return std::max(between.norm() / moved.norm(),
-                    (a.state.momentum - b.state.momentum).norm() / b.state.momentum.norm());
+                    (tangent_momentum(whole, a.state) - momentum).norm() / momentum.norm());
   };
   constexpr int order = 2;  // of the error O(h^3) over the motion O(h)
   constexpr double close = 1.1;
+  const double largest = 1e3 * system.h;  // where a step is exact whatever its size
   double h = system.h;
   for (int trial = 0; trial < 40; ++trial) {
     const double at = error(h);
+    if (h >= largest && at <= accuracy) return h;
     const double factor = std::isfinite(at) ? std::clamp(std::pow(accuracy / at, 1.0 / order), 0.1, 4.0) : 0.25;
     if (factor < close && factor > 1 / close) return h * factor;
     h *= factor;

@@ -1,5 +1,5 @@
 #pragma once
-/// What a one-step method declares of itself, and tests hold it to.
+/// What a one-step method declares of itself; tests hold it to its order (laws::order_laws).
 
 #include <string>
 

@@ -62,7 +62,7 @@ class ControlledIntegrator {
         controller_(stepper_.system().h, time_scale_rate(stepper_.system(), initial)) {}
 
   const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
-  static MethodTraits traits() { return {"controlled", 2, true, false, false}; }
+  static MethodTraits traits() { return {"controlled steps", 2, true, false, false}; }
 
   StepReport advance() {
     Sys& system = stepper_.system();

@@ -91,9 +91,14 @@ class MoserVeselovStep final : public StepSolver<MoserVeselov> {
 
 LAGROID_STEPS(extern template, MoserVeselov);
 
-/// By MoserVeselovStep, with steps of system.h.
+/// By MoserVeselovStep, with steps of system.h: any other options are refused (std::invalid_argument).
 template <>
 std::unique_ptr<March<MoserVeselov>> make_march(const MoserVeselov& system, const State<SO3>& initial,
                                                 const Matrix<double, 3, 3>& configuration, const MarchOptions& options);
+
+/// Throws std::invalid_argument: the moments were made for one step size.
+template <>
+double step_for_accuracy(const MoserVeselov& system, const State<SO3>& initial, double accuracy,
+                         const MarchOptions& options);
 
 }  // namespace lagroid

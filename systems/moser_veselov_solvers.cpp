@@ -13,4 +13,8 @@ std::unique_ptr<March<MoserVeselov>> make_march(const MoserVeselov& system, cons
       system, initial, configuration, std::make_unique<MoserVeselovStep>());
 }
 
+template <> double step_for_accuracy(const MoserVeselov&, const State<SO3>&, double, const MarchOptions&) {
+  throw std::invalid_argument("discrete Moser-Veselov steps are of the length they were preprocessed for");
+}
+
 }  // namespace lagroid

@@ -9,6 +9,7 @@
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rolling_ball.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
 #include <gtest/gtest.h>
@@ -260,8 +261,44 @@ TEST(Adaptive, DrivenMotionsAreSolvedOrRefused) {
   s.system.h = 0.1;
   s.system.torque = 0.05;
   s.system.frequency = 0.7;
-  const Outcome out = run(s, 200, WithoutRoot::constant);
-  EXPECT_EQ(out.steps, 200) << to_string(out.last.status);
+  const auto march = make(s, WithoutRoot::constant);
+  FreeTime<DrivenPendulum> extended(s.system);
+  double arrived = 0;  // p_t at the end of the step before
+  double change = 0;
+  for (int k = 0; k < 200; ++k) {
+    const long off = march->without_root();
+    ASSERT_TRUE(march->advance().converged()) << k;
+    const auto& p = march->point();
+    extended.origin = p.time - p.step_size;
+    const auto d = gradients(
+        extended, {PairArrow<double, 1>{Vector<double, 1>(0.0), Vector<double, 1>(p.step_size)}, p.step.arrow}, {});
+    if (k > 0 && march->without_root() == off) {
+      EXPECT_NEAR(-d.source_gradient(0), arrived, 1e-12) << k;
+    }
+    arrived = d.target_gradient(0);
+    change = std::max(change, std::abs(d.target_gradient(0) + d.source_gradient(0)));
+  }
+  EXPECT_GT(change, 1e-4) << "the drive changes p_t";
+  EXPECT_LT(march->without_root(), 100);
+}
+
+// A change of sign of E_d(h) - E_d at the rim of what is searched, or where E_d jumps, is no step: no other failure.
+TEST(Adaptive, RotationsOfThePendulumFindAStepOrSayThatThereIsNone) {
+  int without = 0;
+  for (const double momentum : {1.8, 2.1, 2.4})
+    for (const double angle : {0.0, 1.0, 2.0})
+      for (const double h : {0.05, 0.1, 0.2}) {
+        const Outcome out = run(pendulum(Quadrature::midpoint, angle, momentum, h), 300);
+        EXPECT_TRUE(out.last.converged() || out.last.status == SolveStatus::no_step)
+            << to_string(out.last.status) << ": " << angle << ' ' << momentum << ' ' << h;
+        without += !out.last.converged();
+      }
+  EXPECT_GT(without, 0);
+}
+// Where the motion changes too fast for the control to go on, it begins anew.
+TEST(Adaptive, ControlInsteadCarriesThroughACloseApproach) {
+  const Outcome out = run(kepler(Quadrature::midpoint, 0.9, 0.03), 500, WithoutRoot::controlled);
+  EXPECT_EQ(out.steps, 500) << to_string(out.last.status);
 }
 
 // ---- control
@@ -380,7 +417,42 @@ TEST(Controlled, BeatsEqualStepsOnAnEccentricOrbit) {
   EXPECT_LT(5 * error, energy_error(*without, s));
 }
 
+/// One step of h against two of h / 2, relative to the motion of the momentum and object, as reported.
+template <class Sys> double step_error(Start<Sys> s, double h) {
+  const auto end = [&](double size, int steps) {
+    s.system.h = size;
+    const auto march = make_march(s.system, s.state, s.system.groupoid.unit(s.state.object), {});
+    for (int k = 0; k < steps; ++k) EXPECT_TRUE(march->advance().converged());
+    return march->point();
+  };
+  const auto once = end(h, 1);
+  const auto twice = end(0.5 * h, 2);
+  const auto& groupoid = s.system.groupoid;
+  const auto between =
+      groupoid.tau_inverse(groupoid.multiply(groupoid.inverse(once.configuration), twice.configuration));
+  const auto momentum = tangent_momentum(s.system, twice.state);
+  return std::max(between.norm() / groupoid.tau_inverse(twice.configuration).norm(),
+                  (tangent_momentum(s.system, once.state) - momentum).norm() / momentum.norm());
+}
+template <class Sys> void expect_first_step(Start<Sys> s, double accuracy) {
+  s.system.h = 0.01;
+  const double h = step_for_accuracy(s.system, s.state, accuracy, {});
+  ASSERT_GT(h, 0);
+  const double error = step_error(s, h);
+  EXPECT_LT(error, 1.5 * accuracy) << h;
+  EXPECT_GT(error, 0.5 * accuracy) << h;
+}
 TEST(FirstStep, HasTheAccuracyAskedFor) {
+  for (const double accuracy : {1e-3, 1e-6}) {
+    expect_first_step(kepler(Quadrature::trapezoid, 0.6), accuracy);
+    expect_first_step(swinging(), accuracy);
+    expect_first_step(rigid_body(RotationMap::cayley), accuracy);
+    RollingBall ball;
+    ball.plate_rate = 0.7;
+    expect_first_step(Start<RollingBall>{ball, ball.rolling({0.3, -0.2}, {0.4, 0.1}, 0.7)}, accuracy);
+  }
+}
+TEST(FirstStep, GrowsWithTheSquareRootOfTheAccuracy) {
   const auto s = kepler(Quadrature::trapezoid, 0.6, 0.1);
   const double coarse = step_for_accuracy(s.system, s.state, 1e-6, {});
   const double fine = step_for_accuracy(s.system, s.state, 1e-9, {});

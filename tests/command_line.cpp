@@ -393,11 +393,16 @@ TEST_F(CommandLine, AdaptiveStepsKeepTheDiscreteEnergyOrSayThatNoneDoes) {
 }
 
 TEST_F(CommandLine, RefusesTimesThatTheSystemDoesNotHave) {
-  for (const char* wrong : {"kepler --set time.order=5", "kepler --set time.order=4 --set time.composition=kahan-li-8",
-                            "kepler_adaptive --set time.order=4", "rolling_ball --set time.mode=adaptive",
-                            "damped_pendulum --set time.order=4", "rigid_body_moser_veselov --set time.step=5",
-                            "spherical_pendulum --set time.method=splitting", "kepler_controlled --set time.accuracy=0",
-                            "driven_pendulum --set time.mode=controlled"}) {
+  for (const char* wrong :
+       {"kepler --set time.order=5", "kepler --set time.order=4 --set time.composition=kahan-li-8",
+        "kepler_adaptive --set time.order=4", "rolling_ball --set time.mode=adaptive",
+        "damped_pendulum --set time.order=4", "rigid_body_moser_veselov --set time.step=5",
+        "spherical_pendulum --set time.method=splitting", "damped_pendulum --set time.method=splitting",
+        "driven_body --set time.method=splitting", "kepler --set time.accuracy=1e-3",
+        "rigid_body_moser_veselov --set time.accuracy=1e-3", "kepler_boundary --set time.accuracy=1e-3",
+        "kepler_adaptive --set time.method=splitting", "rigid_body_moser_veselov --set time.mode=adaptive",
+        "driven_pendulum --set time.start=1e17", "kepler_controlled --set time.accuracy=0",
+        "driven_pendulum --set time.mode=controlled"}) {
     const std::string words = wrong;
     const auto space = words.find(' ');
     const Outcome r = run("run " + example(words.substr(0, space)) + words.substr(space));
@@ -418,6 +423,81 @@ TEST_F(CommandLine, ReproduceRefusesWhatItCannotDo) {
   EXPECT_EQ(nlohmann::json::parse(crossed.out).at("status"), "invalid_command_line");
   EXPECT_EQ(run("reproduce newton-on-lie-groups --out /proc/here").code, 2);
   EXPECT_EQ(entries(), 1U) << "nothing but the file of standard error";
+}
+
+TEST_F(CommandLine, AnInterruptedRunKeepsWhatWasComputed) {
+  for (const std::string signal : {"INT", "TERM"}) {
+    const fs::path out = folder_ / signal;
+    const Outcome r = run("run " + example("kepler") +
+                              " --json --set time.steps=900000000 --set output.every=100000 --out " + out.string(),
+                          "timeout --preserve-status -s " + signal + " 2 ");
+    EXPECT_EQ(r.code, 4) << r.err;
+    EXPECT_NE(r.err.find("interrupted after step"), std::string::npos) << r.err;
+    const auto summary = nlohmann::json::parse(r.out);
+    EXPECT_EQ(summary.at("status"), "interrupted");
+    EXPECT_GT(summary.at("steps"), 0);
+    EXPECT_EQ(summary.at("ledger").at("solver").at("verdict"), "kept");
+    for (const char* file : {"trajectory.h5", "trajectory.csv", "summary.json", "plot.svg"})
+      EXPECT_TRUE(fs::exists(out / file)) << file;
+  }
+}
+
+TEST_F(CommandLine, ViewWritesOnePageWithWhatTheRunRecorded) {
+  const fs::path out = folder_ / "run";
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=50 --out " + out.string()).code, 0);
+  const Outcome r = run("view " + out.string());
+  EXPECT_EQ(r.code, 0) << r.err;
+  std::ifstream file(out / "view.html");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  EXPECT_EQ(page.find("src="), std::string::npos) << "the page needs nothing else";
+  const std::string opening = "id=\"run\">";
+  const std::size_t from = page.find(opening) + opening.size();
+  const auto data = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+  EXPECT_EQ(data.at("time").size(), 51U);
+  EXPECT_EQ(data.at("columns").at("x").size(), 51U);
+  EXPECT_EQ(data.at("columns").at("x").at(0), 0.4);
+  EXPECT_EQ(data.at("shapes").size(), 2U);
+  const auto of = [&](const std::string& rows) {
+    run("view --rows " + rows + " " + out.string());
+    std::ifstream again(out / "view.html");
+    const std::string text(std::istreambuf_iterator<char>(again), {});
+    return nlohmann::json::parse(text.substr(from, text.find("</script>", from) - from));
+  };
+  EXPECT_EQ(of("10").at("time").back(), data.at("time").back()) << "the last row is kept";
+  EXPECT_LE(of("10").at("time").size(), 11U);
+}
+
+TEST_F(CommandLine, PlotDrawsAnewWhatWasEdited) {
+  const fs::path out = folder_ / "run";
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=50 --out " + out.string()).code, 0);
+  fs::remove(out / "plot.svg");
+  EXPECT_EQ(run("plot " + out.string()).code, 0);
+  EXPECT_TRUE(fs::exists(out / "plot.svg"));
+  std::ofstream(out / "plot.gp", std::ios::app) << "set output 'plot.svg'\nnonsense\n";
+  const Outcome r = run("plot " + out.string());
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("gnuplot failed"), std::string::npos) << r.err;
+  EXPECT_TRUE(fs::exists(out / "plot.svg")) << "the picture there is stays";
+}
+
+TEST_F(CommandLine, WhatIsNoRunIsRefusedWithTheRemedy) {
+  for (const std::string command : {"view ", "plot "}) {
+    const Outcome nowhere = run(command + (folder_ / "nowhere").string());
+    EXPECT_EQ(nowhere.code, 2);
+    EXPECT_NE(nowhere.err.find("no such folder; lagroid run SCENE --out"), std::string::npos) << nowhere.err;
+    fs::create_directories(folder_ / "empty");
+    EXPECT_EQ(run(command + (folder_ / "empty").string()).code, 2);
+    EXPECT_TRUE(fs::is_empty(folder_ / "empty"));
+  }
+  const fs::path out = folder_ / "run";
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=50 --out " + out.string()).code, 0);
+  EXPECT_EQ(run("view --rows 1 " + out.string()).code, 2);
+  std::ofstream(out / "trajectory.h5") << "no HDF5";
+  const Outcome broken = run("view " + out.string());
+  EXPECT_EQ(broken.code, 2);
+  EXPECT_NE(broken.err.find("trajectory.h5"), std::string::npos) << broken.err;
+  std::ofstream(out / "summary.json") << "{";
+  EXPECT_NE(run("view " + out.string()).err.find("summary.json"), std::string::npos);
 }
 
 TEST_F(CommandLine, OneCommandAtATime) {

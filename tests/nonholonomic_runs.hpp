@@ -30,7 +30,7 @@ inline void expect_no_drift(long steps, double tolerance) {
   ball.plate_rate = 1.3;
   const auto rolling = watch(ball, ball.rolling({0.3, -0.2}, {0.4, 0.1}, 0.7), steps, {residual_quantity(ball)});
   ASSERT_FALSE(rolling.empty());
-  for (const char* name : {"K2", "K3 = k m r^2 w3", "moving energy E - Omega J"})
+  for (const char* name : {"K1", "K2", "K3 = k m r^2 w3", "moving energy E - Omega J"})
     EXPECT_LT(rolling.at(name).drift, tolerance) << name;
   EXPECT_LT(rolling.at("residual").drift, 1e-14);
 

@@ -3,6 +3,8 @@
 
 #include <lagroid/solvers/newton_step.hpp>
 #include <lagroid/solvers/testing/splitting_laws.hpp>
+#include <lagroid/systems/damped_pendulum.hpp>
+#include <lagroid/systems/driven_body.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/moser_veselov.hpp>
@@ -30,7 +32,8 @@ using namespace lagroid;
 namespace {
 
 static_assert(SplitSystem<Pendulum> && SplitSystem<Kepler> && SplitSystem<RigidBody> && SplitSystem<HeavyTop>);
-static_assert(!SplitSystem<SphericalPendulum>);  // drifts leave the sphere
+static_assert(!SplitSystem<SphericalPendulum>);                           // drifts leave the sphere
+static_assert(!SplitSystem<DampedPendulum> && !SplitSystem<DrivenBody>);  // flows that know nothing of the forces
 static_assert(!SplitSystem<MoserVeselov>);
 
 // ---- coefficients

@@ -47,6 +47,14 @@ Task<AttitudeControl> read_attitude_control(const Section& scene, const RunConte
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"spatial momentum error", "t", "deviation", "t", {"drift spatial momentum"}}};
 
+  Shape satellite{"box", {0.8, 0.5, 0.3}};
+  satellite.attitude = attitude_columns;
+  // The end of the axis about which it cannot turn.
+  Shape antenna{"sphere", {0.05}};
+  antenna.attitude = attitude_columns;
+  antenna.offset = {0.7 * system.forbidden(0), 0.7 * system.forbidden(1), 0.7 * system.forbidden(2)};
+  antenna.trail = true;
+  p.shapes = {satellite, antenna};
   if (is_boundary_value(scene, "attitude and momentum"))
     return boundary_value<AttitudeControl>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");

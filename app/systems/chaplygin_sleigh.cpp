@@ -31,6 +31,9 @@ Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunConte
   p.conventions = {{"position", "pose A_k = A_{k-1} g_k of the blade: x, y and the angle from the x axis to its edge"},
                    {"momentum", "body momentum: about the blade, ahead, to the left"},
                    {"multipliers", "impulse of the reaction at the object the arrow starts from"}};
+  p.shapes = {on_the_plane({"box", {0.6, 0.3, 0.05}}, 0.1), on_the_plane({"box", {0.3, 0.02, 0.15}}, 0.05)};
+  p.shapes[0].offset[0] = system.offset;
+  p.shapes[1].trail = true;
   p.panels = {{"path of the blade", "x", "y", "x", {"y"}, true},
               {"velocities", "t", "w, v1", "t", {"w", "v1"}},
               {"energy error", "t", "|E - E_0|", "t", {"drift energy"}},

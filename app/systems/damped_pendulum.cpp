@@ -14,6 +14,7 @@ Task<DampedPendulum> read_damped_pendulum(const Section& scene, const RunContext
   p.extras = {
       {{"energy", {"H"}, "J", "p^2 / (2 m l^2) - m g l cos q", false, {}},
        [system](const TrajectoryPoint<DampedPendulum>& point, double* out) { *out = system.energy(point.state); }}};
+  p.shapes = hanging(system.length, "q");
   p.panels = {{"angle", "t", "q", "t", {"q"}},
               {"phase plane", "q", "p", "q", {"p"}},
               {"energy", "t", "H", "t", {"H"}},

@@ -25,6 +25,7 @@ Task<DrivenBody> read_driven_body(const Section& scene, const RunContext& contex
   p.extras = {{{"energy", {"H"}, "J", "M.I^{-1} M / 2", false, {}},
                [system](const Point& point, double* out) { *out = system.energy(point.state); }}};
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"}, {"momentum", "body angular momentum M"}};
+  p.shapes = {box_of({system.inertia(0), system.inertia(1), system.inertia(2)})};
   p.panels = {{"body angular momentum", "t", "M", "t", {"M1", "M2", "M3"}},
               {"energy", "t", "H", "t", {"H"}},
               {"energy less work, error", "t", "deviation", "t", {"drift energy less work"}}};

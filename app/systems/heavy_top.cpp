@@ -30,6 +30,22 @@ BoundaryScene<HeavyTop> read_boundary(const Section& scene) {
   return {{{system, between}, std::size_t(read_time(scene).steps)}, start};
 }
 
+/// A Lagrange top as a cone, another as a box with its centre of mass away from the fixed point; and a point of it.
+std::vector<Shape> shapes_of(const HeavyTop& system) {
+  const Vector<double, 3> arm = system.weight.norm() > 0 ? system.weight.normalized() : Vector<double, 3>(0, 0, 0);
+  Shape body{"cone", {1, 0.4}};
+  if (!system.is_lagrange()) {
+    body = box_of({system.inertia(0), system.inertia(1), system.inertia(2)});
+    body.offset = {arm(0), arm(1), arm(2)};
+  }
+  body.attitude = attitude_columns;
+  Shape point{"sphere", {0.04}};
+  point.attitude = attitude_columns;
+  point.offset = {1.2 * arm(0), 1.2 * arm(1), 1.2 * arm(2)};
+  point.trail = true;
+  return {body, point};
+}
+
 }  // namespace
 
 Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context) {
@@ -53,6 +69,7 @@ Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context) {
               {"vertical momentum error", "t", "|M.v - (M.v)_0|", "t", {"drift vertical momentum M.v"}}};
 
   const HeavyTop system = read_system(scene);
+  p.shapes = shapes_of(system);
   if (is_boundary_value(scene, "attitude and momentum"))
     return boundary_value<HeavyTop>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");

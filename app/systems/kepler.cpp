@@ -19,7 +19,13 @@ Task<Kepler> read_kepler(const Section& scene, const RunContext& context) {
     if (q.norm() == 0) section.fail("position", "lies on the centre of attraction; move it away from 0, 0");
     return q;
   };
-  return read_mechanical<Kepler, 2>(scene, context, p, "x, y", "px, py", read_system, off_centre, any_state);
+  const auto shapes = [](const Kepler&) {
+    Shape planet{"sphere", {0.05}};
+    planet.position = {"x", "y", 0.0};
+    planet.trail = true;
+    return std::vector<Shape>{{"sphere", {0.1}}, planet};
+  };
+  return read_mechanical<Kepler, 2>(scene, context, p, "x, y", "px, py", read_system, off_centre, any_state, shapes);
 }
 
 }  // namespace lagroid::app

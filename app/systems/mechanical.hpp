@@ -67,12 +67,13 @@ BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::s
 }
 
 /// Reads [initial] or [boundary]. `system(scene)` reads the parameters; `check(system, section, q)` refuses a position
-/// or returns it.
-template <class Sys, int N, class ReadSystem, class Check, class CheckState>
-Task<Sys> read_mechanical(const Section& scene, const RunContext& context, const Presentation<Sys>& p,
+/// or returns it; `shapes(system)` draws it.
+template <class Sys, int N, class ReadSystem, class Check, class CheckState, class Shapes>
+Task<Sys> read_mechanical(const Section& scene, const RunContext& context, Presentation<Sys> p,
                           std::string_view position, std::string_view momentum, const ReadSystem& read_system,
-                          const Check& check, const CheckState& check_state) {
+                          const Check& check, const CheckState& check_state, const Shapes& shapes) {
   Sys system = read_system(scene);
+  p.shapes = shapes(system);
   if (is_boundary_value(scene, "position and momentum"))
     return boundary_value<Sys>(scene, context, p, [=](const Section& s) {
       return read_vector_boundary<Sys, N>(s, read_system(s), position, check);

@@ -16,7 +16,8 @@ Task<Pendulum> read_pendulum(const Section& scene, const RunContext& context) {
     return system;
   };
   return read_mechanical<Pendulum, 1>(scene, context, p, "the angle from the downward vertical", "m l^2 dq/dt",
-                                      read_system, any_position, any_state);
+                                      read_system, any_position, any_state,
+                                      [](const Pendulum& system) { return hanging(system.length, "q"); });
 }
 
 }  // namespace lagroid::app

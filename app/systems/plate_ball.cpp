@@ -10,7 +10,7 @@ namespace {
 
 using G = PlateBall::GroupoidType;
 
-Presentation<PlateBall> presentation() {
+Presentation<PlateBall> presentation(const PlateBall& system) {
   using Point = TrajectoryPoint<PlateBall>;
   Presentation<PlateBall> p;
   p.name = "plate_ball";
@@ -32,6 +32,9 @@ Presentation<PlateBall> presentation() {
                  Eigen::Map<Vector<double, 2>> u(out);
                  u = (move.target - move.source) / point.step_size;
                }}};
+  Shape ball = ball_on_plate(system.radius);
+  ball.transposed = true;
+  p.shapes = {ball, turning_plate(system.plate_rate)};
   p.panels = {{"path of the contact point", "x", "y", "x", {"y"}, true},
               {"controls", "t", "u, v", "t", {"u", "v"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
@@ -45,7 +48,7 @@ Presentation<PlateBall> presentation() {
 /// A step that is too large or a path of too few: blamed on the key that set it.
 [[noreturn]] void refuse_time(const Section& scene, const std::string& why) {
   const Section time = scene.section_or_empty("time");
-  time.fail(time.has("step") ? "step" : "steps", why);
+  time.fail(time.has("step") ? "step" : time.has("accuracy") ? "accuracy" : "steps", why);
 }
 
 ArrowOf<G> end_point(const Section& end) {
@@ -61,7 +64,7 @@ Task<PlateBall> initial_value(const Section& scene, const RunContext& context, c
   std::get<0>(state.object) = std::get<0>(configuration).source;
   state.momentum = Eigen::Map<const Vector<double, 5>>(initial.numbers("momentum", 5, "px, py, M1, M2, M3").data());
   read_multistart(scene.section_or_empty("solver"));
-  return simulation(scene, context, system, presentation(), state, configuration);
+  return simulation(scene, context, system, presentation(system), state, configuration);
 }
 
 /// [parameters] and [time].
@@ -107,7 +110,7 @@ MultistartResult<PlateBall> search(const BoundarySolver<PlateBall>& solver, cons
 Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context) {
   const PlateBall system = read_system(scene);
   if (is_boundary_value(scene, "position, attitude, momentum"))
-    return boundary_value<PlateBall>(scene, context, presentation(), read_boundary, search);
+    return boundary_value<PlateBall>(scene, context, presentation(system), read_boundary, search);
   return initial_value(scene, context, system);
 }
 

@@ -18,7 +18,7 @@ RigidBody read_system(const Section& scene) {
 
 BoundaryScene<RigidBody> read_boundary(const Section& scene) { return read_turn(scene, read_system(scene)); }
 
-template <class Sys> Presentation<Sys> presentation() {
+template <class Sys> Presentation<Sys> presentation(const Sys& system) {
   using Point = TrajectoryPoint<Sys>;
   Presentation<Sys> p;
   p.name = "rigid_body";
@@ -28,6 +28,7 @@ template <class Sys> Presentation<Sys> presentation() {
   p.position_of = [](const Point&) { return std::vector<double>{}; };
   p.attitude_of = [](const Point& point) { return quaternion_of(point.configuration); };
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"}, {"momentum", "body angular momentum M"}};
+  p.shapes = {box_of({system.inertia(0), system.inertia(1), system.inertia(2)})};
   p.panels = {{"body angular momentum", "t", "M", "t", {"M1", "M2", "M3"}},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"spatial momentum error", "t", "|A M - (A M)_0|", "t", {"drift spatial momentum A M"}}};
@@ -39,6 +40,8 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
                               const State<SO3>& state, const Matrix<double, 3, 3>& attitude) {
   const Section time = scene.section("time", "step and steps");
   time.choice_or("method", "", {"moser-veselov"});
+  time.choice_or("mode", "fixed", {"fixed"});
+  refuse_accuracy(scene);
   const int order = int(time.integer_or("order", 10, 2, 10));
   if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6, 8 or 10, got {}", order));
   const long steps = read_time(scene).steps;
@@ -48,13 +51,13 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
   try {
     system = MoserVeselov::preprocessed(body.inertia, state.momentum, body.h, order);
   } catch (const std::domain_error& error) {
-    time.fail("step", error.what());
+    time.fail(time.has("step") ? "step" : "duration", error.what());
   }
   return {body, [=](const Observer<RigidBody>& observer) {
             const Observer<MoserVeselov> as_body = [&](const TrajectoryPoint<MoserVeselov>& p) {
               observer({p.index, p.time, p.step_size, p.state, p.configuration, {p.step.arrow, {}}});
             };
-            return simulate(system, presentation<MoserVeselov>(), state, attitude, steps, {}, every, context,
+            return simulate(system, presentation(system), state, attitude, steps, {}, every, context,
                             observer ? as_body : nullptr);
           }};
 }
@@ -62,8 +65,8 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
 }  // namespace
 
 Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context) {
-  const auto p = presentation<RigidBody>();
   const RigidBody system = read_system(scene);
+  const auto p = presentation(system);
   if (is_boundary_value(scene, "attitude and momentum"))
     return boundary_value<RigidBody>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");
@@ -71,7 +74,7 @@ Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context)
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
   const Matrix<double, 3, 3> attitude = read_rotation(initial);
   const Section time = scene.section_or_empty("time");
-  if (time.has("method") && time.text("method", "name") == "moser-veselov")
+  if (time.has("method") && time.text("method", "variational, splitting or moser-veselov") == "moser-veselov")
     return moser_veselov(scene, context, system, state, attitude);
   return simulation(scene, context, system, p, state, attitude);
 }

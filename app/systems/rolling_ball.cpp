@@ -45,6 +45,7 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
   p.conventions = {{"attitude", "R of the ball, R_k = exp(h w) R_{k-1}; the groupoid carries its transpose"},
                    {"momentum", "px, py, M with M = -k m r^2 w, w the angular velocity in space"},
                    {"multipliers", "impulses of the reaction at the object the arrow starts from"}};
+  p.shapes = {ball_on_plate(system.radius), turning_plate(system.plate_rate)};
   p.panels = {{"path of the point of contact", "x", "y", "x", {"y"}, true},
               {"angular velocity", "t", "w", "t", {"w1", "w2", "w3"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},

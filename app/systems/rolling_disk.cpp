@@ -2,6 +2,8 @@
 #include "pose.hpp"
 #include "readers.hpp"
 
+#include <numbers>
+
 namespace lagroid::app {
 
 Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& context) {
@@ -37,6 +39,11 @@ Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& cont
                     "it has rolled, both from -pi to pi"},
                    {"momentum", "in the disk's frame: about the vertical, ahead, to the left, about its axis"},
                    {"multipliers", "impulses of the reaction at the object the arrow starts from"}};
+  Shape disk = on_the_plane({"disk", {system.radius, 0.1 * system.radius}}, system.radius);
+  disk.turns.push_back({{1, 0, 0}, -0.5 * std::numbers::pi});
+  disk.turns.push_back({{0, 0, 1}, "roll"});
+  disk.trail = true;
+  p.shapes = {disk, turning_plate(0)};
   p.panels = {{"path of the point of contact", "x", "y", "x", {"y"}, true},
               {"rates", "t", "w, s", "t", {"w", "s"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},

@@ -37,8 +37,16 @@ Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunC
       section.fail("momentum",
                    fmt::format("has a part {:.6g} along the rod; it must be tangent to the sphere", radial));
   };
+  const auto shapes = [](const SphericalPendulum& system) {
+    Shape rod{"rod", {system.length, 0.015 * system.length}};
+    rod.to = {"x", "y", "z"};
+    Shape bob{"sphere", {0.08 * system.length}};
+    bob.position = {"x", "y", "z"};
+    bob.trail = true;
+    return std::vector<Shape>{rod, bob};
+  };
   return read_mechanical<SphericalPendulum, 3>(scene, context, p, "x, y, z with z up", "px, py, pz", read_system,
-                                               on_sphere, tangent);
+                                               on_sphere, tangent, shapes);
 }
 
 }  // namespace lagroid::app

@@ -3,6 +3,8 @@
 #include "pose.hpp"
 #include "readers.hpp"
 
+#include <numbers>
+
 namespace lagroid::app {
 
 namespace {
@@ -50,6 +52,10 @@ Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context) {
   p.conventions = {{"position", "pose A_k = A_{k-1} g_k: x, y and the angle from the x axis to where it rolls"},
                    {"momentum", "body momentum: M = w and the force p ahead and to the left"},
                    {"multipliers", "sign of L + <lambda, phi>, phi = h (v1 - speed, v2)"}};
+  Shape wheel = on_the_plane({"disk", {0.1, 0.02}}, 0.1);
+  wheel.turns.push_back({{1, 0, 0}, -0.5 * std::numbers::pi});
+  wheel.trail = true;
+  p.shapes = {wheel};
   p.panels = {{"path", "x", "y", "x", {"y"}, true},
               {"turning rate", "t", "w", "t", {"w"}},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},

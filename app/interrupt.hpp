@@ -1,0 +1,24 @@
+#pragma once
+/// Ctrl-C and SIGTERM while a run goes on.
+
+#include <csignal>
+
+namespace lagroid::app {
+
+/// As long as it lives, the first SIGINT or SIGTERM is noted instead of ending the program; a second one ends it. Only
+/// one at a time.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+  ~InterruptGuard();
+  /// Whether one has come.
+  bool interrupted() const;
+
+ private:
+  struct sigaction int_before_ {};
+  struct sigaction term_before_ {};
+};
+
+}  // namespace lagroid::app

@@ -1,0 +1,192 @@
+#include "view.hpp"
+
+#include "output_folder.hpp"
+#include "viewer/assets.hpp"
+
+#include <H5Cpp.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 1> pages{"view.html"};
+constexpr std::array<const char*, 2> pictures{"plot.svg", "plot.png"};
+
+fs::path file_of_run(const std::string& run, const char* name) {
+  const fs::path folder(run);
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    throw RunError(fmt::format("{}: no such folder; lagroid run SCENE --out {} makes one", run, run));
+  if (!fs::is_regular_file(folder / name, error))
+    throw RunError(fmt::format("{}: holds no {}; lagroid run SCENE --out {} writes it", run, name, run));
+  return folder / name;
+}
+
+Json read_summary(const fs::path& file) {
+  std::ifstream in(file);
+  Json summary = Json::parse(in, nullptr, /*allow_exceptions=*/false);
+  if (summary.is_discarded())
+    throw RunError(fmt::format("{}: is no JSON any more; run the scene again", file.string()));
+  for (const char* key : {"system", "status", "steps", "ledger", "notes", "picture"})
+    if (!summary.contains(key))
+      throw RunError(
+          fmt::format("{}: has no \"{}\"; it is of an older lagroid, run the scene again", file.string(), key));
+  return summary;
+}
+
+std::string text_attribute(const H5::H5Object& object, const char* name) {
+  std::string text;
+  const H5::Attribute attribute = object.openAttribute(name);
+  attribute.read(attribute.getStrType(), text);
+  return text;
+}
+
+std::vector<double> numbers(const H5::DataSet& set) {
+  std::vector<double> values(std::size_t(set.getSpace().getSimpleExtentNpoints()));
+  if (!values.empty()) set.read(values.data(), H5::PredType::NATIVE_DOUBLE);
+  return values;
+}
+
+/// Which rows of so many are shown: evenly spaced ones, and the last.
+std::vector<std::size_t> chosen_rows(std::size_t rows, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  const std::size_t stride = std::max<std::size_t>(1, (rows + most - 1) / most);
+  for (std::size_t row = 0; row < rows; row += stride) chosen.push_back(row);
+  if (rows > 0 && chosen.back() != rows - 1) chosen.push_back(rows - 1);
+  return chosen;
+}
+
+struct Columns {
+  Json time = Json::array();
+  Json by_label = Json::object();
+  std::size_t recorded = 0;
+};
+
+/// Column labels stand in an attribute, joined by ", ".
+std::vector<std::string> labels_of(const H5::DataSet& set) {
+  std::vector<std::string> labels;
+  const std::string joined = text_attribute(set, "components");
+  for (std::size_t from = 0; from <= joined.size();) {
+    const std::size_t to = std::min(joined.find(", ", from), joined.size());
+    labels.push_back(joined.substr(from, to - from));
+    from = to + 2;
+  }
+  return labels;
+}
+
+Columns read_columns(const fs::path& file, long most_rows) {
+  H5::Exception::dontPrint();
+  try {
+    const H5::H5File in(file.string(), H5F_ACC_RDONLY);
+    const std::vector<double> time = numbers(in.openDataSet("time"));
+    const auto rows = chosen_rows(time.size(), std::size_t(most_rows));
+    Columns columns;
+    columns.recorded = time.size();
+    for (const std::size_t row : rows) columns.time.push_back(time[row]);
+    for (hsize_t i = 0; i < in.getNumObjs(); ++i) {
+      const std::string name = in.getObjnameByIdx(i);
+      if (name == "time") continue;
+      const H5::DataSet set = in.openDataSet(name);
+      const std::vector<double> values = numbers(set);
+      const std::vector<std::string> labels = labels_of(set);
+      const std::size_t first = text_attribute(set, "rows") == "one per recorded arrow" ? 1 : 0;
+      if (values.size() != (time.size() - std::min(first, time.size())) * labels.size())
+        throw RunError(
+            fmt::format("{}: \"{}\" has another number of rows than time; run the scene again", file.string(), name));
+      for (std::size_t c = 0; c < labels.size(); ++c) {
+        Json column = Json::array();
+        for (const std::size_t row : rows)
+          column.push_back(row < first ? Json() : Json(values[(row - first) * labels.size() + c]));
+        columns.by_label[labels[c]] = std::move(column);
+      }
+    }
+    return columns;
+  } catch (const H5::Exception& error) {
+    throw RunError(fmt::format("{}: HDF5: {}; run the scene again", file.string(), error.getDetailMsg()));
+  }
+}
+
+/// The JSON as it may stand inside a script element.
+std::string embedded(const Json& json) {
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string filled(std::string_view page, const std::vector<std::pair<std::string_view, std::string_view>>& places) {
+  std::string out;
+  for (std::size_t from = 0;;) {
+    std::size_t next = std::string_view::npos;
+    std::pair<std::string_view, std::string_view> place;
+    for (const auto& candidate : places)
+      if (const std::size_t at = page.find(candidate.first, from); at < next) {
+        next = at;
+        place = candidate;
+      }
+    out += page.substr(from, next - from);
+    if (next == std::string_view::npos) return out;
+    out += place.second;
+    from = next + place.first.size();
+  }
+}
+
+}  // namespace
+
+fs::path write_view(const ViewOptions& options) {
+  const Json summary = read_summary(file_of_run(options.run, "summary.json"));
+  Columns columns = read_columns(file_of_run(options.run, "trajectory.h5"), options.most_rows);
+  if (columns.recorded == 0)
+    throw RunError(fmt::format("{}: nothing was computed ({}); there is nothing to show", options.run,
+                               summary.value("message", summary["status"].get<std::string>())));
+  Json run;
+  for (const char* key : {"system", "status", "steps", "notes"}) run[key] = summary[key];
+  run["message"] = summary.value("message", "");
+  run["ledger"] = summary["ledger"]["entries"];
+  run["shapes"] = summary["picture"]["shapes"];
+  run["panels"] = summary["picture"]["panels"];
+  if (columns.time.size() < columns.recorded)
+    run["notes"].push_back(
+        fmt::format("{} of {} recorded rows are on this page", columns.time.size(), columns.recorded));
+  run["time"] = std::move(columns.time);
+  run["columns"] = std::move(columns.by_label);
+  const std::string data = embedded(run);
+  const std::string page =
+      filled(viewer::page(), {{"@STYLE@", viewer::style()}, {"@RUN@", data}, {"@PROGRAM@", viewer::program()}});
+  return write_whole(options.run, pages,
+                     [&](const fs::path& staging) {
+                       write_text(page, staging / "view.html");
+                       return std::vector<std::string>{"view.html"};
+                     })
+      .front();
+}
+
+std::vector<fs::path> draw_plots(const std::string& run) {
+  const fs::path script = file_of_run(run, "plot.gp");
+  const fs::path data = file_of_run(run, "trajectory.csv");
+  return write_whole(run, pictures, [&](const fs::path& staging) {
+    fs::copy_file(script, staging / "plot.gp");
+    fs::create_symlink(fs::absolute(data), staging / "trajectory.csv");
+    if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); !reason.empty())
+      throw RunError(fmt::format("{}: {}", run, reason));
+    return std::vector<std::string>{"plot.svg", "plot.png"};
+  });
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,30 @@
+// The recorded rows, and what lies between them.
+
+/** The row number, with its fraction, that the time t falls on. */
+export function rowAt(time, t) {
+  let low = 0;
+  let high = time.length - 1;
+  if (high <= 0 || t <= time[0]) return 0;
+  if (t >= time[high]) return high;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (time[middle] <= t) low = middle;
+    else high = middle;
+  }
+  return low + (t - time[low]) / (time[high] - time[low]);
+}
+
+/** A function of the (fractional) row: a constant, or a recorded column. Arrows have no row at the first node: the next. */
+export function reader(run, coordinate) {
+  if (typeof coordinate === "number") return () => coordinate;
+  const values = run.columns[coordinate];
+  if (!values) throw new Error(`no recorded column "${coordinate}"`);
+  const last = values.length - 1;
+  return (row) => {
+    const k = Math.min(Math.floor(row), last);
+    const next = Math.min(k + 1, last);
+    const from = values[k] ?? values[next] ?? 0;
+    const to = values[next] ?? from;
+    return from + (row - k) * (to - from);
+  };
+}

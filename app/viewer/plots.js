@@ -1,0 +1,86 @@
+// The curves of a run, with a mark that moves in time.
+import { Chart, Legend, LinearScale, LineElement, PointElement, ScatterController, Title } from "chart.js";
+
+import { reader } from "./frames.js";
+
+Chart.register(Legend, LinearScale, LineElement, PointElement, ScatterController, Title);
+
+const palette = ["#2f6fde", "#e4572e", "#2a9d6f", "#8e5bd0", "#d9a514", "#3aa6b9"];
+
+/** One panel: curves over a column, drawn once; the mark is on a canvas above, drawn at every frame. */
+class Plot {
+  constructor(run, panel, parent) {
+    const frame = document.createElement("div");
+    frame.className = "plot";
+    const canvas = document.createElement("canvas");
+    this.cursor = document.createElement("canvas");
+    this.cursor.className = "cursor";
+    frame.append(canvas, this.cursor);
+    parent.append(frame);
+    const x = run.columns[panel.x];
+    this.x = reader(run, panel.x);
+    this.curves = panel.curves.map((curve) => reader(run, curve));
+    const axis = (text) => ({ type: "linear", title: { display: true, text }, ticks: { maxTicksLimit: 6 } });
+    this.chart = new Chart(canvas, {
+      type: "scatter",
+      data: {
+        datasets: panel.curves.map((curve, i) => ({
+          label: curve,
+          data: run.columns[curve].map((y, row) => ({ x: x[row], y })).filter(({ x, y }) => x !== null && y !== null),
+          showLine: true,
+          pointRadius: 0,
+          borderWidth: 1.5,
+          borderColor: palette[i % palette.length],
+          backgroundColor: palette[i % palette.length],
+        })),
+      },
+      options: {
+        animation: false,
+        maintainAspectRatio: false,
+        events: [],
+        scales: { x: axis(panel.x_label), y: axis(panel.y_label) },
+        plugins: {
+          title: { display: true, text: panel.title },
+          legend: { display: panel.curves.length > 1, position: "bottom", labels: { boxWidth: 12 } },
+        },
+      },
+    });
+  }
+
+  points() {
+    return this.chart.data.datasets.reduce((sum, { data }) => sum + data.length, 0);
+  }
+
+  mark(row) {
+    const { width, height } = this.chart;
+    const scale = window.devicePixelRatio || 1;
+    if (this.cursor.width !== width * scale || this.cursor.height !== height * scale) {
+      this.cursor.width = width * scale;
+      this.cursor.height = height * scale;
+      this.cursor.style.width = `${width}px`;
+      this.cursor.style.height = `${height}px`;
+    }
+    const paint = this.cursor.getContext("2d");
+    paint.setTransform(scale, 0, 0, scale, 0, 0);
+    paint.clearRect(0, 0, width, height);
+    const left = this.chart.scales.x.getPixelForValue(this.x(row));
+    this.curves.forEach((curve, i) => {
+      paint.fillStyle = palette[i % palette.length];
+      paint.beginPath();
+      paint.arc(left, this.chart.scales.y.getPixelForValue(curve(row)), 4, 0, 2 * Math.PI);
+      paint.fill();
+    });
+  }
+}
+
+export class Plots {
+  constructor(parent, run) {
+    this.plots = run.panels.map((panel) => new Plot(run, panel, parent));
+  }
+  mark(row) {
+    for (const plot of this.plots) plot.mark(row);
+  }
+  points() {
+    return this.plots.map((plot) => plot.points());
+  }
+}

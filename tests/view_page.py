@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+"""The page that `lagroid view` writes, opened in a browser: no errors, bodies that move, curves with data.
+
+view_page.py LAGROID EXAMPLES
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from selenium import webdriver
+
+LAGROID, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+
+# One scene for every shape and every way in which time goes on; an abandoned run; a long one, of which rows are left out.
+SCENES = {
+    "plate_ball_initial_value": [],
+    "rolling_ball": [],
+    "rolling_disk": [],
+    "chaplygin_sleigh": [],
+    "heavy_top": [],
+    "rigid_body_moser_veselov": [],
+    "spherical_pendulum": [],
+    "pendulum_adaptive": [],
+    "damped_pendulum": [],
+    "driven_body": [],
+    "kepler_controlled": [],
+    "unicycle": [],
+    "attitude_control": [],
+    "driven_pendulum": ["time.steps=9001"],
+}
+
+
+def lagroid(*arguments):
+    return subprocess.run([LAGROID, *arguments], capture_output=True, text=True, check=False)
+
+
+def page_of(folder, scene, overrides=()):
+    settings = [word for override in overrides for word in ("--set", override)]
+    lagroid("run", str(EXAMPLES / f"{scene}.toml"), *settings, "--out", str(folder))
+    made = lagroid("view", str(folder))
+    assert made.returncode == 0, made.stderr
+    return folder / "view.html"
+
+
+def colours(png):
+    """The different colours of a screenshot of the stage, by the browser itself."""
+    return DRIVER.execute_async_script(
+        """const done = arguments[1];
+        const image = new Image();
+        image.onload = () => {
+          const canvas = document.createElement("canvas");
+          [canvas.width, canvas.height] = [image.width, image.height];
+          const paint = canvas.getContext("2d");
+          paint.drawImage(image, 0, 0);
+          const pixels = new Uint32Array(paint.getImageData(0, 0, image.width, image.height).data.buffer);
+          done(new Set(pixels).size);
+        };
+        image.src = "data:image/png;base64," + arguments[0];""",
+        png,
+    )
+
+
+class Page(unittest.TestCase):
+    def open(self, page):
+        DRIVER.get(page.as_uri())
+        errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
+        self.assertEqual(errors, [])
+
+    def test_every_picture(self):
+        for scene, overrides in SCENES.items():
+            with self.subTest(scene), tempfile.TemporaryDirectory() as folder:
+                page = page_of(pathlib.Path(folder) / "run", scene, overrides)
+                self.open(page)
+                self.assertNotIn("http", page.read_text().split('id="run">')[1].split("</script>")[0])
+                points = DRIVER.execute_script("return lagroid.plots.points()")
+                self.assertGreater(len(points), 1)
+                self.assertGreater(min(points), 10)
+                stage = DRIVER.find_element("id", "bodies")
+                self.assertGreater(colours(stage.screenshot_as_base64), 20, "the stage is blank")
+                before = DRIVER.execute_script("return lagroid.player.t")
+                time.sleep(0.3)
+                self.assertNotEqual(DRIVER.execute_script("return lagroid.player.t"), before, "nothing moves")
+                errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
+                self.assertEqual(errors, [])
+
+    def test_pause_and_scrub(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.open(page_of(pathlib.Path(folder) / "run", "rigid_body"))
+            DRIVER.find_element("id", "play").click()
+            time.sleep(0.1)
+            at = DRIVER.execute_script("return lagroid.player.t")
+            time.sleep(0.3)
+            self.assertEqual(DRIVER.execute_script("return lagroid.player.t"), at, "it moves while paused")
+            where = """const { group } = lagroid.stage.bodies[0];
+                const scrub = document.getElementById("scrub");
+                scrub.value = arguments[0] * scrub.max;
+                scrub.dispatchEvent(new Event("input"));
+                const row = lagroid.player.row();
+                lagroid.stage.draw(row);
+                return [row, ...group.quaternion.toArray()];"""
+            first, middle = (DRIVER.execute_script(where, share) for share in (0, 0.5))
+            self.assertEqual(first[0], 0)
+            self.assertGreater(middle[0], 1)
+            self.assertGreater(max(abs(a - b) for a, b in zip(first[1:], middle[1:])), 0.05)
+
+    def test_bodies_are_where_the_run_says(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.open(page_of(pathlib.Path(folder) / "run", "spherical_pendulum"))
+            for share in (0, 0.3, 1):
+                recorded, shown = DRIVER.execute_script(
+                    """const run = JSON.parse(document.getElementById("run").textContent);
+                    const row = Math.round(arguments[0] * (run.time.length - 1));
+                    lagroid.stage.draw(row);
+                    const shown = lagroid.stage.bodies[1].centre().toArray();
+                    return [["x", "y", "z"].map((column) => run.columns[column][row]), shown];""",
+                    share,
+                )
+                for a, b in zip(recorded, shown):
+                    self.assertAlmostEqual(a, b, places=6)
+
+    def test_rows_left_out_are_said(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.open(page_of(pathlib.Path(folder) / "run", "driven_pendulum", ["time.steps=9001"]))
+            self.assertIn("of 9002 recorded rows", DRIVER.find_element("id", "notes").text)
+
+    def test_a_failed_run_is_shown_as_such(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = page_of(
+                pathlib.Path(folder) / "run",
+                "pendulum_adaptive",
+                ["parameters.quadrature=trapezoid", "time.without_root=stop"],
+            )
+            self.open(page)
+            self.assertIn("no_step", DRIVER.find_element("css selector", "#status.failed").text)
+
+
+if __name__ == "__main__":
+    options = webdriver.ChromeOptions()
+    for flag in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "use-angle=swiftshader",
+                 "enable-unsafe-swiftshader", "window-size=1200,900"):
+        options.add_argument(f"--{flag}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    DRIVER = webdriver.Chrome(options=options)
+    try:
+        unittest.main(argv=sys.argv[:1], verbosity=2)
+    finally:
+        DRIVER.quit()
