@@ -58,8 +58,7 @@ Task<AttitudeControl> read_attitude_control(const Section& scene, const RunConte
   if (is_boundary_value(scene, "attitude and momentum"))
     return boundary_value<AttitudeControl>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");
-  State<SO3> state;
-  state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
+  const State<SO3> state = read_turning(initial);
   const Matrix<double, 3, 3> attitude = read_rotation(initial);
   return simulation(scene, context, system, p, state, attitude);
 }

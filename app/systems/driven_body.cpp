@@ -31,8 +31,7 @@ Task<DrivenBody> read_driven_body(const Section& scene, const RunContext& contex
               {"energy less work, error", "t", "deviation", "t", {"drift energy less work"}}};
 
   const Section initial = scene.section("initial", "attitude and momentum");
-  State<SO3> state;
-  state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
+  const State<SO3> state = read_turning(initial);
   const Matrix<double, 3, 3> attitude = read_rotation(initial);
   return simulation(scene, context, system, p, state, attitude);
 }

@@ -70,8 +70,7 @@ Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context)
   if (is_boundary_value(scene, "attitude and momentum"))
     return boundary_value<RigidBody>(scene, context, p, read_boundary);
   const Section initial = scene.section("initial", "attitude and momentum");
-  State<SO3> state;
-  state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
+  const State<SO3> state = read_turning(initial);
   const Matrix<double, 3, 3> attitude = read_rotation(initial);
   const Section time = scene.section_or_empty("time");
   if (time.has("method") && time.text("method", "variational, splitting or moser-veselov") == "moser-veselov")

@@ -24,6 +24,13 @@ inline Vector<double, 3> read_positive(const Section& parameters, std::string_vi
 inline Vector<double, 3> read_inertia(const Section& parameters) {
   return read_positive(parameters, "inertia", "principal moments");
 }
+/// `momentum`: the body angular momentum.
+inline State<SO3> read_turning(const Section& initial) {
+  State<SO3> state;
+  state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
+  return state;
+}
+
 /// `rotation`: exp, which is the default, or cayley.
 inline RotationMap read_rotation_map(const Section& parameters) { return read_group_map(parameters, "rotation"); }
 
