@@ -167,7 +167,7 @@ export class Stage {
 
   lookAtAll() {
     const sphere = this.bounds.getBoundingSphere(new THREE.Sphere());
-    const distance = (1.1 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360);
+    const distance = (0.8 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360);
     this.camera.position.copy(sphere.center).add(new THREE.Vector3(0.45, -0.8, 0.4).normalize().multiplyScalar(distance));
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;

@@ -7,6 +7,9 @@ Chart.register(Legend, LinearScale, LineElement, PointElement, ScatterController
 
 const palette = ["#2f6fde", "#e4572e", "#2a9d6f", "#8e5bd0", "#d9a514", "#3aa6b9"];
 
+/** Limits that are no round numbers are not written out. */
+const short = (value) => Number(value.toPrecision(3)).toString();
+
 /** One panel: curves over a column, drawn once; the mark is on a canvas above, drawn at every frame. */
 class Plot {
   constructor(run, panel, parent) {
@@ -20,7 +23,7 @@ class Plot {
     const x = run.columns[panel.x];
     this.x = reader(run, panel.x);
     this.curves = panel.curves.map((curve) => reader(run, curve));
-    const axis = (text) => ({ type: "linear", title: { display: true, text }, ticks: { maxTicksLimit: 6 } });
+    const axis = (text) => ({ type: "linear", title: { display: true, text }, ticks: { maxTicksLimit: 6, callback: short } });
     this.chart = new Chart(canvas, {
       type: "scatter",
       data: {
@@ -45,6 +48,27 @@ class Plot {
         },
       },
     });
+    if (panel.equal_axes) this.equalise();
+  }
+
+  /** Widens the shorter axis until both have as many pixels a unit: a circle is round. */
+  equalise() {
+    const { left, right, top, bottom } = this.chart.chartArea;
+    const pixels = { x: right - left, y: bottom - top };
+    const all = this.chart.data.datasets.flatMap(({ data }) => data);
+    const range = (axis) => {
+      const values = all.map((point) => point[axis]);
+      return [values.reduce((a, b) => Math.min(a, b)), values.reduce((a, b) => Math.max(a, b))];
+    };
+    const ranges = { x: range("x"), y: range("y") };
+    const unit = 1.1 * Math.max(...["x", "y"].map((axis) => (ranges[axis][1] - ranges[axis][0]) / pixels[axis]));
+    if (!(unit > 0)) return;
+    for (const axis of ["x", "y"]) {
+      const middle = (ranges[axis][0] + ranges[axis][1]) / 2;
+      this.chart.options.scales[axis].min = middle - (unit * pixels[axis]) / 2;
+      this.chart.options.scales[axis].max = middle + (unit * pixels[axis]) / 2;
+    }
+    this.chart.update("none");
   }
 
   points() {
