@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -51,6 +52,39 @@ std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   return text;
+}
+
+/// Puts a value at a dotted path; what is missing on the way becomes a table, a number counts in an array.
+void override_at(toml::table& root, const std::string& path, const toml::node& value) {
+  toml::node* at = &root;
+  std::istringstream parts(path);
+  std::vector<std::string> names;
+  for (std::string part; std::getline(parts, part, '.');) names.push_back(part);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool last = i + 1 == names.size();
+    if (toml::table* table = at->as_table()) {
+      if (last) {
+        table->insert_or_assign(names[i], value);
+        return;
+      }
+      table->insert(names[i], toml::table{});
+      at = table->get(names[i]);
+      continue;
+    }
+    toml::array* array = at->as_array();
+    std::size_t index = 0;
+    const char* end = names[i].data() + names[i].size();
+    if (array == nullptr) throw SceneError(fmt::format("--set {}: \"{}\" is not a table", path, names[i - 1]));
+    if (const auto [rest, error] = std::from_chars(names[i].data(), end, index);
+        error != std::errc{} || rest != end || index >= array->size())
+      throw SceneError(fmt::format("--set {}: \"{}\" is no place in the array \"{}\" of {}, counted from 0", path,
+                                   names[i], names[i - 1], array->size()));
+    if (last) {
+      array->replace(array->cbegin() + std::ptrdiff_t(index), value);
+      return;
+    }
+    at = array->get(index);
+  }
 }
 
 }  // namespace
@@ -151,6 +185,46 @@ std::string Section::text(std::string_view key, std::string_view what) const {
   return *node.value<std::string>();
 }
 
+std::vector<std::string> Section::texts_or_none(std::string_view key, std::string_view what) const {
+  const toml::node* node = find(key);
+  std::vector<std::string> out;
+  if (node == nullptr) return out;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) fail(key, fmt::format("expected an array of {}, got {}", what, type_name(*node)));
+  for (const auto& entry : *array) {
+    if (!entry.is_string()) fail(key, fmt::format("expected an array of {}, with {} in it", what, type_name(entry)));
+    out.push_back(*entry.value<std::string>());
+  }
+  return out;
+}
+
+bool Section::flag_or(std::string_view key, bool fallback) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return fallback;
+  if (!node->is_boolean()) fail(key, fmt::format("expected true or false, got {}", type_name(*node)));
+  return *node->value<bool>();
+}
+
+std::vector<std::vector<double>> Section::points(std::string_view key, std::size_t count, std::size_t size,
+                                                 std::string_view meaning) const {
+  const toml::node& node = require(key, fmt::format("{} arrays of {} numbers: {}", count, size, meaning));
+  const toml::array* array = node.as_array();
+  const auto refuse = [&](const std::string& got) {
+    fail(key, fmt::format("expected {} arrays of {} numbers ({}), got {}", count, size, meaning, got));
+  };
+  if (array == nullptr) refuse(type_name(node));
+  if (array->size() != count) refuse(fmt::format("{}", array->size()));
+  std::vector<std::vector<double>> out;
+  for (const auto& entry : *array) {
+    const toml::array* inner = entry.as_array();
+    if (inner == nullptr) refuse(fmt::format("{} among them", type_name(entry)));
+    if (inner->size() != size) refuse(fmt::format("one of {} numbers", inner->size()));
+    out.emplace_back();
+    for (const auto& number : *inner) out.back().push_back(checked(key, number, any_number));
+  }
+  return out;
+}
+
 bool Section::is_number(std::string_view key) const {
   const toml::node* node = find(key);
   return node != nullptr && node->is_number();
@@ -247,6 +321,27 @@ Section Section::section_or_empty(std::string_view key) const {
   return out;
 }
 
+std::vector<Section> Section::tables(std::string_view key) const {
+  std::vector<Section> out;
+  const toml::node* node = find(key);
+  if (node == nullptr) return out;
+  const toml::array* array = node->as_array();
+  if (array == nullptr)
+    fail(key, fmt::format("expected tables [[{}]] in double brackets, got {}", full(key), type_name(*node)));
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const toml::node& entry = (*array)[i];
+    Section table;
+    table.source_ = source_;
+    table.path_ = fmt::format("{}.{}", full(key), i);
+    table.table_ = entry.as_table();
+    table.line_ = int(entry.source().begin.line);
+    if (table.table_ == nullptr)
+      fail(key, fmt::format("expected tables [[{}]] in double brackets, got {}", full(key), type_name(entry)));
+    out.push_back(std::move(table));
+  }
+  return out;
+}
+
 void Section::finish() const {
   if (table_ == nullptr) return;
   for (const auto& [key, node] : *table_) {
@@ -263,6 +358,8 @@ void Section::finish() const {
                                     : fmt::format("unknown key; did you mean \"{}\"?", guess));
     }
     if (node.is_table()) section_or_empty(key.str()).finish();
+    if (node.is_array_of_tables())
+      for (const Section& table : tables(key.str())) table.finish();
   }
 }
 
@@ -292,17 +389,7 @@ Section read_scene(const std::filesystem::path& file, const std::vector<std::str
       parsed.insert("value", text.substr(equals + 1));
     }
     if (parsed.size() != 1) throw SceneError(fmt::format("--set {}: expected one value", key));
-    toml::table* table = &scene.source_->root;
-    std::istringstream parts(key);
-    std::vector<std::string> names;
-    for (std::string part; std::getline(parts, part, '.');) names.push_back(part);
-    for (std::size_t i = 0; i + 1 < names.size(); ++i) {
-      table->insert(names[i], toml::table{});
-      toml::table* next = (*table)[names[i]].as_table();
-      if (next == nullptr) throw SceneError(fmt::format("--set {}: \"{}\" is not a table", key, names[i]));
-      table = next;
-    }
-    table->insert_or_assign(names.back(), *parsed.get("value"));
+    override_at(scene.source_->root, key, *parsed.get("value"));
     scene.source_->overridden.insert(key);
   }
   scene.table_ = &scene.source_->root;

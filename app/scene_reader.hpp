@@ -54,6 +54,9 @@ class Section {
   /// Any string; `what` says which in messages.
   std::string text(std::string_view key, std::string_view what) const;
   bool is_number(std::string_view key) const;
+  /// An array of strings; empty where the key is missing.
+  std::vector<std::string> texts_or_none(std::string_view key, std::string_view what) const;
+  bool flag_or(std::string_view key, bool fallback) const;
   /// An array of exactly `size` finite numbers; `meaning` names its entries in messages.
   std::vector<double> numbers(std::string_view key, std::size_t size, std::string_view meaning) const;
   /// A rotation as a unit quaternion (w, x, y, z) or a rotation vector: four or three numbers. Returns a unit
@@ -63,6 +66,11 @@ class Section {
   /// A table that must be there (`purpose` says what for), or may be missing (then empty).
   Section section(std::string_view key, std::string_view purpose) const;
   Section section_or_empty(std::string_view key) const;
+  /// The tables [[key]], in order; named key.0, key.1, ... in messages and by --set. None where the key is missing.
+  std::vector<Section> tables(std::string_view key) const;
+  /// Arrays of `size` numbers each, `count` of them.
+  std::vector<std::vector<double>> points(std::string_view key, std::size_t count, std::size_t size,
+                                          std::string_view meaning) const;
 
   /// Of a whole scene: the finite numbers at a dotted path, one or an array of them; none if something else is there.
   std::vector<double> numbers_at(std::string_view path) const;

@@ -1,0 +1,47 @@
+#pragma once
+/// Where the bodies of a scene are, and how their points and attitudes are named.
+
+#include <lagroid/core/types.hpp>
+
+#include <vector>
+
+namespace lagroid::multibody {
+
+using Vec = Vector<double, 3>;
+using Mat = Matrix<double, 3, 3>;
+
+/// A point of a body or of the ground. In a scene that is being written, its number there; in one that runs, its place
+/// in `Configuration::x`.
+struct Site {
+  int index = -1;
+};
+
+/// What turns: a body in space, or the ground (which is the default). In a scene that runs, its place in
+/// `Configuration::attitude`.
+struct Attitude {
+  int index = -1;
+};
+
+/// Bodies at one time. `x` holds the places of all point masses and centres of mass, (x, y, angle) of the planar
+/// bodies, then the points fixed to bodies and to the ground; `attitude` the rotations A that carry bodies to space,
+/// and last the identity, which is the ground's. Lengths in m, time in s.
+struct Configuration {
+  double time = 0;
+  std::vector<Vec> x;
+  std::vector<Mat> attitude;
+
+  const Vec& operator()(Site s) const { return x[std::size_t(s.index)]; }
+  const Mat& operator()(Attitude a) const { return attitude[std::size_t(a.index)]; }
+};
+
+/// What acts at one time: forces (N) on sites, by their place, and torques (N m) in the body's frame on attitudes. On a
+/// planar body's own place: (force, force, torque).
+struct Forces {
+  std::vector<Vec> on;
+  std::vector<Vec> torque;
+
+  Vec& operator()(Site s) { return on[std::size_t(s.index)]; }
+  Vec& operator()(Attitude a) { return torque[std::size_t(a.index)]; }
+};
+
+}  // namespace lagroid::multibody

@@ -1,0 +1,149 @@
+#pragma once
+/// What acts on the bodies of a scene.
+
+#include <lagroid/core/jet.hpp>
+#include <lagroid/systems/multibody/configuration.hpp>
+
+#include <array>
+#include <concepts>
+#include <utility>
+#include <vector>
+
+namespace lagroid::multibody {
+
+/// Places of sites and attitudes when a scene begins to run, by their numbers while it was written.
+struct Places {
+  std::vector<int> sites;
+  std::vector<int> attitudes;
+
+  Site operator()(Site s) const { return {sites[std::size_t(s.index)]}; }
+  Attitude operator()(Attitude a) const {
+    return {a.index < 0 ? int(attitudes.size()) : attitudes[std::size_t(a.index)]};
+  }
+};
+
+/// All effects of one kind: one virtual call for the forces of them all. A scene without them makes none.
+class Effects {
+ public:
+  virtual ~Effects() = default;
+  /// Adds what acts at this configuration.
+  virtual void add_forces(const Configuration& at, Forces& forces) const = 0;
+  /// The potential energy, J; zero for what has none.
+  virtual double energy(const Configuration& at) const = 0;
+  virtual void place(const Places& places) = 0;
+  /// The sites that forces act on.
+  virtual std::vector<Site> sites() const = 0;
+};
+
+/// An effect is a small struct with the `sites` it acts on and, if it needs them, the `attitudes`; both arrays. It
+/// writes either
+///     template <class S> S energy(const Vector<S, 3>& x...) const        one argument a site, then Matrix<S, 3, 3>
+///                                                                        arguments, one an attitude
+/// of which forces and torques are derived automatically, or
+///     double energy(const Configuration& at) const;   void add_forces(const Configuration& at, Forces& f) const;
+template <class E>
+concept WritesForces = requires(const E& e, const Configuration& at, Forces& f) {
+  { e.energy(at) } -> std::convertible_to<double>;
+  e.add_forces(at, f);
+};
+
+template <class E> constexpr int site_count() { return int(std::tuple_size_v<decltype(E::sites)>); }
+template <class E> constexpr int attitude_count() {
+  if constexpr (requires { &E::attitudes; }) {
+    return int(std::tuple_size_v<decltype(E::attitudes)>);
+  } else {
+    return 0;
+  }
+}
+
+/// The sites and attitudes of a kernel, placed.
+template <class K> void place_kernel(K& kernel, const Places& places) {
+  for (Site& s : kernel.sites) s = places(s);
+  if constexpr (attitude_count<K>() > 0)
+    for (Attitude& a : kernel.attitudes) a = places(a);
+}
+
+namespace detail {
+
+/// The energy over a scalar S: of place and attitude k, the 3 numbers that may carry derivatives are 3k, 3k + 1, 3k
+/// + 2.
+template <class S, class E, class Variable>
+S energy_over(const E& effect, const Configuration& at, const Variable& variable) {
+  constexpr int n = site_count<E>();
+  constexpr int m = attitude_count<E>();
+  const auto point = [&](int i) {
+    const Vec& x = at(effect.sites[std::size_t(i)]);
+    return Vector<S, 3>(variable(x(0), 3 * i), variable(x(1), 3 * i + 1), variable(x(2), 3 * i + 2));
+  };
+  const auto turned = [&](int i) {
+    const Mat& a = at(effect.attitudes[std::size_t(i)]);
+    const int v = 3 * (n + i);
+    // A (1 + hat e) to first order in e.
+    const S e0 = variable(0.0, v);
+    const S e1 = variable(0.0, v + 1);
+    const S e2 = variable(0.0, v + 2);
+    Matrix<S, 3, 3> out;
+    for (int r = 0; r < 3; ++r) {
+      out(r, 0) = e2 * a(r, 1) - e1 * a(r, 2) + a(r, 0);
+      out(r, 1) = e0 * a(r, 2) - e2 * a(r, 0) + a(r, 1);
+      out(r, 2) = e1 * a(r, 0) - e0 * a(r, 1) + a(r, 2);
+    }
+    return out;
+  };
+  return [&]<int... I, int... J>(std::integer_sequence<int, I...>, std::integer_sequence<int, J...>) {
+    return S(effect.energy(point(I)..., turned(J)...));
+  }
+  (std::make_integer_sequence<int, n>{}, std::make_integer_sequence<int, m>{});
+}
+
+}  // namespace detail
+
+/// All effects of the kind E of a scene.
+template <class E> class EffectsOf final : public Effects {
+ public:
+  void add(const E& effect) { all_.push_back(effect); }
+
+  void add_forces(const Configuration& at, Forces& forces) const override {
+    for (const E& effect : all_) {
+      if constexpr (WritesForces<E>) {
+        effect.add_forces(at, forces);
+      } else {
+        constexpr int n = site_count<E>();
+        constexpr int m = attitude_count<E>();
+        using J = Jet<double, 3 * (n + m)>;
+        const J u = detail::energy_over<J>(effect, at, [](double x, int i) { return J::variable(x, i); });
+        const auto du = u.gradient();
+        for (int i = 0; i < n; ++i) forces(effect.sites[std::size_t(i)]) -= du.template segment<3>(3 * i);
+        if constexpr (m > 0)
+          for (int i = 0; i < m; ++i) forces(effect.attitudes[std::size_t(i)]) -= du.template segment<3>(3 * (n + i));
+      }
+    }
+  }
+
+  double energy(const Configuration& at) const override {
+    double sum = 0;
+    for (const E& effect : all_) {
+      if constexpr (WritesForces<E>) {
+        sum += effect.energy(at);
+      } else {
+        sum += detail::energy_over<double>(effect, at, [](double x, int) { return x; });
+      }
+    }
+    return sum;
+  }
+
+  void place(const Places& places) override {
+    for (E& effect : all_) place_kernel(effect, places);
+  }
+
+  std::vector<Site> sites() const override {
+    std::vector<Site> out;
+    for (const E& effect : all_) out.insert(out.end(), effect.sites.begin(), effect.sites.end());
+    return out;
+  }
+
+ private:
+  std::vector<E> all_;
+};
+
+}  // namespace lagroid::multibody

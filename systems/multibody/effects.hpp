@@ -1,0 +1,111 @@
+#pragma once
+/// The effects that scenes can name.
+
+#include <lagroid/systems/multibody/effect.hpp>
+
+#include <cmath>
+
+namespace lagroid::multibody {
+
+/// A constant force, such as a weight m g: U = -f.x.
+struct ConstantForce {
+  std::array<Site, 1> sites;
+  Vec force;  ///< N
+
+  double energy(const Configuration& at) const { return -force.dot(at(sites[0])); }
+  void add_forces(const Configuration&, Forces& f) const { f(sites[0]) += force; }
+};
+
+/// Attraction by a fixed centre: U = -strength / |x - centre|.
+struct CentralGravity {
+  std::array<Site, 1> sites;
+  Vec centre = Vec::Zero();  ///< m
+  double strength = 1;       ///< G m M, kg m^3/s^2
+
+  double energy(const Configuration& at) const { return -strength / (at(sites[0]) - centre).norm(); }
+  void add_forces(const Configuration& at, Forces& f) const {
+    const Vec d = at(sites[0]) - centre;
+    const double square = d.squaredNorm();
+    f(sites[0]) -= (strength / (square * std::sqrt(square))) * d;
+  }
+};
+
+/// Attraction (or repulsion) of two: U = -strength / sqrt(|x1 - x0|^2 + softening^2): gravity with strength G m0 m1,
+/// and charges with strength -k q0 q1.
+struct InverseSquare {
+  std::array<Site, 2> sites;
+  double strength = 1;   ///< kg m^3/s^2
+  double softening = 0;  ///< m
+
+  double energy(const Configuration& at) const {
+    return -strength / std::sqrt((at(sites[1]) - at(sites[0])).squaredNorm() + softening * softening);
+  }
+  void add_forces(const Configuration& at, Forces& f) const {
+    const Vec d = at(sites[1]) - at(sites[0]);
+    const double square = d.squaredNorm() + softening * softening;
+    const Vec pull = (strength / (square * std::sqrt(square))) * d;
+    f(sites[0]) += pull;
+    f(sites[1]) -= pull;
+  }
+};
+
+/// U = k (|x1 - x0| - l)^2 / 2. Requires that the ends do not meet, unless l = 0.
+struct Spring {
+  std::array<Site, 2> sites;
+  double stiffness = 1;  ///< k, N/m
+  double length = 0;     ///< l, at rest, m
+
+  double energy(const Configuration& at) const {
+    const double stretch = (at(sites[1]) - at(sites[0])).norm() - length;
+    return 0.5 * stiffness * stretch * stretch;
+  }
+  void add_forces(const Configuration& at, Forces& f) const {
+    const Vec d = at(sites[1]) - at(sites[0]);
+    const double factor = length == 0 ? stiffness : stiffness * (1 - length / d.norm());
+    f(sites[0]) += factor * d;
+    f(sites[1]) -= factor * d;
+  }
+};
+
+/// A torsional spring between the axes u of one body and v of another (each fixed in it, of unit length): U = k (1 -
+/// cos(angle between them)), for small angles k angle^2 / 2.
+struct TorsionSpring {
+  std::array<Site, 0> sites;
+  std::array<Attitude, 2> attitudes;
+  Vec u{0, 0, 1};
+  Vec v{0, 0, 1};
+  double stiffness = 1;  ///< k, N m
+
+  double energy(const Configuration& at) const {
+    return 0.5 * stiffness * (at(attitudes[0]) * u - at(attitudes[1]) * v).squaredNorm();
+  }
+  void add_forces(const Configuration& at, Forces& f) const {
+    const Mat& a = at(attitudes[0]);
+    const Mat& b = at(attitudes[1]);
+    f(attitudes[0]) += stiffness * u.cross(Vec(a.transpose() * (b * v)));
+    f(attitudes[1]) += stiffness * v.cross(Vec(b.transpose() * (a * u)));
+  }
+};
+
+/// A force f cos(rate t + phase) at a point, in space.
+struct PeriodicForce {
+  std::array<Site, 1> sites;
+  Vec force;         ///< N
+  double rate = 0;   ///< rad/s
+  double phase = 0;  ///< rad
+
+  double energy(const Configuration&) const { return 0; }
+  void add_forces(const Configuration& at, Forces& f) const { f(sites[0]) += std::cos(rate * at.time + phase) * force; }
+};
+
+/// A torque fixed in the body.
+struct BodyTorque {
+  std::array<Site, 0> sites;
+  std::array<Attitude, 1> attitudes;
+  Vec torque;  ///< N m
+
+  double energy(const Configuration&) const { return 0; }
+  void add_forces(const Configuration&, Forces& f) const { f(attitudes[0]) += torque; }
+};
+
+}  // namespace lagroid::multibody

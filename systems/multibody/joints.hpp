@@ -1,0 +1,88 @@
+#pragma once
+/// The joints that scenes can name are made of these.
+
+#include <lagroid/systems/multibody/joint.hpp>
+
+#include <cmath>
+
+namespace lagroid::multibody {
+
+/// Two points at a fixed distance: (|x1 - x0|^2 - l^2) / 2 = 0.
+struct Rod {
+  static constexpr int rows = 1;
+  std::array<Site, 2> sites;
+  double length = 1;  ///< l, m
+
+  void value(const Configuration& at, double* c) const {
+    c[0] = 0.5 * ((at(sites[1]) - at(sites[0])).squaredNorm() - length * length);
+  }
+  void gradient(const Configuration& at, Vec* g, double* size) const {
+    const Vec& a = at(sites[0]);
+    const Vec& b = at(sites[1]);
+    g[1] = b - a;
+    g[0] = -g[1];
+    size[0] = length * (length + a.lpNorm<1>() + b.lpNorm<1>());
+  }
+};
+
+/// Two points that are one: x1 - x0 = 0. A ball joint; between planar bodies a pin.
+struct Coincidence {
+  static constexpr int rows = 3;
+  std::array<Site, 2> sites;
+
+  void value(const Configuration& at, double* c) const {
+    const Vec d = at(sites[1]) - at(sites[0]);
+    for (int i = 0; i < 3; ++i) c[i] = d(i);
+  }
+  void gradient(const Configuration& at, Vec* g, double* size) const {
+    for (int i = 0; i < 3; ++i) {
+      g[2 * i] = -Vec::Unit(i);
+      g[2 * i + 1] = Vec::Unit(i);
+      size[i] = std::abs(at(sites[0])(i)) + std::abs(at(sites[1])(i)) + at(sites[0]).lpNorm<Eigen::Infinity>();
+    }
+  }
+};
+
+/// Two directions, each fixed in a body, that keep their angle: (A0 u).(A1 v) = cosine.
+struct FixedAngle {
+  static constexpr int rows = 1;
+  std::array<Site, 0> sites;
+  std::array<Attitude, 2> attitudes;
+  Vec u{1, 0, 0};
+  Vec v{0, 1, 0};
+  double cosine = 0;
+
+  void value(const Configuration& at, double* c) const {
+    c[0] = (at(attitudes[0]) * u).dot(at(attitudes[1]) * v) - cosine;
+  }
+  void gradient(const Configuration& at, Vec* g, double* size) const {
+    const Mat& a = at(attitudes[0]);
+    const Mat& b = at(attitudes[1]);
+    g[0] = u.cross(Vec(a.transpose() * (b * v)));
+    g[1] = v.cross(Vec(b.transpose() * (a * u)));
+    size[0] = 3;
+  }
+};
+
+/// A point that stays in a plane fixed to a body through a point of it: (A n).(x1 - x0) = 0.
+struct InPlane {
+  static constexpr int rows = 1;
+  std::array<Site, 2> sites;  ///< a point of the plane, the point that stays in it
+  std::array<Attitude, 1> attitudes;
+  Vec normal{0, 0, 1};
+
+  void value(const Configuration& at, double* c) const {
+    c[0] = (at(attitudes[0]) * normal).dot(at(sites[1]) - at(sites[0]));
+  }
+  void gradient(const Configuration& at, Vec* g, double* size) const {
+    const Mat& a = at(attitudes[0]);
+    const Vec n = a * normal;
+    const Vec d = at(sites[1]) - at(sites[0]);
+    g[0] = -n;
+    g[1] = n;
+    g[2] = normal.cross(Vec(a.transpose() * d));
+    size[0] = at(sites[0]).norm() + at(sites[1]).norm() + d.norm();
+  }
+};
+
+}  // namespace lagroid::multibody

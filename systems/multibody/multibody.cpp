@@ -1,0 +1,508 @@
+#include <lagroid/systems/multibody/multibody.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lagroid::multibody {
+
+namespace {
+
+constexpr double round_off = std::numeric_limits<double>::epsilon();
+
+Quaternion turned(const Quaternion& q, const Turn& turn, const Vec& xi) {
+  return product(q, turn.quaternion(xi)).normalized();
+}
+
+/// sum += increment with what earlier sums lost.
+void add(Vec& sum, Vec& carry, const Vec& increment) {
+  const Vec step = carry + increment;
+  const Vec before = sum;
+  sum += step;
+  carry = step - (sum - before);
+}
+
+}  // namespace
+
+void Multibody::act() {
+  if (effects_.empty()) return;
+  std::fill(forces_.on.begin(), forces_.on.end(), Vec::Zero());
+  std::fill(forces_.torque.begin(), forces_.torque.end(), Vec::Zero());
+  for (const auto& effect : effects_) effect->add_forces(now_, forces_);
+  for (const Arm& a : pushed_arms_) {
+    const Vec& f = forces_.on[std::size_t(a.site)];
+    forces_.on[std::size_t(a.base)] += f;
+    forces_.torque[std::size_t(a.rotation)] += a.arm.cross(Vec(now_.attitude[std::size_t(a.rotation)].transpose() * f));
+  }
+  for (const Arm& a : pushed_planar_arms_) {
+    const Vec& f = forces_.on[std::size_t(a.site)];
+    const Vec d = now_.x[std::size_t(a.site)] - now_.x[std::size_t(a.base)];
+    forces_.on[std::size_t(a.base)] += Vec(f(0), f(1), d(0) * f(1) - d(1) * f(0));
+  }
+}
+
+void Multibody::place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const {
+  for (int i = arms.first; i < arms.last; ++i) {
+    const Arm& a = arms_[std::size_t(i)];
+    at.x[std::size_t(a.site)] = at.x[std::size_t(a.base)] + at.attitude[std::size_t(a.rotation)] * a.arm;
+  }
+  for (int i = planar_arms.first; i < planar_arms.last; ++i) {
+    const Arm& a = planar_arms_[std::size_t(i)];
+    const Vec& q = at.x[std::size_t(a.base)];
+    const double c = std::cos(q(2));
+    const double s = std::sin(q(2));
+    at.x[std::size_t(a.site)] = {q(0) + c * a.arm(0) - s * a.arm(1), q(1) + s * a.arm(0) + c * a.arm(1), 0};
+  }
+}
+
+void Multibody::try_place(const Island& island) {
+  for (int f = island.linear.first; f < island.linear.last; ++f) {
+    const auto i = std::size_t(f);
+    next_.x[i] = now_.x[i] + (place_carry_[i] + displacement_[i]);
+  }
+  for (int r = island.rotations.first; r < island.rotations.last; ++r) {
+    const auto i = std::size_t(r);
+    next_quaternions_[i] = turned(quaternions_[i], turns_[i], turned_[i]);
+    next_.attitude[i] = SO3::from_quaternion(next_quaternions_[i]);
+  }
+  place_arms(next_, island.arms, island.planar_arms);
+}
+
+void Multibody::differentiate(const Configuration& at, const Island& island, std::vector<Vec>& gradients) {
+  for (int b = island.batches.first; b < island.batches.last; ++b) {
+    const Batch& batch = batches_[std::size_t(b)];
+    batch.joints->gradients(at, batch.first, batch.count, gradients.data() + batch.gradient, sizes_.data() + batch.row);
+  }
+  for (int i = island.levers.first; i < island.levers.last; ++i) {
+    const Lever& l = levers_[std::size_t(i)];
+    gradients[std::size_t(l.to)] =
+        l.arm.cross(Vec(at.attitude[std::size_t(l.rotation)].transpose() * gradients[std::size_t(l.from)]));
+  }
+  for (int i = island.planar_levers.first; i < island.planar_levers.last; ++i) {
+    const PlanarLever& l = planar_levers_[std::size_t(i)];
+    const Vec& g = gradients[std::size_t(l.from)];
+    const Vec d = at.x[std::size_t(l.site)] - at.x[std::size_t(l.body)];
+    gradients[std::size_t(l.to)] = {g(0), g(1), d(0) * g(1) - d(1) * g(0)};
+  }
+}
+
+bool Multibody::factorise(Island& island) {
+  differentiate(next_, island, next_gradients_);
+  Elimination& matrix = island.matrix;
+  matrix.clear();
+  for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
+    const Pair& p = linear_pairs_[std::size_t(i)];
+    matrix.value(p.value) += next_gradients_[std::size_t(p.gradient)].dot(linear_response_[std::size_t(p.entry)]);
+  }
+  for (int r = island.rotations.first; r < island.rotations.last; ++r) {
+    const auto i = std::size_t(r);
+    Mat a = turns_[i].derivative(turned_[i]);
+    a.diagonal() += 0.5 * turn_damping_[i];
+    turn_inverse_[i] = a.inverse();
+    turn_frame_[i] = turns_[i].target_frame(turned_[i]);
+  }
+  for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
+    const Entry& e = rotation_entries_[std::size_t(i)];
+    rotation_response_[std::size_t(i)] = turn_inverse_[std::size_t(e.factor)] * gradients_[std::size_t(e.gradient)];
+    rotation_gradient_[std::size_t(i)] =
+        turn_frame_[std::size_t(e.factor)].transpose() * next_gradients_[std::size_t(e.gradient)];
+  }
+  for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
+    const Pair& p = rotation_pairs_[std::size_t(i)];
+    matrix.value(p.value) += rotation_gradient_[std::size_t(p.gradient)].dot(rotation_response_[std::size_t(p.entry)]);
+  }
+  return matrix.factorise();
+}
+
+StepReport Multibody::solve(Island& island) {
+  StepReport report;
+  const Range rows = island.rows;
+  double* const lambda = multipliers_.data();
+  bool rests = true;
+  for (int row = rows.first; row < rows.last; ++row) {
+    const auto i = std::size_t(row);
+    lambda[i] = left_out_[i] ? 0 : 3 * (earlier_[0][i] - earlier_[1][i]) + earlier_[2][i];
+    rests = rests && lambda[i] == 0;
+  }
+  for (int f = island.linear.first; f < island.linear.last; ++f)
+    rests = rests && (kicked_[std::size_t(f)].array() == 0).all();
+  for (int r = island.rotations.first; r < island.rotations.last; ++r) {
+    const auto i = std::size_t(r);
+    turned_[i] = turned_before_[i];
+    rests = rests && (spin_kicked_[i].array() == 0).all() && (turned_[i].array() == 0).all();
+  }
+  if (rests) {
+    try_place(island);
+    report.status = SolveStatus::converged;
+    return report;
+  }
+  // What a row is made of: its own terms, and the motions it cancels.
+  double* const scale = scale_.data();
+  std::copy(sizes_.begin() + rows.first, sizes_.begin() + rows.last, scale_.begin() + rows.first);
+  for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i) {
+    const Entry& e = linear_entries_[std::size_t(i)];
+    const Vec& response = linear_response_[std::size_t(i)] =
+        response_[std::size_t(e.factor)].cwiseProduct(gradients_[std::size_t(e.gradient)]);
+    scale[e.row] += response.lpNorm<1>() * kicked_[std::size_t(e.factor)].lpNorm<Eigen::Infinity>();
+    displacement_[std::size_t(e.factor)] += lambda[e.row] * response;
+  }
+  for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
+    const Entry& e = rotation_entries_[std::size_t(i)];
+    scale[e.row] +=
+        gradients_[std::size_t(e.gradient)].lpNorm<1>() * turned_[std::size_t(e.factor)].lpNorm<Eigen::Infinity>();
+  }
+
+  double* const values = values_.data();
+  double* const right = right_.data();
+  bool factorised = false;
+  bool fresh = false;
+  bool was_below = false;
+  double previous = std::numeric_limits<double>::infinity();
+  double rate = 1;
+  for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+    report.iterations = iteration;
+    try_place(island);
+    for (int b = island.batches.first; b < island.batches.last; ++b) {
+      const Batch& batch = batches_[std::size_t(b)];
+      batch.joints->values(next_, batch.first, batch.count, values + batch.row);
+    }
+    double excess = 0;
+    double residual = 0;
+    bool finite = true;
+    for (int row = rows.first; row < rows.last; ++row) {
+      if (left_out_[std::size_t(row)]) continue;
+      const double relative = values[row] == 0 ? 0 : std::abs(values[row]) / scale[row];
+      finite = finite && std::isfinite(relative);
+      residual = std::max(residual, relative);
+    }
+    excess = residual / (2 * round_off);
+    if (island.rotations.size() > 0) {
+      for (int r = island.rotations.first; r < island.rotations.last; ++r) {
+        const auto i = std::size_t(r);
+        spin_total_[i] = spin_kicked_[i];
+        spin_size_[i] = spin_[i].norm() + spin_impulse_[i].norm() +
+                        turns_[i].inertia_over_h.maxCoeff() * (turned_[i].norm() + round_off);
+      }
+      for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
+        const Entry& e = rotation_entries_[std::size_t(i)];
+        const Vec reaction = lambda[e.row] * gradients_[std::size_t(e.gradient)];
+        spin_total_[std::size_t(e.factor)] += reaction;
+        spin_size_[std::size_t(e.factor)] += reaction.lpNorm<Eigen::Infinity>();
+      }
+      for (int r = island.rotations.first; r < island.rotations.last; ++r) {
+        const auto i = std::size_t(r);
+        turn_residual_[i] =
+            turns_[i].momentum(turned_[i]) + 0.5 * turn_damping_[i].cwiseProduct(turned_[i]) - spin_total_[i];
+        const double relative = turn_residual_[i].lpNorm<Eigen::Infinity>() / spin_size_[i];
+        finite = finite && std::isfinite(relative);
+        residual = std::max(residual, relative);
+        excess = std::max(excess, relative / (4 * round_off));
+      }
+    }
+    report.residual = residual;
+    report.excess = excess;
+    if (!finite) {
+      report.status = SolveStatus::not_finite;
+      return report;
+    }
+    const bool below = excess <= 1 || residual <= options_.tolerance;
+    if (below && (was_below || previous * rate <= 0.1 || options_.tolerance > 0)) {
+      report.status = SolveStatus::converged;
+      return report;
+    }
+    if (factorised && excess > 0.3 * previous && !below) {
+      if (fresh && std::min(previous, excess) <= 100) {
+        report.status = excess <= 100 ? SolveStatus::converged : SolveStatus::stagnated;
+        return report;
+      }
+      factorised = false;
+    }
+    if (std::isfinite(previous)) rate = std::min(1.0, excess / previous);
+    was_below = below;
+    previous = excess;
+    fresh = !factorised;
+    if (!factorised) {
+      if (!factorise(island)) {
+        report.status = SolveStatus::singular;
+        return report;
+      }
+      factorised = true;
+    }
+    for (int row = rows.first; row < rows.last; ++row) right[row] = -values[row];
+    for (int r = island.rotations.first; r < island.rotations.last; ++r)
+      turn_residual_[std::size_t(r)] = turn_inverse_[std::size_t(r)] * turn_residual_[std::size_t(r)];
+    for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
+      const Entry& e = rotation_entries_[std::size_t(i)];
+      right[e.row] += rotation_gradient_[std::size_t(i)].dot(turn_residual_[std::size_t(e.factor)]);
+    }
+    island.matrix.solve(right + rows.first);
+    for (int row = rows.first; row < rows.last; ++row) lambda[row] += right[row];
+    for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i) {
+      const Entry& e = linear_entries_[std::size_t(i)];
+      displacement_[std::size_t(e.factor)] += right[e.row] * linear_response_[std::size_t(i)];
+    }
+    for (int r = island.rotations.first; r < island.rotations.last; ++r)
+      turned_[std::size_t(r)] -= turn_residual_[std::size_t(r)];
+    for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
+      const Entry& e = rotation_entries_[std::size_t(i)];
+      turned_[std::size_t(e.factor)] += right[e.row] * rotation_response_[std::size_t(i)];
+    }
+  }
+  report.status = SolveStatus::not_converged;
+  return report;
+}
+
+StepReport Multibody::turn_freely(int rotation) {
+  const auto i = std::size_t(rotation);
+  const Turn& turn = turns_[i];
+  const Vec& momentum = spin_kicked_[i];
+  Vec& xi = turned_[i];
+  xi = turned_before_[i];
+  StepReport report;
+  report.status = SolveStatus::converged;
+  if ((momentum.array() == 0).all()) {
+    xi.setZero();
+    return report;
+  }
+  // The free turn of a ball: exact where the moments of inertia are equal.
+  if ((xi.array() == 0).all()) xi = momentum.cwiseQuotient(turn.inertia_over_h);
+  double previous = std::numeric_limits<double>::infinity();
+  for (report.iterations = 1; report.iterations <= options_.max_iterations; ++report.iterations) {
+    const Vec residual = turn.momentum(xi) + 0.5 * turn_damping_[i].cwiseProduct(xi) - momentum;
+    report.residual = residual.lpNorm<Eigen::Infinity>() / momentum.norm();
+    report.excess = report.residual / (4 * round_off);
+    if (!std::isfinite(report.residual)) {
+      report.status = SolveStatus::not_finite;
+      return report;
+    }
+    // A Newton iteration from here leaves about the square of this.
+    const bool last = report.residual < 1e-9 || report.residual <= options_.tolerance;
+    if (report.excess <= 1 && previous <= 1e-9) return report;
+    if (report.excess > 0.5 * previous / (4 * round_off) && previous < 1e-9) {
+      if (report.excess > 100) report.status = SolveStatus::stagnated;
+      return report;
+    }
+    Mat a = turn.derivative(xi);
+    a.diagonal() += 0.5 * turn_damping_[i];
+    xi -= a.inverse() * residual;
+    if (last && report.residual < 1e-12) return report;
+    previous = report.residual;
+  }
+  report.status = SolveStatus::not_converged;
+  return report;
+}
+
+StepReport Multibody::advance() {
+  StepReport worst;
+  worst.status = SolveStatus::converged;
+  const auto note = [&](const StepReport& report) {
+    worst.iterations = std::max(worst.iterations, report.iterations);
+    worst.residual = std::max(worst.residual, report.residual);
+    worst.excess = std::max(worst.excess, report.excess);
+    if (worst.converged()) worst.status = report.status;
+    return report.converged();
+  };
+  next_.time = start_ + h_ * double(index_ + 1);
+  const double half = 0.5 * h_;
+  for (std::size_t f = 0; f < momentum_.size(); ++f) {
+    impulse_[f] = half * forces_.on[f];
+    kicked_[f] = momentum_[f] + (momentum_carry_[f] + impulse_[f]);
+    displacement_[f] = response_[f].cwiseProduct(kicked_[f]);
+  }
+  for (std::size_t r = 0; r < spin_.size(); ++r) {
+    spin_impulse_[r] = half * forces_.torque[r];
+    spin_kicked_[r] = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
+  }
+  for (int r = 0; r < free_.rotations.last; ++r)
+    if (!note(turn_freely(r))) return worst;
+  for (Island& island : islands_)
+    if (!note(solve(island))) return worst;
+  try_place(free_);
+  for (std::size_t r = 0; r < spin_.size(); ++r)
+    if (turns_[r].map == Retraction::exponential && !(turned_[r].norm() < Turn::limit)) {
+      worst.status = SolveStatus::left_domain;
+      return worst;
+    }
+  accept();
+  return worst;
+}
+
+void Multibody::accept() {
+  ++index_;
+  for (std::size_t i = 0; i < linear_entries_.size(); ++i) {
+    const Entry& e = linear_entries_[i];
+    impulse_[std::size_t(e.factor)] += multipliers_[std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
+  }
+  for (const Damped& d : damped_)
+    impulse_[std::size_t(d.factor)] -= d.coefficient.cwiseProduct(displacement_[std::size_t(d.factor)]);
+  for (std::size_t i = 0; i < rotation_entries_.size(); ++i) {
+    const Entry& e = rotation_entries_[i];
+    spin_impulse_[std::size_t(e.factor)] += multipliers_[std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
+  }
+  for (const Damped& d : damped_turns_)
+    spin_impulse_[std::size_t(d.factor)] -= d.coefficient.cwiseProduct(turned_[std::size_t(d.factor)]) * 0.5;
+  for (std::size_t r = 0; r < spin_.size(); ++r) {
+    const Vec total = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
+    spin_impulse_[r] += turns_[r].carried_change(turned_[r], total);
+  }
+  for (const Damped& d : damped_turns_)
+    spin_impulse_[std::size_t(d.factor)] -= d.coefficient.cwiseProduct(turned_[std::size_t(d.factor)]) * 0.5;
+  for (std::size_t f = 0; f < momentum_.size(); ++f) {
+    const Vec step = place_carry_[f] + displacement_[f];
+    place_carry_[f] = step - (next_.x[f] - now_.x[f]);
+  }
+  std::swap(now_, next_);
+  std::swap(quaternions_, next_quaternions_);
+  std::swap(turned_, turned_before_);
+  std::swap(earlier_[2], earlier_[1]);
+  std::swap(earlier_[1], earlier_[0]);
+  std::swap(earlier_[0], multipliers_);
+  for (const Island& island : islands_) differentiate(now_, island, gradients_);
+  act();
+  const double half = 0.5 * h_;
+  for (std::size_t f = 0; f < momentum_.size(); ++f)
+    add(momentum_[f], momentum_carry_[f], impulse_[f] + half * forces_.on[f]);
+  for (std::size_t r = 0; r < spin_.size(); ++r)
+    add(spin_[r], spin_carry_[r], spin_impulse_[r] + half * forces_.torque[r]);
+}
+
+Multibody::State Multibody::state() const {
+  return {index_,          {now_.x.begin(), now_.x.begin() + std::ptrdiff_t(momentum_.size())},
+          place_carry_,    momentum_,
+          momentum_carry_, spin_,
+          spin_carry_,     turned_before_,
+          quaternions_,    earlier_};
+}
+
+void Multibody::restore(const State& state) {
+  index_ = state.index;
+  std::copy(state.place.begin(), state.place.end(), now_.x.begin());
+  place_carry_ = state.place_carry;
+  momentum_ = state.momentum;
+  momentum_carry_ = state.momentum_carry;
+  spin_ = state.spin;
+  spin_carry_ = state.spin_carry;
+  turned_before_ = state.turned;
+  quaternions_ = state.attitude;
+  earlier_ = state.multipliers;
+  begin();
+}
+
+void Multibody::reverse() {
+  for (auto* list : {&momentum_, &momentum_carry_, &spin_, &spin_carry_, &turned_before_})
+    for (Vec& v : *list) v = -v;
+}
+
+void Multibody::begin() {
+  now_.time = start_ + h_ * double(index_);
+  for (std::size_t r = 0; r < spin_.size(); ++r) now_.attitude[r] = SO3::from_quaternion(quaternions_[r]);
+  place_arms(now_, {0, int(arms_.size())}, {0, int(planar_arms_.size())});
+  next_ = now_;
+  for (const Island& island : islands_) differentiate(now_, island, gradients_);
+  act();
+}
+
+Multibody::Momenta Multibody::momenta() const {
+  Momenta m{momentum_, spin_};
+  std::vector<double> right;
+  for (const Island& island : islands_) {
+    Elimination matrix = island.matrix;
+    matrix.clear();
+    const auto response = [&](const Entry& e, const std::vector<Vec>& inertia) -> Vec {
+      return gradients_[std::size_t(e.gradient)].cwiseQuotient(inertia[std::size_t(e.factor)]);
+    };
+    for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
+      const Pair& p = linear_pairs_[std::size_t(i)];
+      matrix.value(p.value) +=
+          gradients_[std::size_t(p.gradient)].dot(response(linear_entries_[std::size_t(p.entry)], inertia_));
+    }
+    for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
+      const Pair& p = rotation_pairs_[std::size_t(i)];
+      const Entry& a = rotation_entries_[std::size_t(p.gradient)];
+      matrix.value(p.value) +=
+          gradients_[std::size_t(a.gradient)].dot(response(rotation_entries_[std::size_t(p.entry)], moments_));
+    }
+    if (!matrix.factorise()) continue;
+    right.assign(std::size_t(island.rows.size()), 0.0);
+    const auto each_entry = [&](const auto& visit) {
+      for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i)
+        visit(linear_entries_[std::size_t(i)], m.linear, inertia_);
+      for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i)
+        visit(rotation_entries_[std::size_t(i)], m.spin, moments_);
+    };
+    each_entry([&](const Entry& e, const std::vector<Vec>& momentum, const std::vector<Vec>& inertia) {
+      right[std::size_t(e.row - island.rows.first)] -= response(e, inertia).dot(momentum[std::size_t(e.factor)]);
+    });
+    matrix.solve(right.data());
+    each_entry([&](const Entry& e, std::vector<Vec>& momentum, const std::vector<Vec>&) {
+      momentum[std::size_t(e.factor)] +=
+          right[std::size_t(e.row - island.rows.first)] * gradients_[std::size_t(e.gradient)];
+    });
+  }
+  return m;
+}
+
+double Multibody::kinetic_energy(const Momenta& m) const {
+  double twice = 0;
+  for (std::size_t f = 0; f < m.linear.size(); ++f) twice += m.linear[f].cwiseQuotient(inertia_[f]).dot(m.linear[f]);
+  for (std::size_t r = 0; r < m.spin.size(); ++r) twice += m.spin[r].cwiseQuotient(moments_[r]).dot(m.spin[r]);
+  return 0.5 * twice;
+}
+
+double Multibody::potential_energy() const {
+  double sum = 0;
+  for (const auto& effect : effects_) sum += effect->energy(now_);
+  return sum;
+}
+
+Vec Multibody::linear_momentum(const Momenta& m) const {
+  Vec sum = Vec::Zero();
+  for (std::size_t f = 0; f < m.linear.size(); ++f)
+    sum += planar_[f] ? Vec(m.linear[f](0), m.linear[f](1), 0) : m.linear[f];
+  return sum;
+}
+
+Vec Multibody::angular_momentum(const Momenta& m) const {
+  Vec sum = Vec::Zero();
+  for (std::size_t f = 0; f < m.linear.size(); ++f) {
+    const Vec& x = now_.x[f];
+    const Vec& p = m.linear[f];
+    sum += planar_[f] ? Vec(0, 0, x(0) * p(1) - x(1) * p(0) + p(2)) : x.cross(p);
+  }
+  for (std::size_t r = 0; r < m.spin.size(); ++r) sum += now_.attitude[r] * m.spin[r];
+  return sum;
+}
+
+double Multibody::constraint_residual() const {
+  std::vector<double> values(values_.size());
+  double largest = 0;
+  for (const Batch& batch : batches_) {
+    batch.joints->values(now_, batch.first, batch.count, values.data() + batch.row);
+    for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
+      const double value = std::abs(values[std::size_t(row)]);
+      const double relative = value == 0 ? 0 : value / std::max(sizes_[std::size_t(row)], scale_[std::size_t(row)]);
+      largest = std::isnan(relative) ? relative : std::max(largest, relative);
+    }
+  }
+  return largest;
+}
+
+double Multibody::velocity_defect() const {
+  std::vector<double> rate(earlier_[0].size(), 0.0);
+  std::vector<double> size(earlier_[0].size(), 0.0);
+  const auto look = [&](const Entry& e, const Vec& velocity) {
+    const Vec& g = gradients_[std::size_t(e.gradient)];
+    rate[std::size_t(e.row)] += g.dot(velocity);
+    size[std::size_t(e.row)] += g.norm() * velocity.norm();
+  };
+  for (const Entry& e : linear_entries_)
+    look(e, momentum_[std::size_t(e.factor)].cwiseQuotient(inertia_[std::size_t(e.factor)]));
+  for (const Entry& e : rotation_entries_)
+    look(e, spin_[std::size_t(e.factor)].cwiseQuotient(moments_[std::size_t(e.factor)]));
+  double largest = 0;
+  for (std::size_t row = 0; row < rate.size(); ++row)
+    if (size[row] > 0) largest = std::max(largest, std::abs(rate[row]) / size[row]);
+  return largest;
+}
+
+}  // namespace lagroid::multibody

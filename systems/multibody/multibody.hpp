@@ -1,0 +1,200 @@
+#pragma once
+/// The motion of a scene.
+
+#include <lagroid/solvers/elimination.hpp>
+#include <lagroid/solvers/step_solver.hpp>
+#include <lagroid/systems/multibody/scene.hpp>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace lagroid::multibody {
+
+struct Options {
+  int max_iterations = 60;
+  double tolerance = 0;  ///< 0: to round-off; else residuals this small, relative to their terms, are accepted
+};
+
+/// Marches the discrete Lagrangian of a scene,
+///     L(q, g) = sum_b K_b(g_b) - h (U(q) + U(q g)) / 2,   K = m |dx|^2 / (2 h) or h l(tau^{-1}(g) / h), l(w) = w.I w /
+///     2,
+/// on the product of its bodies' groupoids, with the object constraints C(q) = 0 of its joints: with multipliers on the
+/// objects, RATTLE for point masses, of order 2, symmetric and (without damping) symplectic. A potential touches the
+/// momenta at the nodes only, so that no term couples the arrows of two bodies: what is solved together is what joints
+/// tie together (an island), for the multipliers alone, by elimination along the graph of the joints.
+///
+/// Damping c of a velocity is a pair of discrete forces -c xi / 2 at both ends of the arrow.
+class Multibody {
+ public:
+  /// The scene at its first node. Rows of joints that depend on others there are left out (`dependent_rows`).
+  Multibody(Scene scene, double h, const Options& options = {});
+
+  /// One step. Where it does not converge nothing changes, and the report says why.
+  StepReport advance();
+
+  /// All that the motion depends on: a scene restored to it goes on with the same bits.
+  struct State {
+    long index = 0;
+    std::vector<Vec> place, place_carry, momentum, momentum_carry, spin, spin_carry, turned;
+    std::vector<Quaternion> attitude;
+    std::array<std::vector<double>, 3> multipliers;  ///< of the last three steps, from which the next are guessed
+  };
+  State state() const;
+  /// Requires a state of the same scene.
+  void restore(const State& state);
+  /// Back along the same trajectory: momenta change their signs.
+  void reverse();
+
+  long index() const { return index_; }
+  double time() const { return now_.time; }
+  double step() const { return h_; }
+  const Configuration& configuration() const { return now_; }
+
+  /// Where a site and an attitude of the written scene are found in `configuration()`.
+  Site operator()(Site s) const { return places_(s); }
+  Attitude operator()(Attitude a) const { return places_(a); }
+  const Quaternion& quaternion(Attitude a) const { return quaternions_[std::size_t(places_(a).index)]; }
+
+  /// Momenta at this node, tangent to the joints (as they are reported); in the order of `configuration()`: of places
+  /// (kg m/s) and of attitudes (body angular momentum, kg m^2/s).
+  struct Momenta {
+    std::vector<Vec> linear;
+    std::vector<Vec> spin;
+  };
+  Momenta momenta() const;
+
+  double kinetic_energy(const Momenta& m) const;
+  double potential_energy() const;
+  Vec linear_momentum(const Momenta& m) const;
+  /// About the origin, in space.
+  Vec angular_momentum(const Momenta& m) const;
+  /// The largest |C| over the size of its terms, of all rows.
+  double constraint_residual() const;
+  /// The largest rate at which a row of a joint is violated by the given velocities, over the size of its gradient
+  /// times them; zero for consistent ones.
+  double velocity_defect() const;
+
+  int islands() const { return int(islands_.size()); }
+  int rows() const { return int(values_.size()); }
+  int dependent_rows() const { return dependent_rows_; }
+  /// Multipliers lambda of the constraints C, in the order of the islands' joints, of the last step (per h).
+  const std::vector<double>& multipliers() const { return earlier_[0]; }
+  /// Of all arrays that the motion needs, B.
+  std::size_t memory() const;
+
+ private:
+  struct Range {
+    int first = 0;
+    int last = 0;
+    int size() const { return last - first; }
+  };
+  /// Joints of one kind in one island.
+  struct Batch {
+    const Joints* joints;
+    int first;
+    int count;
+    int row;
+    int gradient;
+  };
+  /// A gradient of a row that moves a factor.
+  struct Entry {
+    int gradient;
+    int factor;
+    int row;
+  };
+  /// S(row a, row b) += (gradient of a) . (response to b).
+  struct Pair {
+    int gradient;
+    int entry;
+    int value;
+  };
+  /// A gradient along a point of a body, which turns that body.
+  struct Lever {
+    int from;
+    int to;
+    int rotation;
+    Vec arm;
+  };
+  struct PlanarLever {
+    int from;
+    int to;
+    int site;
+    int body;
+  };
+  /// A point fixed in a body.
+  struct Arm {
+    int site;
+    int base;
+    int rotation;
+    Vec arm;
+  };
+  struct Damped {
+    int factor;
+    Vec coefficient;
+  };
+  struct Island {
+    Range linear, rotations, arms, planar_arms, rows, batches, linear_entries, rotation_entries, linear_pairs,
+        rotation_pairs, levers, planar_levers;
+    Elimination matrix;
+  };
+
+  void assemble(Scene& scene);
+  void leave_out_dependent();
+  /// What follows from places and attitudes at this node.
+  void begin();
+
+  void act();
+  void place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const;
+  void try_place(const Island& island);
+  void differentiate(const Configuration& at, const Island& island, std::vector<Vec>& gradients);
+  bool factorise(Island& island);
+  StepReport solve(Island& island);
+  StepReport turn_freely(int rotation);
+  void accept();
+
+  double h_;
+  Options options_;
+  double start_ = 0;
+  long index_ = 0;
+  Places places_;
+  std::vector<std::unique_ptr<Joints>> joints_;
+  std::vector<std::unique_ptr<Effects>> effects_;
+
+  // Linear factors (point masses, planar bodies) and rotations, each sorted by island, those of none first.
+  Configuration now_, next_;
+  std::vector<Quaternion> quaternions_, next_quaternions_;
+  std::vector<char> planar_;
+  std::vector<Vec> inertia_, moments_;
+  std::vector<Vec> response_;  ///< displacement of a linear factor over its momentum
+  std::vector<Turn> turns_;
+  std::vector<Vec> turn_damping_;
+  std::vector<Damped> damped_, damped_turns_;
+
+  std::vector<Vec> momentum_, momentum_carry_, place_carry_, spin_, spin_carry_;
+  Forces forces_;
+
+  // Of the step being solved.
+  std::vector<Vec> impulse_, kicked_, displacement_;
+  std::vector<Vec> spin_impulse_, spin_kicked_, spin_total_, turned_, turned_before_, turn_residual_;
+  std::vector<double> spin_size_;  ///< of the terms that a residual is made of
+  std::vector<Mat> turn_inverse_, turn_frame_;
+
+  // Points fixed in bodies, those of no island last; those that effects act on.
+  std::vector<Arm> arms_, planar_arms_, pushed_arms_, pushed_planar_arms_;
+
+  Island free_;  ///< the factors of no island
+  std::vector<Island> islands_;
+  std::vector<Batch> batches_;
+  std::vector<Entry> linear_entries_, rotation_entries_;
+  std::vector<Pair> linear_pairs_, rotation_pairs_;
+  std::vector<Lever> levers_;
+  std::vector<PlanarLever> planar_levers_;
+  std::vector<Vec> gradients_, next_gradients_, linear_response_, rotation_response_, rotation_gradient_;
+  std::vector<double> multipliers_, values_, right_, sizes_, scale_;
+  std::array<std::vector<double>, 3> earlier_;  ///< multipliers of the last steps
+  std::vector<char> left_out_;
+  int dependent_rows_ = 0;
+};
+
+}  // namespace lagroid::multibody

@@ -1,0 +1,101 @@
+#pragma once
+/// A scene while it is written: bodies, their points, what ties them and what acts on them.
+
+#include <lagroid/systems/multibody/joint.hpp>
+#include <lagroid/systems/multibody/turn.hpp>
+
+#include <map>
+#include <memory>
+#include <typeindex>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+namespace lagroid::multibody {
+
+/// A body of a scene: its reference point (centre of mass, or the pivot of one that turns about a fixed point) and what
+/// turns. A point mass has no attitude; a planar body's turns in the plane and is none either.
+struct Body {
+  Site centre;
+  Attitude attitude;
+};
+
+/// The bodies, joints and effects of a scene, each added once. The groupoid of the scene is the product of its bodies'
+/// groupoids: Pair(R^3) of a point mass, the action groupoid SO(3) x SO(3) => SO(3) of what turns in space (a rigid
+/// body is a product of both), Pair(R^2) x Pair(S^1) of a planar body. Units: kg, m, s, rad.
+class Scene {
+ public:
+  /// What is put in place by adding: a place, or in the plane two coordinates and an angle.
+  struct Linear {
+    Vec inertia;  ///< kg, kg, and kg or kg m^2
+    Vec place;
+    Vec rate;
+    Vec damping = Vec::Zero();  ///< force over velocity, kg/s (torque over angular velocity, N m s)
+    bool planar = false;
+  };
+  struct Rotating {
+    Vec inertia;  ///< principal moments, kg m^2
+    Quaternion attitude;
+    Vec rate;                   ///< angular velocity in the body, rad/s
+    Vec damping = Vec::Zero();  ///< torque over angular velocity, N m s
+  };
+  /// A point: the place of `linear` itself; `place` from it in the frame of `rotation` (or of a planar body); or, where
+  /// both are -1, of the ground.
+  struct Point {
+    int linear = -1;
+    int rotation = -1;
+    int base = -1;  ///< the site that `place` is measured from
+    Vec place = Vec::Zero();
+  };
+
+  Body point_mass(double mass, const Vec& place, const Vec& velocity);
+  /// Requires principal moments of inertia, a unit quaternion, and the angular velocity in the body's frame.
+  Body rigid_body(double mass, const Vec& inertia, const Vec& place, const Quaternion& attitude, const Vec& velocity,
+                  const Vec& angular_velocity);
+  /// One that turns about a fixed point of its own; `inertia` about that point.
+  Body pivoted_body(const Vec& inertia, const Vec& pivot, const Quaternion& attitude, const Vec& angular_velocity);
+  /// In the plane of the first two axes: place (x, y, angle) and its rate.
+  Body planar_body(double mass, double inertia, const Vec& place, const Vec& rate);
+
+  /// The point of a body at `arm` from its centre, in its own frame.
+  Site point_of(const Body& body, const Vec& arm);
+  Site ground(const Vec& place);
+
+  /// Linear damping of a body's centre and of its turning (N s/m, N m s).
+  void damp(const Body& body, double of_motion, double of_turning);
+
+  template <class K> void add(const K& kernel) {
+    if constexpr (requires { K::rows; }) {
+      all_of<K, JointsOf<K>>(joints_, joint_kinds_).add(kernel);
+    } else {
+      all_of<K, EffectsOf<K>>(effects_, effect_kinds_).add(kernel);
+    }
+  }
+  /// Effects that need a container of their own, such as one over all pairs of many bodies.
+  void add_effects(std::unique_ptr<Effects> effects) { effects_.push_back(std::move(effects)); }
+
+  Retraction rotation = Retraction::exponential;  ///< how a turn becomes an angular velocity
+
+ private:
+  friend class Multibody;
+
+  template <class K, class All, class Base>
+  static All& all_of(std::vector<std::unique_ptr<Base>>& list, std::map<std::type_index, Base*>& kinds) {
+    Base*& found = kinds[typeid(K)];
+    if (found == nullptr) {
+      list.push_back(std::make_unique<All>());
+      found = list.back().get();
+    }
+    return static_cast<All&>(*found);
+  }
+
+  std::vector<Linear> linear_;
+  std::vector<Rotating> rotating_;
+  std::vector<Point> sites_;
+  std::vector<std::unique_ptr<Joints>> joints_;
+  std::vector<std::unique_ptr<Effects>> effects_;
+  std::map<std::type_index, Joints*> joint_kinds_;
+  std::map<std::type_index, Effects*> effect_kinds_;
+};
+
+}  // namespace lagroid::multibody

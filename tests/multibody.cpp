@@ -1,0 +1,353 @@
+// Scenes of bodies: the same numbers as the systems written by hand, order, reversibility, momenta, joints.
+
+#include "allocation_counter.hpp"
+#include "marching.hpp"
+
+#include <lagroid/systems/heavy_top.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/multibody/effects.hpp>
+#include <lagroid/systems/multibody/joints.hpp>
+#include <lagroid/systems/multibody/multibody.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/spherical_pendulum.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace lagroid {
+namespace {
+
+using namespace multibody;
+using multibody::Vec;
+
+const Quaternion upright{1, 0, 0, 0};
+
+void advance(Multibody& scene, long steps) {
+  for (long k = 0; k < steps; ++k) {
+    const StepReport report = scene.advance();
+    ASSERT_TRUE(report.converged()) << to_string(report.status) << " at step " << k << ", excess " << report.excess;
+  }
+}
+
+double energy(const Multibody& scene) { return scene.kinetic_energy(scene.momenta()) + scene.potential_energy(); }
+
+TEST(MultibodyNumbers, SphericalPendulum) {
+  SphericalPendulum system;
+  system.bob_mass = 1.3;
+  system.length = 0.7;
+  system.gravity = 9.81;
+  system.h = 0.01;
+  const Vec q = system.length * Vec(0.6, 0.1, -0.8).normalized();
+  const Vec v = Vec(0.3, 1.1, 0).cross(q);
+  const auto end = march(system, {q, system.bob_mass * v}, 500);
+
+  Scene scene;
+  const Body bob = scene.point_mass(1.3, q, v);
+  scene.add(Rod{{scene.ground(Vec::Zero()), bob.centre}, 0.7});
+  scene.add(ConstantForce{{bob.centre}, {0, 0, -1.3 * 9.81}});
+  Multibody motion(std::move(scene), 0.01);
+  advance(motion, 500);
+  EXPECT_LT((motion.configuration()(motion(bob.centre)) - end.state.object).norm(), 1e-12);
+  EXPECT_LT((motion.momenta().linear[0] - tangent_momentum(system, end.state)).norm(), 1e-11);
+  EXPECT_LT(motion.constraint_residual(), 1e-15);
+}
+
+TEST(MultibodyNumbers, Kepler) {
+  Kepler system;
+  system.h = 0.01;
+  system.quadrature = Quadrature::trapezoid;
+  const auto end = march(system, {{0.4, 0}, {0, 2}}, 1000);
+  Scene scene;
+  const Body planet = scene.point_mass(1, {0.4, 0, 0}, {0, 2, 0});
+  scene.add(CentralGravity{{planet.centre}, Vec::Zero(), 1});
+  Multibody motion(std::move(scene), 0.01);
+  advance(motion, 1000);
+  EXPECT_LT((motion.configuration()(motion(planet.centre)).head<2>() - end.state.object).norm(), 1e-10);
+}
+
+TEST(MultibodyNumbers, RigidBody) {
+  for (const auto map : {Retraction::exponential, Retraction::cayley}) {
+    RigidBody system;
+    system.h = 0.05;
+    system.rotation = map;
+    const Vec m(0.4, 1.7, -0.9);
+    const auto end = march(system, {{}, m}, 1000);
+    Scene scene;
+    scene.rotation = map;
+    const Body body = scene.pivoted_body(system.inertia, Vec::Zero(), upright, m.cwiseQuotient(system.inertia));
+    Multibody motion(std::move(scene), 0.05);
+    advance(motion, 1000);
+    EXPECT_LT((motion.momenta().spin[0] - end.state.momentum).norm(), 2e-12);
+    EXPECT_LT((motion.configuration()(motion(body.attitude)) - end.configuration).norm(), 2e-12);
+    EXPECT_LT((motion.angular_momentum(motion.momenta()) - m).norm(), 1e-13);
+  }
+}
+
+TEST(MultibodyNumbers, HeavyTop) {
+  HeavyTop system;
+  system.h = 0.01;
+  system.inertia = {1.1, 0.9, 0.5};
+  system.weight = {0.1, 0.2, 1.4};
+  const Vec m(0.2, 0.1, 2.5);
+  const auto end = march(system, {Vec(0, 0, 1), m}, 500);
+  Scene scene;
+  const Body top = scene.pivoted_body(system.inertia, Vec::Zero(), upright, m.cwiseQuotient(system.inertia));
+  scene.add(ConstantForce{{scene.point_of(top, system.weight / 3.0)}, {0, 0, -3}});
+  Multibody motion(std::move(scene), 0.01);
+  advance(motion, 500);
+  EXPECT_LT((motion.momenta().spin[0] - end.state.momentum).norm(), 1e-11);
+}
+
+/// A box that hangs by a ball joint from a sliding, turning carriage; a spring and a bob on a rod.
+struct Machine {
+  Body carriage, box, bob;
+  Scene scene;
+
+  explicit Machine(double damping = 0) {
+    const Vec inertia(0.3, 0.4, 0.5);
+    carriage = scene.rigid_body(2, inertia, {0, 0, 0}, upright, {0.1, 0, 0}, {0, 0, 0});
+    box = scene.rigid_body(1, {0.1, 0.05, 0.12}, {0.5, 0.2, -0.7}, Quaternion(1, 0.2, -0.1, 0.3).normalized(),
+                           {0.1, 0, 0}, {0, 0, 0});
+    bob = scene.point_mass(0.4, {0.5, 0.2, -1.5}, {0.1, 0.3, 0});
+    const Site under = scene.point_of(carriage, {0.5, 0.2, -0.3});
+    const auto attitude = SO3::from_quaternion(Quaternion(1, 0.2, -0.1, 0.3).normalized());
+    scene.add(Coincidence{{under, scene.point_of(box, attitude.transpose() * Vec(0, 0, 0.4))}});
+    scene.add(Rod{{box.centre, bob.centre}, 0.8});
+    // The carriage slides along the first axis and turns about it.
+    const Site rail = scene.ground(Vec::Zero());
+    scene.add(InPlane{{rail, carriage.centre}, {Attitude{}}, {0, 1, 0}});
+    scene.add(InPlane{{rail, carriage.centre}, {Attitude{}}, {0, 0, 1}});
+    scene.add(FixedAngle{{}, {Attitude{}, carriage.attitude}, {0, 1, 0}, {1, 0, 0}});
+    scene.add(FixedAngle{{}, {Attitude{}, carriage.attitude}, {0, 0, 1}, {1, 0, 0}});
+    for (const auto& [body, mass] : {std::pair{carriage, 2.0}, {box, 1.0}, {bob, 0.4}})
+      scene.add(ConstantForce{{body.centre}, {0, 0, -9.81 * mass}});
+    scene.add(Spring{{scene.ground({1, 0, 0}), scene.point_of(box, {0.1, 0.1, 0})}, 5, 0.4});
+    if (damping > 0) scene.damp(box, damping, damping);
+  }
+};
+
+TEST(Multibody, EnergyOfAMachineIsBounded) {
+  Machine machine;
+  Multibody motion(std::move(machine.scene), 0.005);
+  EXPECT_EQ(motion.islands(), 1);
+  EXPECT_EQ(motion.dependent_rows(), 0);
+  EXPECT_LT(motion.velocity_defect(), 1e-12);
+  const double first = energy(motion);
+  double early = 0;
+  double late = 0;
+  for (int k = 0; k < 8; ++k) {
+    double& worst = k < 4 ? early : late;
+    for (int j = 0; j < 50; ++j) {
+      advance(motion, 50);
+      worst = std::max(worst, std::abs(energy(motion) - first));
+    }
+  }
+  EXPECT_LT(early, 1e-2);
+  EXPECT_LT(late, 2 * early);
+  EXPECT_LT(motion.constraint_residual(), 1e-14);
+}
+
+TEST(Multibody, GoesBackTheWayItCame) {
+  Machine machine;
+  Multibody motion(std::move(machine.scene), 0.01);
+  const auto start = motion.state();
+  advance(motion, 100);
+  motion.reverse();
+  advance(motion, 100);
+  const auto end = motion.state();
+  for (std::size_t f = 0; f < start.place.size(); ++f) {
+    EXPECT_LT((start.place[f] - end.place[f]).norm(), 1e-10);
+    EXPECT_LT((start.momentum[f] + motion.momenta().linear[f]).norm(), 1e-8);
+  }
+}
+
+TEST(Multibody, IsOfOrderTwo) {
+  const auto end = [](int steps, double damping) {
+    Machine machine(damping);
+    Multibody motion(std::move(machine.scene), 0.5 / steps);
+    advance(motion, steps);
+    Vector<double, 12> out;
+    const auto m = motion.momenta();
+    out << motion.configuration()(motion(machine.bob.centre)), m.linear[1], m.spin[0], m.spin[1];
+    return out;
+  };
+  for (const double damping : {0.0, 0.7}) {
+    const auto fine = end(3200, damping);
+    const double coarse_error = (end(50, damping) - fine).norm();
+    const double finer_error = (end(100, damping) - fine).norm();
+    EXPECT_NEAR(std::log2(coarse_error / finer_error), 2.0, 0.1) << damping;
+  }
+}
+
+TEST(Multibody, DampingTakesEnergy) {
+  Machine machine(0.5);
+  Multibody motion(std::move(machine.scene), 0.005);
+  const double first = energy(motion);
+  advance(motion, 20000);
+  EXPECT_LT(energy(motion), first - 0.5);
+}
+
+/// Two bars and a ring of rods in free flight: momenta are conserved to round-off.
+TEST(Multibody, FreeFlightKeepsMomenta) {
+  Scene scene;
+  const Body a = scene.rigid_body(1, {0.1, 0.2, 0.25}, {0, 0, 0}, upright, {0.1, 0.2, 0}, {0, 0, 0});
+  const Body b = scene.rigid_body(2, {0.3, 0.2, 0.25}, {1, 0, 0}, upright, {0.1, 0.2, 0}, {0, 0, 0});
+  const Body c = scene.point_mass(0.5, {0.5, 1, 0}, {0.1, 0.2, 3});
+  scene.add(Coincidence{{scene.point_of(a, {0.5, 0, 0}), scene.point_of(b, {-0.5, 0, 0})}});
+  // A hinge about the second axis.
+  scene.add(FixedAngle{{}, {a.attitude, b.attitude}, {1, 0, 0}, {0, 1, 0}});
+  scene.add(FixedAngle{{}, {a.attitude, b.attitude}, {0, 0, 1}, {0, 1, 0}});
+  scene.add(Rod{{scene.point_of(a, {0.5, 0, 0}), c.centre}, 1});
+  scene.add(InverseSquare{{a.centre, c.centre}, 0.3});
+  scene.add(TorsionSpring{{}, {a.attitude, b.attitude}, {1, 0, 0}, {1, 0, 0}, 2.0});
+  Multibody motion(std::move(scene), 0.01);
+  const auto first = motion.momenta();
+  const Vec p = motion.linear_momentum(first);
+  const Vec l = motion.angular_momentum(first);
+  for (int k = 0; k < 20; ++k) {
+    advance(motion, 500);
+    const auto m = motion.momenta();
+    EXPECT_LT((motion.linear_momentum(m) - p).norm(), 1e-12);
+    EXPECT_LT((motion.angular_momentum(m) - l).norm(), 1e-11);
+  }
+}
+
+/// Six equal bars in a plane, hinged to a ring, of bodies in space: three of the hinges' equations depend on the
+/// others.
+TEST(Multibody, RowsThatDependOnOthersAreLeftOut) {
+  Scene scene;
+  std::vector<Body> bars;
+  constexpr double turn = M_PI / 3;
+  for (int k = 0; k < 6; ++k) {
+    const double angle = turn * k;
+    const Vec centre = std::sqrt(0.75) * Vec(std::sin(angle), -std::cos(angle), 0);
+    bars.push_back(scene.rigid_body(1, {0.01, 0.1, 0.1}, centre, {std::cos(angle / 2), 0, 0, std::sin(angle / 2)},
+                                    Vec::Zero(), Vec::Zero()));
+  }
+  for (int k = 0; k < 6; ++k) {
+    const Body& a = bars[std::size_t(k)];
+    const Body& b = bars[std::size_t((k + 1) % 6)];
+    scene.add(Coincidence{{scene.point_of(a, {0.5, 0, 0}), scene.point_of(b, {-0.5, 0, 0})}});
+    scene.add(FixedAngle{{}, {a.attitude, b.attitude}, {1, 0, 0}, {0, 0, 1}});
+    scene.add(FixedAngle{{}, {a.attitude, b.attitude}, {0, 1, 0}, {0, 0, 1}});
+  }
+  scene.add(ConstantForce{{bars[0].centre}, {0, 1, 0}});
+  scene.add(ConstantForce{{bars[3].centre}, {0.2, -1, 0}});
+  Multibody motion(std::move(scene), 0.002);
+  EXPECT_EQ(motion.rows(), 30);
+  EXPECT_EQ(motion.dependent_rows(), 3);
+  const double first = energy(motion);
+  advance(motion, 500);
+  EXPECT_LT(motion.constraint_residual(), 1e-13);
+  EXPECT_NEAR(energy(motion), first, 1e-4);
+}
+
+/// The same ring of planar bodies, with pins.
+TEST(Multibody, PlanarBodiesMoveAsBodiesInSpaceDo) {
+  const auto run = [](bool planar) {
+    Scene scene;
+    std::vector<Body> bars;
+    for (int k = 0; k < 3; ++k) {
+      const double angle = 0.4 * k;
+      const Vec centre(0.5 + k * 0.9, 0.1 * k, 0);
+      if (planar) {
+        bars.push_back(scene.planar_body(1, 0.1, {centre(0), centre(1), angle}, {0, 0.1, 0}));
+      } else {
+        bars.push_back(scene.rigid_body(1, {0.01, 0.1, 0.1}, centre, {std::cos(angle / 2), 0, 0, std::sin(angle / 2)},
+                                        {0, 0.1, 0}, Vec::Zero()));
+      }
+    }
+    for (int k = 0; k < 2; ++k)
+      scene.add(Spring{
+          {scene.point_of(bars[std::size_t(k)], {0.3, 0.2, 0}), scene.point_of(bars[std::size_t(k + 1)], {-0.3, 0, 0})},
+          7,
+          0.1});
+    scene.add(Rod{{scene.ground({0, 0.3, 0}), scene.point_of(bars[0], {-0.2, 0.1, 0})},
+                  (Vec(0.3, 0.1, 0) - Vec(0, 0.3, 0)).norm()});
+    Multibody motion(std::move(scene), 0.01);
+    advance(motion, 300);
+    return motion.configuration()(motion(bars[2].centre));
+  };
+  EXPECT_LT((run(true) - run(false)).norm(), 1e-11);
+}
+
+TEST(Multibody, AStepAllocatesNothing) {
+  Machine machine(0.1);
+  Multibody motion(std::move(machine.scene), 0.01);
+  const long before = allocation_count();
+  if (before < 0) GTEST_SKIP() << "allocations cannot be counted here";
+  advance(motion, 20);
+  EXPECT_EQ(allocation_count(), before);
+}
+
+TEST(Multibody, WhatRestsIsNotSolved) {
+  Scene scene;
+  const Body a = scene.point_mass(1, {0, 0, 0}, Vec::Zero());
+  const Body b = scene.point_mass(1, {1, 0, 0}, Vec::Zero());
+  scene.add(Rod{{a.centre, b.centre}, 1});
+  Multibody motion(std::move(scene), 0.1);
+  const StepReport report = motion.advance();
+  EXPECT_TRUE(report.converged());
+  EXPECT_EQ(report.iterations, 0);
+}
+
+TEST(Multibody, GoesOnFromAStateWithTheSameBits) {
+  Machine one;
+  Machine other;
+  Multibody unbroken(std::move(one.scene), 0.01);
+  Multibody resumed(std::move(other.scene), 0.01);
+  advance(unbroken, 37);
+  resumed.restore(unbroken.state());
+  advance(unbroken, 100);
+  advance(resumed, 100);
+  const auto a = unbroken.state();
+  const auto b = resumed.state();
+  EXPECT_EQ(a.index, b.index);
+  for (std::size_t f = 0; f < a.place.size(); ++f) {
+    EXPECT_EQ(a.place[f], b.place[f]);
+    EXPECT_EQ(a.momentum[f], b.momentum[f]);
+  }
+  for (std::size_t r = 0; r < a.spin.size(); ++r) {
+    EXPECT_EQ(a.attitude[r], b.attitude[r]);
+    EXPECT_EQ(a.spin[r], b.spin[r]);
+  }
+}
+
+TEST(Multibody, AStepThatFailsChangesNothing) {
+  Scene scene;
+  const Body a = scene.point_mass(1, {1, 0, 0}, {0, 1000, 0});
+  scene.add(Rod{{scene.ground(Vec::Zero()), a.centre}, 1});
+  Multibody motion(std::move(scene), 0.1);
+  const auto before = motion.state();
+  EXPECT_FALSE(motion.advance().converged());
+  EXPECT_EQ(motion.index(), 0);
+  EXPECT_EQ(motion.state().place[0], before.place[0]);
+  EXPECT_EQ(motion.state().momentum[0], before.momentum[0]);
+}
+
+/// An effect of a user's own, by its energy alone.
+struct Tether {
+  std::array<Site, 2> sites;
+  std::array<Attitude, 1> attitudes;
+
+  template <class S> S energy(const Vector<S, 3>& a, const Vector<S, 3>& b, const Matrix<S, 3, 3>& turned) const {
+    return (b - a).squaredNorm() * (b - a).squaredNorm() * 0.25 + turned(2, 2) * a(2);
+  }
+};
+
+TEST(Effects, ForcesAreDerivedFromTheEnergy) {
+  Scene scene;
+  const Body a = scene.rigid_body(1, {0.2, 0.3, 0.4}, {0, 0, 1}, Quaternion(1, 0.1, 0.2, 0).normalized(), {0, 0, 0.1},
+                                  {0.3, 0, 0.2});
+  const Body b = scene.point_mass(1, {1, 0.2, 0.3}, Vec::Zero());
+  scene.add(Tether{{scene.point_of(a, {0, 0.2, 0}), b.centre}, {a.attitude}});
+  Multibody motion(std::move(scene), 0.002);
+  const double first = energy(motion);
+  advance(motion, 2000);
+  EXPECT_NEAR(energy(motion), first, 1e-4);
+}
+
+}  // namespace
+}  // namespace lagroid
