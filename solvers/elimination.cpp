@@ -1,54 +1,52 @@
 #include <lagroid/solvers/elimination.hpp>
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 namespace lagroid {
 
-namespace {
-
-/// Place of each unknown in the order of elimination.
-std::vector<int> minimum_degree(int size, const std::vector<std::pair<int, int>>& pairs) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1.0);
+Elimination::Elimination(int size, const std::vector<std::pair<int, int>>& pairs) : order_(std::size_t(size), -1) {
+  // The unknowns that each is coupled to. The next to go is always one coupled to the fewest; the others it is coupled
+  // to are coupled to each other then. (Approximate degrees, as of AMD, are cheaper to find, but fill trees in.)
+  std::vector<std::set<int>> coupled(std::size_t(size), std::set<int>{});
   for (const auto& [i, j] : pairs) {
-    entries.emplace_back(i, j, 1.0);
-    entries.emplace_back(j, i, 1.0);
+    if (i == j) continue;
+    coupled[std::size_t(i)].insert(j);
+    coupled[std::size_t(j)].insert(i);
   }
-  Eigen::SparseMatrix<double> pattern(size, size);
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  Eigen::AMDOrdering<int>::PermutationType permutation;
-  Eigen::AMDOrdering<int>()(pattern, permutation);
-  std::vector<int> place(std::size_t(size), 0);
-  for (int k = 0; k < size; ++k) place[std::size_t(permutation.indices()(k))] = k;
-  return place;
-}
-
-}  // namespace
-
-Elimination::Elimination(int size, const std::vector<std::pair<int, int>>& pairs)
-    : order_(minimum_degree(size, pairs)) {
-  std::vector<int> unknown(std::size_t(size), 0);
-  for (int i = 0; i < size; ++i) unknown[std::size_t(order_[std::size_t(i)])] = i;
-  // Of each pivot the places after it that it is coupled to; eliminating it couples these.
-  std::vector<std::set<int>> later(std::size_t(size), std::set<int>{});
-  for (const auto& [i, j] : pairs) {
-    const int a = order_[std::size_t(i)];
-    const int b = order_[std::size_t(j)];
-    if (a != b) later[std::size_t(std::min(a, b))].insert(std::max(a, b));
+  std::set<std::pair<std::size_t, int>> fewest;
+  for (int i = 0; i < size; ++i) fewest.emplace(coupled[std::size_t(i)].size(), i);
+  const auto change = [&](int i, const auto& edit) {
+    auto& mine = coupled[std::size_t(i)];
+    fewest.erase({mine.size(), i});
+    edit(mine);
+    fewest.emplace(mine.size(), i);
+  };
+  std::vector<std::vector<int>> later;
+  while (!fewest.empty()) {
+    const int next = fewest.begin()->second;
+    fewest.erase(fewest.begin());
+    order_[std::size_t(next)] = int(later.size());
+    later.emplace_back(coupled[std::size_t(next)].begin(), coupled[std::size_t(next)].end());
+    const auto& others = later.back();
+    for (const int i : others)
+      change(i, [&](std::set<int>& mine) {
+        mine.erase(next);
+        for (const int j : others)
+          if (i != j) mine.insert(j);
+      });
   }
-  for (int k = 0; k < size; ++k) {
-    auto& mine = later[std::size_t(k)];
-    const int count = int(mine.size());
-    pivots_.push_back({unknown[std::size_t(k)], int(values_.size()), count, int(others_.size())});
-    values_.resize(values_.size() + 1 + 2 * std::size_t(count));
-    for (const int place : mine) others_.push_back(unknown[std::size_t(place)]);
-    for (auto a = mine.begin(); a != mine.end(); ++a)
-      for (auto b = std::next(a); b != mine.end(); ++b) later[std::size_t(*a)].insert(*b);
+  pivots_.resize(std::size_t(size));
+  for (int i = 0; i < size; ++i) pivots_[std::size_t(order_[std::size_t(i)])].unknown = i;
+  for (std::size_t k = 0; k < pivots_.size(); ++k) {
+    auto& mine = later[k];
+    std::sort(mine.begin(), mine.end(), [&](int i, int j) { return order_[std::size_t(i)] < order_[std::size_t(j)]; });
+    pivots_[k].values = int(values_.size());
+    pivots_[k].count = int(mine.size());
+    pivots_[k].others = int(others_.size());
+    values_.resize(values_.size() + 1 + 2 * mine.size());
+    others_.insert(others_.end(), mine.begin(), mine.end());
   }
   for (const auto& pivot : pivots_)
     for (int a = 0; a < pivot.count; ++a)

@@ -8,7 +8,7 @@ namespace lagroid {
 
 /// The factorisation of matrices with one structurally symmetric pattern whose leading pivots do not vanish: those of
 /// D A^{-1} D'^T with A positive definite and D' near D, the multipliers' matrices of mechanical joints. The order of
-/// elimination (approximate minimum degree) and the fill are found once; where the pattern is that of a chain or a tree
+/// elimination (minimum degree) and the fill are found once; where the pattern is that of a chain or a tree
 /// nothing is filled in, and a factorisation costs O(n).
 class Elimination {
  public:

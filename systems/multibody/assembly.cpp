@@ -270,12 +270,21 @@ void Multibody::assemble(Scene& scene) {
     island.levers.last = int(levers_.size());
     island.planar_levers.last = int(planar_levers_.size());
   }
+  // An island's entries, by factor.
+  for (const Island& island : islands_)
+    std::stable_sort(linear_entries_.begin() + island.linear_entries.first,
+                     linear_entries_.begin() + island.linear_entries.last,
+                     [](const Entry& a, const Entry& b) { return a.factor < b.factor; });
+  factor_entries_.assign(std::size_t(linears) + 1, 0);
+  for (const Entry& e : linear_entries_) ++factor_entries_[std::size_t(e.factor) + 1];
+  std::partial_sum(factor_entries_.begin(), factor_entries_.end(), factor_entries_.begin());
   gradients_ = next_gradients_ = zeros(std::size_t(further));
   linear_response_ = zeros(linear_entries_.size());
   rotation_response_ = rotation_gradient_ = zeros(rotation_entries_.size());
   multipliers_.assign(std::size_t(row), 0.0);
   values_ = right_ = multipliers_;
-  sizes_ = scale_ = multipliers_;
+  precision_ = multipliers_;
+  sizes_.resize(std::size_t(row));
   earlier_ = {multipliers_, multipliers_, multipliers_};
   left_out_.assign(std::size_t(row), 0);
 

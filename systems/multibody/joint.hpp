@@ -8,6 +8,12 @@
 
 namespace lagroid::multibody {
 
+/// What a row's round-off is relative to.
+struct RowSize {
+  double terms = 0;  ///< size of the terms that it is a sum of
+  double slope = 0;  ///< of its gradient: a sum of norms
+};
+
 /// All joints of one kind: holonomic constraints C(q) = 0, rows of one step's equations.
 ///
 /// `first` and `count` choose some of them. Of each joint the gradients stand one after another: for every row one
@@ -20,8 +26,7 @@ class Joints {
   virtual std::vector<Attitude> attitudes(int joint) const = 0;
   virtual int count() const = 0;
   virtual void values(const Configuration& at, int first, int count, double* c) const = 0;
-  /// Also the size of the terms that each row is made of, to which its round-off is relative.
-  virtual void gradients(const Configuration& at, int first, int count, Vec* g, double* size) const = 0;
+  virtual void gradients(const Configuration& at, int first, int count, Vec* g, RowSize* size) const = 0;
   virtual void place(const Places& places) = 0;
   /// Puts them into this order.
   virtual void reorder(const std::vector<int>& order) = 0;
@@ -29,7 +34,7 @@ class Joints {
 
 /// A joint is a small struct with `rows`, the `sites` and, if it needs them, the `attitudes` it touches, and
 ///     void value(const Configuration& at, double* c) const;
-///     void gradient(const Configuration& at, Vec* g, double* size) const;
+///     void gradient(const Configuration& at, Vec* g, RowSize* size) const;
 template <class J> class JointsOf final : public Joints {
  public:
   static constexpr int width = J::rows * (site_count<J>() + attitude_count<J>());
@@ -53,7 +58,7 @@ template <class J> class JointsOf final : public Joints {
     const J* joint = all_.data() + first;
     for (int i = 0; i < count; ++i) joint[i].value(at, c + i * J::rows);
   }
-  void gradients(const Configuration& at, int first, int count, Vec* g, double* size) const override {
+  void gradients(const Configuration& at, int first, int count, Vec* g, RowSize* size) const override {
     const J* joint = all_.data() + first;
     for (int i = 0; i < count; ++i) joint[i].gradient(at, g + i * width, size + i * J::rows);
   }

@@ -16,12 +16,12 @@ struct Rod {
   void value(const Configuration& at, double* c) const {
     c[0] = 0.5 * ((at(sites[1]) - at(sites[0])).squaredNorm() - length * length);
   }
-  void gradient(const Configuration& at, Vec* g, double* size) const {
+  void gradient(const Configuration& at, Vec* g, RowSize* size) const {
     const Vec& a = at(sites[0]);
     const Vec& b = at(sites[1]);
     g[1] = b - a;
     g[0] = -g[1];
-    size[0] = length * (length + a.lpNorm<1>() + b.lpNorm<1>());
+    size[0] = {length * (length + a.lpNorm<1>() + b.lpNorm<1>()), 2 * length};
   }
 };
 
@@ -34,11 +34,11 @@ struct Coincidence {
     const Vec d = at(sites[1]) - at(sites[0]);
     for (int i = 0; i < 3; ++i) c[i] = d(i);
   }
-  void gradient(const Configuration& at, Vec* g, double* size) const {
+  void gradient(const Configuration& at, Vec* g, RowSize* size) const {
     for (int i = 0; i < 3; ++i) {
       g[2 * i] = -Vec::Unit(i);
       g[2 * i + 1] = Vec::Unit(i);
-      size[i] = std::abs(at(sites[0])(i)) + std::abs(at(sites[1])(i)) + at(sites[0]).lpNorm<Eigen::Infinity>();
+      size[i] = {2 * at(sites[0]).lpNorm<Eigen::Infinity>(), 2};
     }
   }
 };
@@ -55,12 +55,12 @@ struct FixedAngle {
   void value(const Configuration& at, double* c) const {
     c[0] = (at(attitudes[0]) * u).dot(at(attitudes[1]) * v) - cosine;
   }
-  void gradient(const Configuration& at, Vec* g, double* size) const {
+  void gradient(const Configuration& at, Vec* g, RowSize* size) const {
     const Mat& a = at(attitudes[0]);
     const Mat& b = at(attitudes[1]);
     g[0] = u.cross(Vec(a.transpose() * (b * v)));
     g[1] = v.cross(Vec(b.transpose() * (a * u)));
-    size[0] = 3;
+    size[0] = {3, 2};
   }
 };
 
@@ -74,14 +74,14 @@ struct InPlane {
   void value(const Configuration& at, double* c) const {
     c[0] = (at(attitudes[0]) * normal).dot(at(sites[1]) - at(sites[0]));
   }
-  void gradient(const Configuration& at, Vec* g, double* size) const {
+  void gradient(const Configuration& at, Vec* g, RowSize* size) const {
     const Mat& a = at(attitudes[0]);
     const Vec n = a * normal;
     const Vec d = at(sites[1]) - at(sites[0]);
     g[0] = -n;
     g[1] = n;
     g[2] = normal.cross(Vec(a.transpose() * d));
-    size[0] = at(sites[0]).norm() + at(sites[1]).norm() + d.norm();
+    size[0] = {at(sites[0]).norm() + at(sites[1]).norm() + d.norm(), 2 + d.norm()};
   }
 };
 

@@ -15,7 +15,7 @@ Quaternion turned(const Quaternion& q, const Turn& turn, const Vec& xi) {
 }
 
 /// sum += increment with what earlier sums lost.
-void add(Vec& sum, Vec& carry, const Vec& increment) {
+LAGROID_INLINE inline void add(Vec& sum, Vec& carry, const Vec& increment) {
   const Vec step = carry + increment;
   const Vec before = sum;
   sum += step;
@@ -52,6 +52,16 @@ void Multibody::place_arms(Configuration& at, const Range& arms, const Range& pl
     const double c = std::cos(q(2));
     const double s = std::sin(q(2));
     at.x[std::size_t(a.site)] = {q(0) + c * a.arm(0) - s * a.arm(1), q(1) + s * a.arm(0) + c * a.arm(1), 0};
+  }
+}
+
+void Multibody::correct(const Island& island, const double* multipliers) {
+  for (int f = island.linear.first; f < island.linear.last; ++f) {
+    const auto i = std::size_t(f);
+    Vec moved = displacement_[i];
+    for (int e = factor_entries_[i]; e < factor_entries_[i + 1]; ++e)
+      moved += multipliers[linear_entries_[std::size_t(e)].row] * linear_response_[std::size_t(e)];
+    displacement_[i] = moved;
   }
 }
 
@@ -136,21 +146,23 @@ StepReport Multibody::solve(Island& island) {
     report.status = SolveStatus::converged;
     return report;
   }
-  // What a row is made of: its own terms, and the motions it cancels.
-  double* const scale = scale_.data();
-  std::copy(sizes_.begin() + rows.first, sizes_.begin() + rows.last, scale_.begin() + rows.first);
+  // The size of a row: its own terms, and the motions that it cancels.
+  double reach = 0;
+  for (int f = island.linear.first; f < island.linear.last; ++f)
+    reach = std::max(reach, displacement_[std::size_t(f)].lpNorm<Eigen::Infinity>());
+  for (int r = island.rotations.first; r < island.rotations.last; ++r)
+    reach = std::max(reach, turned_[std::size_t(r)].lpNorm<Eigen::Infinity>());
+  double* const precision = precision_.data();
+  for (int row = rows.first; row < rows.last; ++row) {
+    const RowSize& size = sizes_[std::size_t(row)];
+    precision[row] = 1 / (size.terms + size.slope * reach + std::numeric_limits<double>::min());
+  }
   for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i) {
     const Entry& e = linear_entries_[std::size_t(i)];
-    const Vec& response = linear_response_[std::size_t(i)] =
+    linear_response_[std::size_t(i)] =
         response_[std::size_t(e.factor)].cwiseProduct(gradients_[std::size_t(e.gradient)]);
-    scale[e.row] += response.lpNorm<1>() * kicked_[std::size_t(e.factor)].lpNorm<Eigen::Infinity>();
-    displacement_[std::size_t(e.factor)] += lambda[e.row] * response;
   }
-  for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
-    const Entry& e = rotation_entries_[std::size_t(i)];
-    scale[e.row] +=
-        gradients_[std::size_t(e.gradient)].lpNorm<1>() * turned_[std::size_t(e.factor)].lpNorm<Eigen::Infinity>();
-  }
+  correct(island, lambda);
 
   double* const values = values_.data();
   double* const right = right_.data();
@@ -166,16 +178,15 @@ StepReport Multibody::solve(Island& island) {
       const Batch& batch = batches_[std::size_t(b)];
       batch.joints->values(next_, batch.first, batch.count, values + batch.row);
     }
-    double excess = 0;
     double residual = 0;
-    bool finite = true;
+    double sum = 0;  // which no NaN escapes
     for (int row = rows.first; row < rows.last; ++row) {
       if (left_out_[std::size_t(row)]) continue;
-      const double relative = values[row] == 0 ? 0 : std::abs(values[row]) / scale[row];
-      finite = finite && std::isfinite(relative);
+      const double relative = std::abs(values[row]) * precision[row];
+      sum += relative;
       residual = std::max(residual, relative);
     }
-    excess = residual / (2 * round_off);
+    double excess = residual / (2 * round_off);
     if (island.rotations.size() > 0) {
       for (int r = island.rotations.first; r < island.rotations.last; ++r) {
         const auto i = std::size_t(r);
@@ -194,14 +205,14 @@ StepReport Multibody::solve(Island& island) {
         turn_residual_[i] =
             turns_[i].momentum(turned_[i]) + 0.5 * turn_damping_[i].cwiseProduct(turned_[i]) - spin_total_[i];
         const double relative = turn_residual_[i].lpNorm<Eigen::Infinity>() / spin_size_[i];
-        finite = finite && std::isfinite(relative);
+        sum += relative;
         residual = std::max(residual, relative);
         excess = std::max(excess, relative / (4 * round_off));
       }
     }
     report.residual = residual;
     report.excess = excess;
-    if (!finite) {
+    if (!std::isfinite(sum)) {
       report.status = SolveStatus::not_finite;
       return report;
     }
@@ -237,10 +248,7 @@ StepReport Multibody::solve(Island& island) {
     }
     island.matrix.solve(right + rows.first);
     for (int row = rows.first; row < rows.last; ++row) lambda[row] += right[row];
-    for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i) {
-      const Entry& e = linear_entries_[std::size_t(i)];
-      displacement_[std::size_t(e.factor)] += right[e.row] * linear_response_[std::size_t(i)];
-    }
+    correct(island, right);
     for (int r = island.rotations.first; r < island.rotations.last; ++r)
       turned_[std::size_t(r)] -= turn_residual_[std::size_t(r)];
     for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
@@ -329,9 +337,13 @@ StepReport Multibody::advance() {
 
 void Multibody::accept() {
   ++index_;
-  for (std::size_t i = 0; i < linear_entries_.size(); ++i) {
-    const Entry& e = linear_entries_[i];
-    impulse_[std::size_t(e.factor)] += multipliers_[std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
+  for (std::size_t f = 0; f < momentum_.size(); ++f) {
+    Vec impulse = impulse_[f];
+    for (int e = factor_entries_[f]; e < factor_entries_[f + 1]; ++e) {
+      const Entry& entry = linear_entries_[std::size_t(e)];
+      impulse += multipliers_[std::size_t(entry.row)] * gradients_[std::size_t(entry.gradient)];
+    }
+    impulse_[f] = impulse;
   }
   for (const Damped& d : damped_)
     impulse_[std::size_t(d.factor)] -= d.coefficient.cwiseProduct(displacement_[std::size_t(d.factor)]);
@@ -480,7 +492,8 @@ double Multibody::constraint_residual() const {
     batch.joints->values(now_, batch.first, batch.count, values.data() + batch.row);
     for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
       const double value = std::abs(values[std::size_t(row)]);
-      const double relative = value == 0 ? 0 : value / std::max(sizes_[std::size_t(row)], scale_[std::size_t(row)]);
+      const RowSize& size = sizes_[std::size_t(row)];
+      const double relative = value == 0 ? 0 : value / std::max(size.terms, size.slope);
       largest = std::isnan(relative) ? relative : std::max(largest, relative);
     }
   }

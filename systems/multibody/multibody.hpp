@@ -146,6 +146,7 @@ class Multibody {
 
   void act();
   void place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const;
+  void correct(const Island& island, const double* multipliers);
   void try_place(const Island& island);
   void differentiate(const Configuration& at, const Island& island, std::vector<Vec>& gradients);
   bool factorise(Island& island);
@@ -191,8 +192,10 @@ class Multibody {
   std::vector<Lever> levers_;
   std::vector<PlanarLever> planar_levers_;
   std::vector<Vec> gradients_, next_gradients_, linear_response_, rotation_response_, rotation_gradient_;
-  std::vector<double> multipliers_, values_, right_, sizes_, scale_;
-  std::array<std::vector<double>, 3> earlier_;  ///< multipliers of the last steps
+  std::vector<int> factor_entries_;  ///< of each linear factor, where its entries begin
+  std::vector<RowSize> sizes_;
+  std::vector<double> multipliers_, values_, right_, precision_;  ///< precision: one over the size of a row
+  std::array<std::vector<double>, 3> earlier_;                    ///< multipliers of the last steps
   std::vector<char> left_out_;
   int dependent_rows_ = 0;
 };
