@@ -18,6 +18,17 @@ class QuantityWatch {
   /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not carried along.
   void observe(const double* values, double size, double noise = 0);
   LedgerEntry entry() const;
+  /// Visits what it has seen (app/archive.hpp).
+  template <class Archive> void persist(Archive& archive) {
+    archive("samples", samples_);
+    archive("first", first_);
+    archive("last", last_);
+    archive("envelope", envelope_);
+    archive("chunk", chunk_);
+    archive("first size", first_size_);
+    archive("size", size_);
+    archive("noise", noise_);
+  }
 
  private:
   std::string name_;

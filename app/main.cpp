@@ -1,5 +1,6 @@
 /// The program lagroid.
 
+#include "checkpoint.hpp"
 #include "command.hpp"
 #include "listing.hpp"
 #include "output.hpp"
@@ -27,14 +28,30 @@ struct RunOptions : SceneOptions {
   std::optional<std::string> out;
 };
 
-int run(const RunOptions& options) {
+/// The scene of a run that is taken up, of which only the number of steps may change.
+Section kept_scene(const std::string& folder, const std::vector<std::string>& overrides) {
+  const std::string text = Checkpoint::scene_of(folder);
+  for (const std::string& given : overrides)
+    if (!given.starts_with("time.steps="))
+      throw RunError(fmt::format("--set {}: a run goes on as it began; only time.steps can be set", given));
+  return parse_scene(text, folder + "/checkpoint/scene.toml", overrides);
+}
+
+/// Runs the scene, or takes up the run in the folder `out`.
+int run(const RunOptions& options, bool resume) {
   RunResult result;
   try {
-    const Section scene = read_scene(options.scene, options.overrides);
+    const Section scene =
+        resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
     if (options.out) require_writable(*options.out);
-    result = run_scene(scene, {.record = options.out.has_value(), .progress = !options.json});
+    result = run_scene(scene, {.record = options.out.has_value(),
+                               .progress = !options.json,
+                               .folder = options.out.value_or(""),
+                               .resume = resume});
   } catch (const OutputError& error) {
     return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
+  } catch (const RunError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_run", error.what());
   }
   std::string report;
   if (options.out) {
@@ -47,7 +64,8 @@ int run(const RunOptions& options) {
     report = "  (no files written; --out DIR writes trajectory, plot and summary)\n";
   }
   print(options.json ? json_report(result) + "\n" : text_report(result) + report);
-  if (!result.converged()) fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
+  if (!result.converged())
+    fmt::print(stderr, "lagroid: {}: {}\n", resume ? *options.out : options.scene, result.message);
   if (!result.output_error.empty()) fmt::print(stderr, "lagroid: {}\n", result.output_error);
   if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
   return result.converged() && result.output_error.empty() ? 0 : exit_failed;
@@ -84,6 +102,12 @@ int main(int argc, char** argv) {
   CLI::App* run_command = app.add_subcommand("run", "run a scene (see docs/scenes.md)");
   add_scene_options(*run_command, options);
   run_command->add_option("--out", options.out, "write trajectory, plot and summary files into this folder");
+  CLI::App* resume_command =
+      app.add_subcommand("resume", "go on with a run that was broken off, or with a finished one");
+  resume_command->add_option("run", options.out, "the folder that lagroid run --out wrote")->required();
+  resume_command->add_option("--set", options.overrides, "time.steps=N: go on to so many steps")
+      ->allow_extra_args(false);
+  resume_command->add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand(
       "view", "write view.html into a run's folder: bodies in motion, curves and ledger, for any browser");
@@ -110,11 +134,12 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (check_command->parsed()) return check(options, argc - 1, argv + 1);
-    if (run_command->parsed()) return run(options);
+    if (run_command->parsed()) return run(options, false);
+    if (resume_command->parsed()) return run(options, true);
     if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });
     if (plot_command->parsed()) return from_run([&] { return draw_plots(run_to_plot); });
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
     return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  "name a command: run, view, plot, check, list or reproduce; see lagroid --help");
+                  "name a command: run, resume, view, plot, check, list or reproduce; see lagroid --help");
   });
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 namespace lagroid::app {
@@ -264,6 +266,17 @@ Section Section::with(std::string_view path, const std::vector<double>& values) 
   return out;
 }
 
+Section Section::without(std::string_view path) const {
+  Section out = *this;
+  out.source_ = std::make_shared<Source>(*source_);
+  out.table_ = &out.source_->root;
+  const auto dot = path.rfind('.');
+  toml::table* parent =
+      dot == std::string_view::npos ? &out.source_->root : out.source_->root.at_path(path.substr(0, dot)).as_table();
+  if (parent != nullptr) parent->erase(dot == std::string_view::npos ? path : path.substr(dot + 1));
+  return out;
+}
+
 Section Section::between(std::string_view path, const std::vector<double>& values) const {
   Section out = with(path, values);
   out.source_->interpolated = true;
@@ -363,30 +376,43 @@ void Section::finish() const {
   }
 }
 
+std::string Section::whole() const {
+  std::ostringstream out;
+  out << source_->root << "\n";
+  return out.str();
+}
+
 Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  Section scene;
-  scene.source_ = std::make_shared<Section::Source>();
-  scene.source_->file = file.string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     throw SceneError(fmt::format("{}: no such scene file; examples are in examples/", file.string()));
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw SceneError(fmt::format("{}: cannot be read", file.string()));
+  return parse_scene(text, file.string(), overrides);
+}
+
+Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides) {
+  Section scene;
+  scene.source_ = std::make_shared<Section::Source>();
+  scene.source_->file = file;
   try {
-    scene.source_->root = toml::parse_file(file.string());
+    scene.source_->root = toml::parse(text, file);
   } catch (const toml::parse_error& e) {
-    throw SceneError(fmt::format("{}:{}: not valid TOML: {}", file.string(), e.source().begin.line,
-                                 one_line(std::string(e.description()))));
+    throw SceneError(
+        fmt::format("{}:{}: not valid TOML: {}", file, e.source().begin.line, one_line(std::string(e.description()))));
   }
-  for (const std::string& text : overrides) {
-    const auto equals = text.find('=');
+  for (const std::string& given : overrides) {
+    const auto equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw SceneError(fmt::format("--set {}: expected key=value, as in --set time.steps=100", text));
-    const std::string key = text.substr(0, equals);
+      throw SceneError(fmt::format("--set {}: expected key=value, as in --set time.steps=100", given));
+    const std::string key = given.substr(0, equals);
     toml::table parsed;
     try {
-      parsed = toml::parse("value = " + text.substr(equals + 1));
+      parsed = toml::parse("value = " + given.substr(equals + 1));
     } catch (const toml::parse_error&) {
       // A bare word is taken as a string, so that quotes need not survive the shell.
-      parsed.insert("value", text.substr(equals + 1));
+      parsed.insert("value", given.substr(equals + 1));
     }
     if (parsed.size() != 1) throw SceneError(fmt::format("--set {}: expected one value", key));
     override_at(scene.source_->root, key, *parsed.get("value"));

@@ -79,7 +79,12 @@ class Section {
   /// The same with numbers between two that a user wrote. What must lie on a sphere or have unit norm is then brought
   /// there instead of refused.
   Section between(std::string_view path, const std::vector<double>& values) const;
+  /// The whole scene with its overrides, as TOML.
+  std::string whole() const;
   bool interpolated() const { return source_->interpolated; }
+
+  /// A copy of a whole scene without the key at such a path.
+  Section without(std::string_view path) const;
 
   /// Refuses every key that nobody asked for, in this table and the tables below it.
   void finish() const;
@@ -88,7 +93,7 @@ class Section {
   [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
 
  private:
-  friend Section read_scene(const std::filesystem::path&, const std::vector<std::string>&);
+  friend Section parse_scene(std::string_view, const std::string&, const std::vector<std::string>&);
 
   struct Source {
     std::string file;
@@ -111,5 +116,7 @@ class Section {
 
 /// Reads a scene file and applies overrides "key.subkey=value". Throws SceneError.
 Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// The same of a text; `file` is what messages call it.
+Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides);
 
 }  // namespace lagroid::app

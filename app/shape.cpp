@@ -17,6 +17,14 @@ Shape box_of(const std::array<double, 3>& inertia) {
   return box;
 }
 
+Shape box_of_mass(double mass, const std::array<double, 3>& inertia) {
+  Shape box = box_of(inertia);
+  const double sum = inertia[0] + inertia[1] + inertia[2];
+  const double longest = std::sqrt(6 * (sum - 2 * *std::min_element(inertia.begin(), inertia.end())) / mass);
+  for (double& side : box.size) side *= longest;
+  return box;
+}
+
 Shape on_the_plane(Shape shape, double height) {
   shape.position = {"x", "y", height};
   shape.turns = {{{0, 0, 1}, "heading"}};

@@ -41,6 +41,9 @@ inline const std::vector<std::string> attitude_columns{"A_w", "A_x", "A_y", "A_z
 /// A homogeneous box of these principal moments, its longest side 1.
 Shape box_of(const std::array<double, 3>& inertia);
 
+/// The homogeneous box of this mass and these principal moments about its centre.
+Shape box_of_mass(double mass, const std::array<double, 3>& inertia);
+
 /// The shape at the columns x, y and this height, turned about the vertical by `heading`.
 Shape on_the_plane(Shape shape, double height);
 

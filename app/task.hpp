@@ -6,14 +6,17 @@
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/system.hpp>
 
+#include <filesystem>
 #include <functional>
 
 namespace lagroid::app {
 
 /// What the command line asks of a run.
 struct RunContext {
-  bool record = false;    ///< keep the trajectory
-  bool progress = false;  ///< show a bar
+  bool record = false;             ///< keep the trajectory
+  bool progress = false;           ///< show a bar
+  std::filesystem::path folder{};  ///< where checkpoints are kept; empty: nowhere
+  bool resume = false;             ///< go on from the one kept there
 };
 
 /// Sees every point of a run, in order, beside its recorder; may be null.

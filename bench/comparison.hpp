@@ -59,6 +59,10 @@ std::vector<Subject> lie_newton_subjects();
 std::vector<Goal> lie_newton_goals();
 std::vector<Subject> boundary_subjects();
 std::vector<Goal> boundary_goals();
+std::vector<Subject> scene_subjects();
+std::vector<Goal> scene_goals();
+/// Markdown: instructions and memory of a scene's step without and with each effect. Needs valgrind.
+std::string effects_table();
 /// Markdown: seconds to compile the files of bench/user, with the build's own command.
 std::string compile_times();
 

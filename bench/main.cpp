@@ -80,26 +80,33 @@ int main(int argc, char** argv) try {
   const auto steps = bench::matching(bench::step_subjects(), part);
   const auto boundary = bench::matching(bench::boundary_subjects(), part);
   const auto groups = bench::matching(bench::lie_newton_subjects(), part);
-  if (steps.empty() && boundary.empty() && groups.empty()) {
+  const auto scenes = bench::matching(bench::scene_subjects(), part);
+  if (part != "effects" && scenes.empty() && steps.empty() && boundary.empty() && groups.empty()) {
     fmt::print(stderr, "lagroid bench: no subject's name contains \"{}\"; docs/performance.md shows the names\n", part);
     return 2;
   }
   bench::Results results = bench::run(steps, 21, 0.02);
+  results.merge(bench::run(scenes, 21, 0.02));
   results.merge(bench::run(boundary, 7, 0.02));
   results.merge(bench::run(groups, 21, 0.02));
   std::vector<bench::Goal> goals = bench::step_goals();
   for (auto& goal : bench::boundary_goals()) goals.push_back(std::move(goal));
   for (auto& goal : bench::lie_newton_goals()) goals.push_back(std::move(goal));
+  for (auto& goal : bench::scene_goals()) goals.push_back(std::move(goal));
   const std::string step_tables = bench::table(steps, results);
   const std::string boundary_tables = bench::table(boundary, results);
+  const std::string scene_tables = bench::table(scenes, results);
   const std::string group_tables = bench::table(groups, results);
   const std::string goals_reached = bench::goals_table(goals, results, /*every=*/part.empty());
-  fmt::print("{}{}{}\n{}", step_tables, boundary_tables, group_tables, goals_reached);
+  const std::string effects = part.empty() || part == "effects" ? bench::effects_table() : std::string();
+  fmt::print("{}{}{}{}\n{}\n{}", step_tables, scene_tables, boundary_tables, group_tables, effects, goals_reached);
   if (write_page) {
     std::string page = file_contents(LAGROID_SOURCE "/bench/performance.md.in");
     put(page, "@MACHINE@", machine());
     put(page, "@GOALS@", goals_reached);
     put(page, "@STEPS@", step_tables);
+    put(page, "@SCENES@", scene_tables);
+    put(page, "@EFFECTS@", effects);
     put(page, "@BOUNDARY@", boundary_tables);
     put(page, "@LIE_NEWTON@", group_tables);
     put(page, "@COMPILE@", bench::compile_times());

@@ -111,6 +111,7 @@ void Multibody::assemble(Scene& scene) {
   island_range(in_order(linear_islands, linear_order), &Island::linear);
   island_range(in_order(rotation_islands, rotation_order), &Island::rotations);
   places_.attitudes = inverse(rotation_order);
+  linear_places_ = linear_place;
 
   // Sites: places of linear factors, points fixed in bodies by island, the ground.
   const auto is_factor = [](const Scene::Point& p) { return p.linear >= 0 && p.base < 0; };

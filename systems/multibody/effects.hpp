@@ -49,6 +49,48 @@ struct InverseSquare {
   }
 };
 
+/// Attraction of all pairs of bodies: U = -sum_{i<j} G m_i m_j / sqrt(|x_i - x_j|^2 + softening^2).
+class MutualGravity final : public Effects {
+ public:
+  MutualGravity(double constant, double softening) : constant_(constant), square_softening_(softening * softening) {}
+  void add(Site site, double mass) {
+    sites_.push_back(site);
+    masses_.push_back(mass);
+  }
+
+  double energy(const Configuration& at) const override {
+    double sum = 0;
+    for (std::size_t i = 0; i < sites_.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        sum -= masses_[i] * masses_[j] / std::sqrt((at(sites_[i]) - at(sites_[j])).squaredNorm() + square_softening_);
+    return constant_ * sum;
+  }
+  void add_forces(const Configuration& at, Forces& f) const override {
+    for (std::size_t i = 0; i < sites_.size(); ++i) {
+      const Vec x = at(sites_[i]);
+      Vec sum = Vec::Zero();
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec d = at(sites_[j]) - x;
+        const double square = d.squaredNorm() + square_softening_;
+        const Vec pull = (constant_ * masses_[i] * masses_[j] / (square * std::sqrt(square))) * d;
+        sum += pull;
+        f(sites_[j]) -= pull;
+      }
+      f(sites_[i]) += sum;
+    }
+  }
+  void place(const Places& places) override {
+    for (Site& s : sites_) s = places(s);
+  }
+  std::vector<Site> sites() const override { return sites_; }
+
+ private:
+  double constant_;
+  double square_softening_;
+  std::vector<Site> sites_;
+  std::vector<double> masses_;
+};
+
 /// U = k (|x1 - x0| - l)^2 / 2. Requires that the ends do not meet, unless l = 0.
 struct Spring {
   std::array<Site, 2> sites;

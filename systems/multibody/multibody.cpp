@@ -107,7 +107,7 @@ bool Multibody::factorise(Island& island) {
   for (int r = island.rotations.first; r < island.rotations.last; ++r) {
     const auto i = std::size_t(r);
     Mat a = turns_[i].derivative(turned_[i]);
-    a.diagonal() += 0.5 * turn_damping_[i];
+    if (!damped_turns_.empty()) a.diagonal() += 0.5 * turn_damping_[i];
     turn_inverse_[i] = a.inverse();
     turn_frame_[i] = turns_[i].target_frame(turned_[i]);
   }
@@ -202,8 +202,8 @@ StepReport Multibody::solve(Island& island) {
       }
       for (int r = island.rotations.first; r < island.rotations.last; ++r) {
         const auto i = std::size_t(r);
-        turn_residual_[i] =
-            turns_[i].momentum(turned_[i]) + 0.5 * turn_damping_[i].cwiseProduct(turned_[i]) - spin_total_[i];
+        turn_residual_[i] = turns_[i].momentum(turned_[i]) - spin_total_[i];
+        if (!damped_turns_.empty()) turn_residual_[i] += 0.5 * turn_damping_[i].cwiseProduct(turned_[i]);
         const double relative = turn_residual_[i].lpNorm<Eigen::Infinity>() / spin_size_[i];
         sum += relative;
         residual = std::max(residual, relative);
@@ -276,7 +276,8 @@ StepReport Multibody::turn_freely(int rotation) {
   if ((xi.array() == 0).all()) xi = momentum.cwiseQuotient(turn.inertia_over_h);
   double previous = std::numeric_limits<double>::infinity();
   for (report.iterations = 1; report.iterations <= options_.max_iterations; ++report.iterations) {
-    const Vec residual = turn.momentum(xi) + 0.5 * turn_damping_[i].cwiseProduct(xi) - momentum;
+    Vec residual = turn.momentum(xi) - momentum;
+    if (!damped_turns_.empty()) residual += 0.5 * turn_damping_[i].cwiseProduct(xi);
     report.residual = residual.lpNorm<Eigen::Infinity>() / momentum.norm();
     report.excess = report.residual / (4 * round_off);
     if (!std::isfinite(report.residual)) {
@@ -291,7 +292,7 @@ StepReport Multibody::turn_freely(int rotation) {
       return report;
     }
     Mat a = turn.derivative(xi);
-    a.diagonal() += 0.5 * turn_damping_[i];
+    if (!damped_turns_.empty()) a.diagonal() += 0.5 * turn_damping_[i];
     xi -= a.inverse() * residual;
     if (last && report.residual < 1e-12) return report;
     previous = report.residual;
@@ -301,6 +302,8 @@ StepReport Multibody::turn_freely(int rotation) {
 }
 
 StepReport Multibody::advance() {
+  std::fill(impulse_.begin(), impulse_.end(), Vec::Zero());
+  std::fill(spin_impulse_.begin(), spin_impulse_.end(), Vec::Zero());
   StepReport worst;
   worst.status = SolveStatus::converged;
   const auto note = [&](const StepReport& report) {
@@ -311,16 +314,12 @@ StepReport Multibody::advance() {
     return report.converged();
   };
   next_.time = start_ + h_ * double(index_ + 1);
-  const double half = 0.5 * h_;
+  kick();
   for (std::size_t f = 0; f < momentum_.size(); ++f) {
-    impulse_[f] = half * forces_.on[f];
     kicked_[f] = momentum_[f] + (momentum_carry_[f] + impulse_[f]);
     displacement_[f] = response_[f].cwiseProduct(kicked_[f]);
   }
-  for (std::size_t r = 0; r < spin_.size(); ++r) {
-    spin_impulse_[r] = half * forces_.torque[r];
-    spin_kicked_[r] = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
-  }
+  for (std::size_t r = 0; r < spin_.size(); ++r) spin_kicked_[r] = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
   for (int r = 0; r < free_.rotations.last; ++r)
     if (!note(turn_freely(r))) return worst;
   for (Island& island : islands_)
@@ -371,11 +370,34 @@ void Multibody::accept() {
   std::swap(earlier_[0], multipliers_);
   for (const Island& island : islands_) differentiate(now_, island, gradients_);
   act();
+  kick();
+  for (std::size_t f = 0; f < momentum_.size(); ++f) add(momentum_[f], momentum_carry_[f], impulse_[f]);
+  for (std::size_t r = 0; r < spin_.size(); ++r) add(spin_[r], spin_carry_[r], spin_impulse_[r]);
+}
+
+void Multibody::kick() {
+  if (effects_.empty()) return;
   const double half = 0.5 * h_;
-  for (std::size_t f = 0; f < momentum_.size(); ++f)
-    add(momentum_[f], momentum_carry_[f], impulse_[f] + half * forces_.on[f]);
-  for (std::size_t r = 0; r < spin_.size(); ++r)
-    add(spin_[r], spin_carry_[r], spin_impulse_[r] + half * forces_.torque[r]);
+  for (std::size_t f = 0; f < momentum_.size(); ++f) impulse_[f] += half * forces_.on[f];
+  for (std::size_t r = 0; r < spin_.size(); ++r) spin_impulse_[r] += half * forces_.torque[r];
+}
+
+std::size_t Multibody::memory() const {
+  std::size_t bytes = sizeof(*this);
+  const auto count = [&](const auto&... lists) {
+    ((bytes += lists.capacity() * sizeof(typename std::decay_t<decltype(lists)>::value_type)), ...);
+  };
+  for (const Configuration* at : {&now_, &next_}) count(at->x, at->attitude);
+  count(forces_.on, forces_.torque, places_.sites, places_.attitudes, linear_places_, quaternions_, next_quaternions_,
+        planar_, inertia_, moments_, response_, turns_, turn_damping_, damped_, damped_turns_, momentum_,
+        momentum_carry_, place_carry_, spin_, spin_carry_, impulse_, kicked_, displacement_, spin_impulse_,
+        spin_kicked_, spin_total_, turned_, turned_before_, turn_residual_, spin_size_, turn_inverse_, turn_frame_,
+        arms_, planar_arms_, pushed_arms_, pushed_planar_arms_, islands_, batches_, linear_entries_, rotation_entries_,
+        linear_pairs_, rotation_pairs_, levers_, planar_levers_, gradients_, next_gradients_, linear_response_,
+        rotation_response_, rotation_gradient_, factor_entries_, sizes_, multipliers_, values_, right_, precision_,
+        earlier_[0], earlier_[1], earlier_[2], left_out_);
+  for (const Island& island : islands_) bytes += island.matrix.entries() * sizeof(double);
+  return bytes;
 }
 
 Multibody::State Multibody::state() const {
@@ -403,6 +425,12 @@ void Multibody::restore(const State& state) {
 void Multibody::reverse() {
   for (auto* list : {&momentum_, &momentum_carry_, &spin_, &spin_carry_, &turned_before_})
     for (Vec& v : *list) v = -v;
+}
+
+void Multibody::make_tangent() {
+  const Momenta m = momenta();
+  momentum_ = m.linear;
+  spin_ = m.spin;
 }
 
 void Multibody::begin() {

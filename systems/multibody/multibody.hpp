@@ -45,6 +45,8 @@ class Multibody {
   void restore(const State& state);
   /// Back along the same trajectory: momenta change their signs.
   void reverse();
+  /// Takes from the momenta what the joints do not allow.
+  void make_tangent();
 
   long index() const { return index_; }
   double time() const { return now_.time; }
@@ -54,6 +56,8 @@ class Multibody {
   /// Where a site and an attitude of the written scene are found in `configuration()`.
   Site operator()(Site s) const { return places_(s); }
   Attitude operator()(Attitude a) const { return places_(a); }
+  /// Where `Scene::linear_of` is found in `configuration()` and in the momenta.
+  int linear_place(int linear) const { return linear_places_[std::size_t(linear)]; }
   const Quaternion& quaternion(Attitude a) const { return quaternions_[std::size_t(places_(a).index)]; }
 
   /// Momenta at this node, tangent to the joints (as they are reported); in the order of `configuration()`: of places
@@ -80,7 +84,7 @@ class Multibody {
   int dependent_rows() const { return dependent_rows_; }
   /// Multipliers lambda of the constraints C, in the order of the islands' joints, of the last step (per h).
   const std::vector<double>& multipliers() const { return earlier_[0]; }
-  /// Of all arrays that the motion needs, B.
+  /// Of all arrays that the motion needs beyond its effects' and joints' own, B.
   std::size_t memory() const;
 
  private:
@@ -145,6 +149,8 @@ class Multibody {
   void begin();
 
   void act();
+  /// Half a step's impulse of the forces at this node.
+  void kick();
   void place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const;
   void correct(const Island& island, const double* multipliers);
   void try_place(const Island& island);
@@ -159,6 +165,7 @@ class Multibody {
   double start_ = 0;
   long index_ = 0;
   Places places_;
+  std::vector<int> linear_places_;
   std::vector<std::unique_ptr<Joints>> joints_;
   std::vector<std::unique_ptr<Effects>> effects_;
 

@@ -61,6 +61,9 @@ class Scene {
   Site point_of(const Body& body, const Vec& arm);
   Site ground(const Vec& place);
 
+  /// The number of the body's linear motion among those of the scene; -1 for one that has none.
+  int linear_of(const Body& body) const { return sites_[std::size_t(body.centre.index)].linear; }
+
   /// Linear damping of a body's centre and of its turning (N s/m, N m s).
   void damp(const Body& body, double of_motion, double of_turning);
 

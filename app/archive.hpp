@@ -1,0 +1,52 @@
+#pragma once
+/// State that is kept and restored by one function.
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+/// Visits the fields of a state: `archive("name", field)` stores the field when the state is kept, and sets it when it
+/// is restored (bit by bit, as CBOR). Restoring throws nlohmann::json::exception where the field is missing or of
+/// another kind.
+class Archive {
+ public:
+  /// To keep.
+  Archive() : fields_(nlohmann::json::object()), restoring_(false) {}
+  /// To restore.
+  explicit Archive(nlohmann::json fields) : fields_(std::move(fields)), restoring_(true) {}
+
+  bool restoring() const { return restoring_; }
+  const nlohmann::json& fields() const { return fields_; }
+
+  /// Numbers, strings, vectors of numbers; vectors of Eigen's vectors; whatever visits its own fields (`persist`).
+  template <class T> void operator()(const std::string& name, T& field) {
+    if constexpr (requires { field.persist(*this); }) {
+      Archive inner = restoring_ ? Archive(fields_.at(name)) : Archive();
+      field.persist(inner);
+      if (!restoring_) fields_[name] = inner.fields_;
+    } else if constexpr (requires { typename T::value_type::Scalar; }) {
+      constexpr auto width = std::size_t(T::value_type::SizeAtCompileTime);
+      std::vector<double> flat;
+      for (const auto& v : field) flat.insert(flat.end(), v.data(), v.data() + width);
+      (*this)(name, flat);
+      if (!restoring_) return;
+      field.resize(flat.size() / width);
+      for (std::size_t i = 0; i < flat.size(); ++i) field[i / width](Eigen::Index(i % width)) = flat[i];
+    } else if (restoring_) {
+      field = fields_.at(name).get<T>();
+    } else {
+      fields_[name] = field;
+    }
+  }
+
+ private:
+  nlohmann::json fields_;
+  bool restoring_;
+};
+
+}  // namespace lagroid::app

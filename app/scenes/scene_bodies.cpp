@@ -1,0 +1,240 @@
+#include "scene_bodies.hpp"
+
+#include "../systems/attitude.hpp"
+
+#include <lagroid/systems/multibody/joints.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace lagroid::app {
+
+using multibody::Mat;
+using multibody::Quaternion;
+using multibody::Vec;
+
+Vec vector_of(const Section& table, std::string_view key, std::string_view meaning) {
+  const auto v = table.numbers(key, 3, meaning);
+  return {v[0], v[1], v[2]};
+}
+
+Vec vector_or(const Section& table, std::string_view key, std::string_view meaning, const Vec& fallback) {
+  return table.has(key) ? vector_of(table, key, meaning) : fallback;
+}
+
+namespace {
+
+Vec read_moments(const Section& table) {
+  const Vec inertia = vector_of(table, "inertia", "three principal moments, kg m^2");
+  for (int i = 0; i < 3; ++i) {
+    if (!(inertia(i) > 0))
+      table.fail("inertia", fmt::format("principal moments must be positive, got {:.8g}", inertia(i)));
+    const double others = inertia((i + 1) % 3) + inertia((i + 2) % 3);
+    if (inertia(i) > others * (1 + 1e-12))
+      table.fail("inertia",
+                 fmt::format("no body has these moments: {:.8g} is more than the sum of the others", inertia(i)));
+  }
+  return inertia;
+}
+
+Quaternion read_attitude(const Section& table) {
+  if (!table.has("attitude")) return {1, 0, 0, 0};
+  const auto q = table.attitude("attitude");
+  return {q[0], q[1], q[2], q[3]};
+}
+
+std::string read_name(const SceneBodies& bodies, const Section& table) {
+  const std::string name = table.text("name", "a name for the body");
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), allowed))
+    table.fail("name", fmt::format("\"{}\": use letters, digits, - and _", name));
+  if (name == "ground") table.fail("name", "\"ground\" is what joints tie bodies to; choose another name");
+  const auto taken = [&](const NamedBody& body) { return body.name == name || body.name.starts_with(name + "."); };
+  if (std::any_of(bodies.bodies.begin(), bodies.bodies.end(), taken))
+    table.fail("name", fmt::format("there is a body \"{}\" already; choose another name", name));
+  return name;
+}
+
+void keep(SceneBodies& bodies, NamedBody body) {
+  body.linear = bodies.scene.linear_of(body.body);
+  bodies.bodies.push_back(std::move(body));
+}
+
+void read_point(SceneBodies& bodies, const Section& table) {
+  NamedBody b;
+  b.name = read_name(bodies, table);
+  b.mass = table.number("mass", positive);
+  b.place = vector_of(table, "position", "x, y, z in m");
+  b.body = bodies.scene.point_mass(b.mass, b.place, vector_or(table, "velocity", "m/s"));
+  b.mass_centre = b.body.centre;
+  keep(bodies, b);
+}
+
+void read_rigid(SceneBodies& bodies, const Section& table) {
+  NamedBody b;
+  b.name = read_name(bodies, table);
+  b.mass = table.number("mass", positive);
+  b.inertia = read_moments(table);
+  b.place = vector_of(table, "position", "x, y, z of the centre of mass in m");
+  const Quaternion q = read_attitude(table);
+  b.attitude = SO3::from_quaternion(q);
+  b.body = bodies.scene.rigid_body(b.mass, b.inertia, b.place, q, vector_or(table, "velocity", "m/s"),
+                                   vector_or(table, "angular_velocity", "in the body's frame, rad/s"));
+  b.mass_centre = b.body.centre;
+  keep(bodies, b);
+}
+
+void read_pivoted(SceneBodies& bodies, const Section& table) {
+  NamedBody b;
+  b.name = read_name(bodies, table);
+  b.mass = table.number_or("mass", 0, nonnegative);
+  b.inertia = read_moments(table);
+  b.place = vector_or(table, "pivot", "x, y, z of the fixed point in m");
+  b.to_centre = vector_or(table, "centre", "from the pivot to the centre of mass, in the body's frame, m");
+  const Quaternion q = read_attitude(table);
+  b.attitude = SO3::from_quaternion(q);
+  b.body = bodies.scene.pivoted_body(b.inertia, b.place, q,
+                                     vector_or(table, "angular_velocity", "in the body's frame, rad/s"));
+  b.mass_centre = bodies.scene.point_of(b.body, b.to_centre);
+  bodies.isolated = false;
+  keep(bodies, b);
+}
+
+void read_planar(SceneBodies& bodies, const Section& table) {
+  NamedBody b;
+  b.name = read_name(bodies, table);
+  b.planar = true;
+  b.mass = table.number("mass", positive);
+  const double inertia = table.number("inertia", positive);
+  b.inertia = {0, 0, inertia};
+  const auto at = table.numbers("position", 2, "x, y of the centre of mass in m");
+  const double angle = table.number_or("angle", 0);
+  const auto v = table.has("velocity") ? table.numbers("velocity", 2, "m/s") : std::vector<double>{0, 0};
+  b.place = {at[0], at[1], 0};
+  b.attitude = SO3::exp(Vec(0, 0, angle));
+  b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], angle},
+                                    {v[0], v[1], table.number_or("angular_velocity", 0)});
+  b.mass_centre = b.body.centre;
+  keep(bodies, b);
+}
+
+/// Links of equal length, each a point mass on a massless rod, in a straight line at first.
+void read_chain(SceneBodies& bodies, const Section& table) {
+  const std::string name = read_name(bodies, table);
+  const long links = table.integer("links", 1, 1'000'000);
+  const double mass = table.number("mass", positive) / double(links);
+  const double length = table.number("length", positive) / double(links);
+  const Vec direction = vector_or(table, "direction", "from link to link", {0, 0, -1});
+  if (!(direction.norm() > 0)) table.fail("direction", "must not vanish");
+  const Vec turning = vector_or(table, "angular_velocity", "of the whole, in space, rad/s");
+  const std::string on = table.has("on") ? table.text("on", "the body it hangs on, or \"ground\"") : "ground";
+  const Vec arm = vector_or(table, "at", "where: in the frame of the body it hangs on, of the ground in space");
+  const NamedBody* holder = on == "ground" ? nullptr : &bodies.named(table, "on", on);
+  End last = bodies.end_of(holder, arm);
+  if (!holder) bodies.isolated = false;
+  const Vec origin = last.place;
+  for (long k = 1; k <= links; ++k) {
+    NamedBody b;
+    b.name = fmt::format("{}.{}", name, k);
+    b.mass = mass;
+    b.place = origin + (double(k) * length) * direction.normalized();
+    b.body = bodies.scene.point_mass(mass, b.place, turning.cross(Vec(b.place - origin)));
+    b.mass_centre = b.body.centre;
+    keep(bodies, b);
+    const End here = bodies.end_of(&bodies.bodies.back(), Vec::Zero());
+    bodies.scene.add(multibody::Rod{{last.site, here.site}, length});
+    bodies.lines.push_back({last, here, 0.008});
+    last = here;
+  }
+}
+
+}  // namespace
+
+const NamedBody& SceneBodies::named(const Section& table, std::string_view key, const std::string& name) const {
+  for (const auto& body : bodies)
+    if (body.name == name) return body;
+  std::vector<std::string> names;
+  for (const auto& body : bodies)
+    if (names.size() < 12) names.push_back(body.name);
+  table.fail(key, fmt::format("there is no body \"{}\"; there are {}{}", name, fmt::join(names, ", "),
+                              bodies.size() > names.size() ? ", ..." : ""));
+}
+
+std::vector<const NamedBody*> SceneBodies::chosen(const Section& table, std::string_view key) const {
+  std::vector<const NamedBody*> out;
+  if (table.has(key)) {
+    for (const std::string& name : table.texts_or_none(key, "names of bodies")) out.push_back(&named(table, key, name));
+  } else {
+    for (const auto& body : bodies) out.push_back(&body);
+  }
+  return out;
+}
+
+End SceneBodies::end_of(const NamedBody* body, const Vec& arm) {
+  End end;
+  end.body = body;
+  end.arm = arm;
+  end.place = body ? Vec(body->place + body->attitude * arm) : arm;
+  end.site = body ? scene.point_of(body->body, arm) : scene.ground(arm);
+  return end;
+}
+
+std::array<End, 2> SceneBodies::ends(const Section& table) {
+  const auto names = table.texts_or_none("between", "two names of bodies, or \"ground\"");
+  if (names.size() != 2)
+    table.fail(table.has("between") ? "between" : "",
+               "between: give the two names of the bodies that it ties, or \"ground\" for one of them");
+  if (names[0] == names[1]) table.fail("between", fmt::format("\"{}\" is tied to itself", names[0]));
+  std::vector<std::vector<double>> points(2, {0, 0, 0});
+  if (table.has("points"))
+    points = table.points("points", 2, 3, "a point of each, in its body's frame, of the ground in space");
+  std::array<End, 2> out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec arm(points[i][0], points[i][1], points[i][2]);
+    const NamedBody* body = names[i] == "ground" ? nullptr : &named(table, "between", names[i]);
+    if (body && body->body.attitude.index < 0 && !body->planar && !arm.isZero(0))
+      table.fail("points", fmt::format("\"{}\" is a point mass and has no other points: give [0, 0, 0]", names[i]));
+    if (body && body->planar && arm(2) != 0)
+      table.fail("points", fmt::format("\"{}\" moves in the plane: give it a third coordinate of 0", names[i]));
+    out[i] = end_of(body, arm);
+    if (!body) isolated = false;
+  }
+  return out;
+}
+
+void read_body(SceneBodies& bodies, const Section& table) {
+  const std::string kind = table.choice("kind", {"point", "rigid", "pivoted", "planar", "chain"});
+  if (kind == "point") read_point(bodies, table);
+  if (kind == "rigid") read_rigid(bodies, table);
+  if (kind == "pivoted") read_pivoted(bodies, table);
+  if (kind == "planar") read_planar(bodies, table);
+  if (kind == "chain") read_chain(bodies, table);
+}
+
+SceneBodies read_scene_bodies(const Section& scene) {
+  SceneBodies out;
+  out.scene.rotation =
+      scene.choice_or("rotation", "exp", {"exp", "cayley"}) == "exp" ? Retraction::exponential : Retraction::cayley;
+  for (const auto& table : scene.tables("body")) read_body(out, table);
+  for (const auto& table : scene.tables("joint")) read_joint(out, table);
+  for (const auto& table : scene.tables("effect")) read_effect(out, table);
+  Vec least = Vec::Zero();
+  Vec most = Vec::Zero();
+  const auto cover = [&](const Vec& x) {
+    least = least.cwiseMin(x);
+    most = most.cwiseMax(x);
+  };
+  for (const auto& body : out.bodies) cover(body.place);
+  for (const auto& line : out.lines) {
+    cover(line.from.place);
+    cover(line.to.place);
+  }
+  out.extent = (most - least).norm();
+  return out;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,81 @@
+#pragma once
+/// A scene of bodies while it is read: its bodies by name, and where they are at the start.
+
+#include "../scene_reader.hpp"
+#include "../shape.hpp"
+
+#include <lagroid/systems/multibody/scene.hpp>
+
+#include <array>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// A body with its name and its state at the start.
+struct NamedBody {
+  std::string name;
+  multibody::Body body;
+  bool planar = false;
+  int linear = -1;  ///< Scene::linear_of
+  double mass = 0;
+  multibody::Site mass_centre;  ///< where its weight acts
+  multibody::Vec place = multibody::Vec::Zero();
+  multibody::Mat attitude = multibody::Mat::Identity();
+  multibody::Vec inertia = multibody::Vec::Zero();    ///< principal moments; zero for a point mass
+  multibody::Vec to_centre = multibody::Vec::Zero();  ///< from its reference point to its centre of mass, in its frame
+};
+
+/// One end of a joint or a spring: a point of a body or of the ground.
+struct End {
+  const NamedBody* body = nullptr;  ///< null: the ground
+  multibody::Vec arm = multibody::Vec::Zero();
+  multibody::Vec place = multibody::Vec::Zero();  ///< in space at the start
+  multibody::Site site;
+
+  multibody::Attitude attitude() const { return body ? body->body.attitude : multibody::Attitude{}; }
+  /// A direction in space, in the frame of this body.
+  multibody::Vec seen(const multibody::Vec& direction) const {
+    return body ? multibody::Vec(body->attitude.transpose() * direction) : direction;
+  }
+  bool turns_in_space() const { return !body || body->body.attitude.index >= 0; }
+  std::string name() const { return body ? body->name : "ground"; }
+};
+
+/// What the reader makes of a scene.
+struct SceneBodies {
+  multibody::Scene scene;
+  std::deque<NamedBody> bodies;  ///< ends point to them
+  /// Straight connections to be drawn, and how thick (over the size of the scene).
+  struct Line {
+    End from, to;
+    double width;
+  };
+  std::vector<Line> lines;
+  bool dissipates = false;  ///< damping takes energy
+  bool driven = false;      ///< forces that are not derived from a potential
+  bool isolated = true;     ///< nothing acts from outside: momenta are conserved
+  double extent = 0;        ///< size of the scene at the start, m
+
+  /// The ends of a table: `between`, two names, and `points`, in the bodies' frames (of the ground: in space).
+  std::array<End, 2> ends(const Section& table);
+  /// The bodies named under `key`; all of them where it is missing.
+  std::vector<const NamedBody*> chosen(const Section& table, std::string_view key) const;
+  const NamedBody& named(const Section& table, std::string_view key, const std::string& name) const;
+  End end_of(const NamedBody* body, const multibody::Vec& arm);
+};
+
+/// Three numbers; `fallback` where the key is missing.
+multibody::Vec vector_or(const Section& table, std::string_view key, std::string_view meaning,
+                         const multibody::Vec& fallback = multibody::Vec::Zero());
+multibody::Vec vector_of(const Section& table, std::string_view key, std::string_view meaning);
+
+/// Reads [[body]], [[joint]] and [[effect]].
+SceneBodies read_scene_bodies(const Section& scene);
+void read_body(SceneBodies& bodies, const Section& table);
+void read_joint(SceneBodies& bodies, const Section& table);
+void read_effect(SceneBodies& bodies, const Section& table);
+
+}  // namespace lagroid::app

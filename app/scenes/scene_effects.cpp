@@ -1,0 +1,134 @@
+// [[effect]]
+
+#include "scene_bodies.hpp"
+
+#include <lagroid/systems/multibody/effects.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+namespace lagroid::app {
+
+using multibody::Vec;
+
+namespace {
+
+void read_gravity(SceneBodies& bodies, const Section& table) {
+  const Vec g = vector_or(table, "acceleration", "m/s^2", {0, 0, -9.81});
+  for (const NamedBody* body : bodies.chosen(table, "bodies"))
+    if (body->mass > 0) bodies.scene.add(multibody::ConstantForce{{body->mass_centre}, body->mass * g});
+  bodies.isolated = false;
+}
+
+void read_central(SceneBodies& bodies, const Section& table) {
+  const Vec centre = vector_or(table, "centre", "x, y, z in m");
+  const double strength = table.number("strength", any_number);
+  for (const NamedBody* body : bodies.chosen(table, "bodies")) {
+    if (body->mass == 0) continue;
+    if ((body->place + body->attitude * body->to_centre - centre).isZero(0))
+      table.fail("centre", fmt::format("is where \"{}\" is at the start", body->name));
+    bodies.scene.add(multibody::CentralGravity{{body->mass_centre}, centre, strength * body->mass});
+  }
+  bodies.isolated = false;
+}
+
+void read_mutual(SceneBodies& bodies, const Section& table) {
+  auto gravity = std::make_unique<multibody::MutualGravity>(table.number_or("constant", 6.6743e-11),
+                                                            table.number_or("softening", 0, nonnegative));
+  for (const NamedBody* body : bodies.chosen(table, "bodies"))
+    if (body->mass > 0) gravity->add(body->mass_centre, body->mass);
+  bodies.scene.add_effects(std::move(gravity));
+}
+
+void read_charges(SceneBodies& bodies, const Section& table) {
+  const auto charged = bodies.chosen(table, "bodies");
+  const auto charges = table.numbers("charges", charged.size(), "of the bodies, in their order, C");
+  const double constant = table.number_or("constant", 8.9875517923e9);
+  const double softening = table.number_or("softening", 0, nonnegative);
+  for (std::size_t i = 0; i < charged.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (charges[i] * charges[j] != 0)
+        bodies.scene.add(multibody::InverseSquare{
+            {charged[j]->mass_centre, charged[i]->mass_centre}, -constant * charges[i] * charges[j], softening});
+}
+
+void read_spring(SceneBodies& bodies, const Section& table) {
+  const auto ends = bodies.ends(table);
+  const double apart = (ends[1].place - ends[0].place).norm();
+  const double length = table.number_or("length", apart, nonnegative);
+  if (apart == 0 && length > 0)
+    table.fail("points", "the ends of the spring meet at the start: its force has no direction");
+  bodies.scene.add(multibody::Spring{{ends[0].site, ends[1].site}, table.number("stiffness", nonnegative), length});
+  bodies.lines.push_back({ends[0], ends[1], 0.004});
+}
+
+void read_torsion(SceneBodies& bodies, const Section& table) {
+  const auto ends = bodies.ends(table);
+  for (const End& end : ends)
+    if (!end.turns_in_space())
+      table.fail("between",
+                 fmt::format("\"{}\" does not turn in space: a torsion spring acts on bodies that do", end.name()));
+  const Vec axis = vector_of(table, "direction", "in space at the start, fixed in both bodies");
+  if (!(axis.norm() > 0)) table.fail("direction", "must not vanish");
+  const Vec unit = axis.normalized();
+  bodies.scene.add(multibody::TorsionSpring{{},
+                                            {ends[0].attitude(), ends[1].attitude()},
+                                            ends[0].seen(unit),
+                                            ends[1].seen(unit),
+                                            table.number("stiffness", nonnegative)});
+}
+
+void read_drag(SceneBodies& bodies, const Section& table) {
+  const double motion = table.number_or("motion", 0, nonnegative);
+  const double turning = table.number_or("turning", 0, nonnegative);
+  if (motion == 0 && turning == 0)
+    table.fail("", "give motion (force over velocity, kg/s) or turning (torque over angular velocity, N m s)");
+  for (const NamedBody* body : bodies.chosen(table, "bodies")) bodies.scene.damp(body->body, motion, turning);
+  bodies.dissipates = true;
+  bodies.isolated = false;
+}
+
+void read_force(SceneBodies& bodies, const Section& table) {
+  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  const Vec arm = vector_or(table, "at", "where it acts, in the body's frame, m");
+  const Vec force = vector_of(table, "force", "in space, N");
+  const double rate = table.number_or("rate", 0);
+  const End end = bodies.end_of(&body, arm);
+  if (rate == 0 && !table.has("phase")) {
+    bodies.scene.add(multibody::ConstantForce{{end.site}, force});
+  } else {
+    bodies.scene.add(multibody::PeriodicForce{{end.site}, force, rate, table.number_or("phase", 0)});
+    bodies.driven = true;
+  }
+  bodies.isolated = false;
+}
+
+void read_torque(SceneBodies& bodies, const Section& table) {
+  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  if (body.body.attitude.index < 0)
+    table.fail("body", fmt::format("\"{}\" does not turn in space: a torque acts on bodies that do", body.name));
+  bodies.scene.add(
+      multibody::BodyTorque{{}, {body.body.attitude}, vector_of(table, "torque", "in the body's frame, N m")});
+  bodies.driven = true;
+  bodies.isolated = false;
+}
+
+}  // namespace
+
+void read_effect(SceneBodies& bodies, const Section& table) {
+  const std::string kind = table.choice("kind", {"gravity", "central_gravity", "mutual_gravity", "spring",
+                                                 "torsion_spring", "drag", "force", "torque", "charges"});
+  if (kind == "gravity") read_gravity(bodies, table);
+  if (kind == "central_gravity") read_central(bodies, table);
+  if (kind == "mutual_gravity") read_mutual(bodies, table);
+  if (kind == "spring") read_spring(bodies, table);
+  if (kind == "torsion_spring") read_torsion(bodies, table);
+  if (kind == "drag") read_drag(bodies, table);
+  if (kind == "force") read_force(bodies, table);
+  if (kind == "torque") read_torque(bodies, table);
+  if (kind == "charges") read_charges(bodies, table);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,129 @@
+// [[joint]]
+
+#include "scene_bodies.hpp"
+
+#include <lagroid/systems/multibody/joints.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace lagroid::app {
+
+using multibody::Coincidence;
+using multibody::FixedAngle;
+using multibody::InPlane;
+using multibody::Mat;
+using multibody::Rod;
+using multibody::Vec;
+
+namespace {
+
+/// Unit vectors: the direction under `key`, and two that complete it.
+Mat frame_along(const Section& table, std::string_view key, std::string_view meaning) {
+  const Vec axis = vector_of(table, key, meaning);
+  if (!(axis.norm() > 0)) table.fail(key, "must not vanish");
+  const Vec third = axis.normalized();
+  int least = 0;
+  third.cwiseAbs().minCoeff(&least);
+  const Vec first = Vec(Vec::Unit(least)).cross(third).normalized();
+  Mat out;
+  out << first, third.cross(first), third;
+  return out;
+}
+
+void require_turning(const Section& table, const std::array<End, 2>& ends, const std::string& kind) {
+  for (const End& end : ends) {
+    if (end.turns_in_space()) continue;
+    table.fail(
+        "between",
+        end.body->planar
+            ? fmt::format("\"{}\" turns in the plane only: a joint of kind \"ball\" is its hinge", end.name())
+            : fmt::format("\"{}\" is a point mass and does not turn: a {} needs bodies that do", end.name(), kind));
+  }
+}
+
+void require_together(const Section& table, const std::array<End, 2>& ends) {
+  const double apart = (ends[1].place - ends[0].place).norm();
+  if (apart > 1e-9 * (1 + ends[0].place.norm()))
+    table.fail("points", fmt::format("the two points are {:.6g} m apart at the start, and must be one: \"{}\" has "
+                                     "its own at ({:.10g}, {:.10g}, {:.10g}), \"{}\" at ({:.10g}, {:.10g}, {:.10g})",
+                                     apart, ends[0].name(), ends[0].place(0), ends[0].place(1), ends[0].place(2),
+                                     ends[1].name(), ends[1].place(0), ends[1].place(1), ends[1].place(2)));
+}
+
+/// The direction u in space, fixed in the first body, and v, fixed in the second, keep their right angle.
+void keep_right_angle(SceneBodies& bodies, const std::array<End, 2>& ends, const Vec& u, const Vec& v) {
+  bodies.scene.add(FixedAngle{{}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(u), ends[1].seen(v), 0});
+}
+
+/// The second body keeps its attitude relative to the first.
+void keep_attitude(SceneBodies& bodies, const std::array<End, 2>& ends) {
+  for (int i = 0; i < 3; ++i) keep_right_angle(bodies, ends, Vec::Unit(i), Vec::Unit((i + 1) % 3));
+}
+
+/// The second point stays in the plane with this normal, fixed in the first body, through the first point.
+void keep_in_plane(SceneBodies& bodies, const std::array<End, 2>& ends, const Vec& normal) {
+  bodies.scene.add(InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(normal)});
+}
+
+void require_in_plane(const Section& table, const std::array<End, 2>& ends, const Vec& normal) {
+  const double off = normal.dot(ends[1].place - ends[0].place);
+  if (std::abs(off) > 1e-9 * (1 + ends[0].place.norm() + ends[1].place.norm()))
+    table.fail("points", fmt::format("the point of \"{}\" is {:.6g} m off where the joint lets it go, at the start",
+                                     ends[1].name(), off));
+}
+
+}  // namespace
+
+void read_joint(SceneBodies& bodies, const Section& table) {
+  const std::string kind = table.choice("kind", {"rod", "ball", "hinge", "weld", "slider", "plane"});
+  const auto ends = bodies.ends(table);
+  if (!ends[0].body && !ends[1].body) table.fail("between", "ties the ground to itself");
+  if (kind == "rod") {
+    const double apart = (ends[1].place - ends[0].place).norm();
+    const double length = table.number_or("length", apart, positive);
+    if (!(length > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
+    if (std::abs(length - apart) > 1e-9 * length)
+      table.fail("length", fmt::format("is {:.10g} m, but its ends are {:.10g} m apart at the start; leave it out to "
+                                       "take that",
+                                       length, apart));
+    bodies.scene.add(Rod{{ends[0].site, ends[1].site}, length});
+    bodies.lines.push_back({ends[0], ends[1], 0.008});
+    return;
+  }
+  if (kind == "ball") {
+    require_together(table, ends);
+    bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
+    return;
+  }
+  if (kind == "plane") {
+    if (!ends[0].turns_in_space())
+      table.fail("between", "the first holds the plane: it must be a body that turns in space, or the ground");
+    const Vec normal = frame_along(table, "normal", "of the plane, in space at the start").col(2);
+    require_in_plane(table, ends, normal);
+    keep_in_plane(bodies, ends, normal);
+    return;
+  }
+  require_turning(table, ends, kind);
+  if (kind == "weld") {
+    require_together(table, ends);
+    bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
+    keep_attitude(bodies, ends);
+    return;
+  }
+  const Mat frame = frame_along(table, "axis", "in space at the start");
+  if (kind == "hinge") {
+    require_together(table, ends);
+    bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
+    for (int i = 0; i < 2; ++i) keep_right_angle(bodies, ends, frame.col(i), frame.col(2));
+    return;
+  }
+  for (int i = 0; i < 2; ++i) {
+    require_in_plane(table, ends, frame.col(i));
+    keep_in_plane(bodies, ends, frame.col(i));
+  }
+  keep_attitude(bodies, ends);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,428 @@
+#include "scene_run.hpp"
+
+#include "../checkpoint.hpp"
+#include "../interrupt.hpp"
+#include "../ledger.hpp"
+#include "../progress.hpp"
+#include "../simulation.hpp"
+#include "../systems/attitude.hpp"
+#include "../view.hpp"
+#include "scene_bodies.hpp"
+
+#include <lagroid/systems/multibody/multibody.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+
+namespace lagroid::app {
+
+using multibody::Multibody;
+using multibody::Vec;
+
+namespace {
+
+std::string column(const std::string& body, std::string_view what) { return fmt::format("{}.{}", body, what); }
+
+std::vector<std::string> columns(const std::string& body, std::initializer_list<std::string_view> what) {
+  std::vector<std::string> out;
+  for (const auto& w : what) out.push_back(column(body, w));
+  return out;
+}
+
+std::vector<std::string> attitude_of(const std::string& body) { return columns(body, {"A_w", "A_x", "A_y", "A_z"}); }
+
+/// A series and how its row is read off the motion.
+struct Recorded {
+  Series series;
+  std::function<void(const Multibody&, const Multibody::Momenta&, std::vector<double>&)> read;
+};
+
+void put(std::vector<double>& row, const Vec& v) { row.insert(row.end(), v.data(), v.data() + 3); }
+
+/// What is recorded of a scene's motion.
+class Record {
+ public:
+  Record(const SceneBodies& bodies, const std::set<std::string>& chosen) {
+    for (const NamedBody& b : bodies.bodies) {
+      if (!chosen.empty() && !chosen.contains(b.name)) continue;
+      add_body(b);
+    }
+    for (std::size_t k = 0; k < bodies.lines.size(); ++k)
+      for (const auto& [end, name] : {std::pair{&bodies.lines[k].from, "from"}, {&bodies.lines[k].to, "to"}})
+        if (end->body && !end->arm.isZero(0) && (chosen.empty() || chosen.contains(end->body->name)))
+          add_point(end_column(bodies, k, name), end->site);
+    series_.push_back({{"energy", {"energy"}, "J", "kinetic and potential energy", false, {}},
+                       [](const Multibody& motion, const Multibody::Momenta& m, std::vector<double>& row) {
+                         row.push_back(motion.kinetic_energy(m) + motion.potential_energy());
+                       }});
+    if (!bodies.lines.empty() || bodies.bodies.size() > 0)
+      series_.push_back(
+          {{"constraint_residual", {"residual"}, "1", "largest |C|, over the size of its terms", false, {}},
+           [](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
+             row.push_back(motion.constraint_residual());
+           }});
+  }
+
+  static std::string end_column(const SceneBodies&, std::size_t line, const char* end) {
+    return fmt::format("line{}.{}", line, end);
+  }
+
+  void declare(Trajectory& trajectory) const {
+    for (const auto& r : series_) trajectory.series.push_back(r.series);
+  }
+
+  void observe(const Multibody& motion, const Multibody::Momenta& m, Trajectory& trajectory) {
+    trajectory.time.push_back(motion.time());
+    for (std::size_t i = 0; i < series_.size(); ++i) series_[i].read(motion, m, trajectory.series[i].values);
+  }
+
+ private:
+  void add_point(const std::string& name, multibody::Site site) {
+    series_.push_back({{name, columns(name, {"x", "y", "z"}), "m", "position in space", false, {}},
+                       [site](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
+                         put(row, motion.configuration()(motion(site)));
+                       }});
+  }
+
+  void add_body(const NamedBody& b) {
+    add_point(b.name, b.body.centre);
+    if (b.body.attitude.index >= 0) {
+      series_.push_back(
+          {{b.name + ".attitude",
+            attitude_of(b.name),
+            "1",
+            "rotation A from body to space, unit quaternion w, x, y, z",
+            false,
+            {}},
+           [a = b.body.attitude](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
+             const auto& q = motion.quaternion(a);
+             row.insert(row.end(), q.data(), q.data() + 4);
+           }});
+      series_.push_back(
+          {{b.name + ".spin", columns(b.name, {"M1", "M2", "M3"}), "kg m^2/s", "body angular momentum", false, {}},
+           [a = b.body.attitude](const Multibody& motion, const Multibody::Momenta& m, std::vector<double>& row) {
+             put(row, m.spin[std::size_t(motion(a).index)]);
+           }});
+    }
+    if (const int linear = b.linear; linear >= 0) {
+      const auto momentum = [linear](const Multibody& motion, const Multibody::Momenta& m, std::vector<double>& row) {
+        put(row, m.linear[std::size_t(motion.linear_place(linear))]);
+      };
+      if (b.planar) {
+        series_.push_back({{b.name + ".angle", {column(b.name, "angle")}, "rad", "of the body in the plane", false, {}},
+                           [linear](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
+                             row.push_back(motion.configuration().x[std::size_t(motion.linear_place(linear))](2));
+                           }});
+        series_.push_back({{b.name + ".momentum",
+                            columns(b.name, {"px", "py", "L"}),
+                            "kg m/s; kg m^2/s",
+                            "momentum, and angular momentum about the centre",
+                            false,
+                            {}},
+                           momentum});
+      } else {
+        series_.push_back(
+            {{b.name + ".momentum", columns(b.name, {"px", "py", "pz"}), "kg m/s", "momentum in space", false, {}},
+             momentum});
+      }
+    }
+  }
+
+  std::vector<Recorded> series_;
+};
+
+/// The shapes of bodies and lines, in the columns that are recorded.
+std::vector<Shape> shapes(const SceneBodies& bodies, const std::set<std::string>& chosen) {
+  std::vector<Shape> out;
+  const double extent = bodies.extent > 0 ? bodies.extent : 1;
+  double heaviest = 0;
+  for (const auto& b : bodies.bodies) heaviest = std::max(heaviest, b.mass);
+  const auto seen = [&](const NamedBody& b) { return chosen.empty() || chosen.contains(b.name); };
+  const auto at = [](const std::string& name) -> std::vector<Coordinate> {
+    return {column(name, "x"), column(name, "y"), column(name, "z")};
+  };
+  for (const auto& b : bodies.bodies) {
+    if (!seen(b)) continue;
+    Shape shape;
+    if (b.body.attitude.index >= 0) {
+      const Vec& c = b.to_centre;
+      const Vec moments = b.inertia - b.mass * (Vec::Constant(c.squaredNorm()) - c.cwiseAbs2());
+      const bool box = b.mass > 0 && 2 * moments.maxCoeff() < moments.sum();
+      shape = box ? box_of_mass(b.mass, {moments(0), moments(1), moments(2)})
+                  : box_of({b.inertia(0), b.inertia(1), b.inertia(2)});
+      shape.attitude = attitude_of(b.name);
+      shape.offset = {c(0), c(1), c(2)};
+    } else if (b.planar) {
+      const double side = std::sqrt(12 * b.inertia(2) / b.mass);
+      shape = {"box", {side, 0.1 * side, 0.1 * side}};
+      shape.turns = {{{0, 0, 1}, column(b.name, "angle")}};
+    } else {
+      shape = {"sphere", {0.03 * extent * std::cbrt(b.mass / heaviest)}};
+    }
+    shape.position = at(b.name);
+    shape.trail = bodies.bodies.size() <= 12 || &b == &bodies.bodies.back();
+    out.push_back(shape);
+  }
+  for (std::size_t k = 0; k < bodies.lines.size(); ++k) {
+    const auto& line = bodies.lines[k];
+    const auto end = [&](const End& e, const char* name) -> std::vector<Coordinate> {
+      if (!e.body) return {e.place(0), e.place(1), e.place(2)};
+      return at(e.arm.isZero(0) ? e.body->name : Record::end_column(bodies, k, name));
+    };
+    if ((line.from.body && !seen(*line.from.body)) || (line.to.body && !seen(*line.to.body))) continue;
+    Shape rod{"rod", {(line.to.place - line.from.place).norm(), line.width * extent}};
+    rod.position = end(line.from, "from");
+    rod.to = end(line.to, "to");
+    out.push_back(rod);
+  }
+  return out;
+}
+
+std::vector<Panel> panels(const SceneBodies& bodies, const std::set<std::string>& chosen) {
+  std::vector<Panel> out{{"energy", "t", "energy", "t", {"energy"}}};
+  std::vector<const NamedBody*> few;
+  for (const auto& b : bodies.bodies)
+    if (chosen.empty() || chosen.contains(b.name)) few.push_back(&b);
+  if (few.size() > 4) few.erase(few.begin(), few.end() - 4);
+  for (const char* axis : {"x", "y", "z"}) {
+    Panel panel{fmt::format("positions {}", axis), "t", axis, "t", {}};
+    for (const auto* b : few) panel.curves.push_back(column(b->name, axis));
+    if (!panel.curves.empty()) out.push_back(panel);
+  }
+  out.push_back({"constraints", "t", "residual", "t", {"residual"}});
+  return out;
+}
+
+/// Watches the quantities that the scene promises.
+class Promises {
+ public:
+  explicit Promises(const SceneBodies& bodies)
+      : keeps_energy_(!bodies.dissipates && !bodies.driven),
+        isolated_(bodies.isolated),
+        energy_("energy", Promise::bounded, 1),
+        momentum_("momentum", Promise::conserved, 3),
+        angular_("angular momentum", Promise::conserved, 3) {}
+
+  void observe(const Multibody& motion, const Multibody::Momenta& m) {
+    residual_ = std::max(residual_, motion.constraint_residual());
+    if (keeps_energy_) {
+      const double kinetic = motion.kinetic_energy(m);
+      const double potential = motion.potential_energy();
+      const double energy = kinetic + potential;
+      energy_.observe(&energy, kinetic + std::abs(potential));
+    }
+    if (!isolated_) return;
+    double size = 0;
+    double turning = 0;
+    for (std::size_t f = 0; f < m.linear.size(); ++f) {
+      size += m.linear[f].norm();
+      turning += m.linear[f].norm() * motion.configuration().x[f].norm();
+    }
+    for (const Vec& spin : m.spin) turning += spin.norm();
+    momentum_.observe(motion.linear_momentum(m).data(), size);
+    angular_.observe(motion.angular_momentum(m).data(), turning);
+  }
+
+  void persist(Archive& archive) {
+    archive("residual", residual_);
+    archive("energy", energy_);
+    archive("momentum", momentum_);
+    archive("angular momentum", angular_);
+  }
+
+  void report(const Multibody& motion, Ledger& ledger) const {
+    if (motion.rows() > 0) ledger.entries.push_back(constraint_entry(residual_, 1));
+    if (keeps_energy_) ledger.entries.push_back(energy_.entry());
+    if (isolated_) {
+      ledger.entries.push_back(momentum_.entry());
+      ledger.entries.push_back(angular_.entry());
+    }
+  }
+
+ private:
+  bool keeps_energy_;
+  bool isolated_;
+  double residual_ = 0;
+  QuantityWatch energy_, momentum_, angular_;
+};
+
+/// A scene's motion with all that is told of it, step by step.
+class Run {
+ public:
+  Run(const Section& scene, const RunContext& context) : bodies_(read_scene_bodies(scene)), context_(context) {
+    if (bodies_.bodies.empty()) scene.fail("body", "there is no body in it");
+    result_.system = scene.has("name") ? scene.text("name", "what the scene shows") : "scene";
+    grid_ = read_time(scene);
+    refuse_accuracy(scene);
+    const Section solver = scene.section_or_empty("solver");
+    multibody::Options options;
+    options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, 100000));
+    options.tolerance = solver.number_or("tolerance", 0, nonnegative);
+    const Section output = scene.section_or_empty("output");
+    every_ = output.integer_or("every", 1, 1, 1'000'000'000);
+    checkpoint_steps_ = output.integer_or("checkpoint", 0, 1, 1'000'000'000);
+    for (const NamedBody* body : bodies_.chosen(output, "bodies"))
+      if (output.has("bodies")) chosen_.insert(body->name);
+    const bool project = scene.flag_or("project_velocities", false);
+    scene.finish();
+
+    motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), grid_.step, options);
+    if (project) motion_->make_tangent();
+    if (const double defect = motion_->velocity_defect(); !(defect < 1e-8))
+      scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
+                                 "them, or take what the joints allow of them with project_velocities = true",
+                                 defect));
+    result_.steps_asked = grid_.steps;
+    const bool symplectic = !bodies_.dissipates && !bodies_.driven;
+    result_.method = description({"steps of the discrete Lagrangian", 2, true, symplectic, false});
+    if (motion_->dependent_rows() > 0)
+      result_.notes.push_back(
+          fmt::format("{} of {} equations of the joints depend on the others at the start; they hold because those do, "
+                      "and are left out",
+                      motion_->dependent_rows(), motion_->rows()));
+    record_.emplace(bodies_, chosen_);
+    promises_.emplace(bodies_);
+    if (context_.record) record_->declare(result_.trajectory);
+  }
+
+  RunResult go(const std::string& scene) {
+    const auto start = std::chrono::steady_clock::now();
+    double before = 0;
+    std::optional<Checkpoint> checkpoint;
+    if (!context_.folder.empty()) checkpoint.emplace(context_.folder, checkpoint_steps_);
+    const auto keep = [&] {
+      Archive archive;
+      double seconds = before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      archive("seconds", seconds);
+      persist(archive);
+      checkpoint->keep(result_.trajectory, archive.fields());
+    };
+    if (context_.resume) {
+      restore(*checkpoint, before);
+    } else {
+      if (checkpoint) checkpoint->begin(scene);
+      observe();
+      if (checkpoint) keep();
+    }
+    {
+      Progress progress(result_.system, grid_.steps, context_.progress);
+      const InterruptGuard guard;
+      for (long k = motion_->index() + 1; k <= grid_.steps && advance(k); ++k) {
+        progress.update(k);
+        if (guard.interrupted() && k < grid_.steps) {
+          result_.status = interrupted_status;
+          result_.message = fmt::format(
+              "interrupted after step {} of {}; what was computed is kept{}", k, grid_.steps,
+              checkpoint ? fmt::format(", and lagroid resume {} goes on", context_.folder.string()) : std::string());
+          break;
+        }
+        if (checkpoint && checkpoint->due(k)) keep();
+      }
+    }
+    if (checkpoint) keep();
+    if (last_observed_ != motion_->index()) observe();
+    finish();
+    result_.seconds = before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return std::move(result_);
+  }
+
+ private:
+  void observe() {
+    last_observed_ = motion_->index();
+    const auto m = motion_->momenta();
+    promises_->observe(*motion_, m);
+    if (context_.record) record_->observe(*motion_, m, result_.trajectory);
+  }
+
+  bool advance(long k) {
+    const StepReport report = motion_->advance();
+    result_.iterations += report.iterations;
+    result_.ledger.most_iterations = std::max(result_.ledger.most_iterations, report.iterations);
+    if (!report.converged()) {
+      result_.status = std::string(to_string(report.status));
+      result_.residual = report.residual;
+      result_.message = step_failure(report, k, motion_->time(), TimeMode::fixed);
+      return false;
+    }
+    result_.steps = k;
+    if (k % every_ == 0) observe();
+    return true;
+  }
+
+  void restore(Checkpoint& checkpoint, double& seconds) {
+    Archive archive(checkpoint.restore(result_.trajectory));
+    try {
+      archive("seconds", seconds);
+      persist(archive);
+    } catch (const nlohmann::json::exception&) {
+      throw RunError(
+          fmt::format("{}: its checkpoint is of another lagroid; run the scene again", context_.folder.string()));
+    }
+    if (result_.steps > grid_.steps)
+      throw RunError(fmt::format("--set time.steps={}: the run has {} steps already", grid_.steps, result_.steps));
+  }
+
+  void persist(Archive& archive) {
+    auto state = motion_->state();
+    archive("index", state.index);
+    archive("place", state.place);
+    archive("place carry", state.place_carry);
+    archive("momentum", state.momentum);
+    archive("momentum carry", state.momentum_carry);
+    archive("spin", state.spin);
+    archive("spin carry", state.spin_carry);
+    archive("turned", state.turned);
+    archive("attitude", state.attitude);
+    for (std::size_t i = 0; i < state.multipliers.size(); ++i)
+      archive(fmt::format("multipliers {}", i), state.multipliers[i]);
+    if (archive.restoring()) motion_->restore(state);
+    archive("steps", result_.steps);
+    archive("iterations", result_.iterations);
+    archive("most iterations", result_.ledger.most_iterations);
+    archive("last observed", last_observed_);
+    archive("promises", *promises_);
+  }
+
+  void finish() {
+    promises_->report(*motion_, result_.ledger);
+    result_.ledger.mean_iterations = result_.steps > 0 ? double(result_.iterations) / double(result_.steps) : 0;
+    result_.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
+                                      {"attitude", "A carries body to space"},
+                                      {"momenta", "tangent to the joints"}};
+    result_.panels = panels(bodies_, chosen_);
+    result_.shapes = shapes(bodies_, chosen_);
+  }
+
+  SceneBodies bodies_;
+  RunContext context_;
+  TimeGrid grid_;
+  long every_ = 1;
+  long checkpoint_steps_ = 0;
+  std::set<std::string> chosen_;
+  std::unique_ptr<Multibody> motion_;
+  std::optional<Record> record_;
+  std::optional<Promises> promises_;
+  long last_observed_ = -1;
+  RunResult result_;
+};
+
+/// The scene to be kept: with the step itself, whatever gave it, so that more steps can be asked for later.
+std::string kept_scene(const Section& scene) {
+  const TimeGrid grid = read_time(scene);
+  return scene.with("time.step", {grid.step}).without("time.duration").whole();
+}
+
+}  // namespace
+
+RunResult run_bodies(const Section& scene, const RunContext& context) {
+  return Run(scene, context).go(context.folder.empty() || context.resume ? std::string() : kept_scene(scene));
+}
+
+}  // namespace lagroid::app

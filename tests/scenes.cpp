@@ -1,0 +1,221 @@
+// Scenes of bodies from the command line: what is wrong is said, what is broken off goes on with the same bits.
+
+#include "command_line.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <random>
+#include <sstream>
+#include <vector>
+
+namespace {
+
+std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Scenes : public CommandLine {
+ protected:
+  fs::path write(const std::string& text) const {
+    const fs::path file = folder_ / "scene.toml";
+    std::ofstream(file) << text;
+    return file;
+  }
+};
+
+const std::string bob = "[[body]]\nkind = \"point\"\nname = \"bob\"\nmass = 1\nposition = [0, 0, -1]\n";
+const std::string brick =
+    "[[body]]\nkind = \"rigid\"\nname = \"brick\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [1, 0, 0]\n";
+const std::string card = "[[body]]\nkind = \"planar\"\nname = \"card\"\nmass = 1\ninertia = 1\nposition = [1, 0]\n";
+const std::string grid = "[time]\nstep = 0.01\nsteps = 10\n";
+
+TEST_F(Scenes, EveryKindOfBodyJointAndEffectRuns) {
+  const fs::path file = write(
+      bob + brick + card +
+      "[[body]]\nkind = \"pivoted\"\nname = \"top\"\nmass = 1\ninertia = [1, 1, 0.5]\ncentre = [0, 0, 0.3]\n"
+      "[[body]]\nkind = \"chain\"\nname = \"chain\"\nlinks = 3\nmass = 1\nlength = 1\non = \"brick\"\nat = [0.1, 0, "
+      "0]\n"
+      "[[body]]\nkind = \"rigid\"\nname = \"lid\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [1, 1, 0]\n"
+      "[[body]]\nkind = \"rigid\"\nname = \"drawer\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [1, 2, 0]\n"
+      "[[body]]\nkind = \"rigid\"\nname = \"knob\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [1, 3, 0]\n"
+      "[[joint]]\nkind = \"rod\"\nbetween = [\"ground\", \"bob\"]\n"
+      "[[joint]]\nkind = \"ball\"\nbetween = [\"ground\", \"card\"]\npoints = [[0, 0, 0], [-1, 0, 0]]\n"
+      "[[joint]]\nkind = \"hinge\"\nbetween = [\"brick\", \"lid\"]\npoints = [[0, 0.5, 0], [0, -0.5, 0]]\naxis = [1, "
+      "0, 0]\n"
+      "[[joint]]\nkind = \"slider\"\nbetween = [\"lid\", \"drawer\"]\naxis = [0, 1, 0]\n"
+      "[[joint]]\nkind = \"weld\"\nbetween = [\"drawer\", \"knob\"]\npoints = [[0, 0.5, 0], [0, -0.5, 0]]\n"
+      "[[joint]]\nkind = \"plane\"\nbetween = [\"ground\", \"brick\"]\nnormal = [1, 0, 0]\npoints = [[1, 0, 0], [0, 0, "
+      "0]]\n"
+      "[[effect]]\nkind = \"gravity\"\n"
+      "[[effect]]\nkind = \"central_gravity\"\nstrength = 0.1\ncentre = [0, 0, 9]\n"
+      "[[effect]]\nkind = \"mutual_gravity\"\nconstant = 0.1\nbodies = [\"bob\", \"brick\"]\n"
+      "[[effect]]\nkind = \"charges\"\nconstant = 0.1\nbodies = [\"bob\", \"brick\"]\ncharges = [1, -1]\n"
+      "[[effect]]\nkind = \"spring\"\nbetween = [\"bob\", \"brick\"]\nstiffness = 3\n"
+      "[[effect]]\nkind = \"torsion_spring\"\nbetween = [\"ground\", \"top\"]\ndirection = [0, 1, 0]\nstiffness = 3\n"
+      "[[effect]]\nkind = \"drag\"\nmotion = 0.1\nturning = 0.1\n"
+      "[[effect]]\nkind = \"force\"\nbody = \"brick\"\nat = [0, 0.1, 0]\nforce = [0, 0.1, 0]\nrate = 2\n"
+      "[[effect]]\nkind = \"torque\"\nbody = \"top\"\ntorque = [0, 0, 0.1]\n" +
+      grid);
+  const fs::path out = folder_ / "out";
+  const Outcome r = run("run " + file.string() + " --json --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto summary = nlohmann::json::parse(r.out);
+  EXPECT_EQ(summary.at("ledger").at("entries").at(0).at("verdict"), "kept") << "constraints";
+  EXPECT_EQ(run("view " + out.string()).code, 0);
+}
+
+TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
+  const std::string rod = "[[joint]]\nkind = \"rod\"\nbetween = [\"ground\", \"bob\"]\n";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {grid, "system"},
+      {bob, "[time]"},
+      {bob + bob + grid, "name: there is a body \"bob\" already"},
+      {bob + "colour = 3\n" + grid, "body.0.colour: unknown key"},
+      {bob + "mas = 3\n" + grid, "body.0.mas: unknown key; did you mean \"mass\"?"},
+      {"[body]\nkind = \"point\"\n" + grid, "[[body]]"},
+      {"body = 3\n" + grid, "[[body]]"},
+      {"body = []\n" + grid, "no body"},
+      {bob + "velocity = [1, nan, 0]\n" + grid, "body.0.velocity: must be finite"},
+      {bob + "velocity = [1, 0]\n" + grid, "body.0.velocity: expected 3 numbers"},
+      {bob + rod + "length = 2\n" + grid, "joint.0.length: is 2 m, but its ends are 1 m apart"},
+      {bob + rod + "points = [[0, 0, 0], [0, 0, 1]]\n" + grid, "joint.0.points: \"bob\" is a point mass"},
+      {bob + "velocity = [0, 0, 1]\n" + rod + grid, "project_velocities"},
+      {bob + "[[joint]]\nkind = \"rod\"\nbetween = [\"ground\", \"rob\"]\n" + grid, "there is no body \"rob\""},
+      {bob + "[[joint]]\nkind = \"rod\"\nbetween = [\"bob\", \"bob\"]\n" + grid, "tied to itself"},
+      {bob + "[[joint]]\nkind = \"rod\"\n" + grid, "between"},
+      {bob + "[[joint]]\nkind = \"ball\"\nbetween = [\"ground\", \"bob\"]\n" + grid, "apart at the start"},
+      {bob + "[[joint]]\nkind = \"hinge\"\naxis = [1, 0, 0]\nbetween = [\"ground\", \"bob\"]\n" + grid, "point mass"},
+      {card + "[[joint]]\nkind = \"hinge\"\naxis = [1, 0, 0]\nbetween = [\"ground\", \"card\"]\n" + grid, "\"ball\""},
+      {brick +
+           "[[joint]]\nkind = \"hinge\"\naxis = [0, 0, 0]\nbetween = [\"ground\", \"brick\"]\npoints = [[1, 0, 0], [0, "
+           "0, 0]]\n" +
+           grid,
+       "axis: must not vanish"},
+      {bob + "[[joint]]\nkind = \"glue\"\nbetween = [\"ground\", \"bob\"]\n" + grid,
+       "joint.0.kind: \"glue\" is none of"},
+      {bob + "[[effect]]\nkind = \"magic\"\n" + grid, "effect.0.kind: \"magic\" is none of"},
+      {bob + "[[effect]]\nkind = \"drag\"\n" + grid, "effect.0: give motion"},
+      {bob + "[[effect]]\nkind = \"torque\"\nbody = \"bob\"\ntorque = [1, 0, 0]\n" + grid, "does not turn"},
+      {bob + "[[effect]]\nkind = \"charges\"\ncharges = [1, 2]\n" + grid, "expected 1 numbers"},
+      {bob + grid + "accuracy = 0.1\n", "time.accuracy"},
+      {bob + grid + "mode = \"adaptive\"\n", "time.mode"},
+      {bob + grid + "[output]\nbodies = [\"rob\"]\n", "output.bodies"},
+      {"[[body]]\nkind = \"rigid\"\nname = \"b\"\nmass = 1\ninertia = [1, 1, 3]\nposition = [0, 0, 0]\n" + grid,
+       "no body has these moments"},
+      {"[[body]]\nkind = \"rigid\"\nname = \"b\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\nattitude = [1, "
+       "1, 0, 0]\n" +
+           grid,
+       "not a unit quaternion"},
+      {"[[body]]\nkind = \"point\"\nname = \"ground\"\nmass = 1\nposition = [0, 0, 0]\n" + grid, "ground"},
+      {"[[body]]\nkind = \"point\"\nname = \"a b\"\nmass = 1\nposition = [0, 0, 0]\n" + grid, "use letters"},
+  };
+  for (const auto& [text, words] : cases) {
+    const fs::path file = write(text);
+    const Outcome r = run("run " + file.string() + " --out " + (folder_ / "out").string());
+    EXPECT_EQ(r.code, 2) << text << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << text << "says: " << r.err;
+    EXPECT_NE(r.err.find("scene.toml"), std::string::npos) << r.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+}
+
+TEST_F(Scenes, SetReachesIntoTables) {
+  const fs::path file = write(bob + grid);
+  EXPECT_EQ(run("run " + file.string() + " --set body.0.mass=2").code, 0);
+  const Outcome none = run("run " + file.string() + " --set body.1.mass=2");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("--set body.1.mass: \"1\" is no place in the array \"body\" of 1"), std::string::npos)
+      << none.err;
+}
+
+TEST_F(Scenes, AFinishedRunGoesOnWithTheSameBits) {
+  const std::string scene = example("chain_drop") + " --set output.every=7";
+  const fs::path whole = folder_ / "whole";
+  const fs::path parts = folder_ / "parts";
+  ASSERT_EQ(run("run " + scene + " --set time.steps=700 --out " + whole.string()).code, 0);
+  ASSERT_EQ(run("run " + scene + " --set time.steps=333 --out " + parts.string()).code, 0);
+  const Outcome on = run("resume " + parts.string() + " --set time.steps=700 --json");
+  ASSERT_EQ(on.code, 0) << on.err;
+  EXPECT_EQ(contents(whole / "trajectory.csv"), contents(parts / "trajectory.csv"));
+  EXPECT_EQ(contents(whole / "trajectory.h5"), contents(parts / "trajectory.h5"));
+  auto a = nlohmann::json::parse(contents(whole / "summary.json"));
+  auto b = nlohmann::json::parse(on.out);
+  a.erase("seconds");
+  b.erase("seconds");
+  EXPECT_EQ(a, b);
+}
+
+TEST_F(Scenes, AnInterruptedRunGoesOn) {
+  const fs::path out = folder_ / "out";
+  const Outcome r =
+      run("run " + example("tops") + " --set time.steps=100000000 --set output.every=100000 --out " + out.string(),
+          "timeout --preserve-status -s INT 1 ");
+  EXPECT_EQ(r.code, 4) << r.err;
+  EXPECT_NE(r.err.find("lagroid resume"), std::string::npos) << r.err;
+  const auto before = nlohmann::json::parse(contents(out / "summary.json")).at("steps").get<long>();
+  const Outcome on = run("resume " + out.string() + " --set time.steps=" + std::to_string(before + 1000));
+  EXPECT_EQ(on.code, 0) << on.err;
+  EXPECT_EQ(nlohmann::json::parse(contents(out / "summary.json")).at("steps"), before + 1000);
+}
+
+/// Fifty runs are killed, each where it pleases; each loses at most what came after its last checkpoint.
+TEST_F(Scenes, AKilledRunGoesOnWithTheSameBits) {
+  const std::string scene = example("chain_drop") + " --set output.every=400 --set output.checkpoint=400";
+  const fs::path out = folder_ / "killed";
+  std::mt19937 random(20261122);
+  const auto state = [&] {
+    const std::string bytes = contents(out / "checkpoint" / "state.cbor");
+    return nlohmann::json::from_cbor(bytes).at("state").at("steps").get<long>();
+  };
+  const std::string steps = " --set time.steps=100000000";
+  long reached = 0;
+  for (int k = 0; k < 50; ++k) {
+    const double moment = 0.02 + 0.0001 * double(random() % 1000);
+    const std::string kill = "timeout -s KILL " + std::to_string(moment) + " ";
+    const Outcome r = run(k == 0 ? "run " + scene + steps + " --out " + out.string() : "resume " + out.string(), kill);
+    ASSERT_EQ(r.code, 137) << r.err;
+    if (!fs::exists(out / "checkpoint" / "state.cbor")) {
+      ASSERT_EQ(k, 0) << "a checkpoint is gone";
+      k = -1;  // killed before there was anything to lose
+      continue;
+    }
+    const long now = state();
+    EXPECT_GE(now, reached);
+    EXPECT_EQ(now % 400, 0);
+    reached = now;
+  }
+  EXPECT_GT(reached, 400);
+  const std::string end = " --set time.steps=" + std::to_string(reached + 1000);
+  const Outcome last = run("resume " + out.string() + end);
+  ASSERT_EQ(last.code, 0) << last.err;
+  const fs::path whole = folder_ / "whole";
+  ASSERT_EQ(run("run " + scene + end + " --out " + whole.string()).code, 0);
+  EXPECT_EQ(contents(whole / "trajectory.csv"), contents(out / "trajectory.csv"));
+}
+
+TEST_F(Scenes, WhatCannotBeTakenUpIsRefused) {
+  EXPECT_EQ(run("resume " + (folder_ / "nothing").string()).code, 2);
+  const fs::path out = folder_ / "out";
+  ASSERT_EQ(run("run " + example("chain_drop") + " --set time.steps=10 --out " + out.string()).code, 0);
+  const Outcome other = run("resume " + out.string() + " --set time.step=0.1");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("only time.steps can be set"), std::string::npos) << other.err;
+  EXPECT_EQ(run("resume " + out.string() + " --set time.steps=5").code, 2) << "less than it has";
+  for (const char* file : {"state.cbor", "rows-000000.cbor", "scene.toml"}) {
+    const fs::path broken = out / "checkpoint" / file;
+    const std::string good = contents(broken);
+    std::ofstream(broken, std::ios::binary) << good.substr(0, good.size() / 2);
+    const Outcome r = run("resume " + out.string() + " --set time.steps=20");
+    EXPECT_EQ(r.code, 2) << file;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    std::ofstream(broken, std::ios::binary) << good;
+  }
+  EXPECT_EQ(run("resume " + out.string() + " --set time.steps=20").code, 0);
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=10 --out " + out.string()).code, 0);
+  EXPECT_EQ(run("resume " + out.string()).code, 2) << "the checkpoint of an earlier run is gone";
+}
+
+}  // namespace
