@@ -5,8 +5,9 @@
 
 namespace lagroid::app {
 
-/// As long as it lives, the first SIGINT or SIGTERM is noted instead of ending the program; a second one ends it. Only
-/// one at a time.
+/// As long as it lives, the first SIGINT or SIGTERM is noted instead of ending the program, and from then on, so that
+/// what was computed can be written, only one that comes over a second later ends it (a terminal and `timeout` send
+/// theirs to a whole group of processes, so that one may arrive twice). Only one at a time.
 class InterruptGuard {
  public:
   InterruptGuard();
