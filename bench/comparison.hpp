@@ -63,6 +63,8 @@ std::vector<Subject> scene_subjects();
 std::vector<Goal> scene_goals();
 /// Markdown: instructions and memory of a scene's step without and with each effect. Needs valgrind.
 std::string effects_table();
+/// Markdown: what accuracy costs on a chain, by a scene, by hand and by MuJoCo.
+std::string chain_accuracy_table();
 /// Markdown: seconds to compile the files of bench/user, with the build's own command.
 std::string compile_times();
 

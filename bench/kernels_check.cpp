@@ -6,6 +6,7 @@
 
 #include "../tests/allocation_counter.hpp"
 #include "boundary_case.hpp"
+#include "chain_case.hpp"
 #include "kernels/kepler.hpp"
 #include "kernels/plate_ball.hpp"
 #include "kernels/plate_ball_derivatives.hpp"
@@ -292,6 +293,18 @@ TEST(Kernels, DoNotAllocate) {
   EXPECT_EQ(allocations([&] { planet.step(); }), 0);
   EXPECT_EQ(allocations([&] { pendulum.step(); }), 0);
   EXPECT_EQ(allocations([&] { boundary.iterate(); }), 0);
+}
+
+TEST(SphericalChainKernel, IsTheScene) {
+  constexpr int links = 20;
+  const auto scene = bench::hanging_chain(links, 1e-3);
+  auto kernel = bench::chain_kernel(links, 1e-3);
+  for (int k = 0; k < steps; ++k) {
+    ASSERT_TRUE(scene->advance().converged());
+    ASSERT_TRUE(kernel.step());
+  }
+  for (std::size_t i = 0; i < links; ++i)
+    EXPECT_LT((scene->configuration().x[i] - kernel.places()[i].vector()).norm(), close) << i;
 }
 
 }  // namespace

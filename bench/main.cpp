@@ -81,7 +81,8 @@ int main(int argc, char** argv) try {
   const auto boundary = bench::matching(bench::boundary_subjects(), part);
   const auto groups = bench::matching(bench::lie_newton_subjects(), part);
   const auto scenes = bench::matching(bench::scene_subjects(), part);
-  if (part != "effects" && scenes.empty() && steps.empty() && boundary.empty() && groups.empty()) {
+  if (part != "effects" && part != "accuracy" && scenes.empty() && steps.empty() && boundary.empty() &&
+      groups.empty()) {
     fmt::print(stderr, "lagroid bench: no subject's name contains \"{}\"; docs/performance.md shows the names\n", part);
     return 2;
   }
@@ -98,8 +99,10 @@ int main(int argc, char** argv) try {
   const std::string scene_tables = bench::table(scenes, results);
   const std::string group_tables = bench::table(groups, results);
   const std::string goals_reached = bench::goals_table(goals, results, /*every=*/part.empty());
+  const std::string accuracy = part.empty() || part == "accuracy" ? bench::chain_accuracy_table() : std::string();
   const std::string effects = part.empty() || part == "effects" ? bench::effects_table() : std::string();
-  fmt::print("{}{}{}{}\n{}\n{}", step_tables, scene_tables, boundary_tables, group_tables, effects, goals_reached);
+  fmt::print("{}{}{}{}\n{}\n{}\n{}", step_tables, scene_tables, boundary_tables, group_tables, accuracy, effects,
+             goals_reached);
   if (write_page) {
     std::string page = file_contents(LAGROID_SOURCE "/bench/performance.md.in");
     put(page, "@MACHINE@", machine());
@@ -107,6 +110,7 @@ int main(int argc, char** argv) try {
     put(page, "@STEPS@", step_tables);
     put(page, "@SCENES@", scene_tables);
     put(page, "@EFFECTS@", effects);
+    put(page, "@CHAIN@", accuracy);
     put(page, "@BOUNDARY@", boundary_tables);
     put(page, "@LIE_NEWTON@", group_tables);
     put(page, "@COMPILE@", bench::compile_times());
