@@ -188,7 +188,7 @@ void Multibody::assemble(Scene& scene) {
   turn_inverse_.resize(spin_.size());
   spin_size_.resize(spin_.size());
   turn_frame_.resize(spin_.size());
-  forces_ = {zeros(now_.x.size()), zeros(now_.attitude.size())};
+  loads_ = {zeros(now_.x.size()), zeros(now_.attitude.size())};
 
   // Joints by island, their rows and gradients.
   joints_ = std::move(scene.joints_);

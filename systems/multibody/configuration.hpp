@@ -36,7 +36,7 @@ struct Configuration {
 
 /// What acts at one time: forces (N) on sites, by their place, and torques (N m) in the body's frame on attitudes. On a
 /// planar body's own place: (force, force, torque).
-struct Forces {
+struct Loads {
   std::vector<Vec> on;
   std::vector<Vec> torque;
 

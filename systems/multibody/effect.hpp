@@ -27,7 +27,7 @@ class Effects {
  public:
   virtual ~Effects() = default;
   /// Adds what acts at this configuration.
-  virtual void add_forces(const Configuration& at, Forces& forces) const = 0;
+  virtual void add_loads(const Configuration& at, Loads& loads) const = 0;
   /// The potential energy, J; zero for what has none.
   virtual double energy(const Configuration& at) const = 0;
   virtual void place(const Places& places) = 0;
@@ -40,11 +40,11 @@ class Effects {
 ///     template <class S> S energy(const Vector<S, 3>& x...) const        one argument a site, then Matrix<S, 3, 3>
 ///                                                                        arguments, one an attitude
 /// of which forces and torques are derived automatically, or
-///     double energy(const Configuration& at) const;   void add_forces(const Configuration& at, Forces& f) const;
+///     double energy(const Configuration& at) const;   void add_loads(const Configuration& at, Loads& f) const;
 template <class E>
-concept WritesForces = requires(const E& e, const Configuration& at, Forces& f) {
+concept WritesLoads = requires(const E& e, const Configuration& at, Loads& f) {
   { e.energy(at) } -> std::convertible_to<double>;
-  e.add_forces(at, f);
+  e.add_loads(at, f);
 };
 
 template <class E> constexpr int site_count() { return int(std::tuple_size_v<decltype(E::sites)>); }
@@ -65,35 +65,36 @@ template <class K> void place_kernel(K& kernel, const Places& places) {
 
 namespace detail {
 
-/// The energy over a scalar S: of place and attitude k, the 3 numbers that may carry derivatives are 3k, 3k + 1, 3k
-/// + 2.
+/// Of place or attitude k, the 3 numbers that may carry derivatives are 3k, 3k + 1, 3k + 2.
+template <class S, class Variable> Vector<S, 3> varied(const Vec& x, int k, const Variable& variable) {
+  return {variable(x(0), 3 * k), variable(x(1), 3 * k + 1), variable(x(2), 3 * k + 2)};
+}
+
+/// A (1 + hat e), e the varied zero.
+template <class S, class Variable> Matrix<S, 3, 3> varied(const Mat& a, int k, const Variable& variable) {
+  const Vector<S, 3> e = varied<S>(Vec(Vec::Zero()), k, variable);
+  Matrix<S, 3, 3> out;
+  for (int r = 0; r < 3; ++r) {
+    out(r, 0) = e(2) * a(r, 1) - e(1) * a(r, 2) + a(r, 0);
+    out(r, 1) = e(0) * a(r, 2) - e(2) * a(r, 0) + a(r, 1);
+    out(r, 2) = e(1) * a(r, 0) - e(0) * a(r, 1) + a(r, 2);
+  }
+  return out;
+}
+
+/// The energy over a scalar S.
 template <class S, class E, class Variable>
 S energy_over(const E& effect, const Configuration& at, const Variable& variable) {
   constexpr int n = site_count<E>();
-  constexpr int m = attitude_count<E>();
-  const auto point = [&](int i) {
-    const Vec& x = at(effect.sites[std::size_t(i)]);
-    return Vector<S, 3>(variable(x(0), 3 * i), variable(x(1), 3 * i + 1), variable(x(2), 3 * i + 2));
-  };
-  const auto turned = [&](int i) {
-    const Mat& a = at(effect.attitudes[std::size_t(i)]);
-    const int v = 3 * (n + i);
-    // A (1 + hat e) to first order in e.
-    const S e0 = variable(0.0, v);
-    const S e1 = variable(0.0, v + 1);
-    const S e2 = variable(0.0, v + 2);
-    Matrix<S, 3, 3> out;
-    for (int r = 0; r < 3; ++r) {
-      out(r, 0) = e2 * a(r, 1) - e1 * a(r, 2) + a(r, 0);
-      out(r, 1) = e0 * a(r, 2) - e2 * a(r, 0) + a(r, 1);
-      out(r, 2) = e1 * a(r, 0) - e0 * a(r, 1) + a(r, 2);
-    }
-    return out;
-  };
   return [&]<int... I, int... J>(std::integer_sequence<int, I...>, std::integer_sequence<int, J...>) {
-    return S(effect.energy(point(I)..., turned(J)...));
+    if constexpr (sizeof...(J) == 0) {
+      return S(effect.energy(varied<S>(at(effect.sites[std::size_t(I)]), I, variable)...));
+    } else {
+      return S(effect.energy(varied<S>(at(effect.sites[std::size_t(I)]), I, variable)...,
+                             varied<S>(at(effect.attitudes[std::size_t(J)]), n + J, variable)...));
+    }
   }
-  (std::make_integer_sequence<int, n>{}, std::make_integer_sequence<int, m>{});
+  (std::make_integer_sequence<int, n>{}, std::make_integer_sequence<int, attitude_count<E>()>{});
 }
 
 }  // namespace detail
@@ -103,19 +104,19 @@ template <class E> class EffectsOf final : public Effects {
  public:
   void add(const E& effect) { all_.push_back(effect); }
 
-  void add_forces(const Configuration& at, Forces& forces) const override {
+  void add_loads(const Configuration& at, Loads& loads) const override {
     for (const E& effect : all_) {
-      if constexpr (WritesForces<E>) {
-        effect.add_forces(at, forces);
+      if constexpr (WritesLoads<E>) {
+        effect.add_loads(at, loads);
       } else {
         constexpr int n = site_count<E>();
         constexpr int m = attitude_count<E>();
         using J = Jet<double, 3 * (n + m)>;
         const J u = detail::energy_over<J>(effect, at, [](double x, int i) { return J::variable(x, i); });
         const auto du = u.gradient();
-        for (int i = 0; i < n; ++i) forces(effect.sites[std::size_t(i)]) -= du.template segment<3>(3 * i);
+        for (int i = 0; i < n; ++i) loads(effect.sites[std::size_t(i)]) -= du.template segment<3>(3 * i);
         if constexpr (m > 0)
-          for (int i = 0; i < m; ++i) forces(effect.attitudes[std::size_t(i)]) -= du.template segment<3>(3 * (n + i));
+          for (int i = 0; i < m; ++i) loads(effect.attitudes[std::size_t(i)]) -= du.template segment<3>(3 * (n + i));
       }
     }
   }
@@ -123,7 +124,7 @@ template <class E> class EffectsOf final : public Effects {
   double energy(const Configuration& at) const override {
     double sum = 0;
     for (const E& effect : all_) {
-      if constexpr (WritesForces<E>) {
+      if constexpr (WritesLoads<E>) {
         sum += effect.energy(at);
       } else {
         sum += detail::energy_over<double>(effect, at, [](double x, int) { return x; });

@@ -13,7 +13,7 @@ struct ConstantForce {
   Vec force;  ///< N
 
   double energy(const Configuration& at) const { return -force.dot(at(sites[0])); }
-  void add_forces(const Configuration&, Forces& f) const { f(sites[0]) += force; }
+  void add_loads(const Configuration&, Loads& f) const { f(sites[0]) += force; }
 };
 
 /// Attraction by a fixed centre: U = -strength / |x - centre|.
@@ -23,7 +23,7 @@ struct CentralGravity {
   double strength = 1;       ///< G m M, kg m^3/s^2
 
   double energy(const Configuration& at) const { return -strength / (at(sites[0]) - centre).norm(); }
-  void add_forces(const Configuration& at, Forces& f) const {
+  void add_loads(const Configuration& at, Loads& f) const {
     const Vec d = at(sites[0]) - centre;
     const double square = d.squaredNorm();
     f(sites[0]) -= (strength / (square * std::sqrt(square))) * d;
@@ -40,7 +40,7 @@ struct InverseSquare {
   double energy(const Configuration& at) const {
     return -strength / std::sqrt((at(sites[1]) - at(sites[0])).squaredNorm() + softening * softening);
   }
-  void add_forces(const Configuration& at, Forces& f) const {
+  void add_loads(const Configuration& at, Loads& f) const {
     const Vec d = at(sites[1]) - at(sites[0]);
     const double square = d.squaredNorm() + softening * softening;
     const Vec pull = (strength / (square * std::sqrt(square))) * d;
@@ -65,7 +65,7 @@ class MutualGravity final : public Effects {
         sum -= masses_[i] * masses_[j] / std::sqrt((at(sites_[i]) - at(sites_[j])).squaredNorm() + square_softening_);
     return constant_ * sum;
   }
-  void add_forces(const Configuration& at, Forces& f) const override {
+  void add_loads(const Configuration& at, Loads& f) const override {
     for (std::size_t i = 0; i < sites_.size(); ++i) {
       const Vec x = at(sites_[i]);
       Vec sum = Vec::Zero();
@@ -101,7 +101,7 @@ struct Spring {
     const double stretch = (at(sites[1]) - at(sites[0])).norm() - length;
     return 0.5 * stiffness * stretch * stretch;
   }
-  void add_forces(const Configuration& at, Forces& f) const {
+  void add_loads(const Configuration& at, Loads& f) const {
     const Vec d = at(sites[1]) - at(sites[0]);
     const double factor = length == 0 ? stiffness : stiffness * (1 - length / d.norm());
     f(sites[0]) += factor * d;
@@ -121,7 +121,7 @@ struct TorsionSpring {
   double energy(const Configuration& at) const {
     return 0.5 * stiffness * (at(attitudes[0]) * u - at(attitudes[1]) * v).squaredNorm();
   }
-  void add_forces(const Configuration& at, Forces& f) const {
+  void add_loads(const Configuration& at, Loads& f) const {
     const Mat& a = at(attitudes[0]);
     const Mat& b = at(attitudes[1]);
     f(attitudes[0]) += stiffness * u.cross(Vec(a.transpose() * (b * v)));
@@ -137,7 +137,7 @@ struct PeriodicForce {
   double phase = 0;  ///< rad
 
   double energy(const Configuration&) const { return 0; }
-  void add_forces(const Configuration& at, Forces& f) const { f(sites[0]) += std::cos(rate * at.time + phase) * force; }
+  void add_loads(const Configuration& at, Loads& f) const { f(sites[0]) += std::cos(rate * at.time + phase) * force; }
 };
 
 /// A torque fixed in the body.
@@ -147,7 +147,7 @@ struct BodyTorque {
   Vec torque;  ///< N m
 
   double energy(const Configuration&) const { return 0; }
-  void add_forces(const Configuration&, Forces& f) const { f(attitudes[0]) += torque; }
+  void add_loads(const Configuration&, Loads& f) const { f(attitudes[0]) += torque; }
 };
 
 }  // namespace lagroid::multibody

@@ -26,18 +26,18 @@ LAGROID_INLINE inline void add(Vec& sum, Vec& carry, const Vec& increment) {
 
 void Multibody::act() {
   if (effects_.empty()) return;
-  std::fill(forces_.on.begin(), forces_.on.end(), Vec::Zero());
-  std::fill(forces_.torque.begin(), forces_.torque.end(), Vec::Zero());
-  for (const auto& effect : effects_) effect->add_forces(now_, forces_);
+  std::fill(loads_.on.begin(), loads_.on.end(), Vec::Zero());
+  std::fill(loads_.torque.begin(), loads_.torque.end(), Vec::Zero());
+  for (const auto& effect : effects_) effect->add_loads(now_, loads_);
   for (const Arm& a : pushed_arms_) {
-    const Vec& f = forces_.on[std::size_t(a.site)];
-    forces_.on[std::size_t(a.base)] += f;
-    forces_.torque[std::size_t(a.rotation)] += a.arm.cross(Vec(now_.attitude[std::size_t(a.rotation)].transpose() * f));
+    const Vec& f = loads_.on[std::size_t(a.site)];
+    loads_.on[std::size_t(a.base)] += f;
+    loads_.torque[std::size_t(a.rotation)] += a.arm.cross(Vec(now_.attitude[std::size_t(a.rotation)].transpose() * f));
   }
   for (const Arm& a : pushed_planar_arms_) {
-    const Vec& f = forces_.on[std::size_t(a.site)];
+    const Vec& f = loads_.on[std::size_t(a.site)];
     const Vec d = now_.x[std::size_t(a.site)] - now_.x[std::size_t(a.base)];
-    forces_.on[std::size_t(a.base)] += Vec(f(0), f(1), d(0) * f(1) - d(1) * f(0));
+    loads_.on[std::size_t(a.base)] += Vec(f(0), f(1), d(0) * f(1) - d(1) * f(0));
   }
 }
 
@@ -378,8 +378,8 @@ void Multibody::accept() {
 void Multibody::kick() {
   if (effects_.empty()) return;
   const double half = 0.5 * h_;
-  for (std::size_t f = 0; f < momentum_.size(); ++f) impulse_[f] += half * forces_.on[f];
-  for (std::size_t r = 0; r < spin_.size(); ++r) spin_impulse_[r] += half * forces_.torque[r];
+  for (std::size_t f = 0; f < momentum_.size(); ++f) impulse_[f] += half * loads_.on[f];
+  for (std::size_t r = 0; r < spin_.size(); ++r) spin_impulse_[r] += half * loads_.torque[r];
 }
 
 std::size_t Multibody::memory() const {
@@ -388,7 +388,7 @@ std::size_t Multibody::memory() const {
     ((bytes += lists.capacity() * sizeof(typename std::decay_t<decltype(lists)>::value_type)), ...);
   };
   for (const Configuration* at : {&now_, &next_}) count(at->x, at->attitude);
-  count(forces_.on, forces_.torque, places_.sites, places_.attitudes, linear_places_, quaternions_, next_quaternions_,
+  count(loads_.on, loads_.torque, places_.sites, places_.attitudes, linear_places_, quaternions_, next_quaternions_,
         planar_, inertia_, moments_, response_, turns_, turn_damping_, damped_, damped_turns_, momentum_,
         momentum_carry_, place_carry_, spin_, spin_carry_, impulse_, kicked_, displacement_, spin_impulse_,
         spin_kicked_, spin_total_, turned_, turned_before_, turn_residual_, spin_size_, turn_inverse_, turn_frame_,

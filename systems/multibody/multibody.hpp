@@ -180,7 +180,7 @@ class Multibody {
   std::vector<Damped> damped_, damped_turns_;
 
   std::vector<Vec> momentum_, momentum_carry_, place_carry_, spin_, spin_carry_;
-  Forces forces_;
+  Loads loads_;
 
   // Of the step being solved.
   std::vector<Vec> impulse_, kicked_, displacement_;

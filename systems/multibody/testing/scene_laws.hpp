@@ -1,0 +1,232 @@
+#pragma once
+/// Laws of effects, joints and scenes, for a user's own.
+
+#include <lagroid/core/testing/property.hpp>
+#include <lagroid/systems/multibody/multibody.hpp>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::laws {
+
+namespace detail {
+
+/// A configuration of `sites` points within a box of two metres and `attitudes` turned bodies, at any time.
+inline multibody::Configuration draw_configuration(int sites, int attitudes) {
+  multibody::Configuration at;
+  at.time = 10 * draw_uniform();
+  for (int i = 0; i < sites; ++i) at.x.emplace_back(draw_uniform(), draw_uniform(), draw_uniform());
+  for (int i = 0; i < attitudes; ++i)
+    at.attitude.push_back(SO3::exp(multibody::Vec(2 * draw_uniform(), 2 * draw_uniform(), 2 * draw_uniform())));
+  at.attitude.push_back(multibody::Mat::Identity());
+  return at;
+}
+
+/// The kernel on the sites 0, 1, ... and the attitudes 0, 1, ...
+template <class K> K on_own_places(K kernel) {
+  for (std::size_t i = 0; i < kernel.sites.size(); ++i) kernel.sites[i] = {int(i)};
+  if constexpr (multibody::attitude_count<K>() > 0)
+    for (std::size_t i = 0; i < kernel.attitudes.size(); ++i) kernel.attitudes[i] = {int(i)};
+  return kernel;
+}
+
+/// The derivative of f along the i-th of the motions of these points and bodies, by differences of order 4.
+template <class F> auto derivative_along(const F& f, const multibody::Configuration& at, int sites, int i) {
+  constexpr double e = 1e-3;
+  const auto moved = [&](double by) {
+    multibody::Configuration c = at;
+    const multibody::Vec along = by * multibody::Vec::Unit(i % 3);
+    if (i / 3 < sites) {
+      c.x[std::size_t(i / 3)] += along;
+    } else {
+      auto& a = c.attitude[std::size_t(i / 3 - sites)];
+      a = (a * SO3::exp(along)).eval();
+    }
+    return f(c);
+  };
+  return ((moved(e) - moved(-e)) * 8 - (moved(2 * e) - moved(-2 * e))) / (12 * e);
+}
+
+}  // namespace detail
+
+/// "forces are those of the energy": what the effect adds to forces and torques is minus the derivative of its energy,
+/// at random places. Not of effects that have no energy.
+template <class E> LawReport effect_laws(const E& effect, const std::string& name) {
+  LawReport report{name, {}};
+  report.laws.push_back(check_law("forces are those of the energy", 1e-7, [&] {
+    constexpr int n = multibody::site_count<E>();
+    constexpr int m = multibody::attitude_count<E>();
+    const auto at = detail::draw_configuration(n, m);
+    multibody::EffectsOf<E> effects;
+    effects.add(detail::on_own_places(effect));
+    multibody::Loads loads{std::vector<multibody::Vec>(n, multibody::Vec::Zero()),
+                           std::vector<multibody::Vec>(m + 1, multibody::Vec::Zero())};
+    effects.add_loads(at, loads);
+    double size = 1;
+    double defect = 0;
+    for (int i = 0; i < 3 * (n + m); ++i) {
+      const double rate = detail::derivative_along([&](const auto& c) { return effects.energy(c); }, at, n, i);
+      const double force =
+          i / 3 < n ? loads.on[std::size_t(i / 3)](i % 3) : loads.torque[std::size_t(i / 3 - n)](i % 3);
+      size = std::max(size, std::abs(rate));
+      defect = worst({defect, std::abs(force + rate)});
+    }
+    // Differences lose where the energy is steep.
+    if (size > 100) throw NotSampled("the energy is steep here");
+    return defect / size;
+  }));
+  return report;
+}
+
+/// "gradients are those of the values": of a joint's rows, at random places.
+template <class J> LawReport joint_laws(const J& joint, const std::string& name) {
+  LawReport report{name, {}};
+  report.laws.push_back(check_law("gradients are those of the values", 1e-7, [&] {
+    constexpr int n = multibody::site_count<J>();
+    constexpr int m = multibody::attitude_count<J>();
+    const auto at = detail::draw_configuration(n, m);
+    const J own = detail::on_own_places(joint);
+    std::array<multibody::Vec, std::size_t(J::rows) * (n + m)> g;
+    std::array<multibody::RowSize, std::size_t(J::rows)> size;
+    own.gradient(at, g.data(), size.data());
+    const auto values = [&](const auto& c) {
+      Vector<double, J::rows> out;
+      own.value(c, out.data());
+      return out;
+    };
+    double defect = 0;
+    for (int i = 0; i < 3 * (n + m); ++i) {
+      const Vector<double, J::rows> rate = detail::derivative_along(values, at, n, i);
+      for (int row = 0; row < J::rows; ++row)
+        defect = worst({defect, std::abs(g[std::size_t(row * (n + m) + i / 3)](i % 3) - rate(row))});
+    }
+    return defect;
+  }));
+  return report;
+}
+
+/// A scene made anew for every question, and its step.
+struct SceneSubject {
+  std::string name;
+  std::function<multibody::Scene()> make;
+  double h = 0.01;
+  double horizon = 1;      ///< s, over which orders are measured
+  bool symplectic = true;  ///< without damping and without forces that have no energy
+};
+
+/// The laws of a scene's step: "steps go back the way they came", "order two", and, where it is to be, "symplectic":
+/// the loop integral of the momenta along a closed curve of initial momenta is carried along.
+inline LawReport scene_laws(const SceneSubject& subject) {
+  using multibody::Multibody;
+  using multibody::Vec;
+  LawReport report{subject.name, {}};
+  const auto begun = [&](double h) {
+    Multibody motion(subject.make(), h);
+    motion.make_tangent();
+    return motion;
+  };
+  const auto march = [](Multibody& motion, long steps) {
+    for (long k = 0; k < steps; ++k)
+      if (!motion.advance().converged()) throw std::runtime_error("a step failed");
+  };
+  const auto places = [](const Multibody& motion) {
+    const auto state = motion.state();
+    std::vector<double> all;
+    for (const Vec& x : state.place) all.insert(all.end(), x.data(), x.data() + 3);
+    for (const auto& q : state.attitude) all.insert(all.end(), q.data(), q.data() + 4);
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(all.data(), Eigen::Index(all.size())));
+  };
+  const auto ask = [&](const char* name, double tolerance, const std::function<double()>& defect) {
+    Law law;
+    law.name = name;
+    law.tolerance = tolerance;
+    try {
+      law.samples = 1;
+      law.worst = worst({defect()});
+    } catch (const std::exception& error) {
+      law.first_failure = error.what();
+    }
+    report.laws.push_back(law);
+  };
+  if (subject.symplectic)
+    ask("steps go back the way they came", 1e-9, [&] {
+      Multibody motion = begun(subject.h);
+      const auto start = places(motion);
+      march(motion, 20);
+      motion.reverse();
+      march(motion, 20);
+      return (places(motion) - start).norm() / (1 + start.norm());
+    });
+  ask("order two", 0.15, [&] {
+    const auto end = [&](int steps) {
+      Multibody motion = begun(subject.horizon / steps);
+      march(motion, steps);
+      return places(motion);
+    };
+    const int steps = std::max(10, int(subject.horizon / subject.h));
+    const auto coarse = end(steps);
+    const auto middle = end(2 * steps);
+    const auto fine = end(4 * steps);
+    return std::abs(std::log2((coarse - middle).norm() / (middle - fine).norm()) - 2);
+  });
+  if (subject.symplectic)
+    ask("symplectic", 1e-6, [&] {
+      // The loop: momenta of the first two linear factors (or one) moved along a circle, kept tangent.
+      constexpr int points = 64;
+      std::vector<Multibody> loop;
+      for (int k = 0; k < points; ++k) {
+        const double phase = 2 * M_PI * k / points;
+        Multibody motion = begun(subject.h);
+        auto state = motion.state();
+        double along = 0.1;
+        for (auto* momenta : {&state.momentum, &state.spin})
+          for (Vec& p : *momenta) {
+            p += 0.05 * (1 + p.norm()) * Vec(std::cos(phase + along), std::sin(phase), std::sin(2 * phase + along));
+            along += 0.7;
+          }
+        motion.restore(state);
+        motion.make_tangent();
+        march(motion, 5);
+        loop.push_back(std::move(motion));
+      }
+      // Two loop integrals, five steps apart, of p dq by the periodic trapezoid with spectral derivatives.
+      const auto integral = [&] {
+        double sum = 0;
+        std::vector<multibody::Multibody::Momenta> momenta;
+        for (const auto& motion : loop) momenta.push_back(motion.momenta());
+        const auto weight = [](int d) {
+          // Derivative of periodic data at distance d, points even.
+          return d == 0 ? 0.0 : 0.5 * (d % 2 == 0 ? 1 : -1) / std::tan(M_PI * d / points);
+        };
+        for (int k = 0; k < points; ++k) {
+          const auto at = loop[std::size_t(k)].state();
+          for (std::size_t f = 0; f < at.place.size(); ++f) {
+            Vec rate = Vec::Zero();
+            for (int j = 0; j < points; ++j)
+              if (j != k) rate += weight(k - j) * loop[std::size_t(j)].configuration().x[f];
+            sum += momenta[std::size_t(k)].linear[f].dot(rate);
+          }
+          for (std::size_t r = 0; r < at.spin.size(); ++r) {
+            Vector<double, 4> rate = Vector<double, 4>::Zero();
+            for (int j = 0; j < points; ++j)
+              if (j != k) rate += weight(k - j) * loop[std::size_t(j)].state().attitude[r];
+            // w = 2 conj(q) q'
+            const auto& q = at.attitude[r];
+            const Vec w = 2 * (q(0) * rate.tail<3>() - rate(0) * q.tail<3>() - q.tail<3>().cross(rate.tail<3>()));
+            sum += momenta[std::size_t(k)].spin[r].dot(w);
+          }
+        }
+        return sum * 2 * M_PI / points;
+      };
+      const double before = integral();
+      for (auto& motion : loop) march(motion, 5);
+      return std::abs(integral() - before) / (1e-3 + std::abs(before));
+    });
+  return report;
+}
+
+}  // namespace lagroid::laws

@@ -1,0 +1,140 @@
+// The laws of effects, joints and scenes hold of ours, and fail on broken subjects.
+
+#include <lagroid/systems/multibody/effects.hpp>
+#include <lagroid/systems/multibody/joints.hpp>
+#include <lagroid/systems/multibody/testing/scene_laws.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lagroid {
+namespace {
+
+using namespace multibody;
+
+TEST(EffectLaws, HoldOfEveryEffect) {
+  for (const auto& report :
+       {laws::effect_laws(ConstantForce{{}, {0.3, -1, 2}}, "constant force"),
+        laws::effect_laws(CentralGravity{{}, {3, 0, 0}, 2}, "central gravity"),
+        laws::effect_laws(InverseSquare{{}, -1.5, 0.5}, "inverse square"),
+        laws::effect_laws(Spring{{}, 2, 0.1}, "spring"), laws::effect_laws(Spring{{}, 2, 0}, "spring of no length"),
+        laws::effect_laws(TorsionSpring{{}, {}, {0, 0.6, 0.8}, {1, 0, 0}, 2}, "torsion spring")})
+    EXPECT_TRUE(report.holds()) << report;
+}
+
+TEST(JointLaws, HoldOfEveryJoint) {
+  for (const auto& report : {laws::joint_laws(Rod{{}, 0.7}, "rod"), laws::joint_laws(Coincidence{}, "coincidence"),
+                             laws::joint_laws(FixedAngle{{}, {}, {0.6, 0.8, 0}, {0, 0, 1}, 0.2}, "fixed angle"),
+                             laws::joint_laws(InPlane{{}, {}, {0, 0.6, 0.8}}, "in plane")})
+    EXPECT_TRUE(report.holds()) << report;
+}
+
+/// Force and energy of other signs.
+struct WrongSpring {
+  std::array<Site, 2> sites;
+  double energy(const Configuration& at) const { return 0.5 * (at(sites[1]) - at(sites[0])).squaredNorm(); }
+  void add_loads(const Configuration& at, Loads& f) const {
+    const Vec d = at(sites[1]) - at(sites[0]);
+    f(sites[0]) += d;
+    f(sites[1]) += d;
+  }
+};
+
+/// A torque in space where one in the body's frame is to be.
+struct WrongTorsion {
+  std::array<Site, 0> sites;
+  std::array<Attitude, 1> attitudes;
+  double energy(const Configuration& at) const { return at(attitudes[0])(2, 2); }
+  void add_loads(const Configuration& at, Loads& f) const {
+    f(attitudes[0]) -= Vec(Vec::UnitZ()).cross(Vec(at(attitudes[0]).col(2)));
+  }
+};
+
+/// Half of the gradient.
+struct WrongRod : Rod {
+  void gradient(const Configuration& at, Vec* g, RowSize* size) const {
+    Rod::gradient(at, g, size);
+    g[1] *= 0.5;
+  }
+};
+
+TEST(EffectLaws, FailOnWrongForcesAndTorques) {
+  EXPECT_FALSE(laws::effect_laws(WrongSpring{}, "").law("forces are those of the energy").holds());
+  EXPECT_FALSE(laws::effect_laws(WrongTorsion{}, "").law("forces are those of the energy").holds());
+}
+
+TEST(JointLaws, FailOnWrongGradients) {
+  EXPECT_FALSE(laws::joint_laws(WrongRod{{{}, 0.7}}, "").law("gradients are those of the values").holds());
+}
+
+/// A body that hangs by a ball joint from one that slides, a bob on a rod below, a spring.
+Scene machine() {
+  Scene scene;
+  const Quaternion upright(1, 0, 0, 0);
+  const Body carriage = scene.rigid_body(2, {0.3, 0.4, 0.5}, {0, 0, 0}, upright, {0.1, 0, 0}, {0, 0, 0});
+  const Body box = scene.rigid_body(1, {0.1, 0.05, 0.12}, {0.5, 0.2, -0.7}, upright, {0.1, 0, 0}, {0.2, 0, 0.4});
+  const Body bob = scene.point_mass(0.4, {0.5, 0.2, -1.5}, {0.1, 0.3, 0});
+  const Body top = scene.pivoted_body({0.3, 0.3, 0.1}, {2, 0, 0}, upright, {0.3, 0, 4});
+  scene.add(Coincidence{{scene.point_of(carriage, {0.5, 0.2, -0.3}), scene.point_of(box, {0, 0, 0.4})}});
+  scene.add(Rod{{box.centre, bob.centre}, 0.8});
+  const Site rail = scene.ground(Vec::Zero());
+  scene.add(InPlane{{rail, carriage.centre}, {Attitude{}}, {0, 1, 0}});
+  scene.add(InPlane{{rail, carriage.centre}, {Attitude{}}, {0, 0, 1}});
+  scene.add(FixedAngle{{}, {Attitude{}, carriage.attitude}, {0, 1, 0}, {1, 0, 0}});
+  for (const auto& [body, mass] : {std::pair{carriage, 2.0}, {box, 1.0}, {bob, 0.4}})
+    scene.add(ConstantForce{{body.centre}, {0, 0, -9.81 * mass}});
+  scene.add(ConstantForce{{scene.point_of(top, {0, 0, 0.5})}, {0, 0, -9.81}});
+  scene.add(Spring{{scene.point_of(top, {0, 0, 0.5}), scene.point_of(box, {0.1, 0.1, 0})}, 5, 0.4});
+  scene.add(TorsionSpring{{}, {box.attitude, top.attitude}, {1, 0, 0}, {1, 0, 0}, 0.3});
+  return scene;
+}
+
+TEST(SceneLaws, HoldOfAMachineWithEitherMap) {
+  for (const auto map : {Retraction::exponential, Retraction::cayley}) {
+    const auto make = [map] {
+      Scene scene = machine();
+      scene.rotation = map;
+      return scene;
+    };
+    const auto report = laws::scene_laws({"machine", make, 0.005, 0.3});
+    EXPECT_TRUE(report.holds()) << report;
+  }
+}
+
+TEST(SceneLaws, HoldOfADampedMachine) {
+  const auto make = [] {
+    Scene scene;
+    const Body a = scene.rigid_body(1, {0.3, 0.4, 0.5}, {1, 0, 0}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0});
+    scene.add(Rod{{scene.ground(Vec::Zero()), scene.point_of(a, {-0.5, 0.1, 0})}, std::sqrt(0.26)});
+    scene.add(ConstantForce{{a.centre}, {0, 0, -9.81}});
+    scene.damp(a, 0.5, 0.2);
+    return scene;
+  };
+  EXPECT_TRUE(laws::scene_laws({"damped", make, 0.005, 0.5, false}).holds());
+  const auto broken = laws::scene_laws({"damped, said to be symplectic", make, 0.005, 0.5, true});
+  EXPECT_FALSE(broken.law("symplectic").holds()) << broken;
+  EXPECT_FALSE(broken.law("steps go back the way they came").holds()) << broken;
+}
+
+/// A wall that pushes with a force that jumps: of order one at best.
+struct Wall {
+  std::array<Site, 1> sites;
+  double energy(const Configuration& at) const { return at(sites[0])(0) > 0.1234 ? 50 : 0; }
+  void add_loads(const Configuration& at, Loads& f) const {
+    if (at(sites[0])(0) > 0.1234) f(sites[0]) -= Vec(50, 0, 0);
+  }
+};
+
+TEST(SceneLaws, OrderFailsWhereForcesJump) {
+  const auto make = [] {
+    Scene scene;
+    const Body a = scene.point_mass(1, {0, 0, 0}, {1, 0, 0});
+    scene.add(Wall{{a.centre}});
+    return scene;
+  };
+  EXPECT_FALSE(laws::scene_laws({"wall", make, 0.01, 0.4}).law("order two").holds());
+}
+
+}  // namespace
+}  // namespace lagroid
