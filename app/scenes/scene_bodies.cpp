@@ -125,7 +125,7 @@ void read_planar(SceneBodies& bodies, const Section& table) {
 /// Links of equal length, each a point mass on a massless rod, in a straight line at first.
 void read_chain(SceneBodies& bodies, const Section& table) {
   const std::string name = read_name(bodies, table);
-  const long links = table.integer("links", 1, 1'000'000);
+  const long links = table.integer("links", 1, 100'000);
   const double mass = table.number("mass", positive) / double(links);
   const double length = table.number("length", positive) / double(links);
   const Vec direction = vector_or(table, "direction", "from link to link", {0, 0, -1});

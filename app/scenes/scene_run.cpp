@@ -256,7 +256,8 @@ class Promises {
 /// A scene's motion with all that is told of it, step by step.
 class Run {
  public:
-  Run(const Section& scene, const RunContext& context) : bodies_(read_scene_bodies(scene)), context_(context) {
+  Run(const Section& scene, const RunContext& context, long most_steps)
+      : bodies_(read_scene_bodies(scene)), context_(context) {
     if (bodies_.bodies.empty()) scene.fail("body", "there is no body in it");
     result_.system = scene.has("name") ? scene.text("name", "what the scene shows") : "scene";
     grid_ = read_time(scene);
@@ -279,6 +280,7 @@ class Run {
       scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
                                  "them, or take what the joints allow of them with project_velocities = true",
                                  defect));
+    grid_.steps = std::min(grid_.steps, most_steps);
     result_.steps_asked = grid_.steps;
     const bool symplectic = !bodies_.dissipates && !bodies_.driven;
     result_.method = description({"steps of the discrete Lagrangian", 2, true, symplectic, false});
@@ -421,8 +423,9 @@ std::string kept_scene(const Section& scene) {
 
 }  // namespace
 
-RunResult run_bodies(const Section& scene, const RunContext& context) {
-  return Run(scene, context).go(context.folder.empty() || context.resume ? std::string() : kept_scene(scene));
+RunResult run_bodies(const Section& scene, const RunContext& context, long most_steps) {
+  return Run(scene, context, most_steps)
+      .go(context.folder.empty() || context.resume ? std::string() : kept_scene(scene));
 }
 
 }  // namespace lagroid::app
