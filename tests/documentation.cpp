@@ -182,7 +182,9 @@ TEST(Nonholonomic, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("d
 TEST(Nonholonomic, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/nonholonomic.md")), none); }
 
 TEST(MultibodyPage, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/multibody.md"))), none); }
-TEST(MultibodyPage, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/multibody.md"))), none); }
+TEST(MultibodyPage, WhatFailsALawSaysWhich) {
+  EXPECT_EQ(unfounded_failures(prose_of(read("docs/multibody.md"))), none);
+}
 TEST(MultibodyPage, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/multibody.md"), "cpp", read("examples/my_effect.cpp")), none);
 }

@@ -9,6 +9,7 @@
 #include <lagroid/systems/multibody/joints.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
 #include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rolling_ball.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
 #include <gtest/gtest.h>
@@ -98,6 +99,45 @@ TEST(MultibodyNumbers, HeavyTop) {
   Multibody motion(std::move(scene), 0.01);
   advance(motion, 500);
   EXPECT_LT((motion.momenta().spin[0] - end.state.momentum).norm(), 1e-11);
+}
+
+TEST(MultibodyNumbers, RollingBall) {
+  RollingBall system;
+  system.radius = 0.3;
+  system.plate_rate = 1.3;
+  system.h = 0.02;
+  const auto start = system.rolling({0.3, -0.2}, {0.4, 0.1}, 0.7);
+  const auto end = march(system, start, 500);
+  Scene scene;
+  const double inertia = system.inertia();
+  const Body ball = scene.rigid_body(
+      1, {inertia, inertia, inertia}, {0.3, -0.2, 0.3}, Quaternion(1, 0.2, 0.3, 0.4).normalized(), {0.4, 0.1, 0},
+      SO3::from_quaternion(Quaternion(1, 0.2, 0.3, 0.4).normalized()).transpose() * system.angular_velocity(start));
+  scene.add(Rolling{{ball.centre}, {ball.attitude}, 0.3, 1.3});
+  scene.add(InPlane{{scene.ground({0, 0, 0.3}), ball.centre}, {Attitude{}}, {0, 0, 1}});
+  scene.add(ConstantForce{{ball.centre}, {0, 0, -9.81}});
+  Multibody motion(std::move(scene), 0.02);
+  advance(motion, 500);
+  const auto at = motion.configuration()(motion(ball.centre));
+  EXPECT_LT((at.head<2>() - std::get<0>(end.state.object)).norm(), 1e-11);
+  EXPECT_NEAR(at(2), 0.3, 1e-14);
+  EXPECT_LT(motion.constraint_residual(), 1e-14);
+}
+
+/// A ball that turns at a prescribed rate about the vertical keeps it.
+TEST(Multibody, APrescribedSpinIsKept) {
+  Scene scene;
+  const Body body = scene.rigid_body(1, {0.2, 0.3, 0.4}, Vec::Zero(), upright, Vec::Zero(), {0, 0, 0.7});
+  scene.add(PrescribedSpin{{}, {body.attitude}, {0, 0, 1}, 0.7});
+  scene.add(ConstantForce{{scene.point_of(body, {0.5, 0, 0})}, {0, 0, 1}});
+  Multibody motion(std::move(scene), 0.01);
+  Mat before = motion.configuration()(motion(body.attitude));
+  for (int k = 0; k < 200; ++k) {
+    advance(motion, 1);
+    const Mat now = motion.configuration()(motion(body.attitude));
+    EXPECT_NEAR(SO3::log(Mat(now * before.transpose()))(2), 0.007, 1e-14);
+    before = now;
+  }
 }
 
 /// A box that hangs by a ball joint from a sliding, turning carriage; a spring and a bob on a rod.
@@ -313,6 +353,19 @@ TEST(Multibody, GoesOnFromAStateWithTheSameBits) {
     EXPECT_EQ(a.attitude[r], b.attitude[r]);
     EXPECT_EQ(a.spin[r], b.spin[r]);
   }
+}
+
+/// Two that attract each other and meet exactly.
+TEST(Multibody, AStepToInfiniteForcesIsNotTaken) {
+  Scene scene;
+  const Body a = scene.point_mass(1, {-1, 0, 0}, {1, 0, 0});
+  const Body b = scene.point_mass(1, {1, 0, 0}, {-1, 0, 0});
+  scene.add(InverseSquare{{a.centre, b.centre}, 0});
+  Multibody motion(std::move(scene), 1);
+  const StepReport report = motion.advance();
+  EXPECT_EQ(report.status, SolveStatus::not_finite);
+  EXPECT_EQ(motion.index(), 0);
+  EXPECT_EQ(motion.state().place[0], Vec(-1, 0, 0));
 }
 
 TEST(Multibody, AStepThatFailsChangesNothing) {

@@ -31,6 +31,9 @@ SCENES = {
     "unicycle": [],
     "attitude_control": [],
     "driven_pendulum": ["time.steps=9001"],
+    "chain_drop": [],
+    "six_bar": [],
+    "tops": [],
 }
 
 

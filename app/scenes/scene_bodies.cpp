@@ -82,8 +82,10 @@ void read_rigid(SceneBodies& bodies, const Section& table) {
   b.place = vector_of(table, "position", "x, y, z of the centre of mass in m");
   const Quaternion q = read_attitude(table);
   b.attitude = SO3::from_quaternion(q);
-  b.body = bodies.scene.rigid_body(b.mass, b.inertia, b.place, q, vector_or(table, "velocity", "m/s"),
-                                   vector_or(table, "angular_velocity", "in the body's frame, rad/s"));
+  const Vec w = vector_or(table, "angular_velocity", "in the body's frame, rad/s");
+  b.velocity = vector_or(table, "velocity", "m/s");
+  b.angular_velocity = b.attitude * w;
+  b.body = bodies.scene.rigid_body(b.mass, b.inertia, b.place, q, b.velocity, w);
   b.mass_centre = b.body.centre;
   keep(bodies, b);
 }
@@ -97,8 +99,9 @@ void read_pivoted(SceneBodies& bodies, const Section& table) {
   b.to_centre = vector_or(table, "centre", "from the pivot to the centre of mass, in the body's frame, m");
   const Quaternion q = read_attitude(table);
   b.attitude = SO3::from_quaternion(q);
-  b.body = bodies.scene.pivoted_body(b.inertia, b.place, q,
-                                     vector_or(table, "angular_velocity", "in the body's frame, rad/s"));
+  const Vec w = vector_or(table, "angular_velocity", "in the body's frame, rad/s");
+  b.angular_velocity = b.attitude * w;
+  b.body = bodies.scene.pivoted_body(b.inertia, b.place, q, w);
   b.mass_centre = bodies.scene.point_of(b.body, b.to_centre);
   bodies.isolated = false;
   keep(bodies, b);

@@ -24,7 +24,9 @@ struct NamedBody {
   multibody::Site mass_centre;  ///< where its weight acts
   multibody::Vec place = multibody::Vec::Zero();
   multibody::Mat attitude = multibody::Mat::Identity();
-  multibody::Vec inertia = multibody::Vec::Zero();    ///< principal moments; zero for a point mass
+  multibody::Vec velocity = multibody::Vec::Zero();
+  multibody::Vec angular_velocity = multibody::Vec::Zero();  ///< in space
+  multibody::Vec inertia = multibody::Vec::Zero();           ///< principal moments; zero for a point mass
   multibody::Vec to_centre = multibody::Vec::Zero();  ///< from its reference point to its centre of mass, in its frame
 };
 
@@ -54,6 +56,7 @@ struct SceneBodies {
     double width;
   };
   std::vector<Line> lines;
+  bool nonholonomic = false;
   bool dissipates = false;  ///< damping takes energy
   bool driven = false;      ///< forces that are not derived from a potential
   bool isolated = true;     ///< nothing acts from outside: momenta are conserved

@@ -76,8 +76,58 @@ void require_in_plane(const Section& table, const std::array<End, 2>& ends, cons
 
 }  // namespace
 
+namespace {
+
+const NamedBody& turning_body(const SceneBodies& bodies, const Section& table) {
+  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  if (body.body.attitude.index < 0) table.fail("body", fmt::format("\"{}\" does not turn in space", body.name));
+  return body;
+}
+
+/// The angular velocity in space that the body should have, where it has another.
+void require_spin(const Section& table, const NamedBody& body, const Vec& wanted) {
+  const Vec& has = body.angular_velocity;
+  if ((wanted - has).norm() <= 1e-9 * (1 + wanted.norm() + has.norm())) return;
+  const Vec w = body.attitude.transpose() * wanted;
+  table.fail("body", fmt::format("\"{}\" does not begin as this joint has it; give it angular_velocity = [{:.17g}, "
+                                 "{:.17g}, {:.17g}], or another velocity",
+                                 body.name, w(0), w(1), w(2)));
+}
+
+void read_rolling(SceneBodies& bodies, const Section& table) {
+  const NamedBody& ball = turning_body(bodies, table);
+  if (ball.linear < 0) table.fail("body", fmt::format("\"{}\" turns about a fixed point and cannot roll", ball.name));
+  const double radius = table.number("radius", positive);
+  const double rate = table.number_or("plate_rate", 0);
+  const Vec& v = ball.velocity;
+  if (v(2) != 0)
+    table.fail("body", fmt::format("\"{}\" rolls on a level plate: its velocity has no third part", ball.name));
+  const Vec slip = v - rate * Vec(Vec::UnitZ()).cross(ball.place);
+  require_spin(table, ball, {-slip(1) / radius, slip(0) / radius, ball.angular_velocity(2)});
+  bodies.scene.add(multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
+  bodies.scene.add(InPlane{{bodies.scene.ground(ball.place), ball.body.centre}, {multibody::Attitude{}}, Vec::UnitZ()});
+  bodies.nonholonomic = true;
+  bodies.isolated = false;
+  if (rate != 0) bodies.driven = true;
+}
+
+void read_spin(SceneBodies& bodies, const Section& table) {
+  const NamedBody& body = turning_body(bodies, table);
+  const Vec axis = frame_along(table, "axis", "in space").col(2);
+  const double rate = table.number_or("rate", 0);
+  require_spin(table, body, body.angular_velocity + (rate - axis.dot(body.angular_velocity)) * axis);
+  bodies.scene.add(multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
+  bodies.nonholonomic = true;
+  bodies.isolated = false;
+  if (rate != 0) bodies.driven = true;
+}
+
+}  // namespace
+
 void read_joint(SceneBodies& bodies, const Section& table) {
-  const std::string kind = table.choice("kind", {"rod", "ball", "hinge", "weld", "slider", "plane"});
+  const std::string kind = table.choice("kind", {"rod", "ball", "hinge", "weld", "slider", "plane", "rolling", "spin"});
+  if (kind == "rolling") return read_rolling(bodies, table);
+  if (kind == "spin") return read_spin(bodies, table);
   const auto ends = bodies.ends(table);
   if (!ends[0].body && !ends[1].body) table.fail("between", "ties the ground to itself");
   if (kind == "rod") {

@@ -280,9 +280,14 @@ class Run {
       scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
                                  "them, or take what the joints allow of them with project_velocities = true",
                                  defect));
+    const auto momenta = motion_->momenta();
+    if (!std::isfinite(motion_->kinetic_energy(momenta) + motion_->potential_energy()))
+      scene.fail("",
+                 "the energy at the start is no finite number: a velocity or a mass is too large, or bodies that act "
+                 "on each other meet");
     grid_.steps = std::min(grid_.steps, most_steps);
     result_.steps_asked = grid_.steps;
-    const bool symplectic = !bodies_.dissipates && !bodies_.driven;
+    const bool symplectic = !bodies_.dissipates && !bodies_.driven && !bodies_.nonholonomic;
     result_.method = description({"steps of the discrete Lagrangian", 2, true, symplectic, false});
     if (motion_->dependent_rows() > 0)
       result_.notes.push_back(

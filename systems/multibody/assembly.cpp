@@ -206,7 +206,7 @@ void Multibody::assemble(Scene& scene) {
       const int j = order[std::size_t(k)];
       const auto i = std::size_t(island[std::size_t(j)]);
       if (batches[i].empty() || batches[i].back().joints != joints.get()) {
-        batches[i].push_back({joints.get(), k, 0, 0, 0});
+        batches[i].push_back({joints.get(), joints->on_arrows(), k, 0, 0, 0});
         touches[i].emplace_back();
       }
       ++batches[i].back().count;
@@ -248,18 +248,18 @@ void Multibody::assemble(Scene& scene) {
             if (p.rotation >= 0) {
               const int rotation = places_.attitudes[std::size_t(p.rotation)];
               levers_.push_back({at, further, rotation, p.place});
-              rotation_entries_.push_back({further++, rotation, r});
+              rotation_entries_.push_back({further++, rotation, r, batch.on_arrows});
             }
             if (p.linear >= 0) {
               const int body = linear_place[std::size_t(p.linear)];
               const bool planar = scene.linear_[std::size_t(p.linear)].planar;
               if (planar) planar_levers_.push_back({at, further, places_(s).index, body});
-              linear_entries_.push_back({planar ? further++ : at, body, r});
+              linear_entries_.push_back({planar ? further++ : at, body, r, batch.on_arrows});
             }
             ++at;
           }
           for (const Attitude a : touch.attitudes) {
-            if (a.index >= 0) rotation_entries_.push_back({at, places_(a).index, r});
+            if (a.index >= 0) rotation_entries_.push_back({at, places_(a).index, r, batch.on_arrows});
             ++at;
           }
         }
@@ -288,6 +288,12 @@ void Multibody::assemble(Scene& scene) {
   sizes_.resize(std::size_t(row));
   earlier_ = {multipliers_, multipliers_, multipliers_};
   left_out_.assign(std::size_t(row), 0);
+  on_arrow_.assign(std::size_t(row), 0);
+  for (const Batch& batch : batches_) {
+    if (!batch.on_arrows) continue;
+    has_arrow_rows_ = true;
+    std::fill_n(on_arrow_.begin() + batch.row, batch.count * batch.joints->rows(), char(1));
+  }
 
   // Which products of gradients and responses make the matrices.
   for (Island& island : islands_) {
@@ -317,12 +323,13 @@ void Multibody::assemble(Scene& scene) {
     island.linear_pairs.first = int(linear_pairs_.size());
     same_factor(linear_entries_, island.linear_entries, island.linear, [&](int a, int b) {
       const Entry& left = linear_entries_[std::size_t(a)];
-      linear_pairs_.push_back({left.gradient, b, place_of(left, linear_entries_[std::size_t(b)])});
+      linear_pairs_.push_back({left.gradient, left.row, b, place_of(left, linear_entries_[std::size_t(b)])});
     });
     island.linear_pairs.last = int(linear_pairs_.size());
     island.rotation_pairs.first = int(rotation_pairs_.size());
     same_factor(rotation_entries_, island.rotation_entries, island.rotations, [&](int a, int b) {
-      rotation_pairs_.push_back({a, b, place_of(rotation_entries_[std::size_t(a)], rotation_entries_[std::size_t(b)])});
+      const Entry& left = rotation_entries_[std::size_t(a)];
+      rotation_pairs_.push_back({a, left.row, b, place_of(left, rotation_entries_[std::size_t(b)])});
     });
     island.rotation_pairs.last = int(rotation_pairs_.size());
   }

@@ -82,6 +82,8 @@ template <class S, class Variable> Matrix<S, 3, 3> varied(const Mat& a, int k, c
   return out;
 }
 
+template <class E> Attitude attitude_of(const E& effect, int i) { return effect.attitudes[std::size_t(i)]; }
+
 /// The energy over a scalar S.
 template <class S, class E, class Variable>
 S energy_over(const E& effect, const Configuration& at, const Variable& variable) {
@@ -91,7 +93,7 @@ S energy_over(const E& effect, const Configuration& at, const Variable& variable
       return S(effect.energy(varied<S>(at(effect.sites[std::size_t(I)]), I, variable)...));
     } else {
       return S(effect.energy(varied<S>(at(effect.sites[std::size_t(I)]), I, variable)...,
-                             varied<S>(at(effect.attitudes[std::size_t(J)]), n + J, variable)...));
+                             varied<S>(at(attitude_of(effect, J)), n + J, variable)...));
     }
   }
   (std::make_integer_sequence<int, n>{}, std::make_integer_sequence<int, attitude_count<E>()>{});

@@ -85,4 +85,61 @@ struct InPlane {
   }
 };
 
+/// A ball whose centre moves at the height of its radius r over a level plate that turns about the origin at the rate
+/// Omega: dx = h v of the point of the plate below, without slipping,
+///     dx - r w2 + h Omega y = 0,   dy + r w1 - h Omega x = 0,
+/// with the turn w = A xi in space and (x, y) the middle of the arrow; the reactions are those of a plate at rest.
+struct Rolling {
+  static constexpr int rows = 2;
+  std::array<Site, 1> sites;
+  std::array<Attitude, 1> attitudes;
+  double radius = 1;      ///< r, m
+  double plate_rate = 0;  ///< Omega, rad/s
+
+  void value(const Motion& motion, double* c) const {
+    const Vec& d = motion.displacement(sites[0]);
+    const Vec w = motion.before(attitudes[0]) * motion.turn(attitudes[0]);
+    const Vec middle = motion.before(sites[0]) + 0.5 * d;
+    const double turned = motion.h * plate_rate;
+    c[0] = d(0) - radius * w(1) + turned * middle(1);
+    c[1] = d(1) + radius * w(0) - turned * middle(0);
+  }
+  void gradient(const Motion& motion, Vec* g) const {
+    RowSize size[rows];
+    reaction(motion.before, g, size);
+    const double half = 0.5 * motion.h * plate_rate;
+    g[0](1) += half;
+    g[2](0) -= half;
+  }
+  void reaction(const Configuration& at, Vec* g, RowSize* size) const {
+    const Mat& a = at(attitudes[0]);
+    g[0] = Vec::UnitX();
+    g[1] = -radius * a.row(1).transpose();
+    g[2] = Vec::UnitY();
+    g[3] = radius * a.row(0).transpose();
+    size[0] = size[1] = {0, 1 + radius};
+  }
+};
+
+/// A body that does not turn about the n-th axis of space, or turns about it at a given rate: n.(A xi) = h rate.
+struct PrescribedSpin {
+  static constexpr int rows = 1;
+  std::array<Site, 0> sites;
+  std::array<Attitude, 1> attitudes;
+  Vec axis{0, 0, 1};  ///< n, of unit length, in space
+  double rate = 0;    ///< rad/s
+
+  void value(const Motion& motion, double* c) const {
+    c[0] = axis.dot(motion.before(attitudes[0]) * motion.turn(attitudes[0])) - motion.h * rate;
+  }
+  void gradient(const Motion& motion, Vec* g) const {
+    RowSize size[rows];
+    reaction(motion.before, g, size);
+  }
+  void reaction(const Configuration& at, Vec* g, RowSize* size) const {
+    g[0] = at(attitudes[0]).transpose() * axis;
+    size[0] = {0, 1};
+  }
+};
+
 }  // namespace lagroid::multibody

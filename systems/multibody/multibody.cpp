@@ -24,19 +24,19 @@ LAGROID_INLINE inline void add(Vec& sum, Vec& carry, const Vec& increment) {
 
 }  // namespace
 
-void Multibody::act() {
+void Multibody::act(const Configuration& at) {
   if (effects_.empty()) return;
   std::fill(loads_.on.begin(), loads_.on.end(), Vec::Zero());
   std::fill(loads_.torque.begin(), loads_.torque.end(), Vec::Zero());
-  for (const auto& effect : effects_) effect->add_loads(now_, loads_);
+  for (const auto& effect : effects_) effect->add_loads(at, loads_);
   for (const Arm& a : pushed_arms_) {
     const Vec& f = loads_.on[std::size_t(a.site)];
     loads_.on[std::size_t(a.base)] += f;
-    loads_.torque[std::size_t(a.rotation)] += a.arm.cross(Vec(now_.attitude[std::size_t(a.rotation)].transpose() * f));
+    loads_.torque[std::size_t(a.rotation)] += a.arm.cross(Vec(at.attitude[std::size_t(a.rotation)].transpose() * f));
   }
   for (const Arm& a : pushed_planar_arms_) {
     const Vec& f = loads_.on[std::size_t(a.site)];
-    const Vec d = now_.x[std::size_t(a.site)] - now_.x[std::size_t(a.base)];
+    const Vec d = at.x[std::size_t(a.site)] - at.x[std::size_t(a.base)];
     loads_.on[std::size_t(a.base)] += Vec(f(0), f(1), d(0) * f(1) - d(1) * f(0));
   }
 }
@@ -78,11 +78,16 @@ void Multibody::try_place(const Island& island) {
   place_arms(next_, island.arms, island.planar_arms);
 }
 
-void Multibody::differentiate(const Configuration& at, const Island& island, std::vector<Vec>& gradients) {
+void Multibody::react(const Island& island) {
   for (int b = island.batches.first; b < island.batches.last; ++b) {
     const Batch& batch = batches_[std::size_t(b)];
-    batch.joints->gradients(at, batch.first, batch.count, gradients.data() + batch.gradient, sizes_.data() + batch.row);
+    batch.joints->reactions(now_, batch.first, batch.count, gradients_.data() + batch.gradient,
+                            sizes_.data() + batch.row);
   }
+  pull_back(now_, island, gradients_);
+}
+
+void Multibody::pull_back(const Configuration& at, const Island& island, std::vector<Vec>& gradients) const {
   for (int i = island.levers.first; i < island.levers.last; ++i) {
     const Lever& l = levers_[std::size_t(i)];
     gradients[std::size_t(l.to)] =
@@ -97,7 +102,11 @@ void Multibody::differentiate(const Configuration& at, const Island& island, std
 }
 
 bool Multibody::factorise(Island& island) {
-  differentiate(next_, island, next_gradients_);
+  for (int b = island.batches.first; b < island.batches.last; ++b) {
+    const Batch& batch = batches_[std::size_t(b)];
+    batch.joints->gradients(motion(), batch.first, batch.count, next_gradients_.data() + batch.gradient);
+  }
+  pull_back(next_, island, next_gradients_);
   Elimination& matrix = island.matrix;
   matrix.clear();
   for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
@@ -114,8 +123,9 @@ bool Multibody::factorise(Island& island) {
   for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
     const Entry& e = rotation_entries_[std::size_t(i)];
     rotation_response_[std::size_t(i)] = turn_inverse_[std::size_t(e.factor)] * gradients_[std::size_t(e.gradient)];
+    const Vec& gradient = next_gradients_[std::size_t(e.gradient)];
     rotation_gradient_[std::size_t(i)] =
-        turn_frame_[std::size_t(e.factor)].transpose() * next_gradients_[std::size_t(e.gradient)];
+        e.on_arrow ? gradient : Vec(turn_frame_[std::size_t(e.factor)].transpose() * gradient);
   }
   for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
     const Pair& p = rotation_pairs_[std::size_t(i)];
@@ -176,7 +186,7 @@ StepReport Multibody::solve(Island& island) {
     try_place(island);
     for (int b = island.batches.first; b < island.batches.last; ++b) {
       const Batch& batch = batches_[std::size_t(b)];
-      batch.joints->values(next_, batch.first, batch.count, values + batch.row);
+      batch.joints->values(motion(), batch.first, batch.count, values + batch.row);
     }
     double residual = 0;
     double sum = 0;  // which no NaN escapes
@@ -330,12 +340,32 @@ StepReport Multibody::advance() {
       worst.status = SolveStatus::left_domain;
       return worst;
     }
+  act(next_);
+  if (!next_is_finite()) {
+    act(now_);
+    worst.status = SolveStatus::not_finite;
+    return worst;
+  }
   accept();
   return worst;
 }
 
+bool Multibody::next_is_finite() const {
+  double sum = 0;  // which no NaN and no infinity escapes
+  for (std::size_t f = 0; f < momentum_.size(); ++f)
+    sum += displacement_[f].lpNorm<1>() + kicked_[f].lpNorm<1>() + loads_.on[f].lpNorm<1>();
+  for (std::size_t r = 0; r < spin_.size(); ++r)
+    sum += turned_[r].lpNorm<1>() + spin_kicked_[r].lpNorm<1>() + loads_.torque[r].lpNorm<1>();
+  return std::isfinite(sum);
+}
+
 void Multibody::accept() {
   ++index_;
+  if (has_arrow_rows_) {
+    arrow_residual_ = 0;
+    for (std::size_t row = 0; row < values_.size(); ++row)
+      if (on_arrow_[row]) arrow_residual_ = std::max(arrow_residual_, std::abs(values_[row]) * precision_[row]);
+  }
   for (std::size_t f = 0; f < momentum_.size(); ++f) {
     Vec impulse = impulse_[f];
     for (int e = factor_entries_[f]; e < factor_entries_[f + 1]; ++e) {
@@ -368,8 +398,7 @@ void Multibody::accept() {
   std::swap(earlier_[2], earlier_[1]);
   std::swap(earlier_[1], earlier_[0]);
   std::swap(earlier_[0], multipliers_);
-  for (const Island& island : islands_) differentiate(now_, island, gradients_);
-  act();
+  for (const Island& island : islands_) react(island);
   kick();
   for (std::size_t f = 0; f < momentum_.size(); ++f) add(momentum_[f], momentum_carry_[f], impulse_[f]);
   for (std::size_t r = 0; r < spin_.size(); ++r) add(spin_[r], spin_carry_[r], spin_impulse_[r]);
@@ -395,7 +424,7 @@ std::size_t Multibody::memory() const {
         arms_, planar_arms_, pushed_arms_, pushed_planar_arms_, islands_, batches_, linear_entries_, rotation_entries_,
         linear_pairs_, rotation_pairs_, levers_, planar_levers_, gradients_, next_gradients_, linear_response_,
         rotation_response_, rotation_gradient_, factor_entries_, sizes_, multipliers_, values_, right_, precision_,
-        earlier_[0], earlier_[1], earlier_[2], left_out_);
+        earlier_[0], earlier_[1], earlier_[2], left_out_, on_arrow_);
   for (const Island& island : islands_) bytes += island.matrix.entries() * sizeof(double);
   return bytes;
 }
@@ -438,8 +467,8 @@ void Multibody::begin() {
   for (std::size_t r = 0; r < spin_.size(); ++r) now_.attitude[r] = SO3::from_quaternion(quaternions_[r]);
   place_arms(now_, {0, int(arms_.size())}, {0, int(planar_arms_.size())});
   next_ = now_;
-  for (const Island& island : islands_) differentiate(now_, island, gradients_);
-  act();
+  for (const Island& island : islands_) react(island);
+  act(now_);
 }
 
 Multibody::Momenta Multibody::momenta() const {
@@ -453,15 +482,19 @@ Multibody::Momenta Multibody::momenta() const {
     };
     for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
       const Pair& p = linear_pairs_[std::size_t(i)];
-      matrix.value(p.value) +=
-          gradients_[std::size_t(p.gradient)].dot(response(linear_entries_[std::size_t(p.entry)], inertia_));
+      const Entry& b = linear_entries_[std::size_t(p.entry)];
+      if (on_arrow_[std::size_t(p.row)] || b.on_arrow) continue;
+      matrix.value(p.value) += gradients_[std::size_t(p.gradient)].dot(response(b, inertia_));
     }
     for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
       const Pair& p = rotation_pairs_[std::size_t(i)];
       const Entry& a = rotation_entries_[std::size_t(p.gradient)];
-      matrix.value(p.value) +=
-          gradients_[std::size_t(a.gradient)].dot(response(rotation_entries_[std::size_t(p.entry)], moments_));
+      const Entry& b = rotation_entries_[std::size_t(p.entry)];
+      if (a.on_arrow || b.on_arrow) continue;
+      matrix.value(p.value) += gradients_[std::size_t(a.gradient)].dot(response(b, moments_));
     }
+    for (int row = 0; row < island.rows.size(); ++row)
+      if (on_arrow_[std::size_t(island.rows.first + row)]) matrix.value(matrix.index(row, row)) = 1;
     if (!matrix.factorise()) continue;
     right.assign(std::size_t(island.rows.size()), 0.0);
     const auto each_entry = [&](const auto& visit) {
@@ -471,10 +504,12 @@ Multibody::Momenta Multibody::momenta() const {
         visit(rotation_entries_[std::size_t(i)], m.spin, moments_);
     };
     each_entry([&](const Entry& e, const std::vector<Vec>& momentum, const std::vector<Vec>& inertia) {
+      if (e.on_arrow) return;
       right[std::size_t(e.row - island.rows.first)] -= response(e, inertia).dot(momentum[std::size_t(e.factor)]);
     });
     matrix.solve(right.data());
     each_entry([&](const Entry& e, std::vector<Vec>& momentum, const std::vector<Vec>&) {
+      if (e.on_arrow) return;
       momentum[std::size_t(e.factor)] +=
           right[std::size_t(e.row - island.rows.first)] * gradients_[std::size_t(e.gradient)];
     });
@@ -515,9 +550,10 @@ Vec Multibody::angular_momentum(const Momenta& m) const {
 
 double Multibody::constraint_residual() const {
   std::vector<double> values(values_.size());
-  double largest = 0;
+  double largest = arrow_residual_;
   for (const Batch& batch : batches_) {
-    batch.joints->values(now_, batch.first, batch.count, values.data() + batch.row);
+    if (batch.on_arrows) continue;
+    batch.joints->values({now_, now_, displacement_, turned_, h_}, batch.first, batch.count, values.data() + batch.row);
     for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
       const double value = std::abs(values[std::size_t(row)]);
       const RowSize& size = sizes_[std::size_t(row)];
@@ -532,6 +568,7 @@ double Multibody::velocity_defect() const {
   std::vector<double> rate(earlier_[0].size(), 0.0);
   std::vector<double> size(earlier_[0].size(), 0.0);
   const auto look = [&](const Entry& e, const Vec& velocity) {
+    if (e.on_arrow) return;
     const Vec& g = gradients_[std::size_t(e.gradient)];
     rate[std::size_t(e.row)] += g.dot(velocity);
     size[std::size_t(e.row)] += g.norm() * velocity.norm();

@@ -73,7 +73,7 @@ class Multibody {
   Vec linear_momentum(const Momenta& m) const;
   /// About the origin, in space.
   Vec angular_momentum(const Momenta& m) const;
-  /// The largest |C| over the size of its terms, of all rows.
+  /// The largest |C| at this node, and |phi| on the arrow that led here, over the sizes of their terms.
   double constraint_residual() const;
   /// The largest rate at which a row of a joint is violated by the given velocities, over the size of its gradient
   /// times them; zero for consistent ones.
@@ -96,6 +96,7 @@ class Multibody {
   /// Joints of one kind in one island.
   struct Batch {
     const Joints* joints;
+    bool on_arrows;
     int first;
     int count;
     int row;
@@ -106,10 +107,12 @@ class Multibody {
     int gradient;
     int factor;
     int row;
+    bool on_arrow;
   };
   /// S(row a, row b) += (gradient of a) . (response to b).
   struct Pair {
     int gradient;
+    int row;  ///< of a
     int entry;
     int value;
   };
@@ -148,13 +151,18 @@ class Multibody {
   /// What follows from places and attitudes at this node.
   void begin();
 
-  void act();
+  void act(const Configuration& at);
+  bool next_is_finite() const;
   /// Half a step's impulse of the forces at this node.
   void kick();
   void place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const;
   void correct(const Island& island, const double* multipliers);
   void try_place(const Island& island);
-  void differentiate(const Configuration& at, const Island& island, std::vector<Vec>& gradients);
+  /// Gradients along points fixed in bodies become those along their motions.
+  void pull_back(const Configuration& at, const Island& island, std::vector<Vec>& gradients) const;
+  /// The joints' reactions at this node.
+  void react(const Island& island);
+  Motion motion() const { return {now_, next_, displacement_, turned_, h_}; }
   bool factorise(Island& island);
   StepReport solve(Island& island);
   StepReport turn_freely(int rotation);
@@ -203,7 +211,9 @@ class Multibody {
   std::vector<RowSize> sizes_;
   std::vector<double> multipliers_, values_, right_, precision_;  ///< precision: one over the size of a row
   std::array<std::vector<double>, 3> earlier_;                    ///< multipliers of the last steps
-  std::vector<char> left_out_;
+  std::vector<char> left_out_, on_arrow_;
+  double arrow_residual_ = 0;  ///< of the rows on the arrow that led here
+  bool has_arrow_rows_ = false;
   int dependent_rows_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,7 @@ template <class K> K on_own_places(K kernel) {
 
 /// The derivative of f along the i-th of the motions of these points and bodies, by differences of order 4.
 template <class F> auto derivative_along(const F& f, const multibody::Configuration& at, int sites, int i) {
+  using Value = std::decay_t<decltype(f(at))>;
   constexpr double e = 1e-3;
   const auto moved = [&](double by) {
     multibody::Configuration c = at;
@@ -48,7 +50,9 @@ template <class F> auto derivative_along(const F& f, const multibody::Configurat
     }
     return f(c);
   };
-  return ((moved(e) - moved(-e)) * 8 - (moved(2 * e) - moved(-2 * e))) / (12 * e);
+  const Value near = moved(e) - moved(-e);
+  const Value far = moved(2 * e) - moved(-2 * e);
+  return Value((8 * near - far) / (12 * e));
 }
 
 }  // namespace detail
