@@ -124,6 +124,47 @@ TEST(MultibodyNumbers, RollingBall) {
   EXPECT_LT(motion.constraint_residual(), 1e-14);
 }
 
+/// Round a field line: the velocity turns by 2 atan(w h / 2) a step and keeps its size to round-off.
+TEST(Multibody, ChargesGoRoundFieldLines) {
+  Scene scene;
+  const Body a = scene.point_mass(2, Vec::Zero(), {1, 0, 0.3});
+  scene.deflect(a, {0, 0, 1.5});
+  Multibody motion(std::move(scene), 0.1);
+  advance(motion, 1000);
+  const Vec p = motion.momenta().linear[0];
+  const double turned = -1000 * 2 * std::atan(0.75 * 0.1 / 2);
+  EXPECT_LT((p - 2 * Vec(std::cos(turned), std::sin(turned), 0.3)).norm(), 1e-11);
+  EXPECT_NEAR(p.norm(), 2 * std::sqrt(1.09), 1e-13);
+}
+
+/// A pendulum in a frame that turns is the same pendulum, seen from there.
+TEST(Multibody, ATurningFrameShowsTheSamePendulum) {
+  constexpr double rate = 0.4;
+  constexpr double end = 3;
+  const auto error = [&](int steps) {
+    const auto run = [&](bool turning) {
+      Scene scene;
+      const Vec at = Vec(0.6, 0, -0.8);
+      const Vec frame = rate * Vec::UnitZ();
+      const Vec velocity = Vec(0.1, 0.7, 0.075);
+      const Body bob = scene.point_mass(1, at, turning ? Vec(velocity - frame.cross(at)) : velocity);
+      scene.add(Rod{{scene.ground(Vec::Zero()), bob.centre}, 1});
+      scene.add(ConstantForce{{bob.centre}, {0, 0, -9.81}});
+      if (turning) {
+        scene.deflect(bob, 2 * frame);
+        scene.add(Centrifugal{{bob.centre}, 1, frame});
+      }
+      Multibody motion(std::move(scene), end / steps);
+      advance(motion, steps);
+      return motion.configuration().x[0];
+    };
+    return (SO3::exp(Vec(0, 0, rate * end)) * run(true) - run(false)).norm();
+  };
+  const double coarse = error(300);
+  EXPECT_LT(coarse, 1e-3);
+  EXPECT_NEAR(std::log2(coarse / error(600)), 2, 0.1);
+}
+
 /// A ball that turns at a prescribed rate about the vertical keeps it.
 TEST(Multibody, APrescribedSpinIsKept) {
   Scene scene;

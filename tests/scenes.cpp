@@ -66,6 +66,45 @@ TEST_F(Scenes, EveryKindOfBodyJointAndEffectRuns) {
   EXPECT_EQ(run("view " + out.string()).code, 0);
 }
 
+TEST_F(Scenes, BallsRollAndChargesTurn) {
+  const fs::path file =
+      write(bob +
+            "[[body]]\nkind = \"rigid\"\nname = \"ball\"\nmass = 1\ninertia = [0.4, 0.4, 0.4]\nposition = [0, 1, 1]\n"
+            "velocity = [1, 0, 0]\nangular_velocity = [0, 1, 0]\n"
+            "[[joint]]\nkind = \"rolling\"\nbody = \"ball\"\nradius = 1\n"
+            "[[joint]]\nkind = \"spin\"\nbody = \"ball\"\naxis = [0, 0, 1]\n"
+            "[[effect]]\nkind = \"magnetic_field\"\nfield = [0, 0, 1]\nbodies = [\"bob\"]\ncharges = [2]\n"
+            "[[effect]]\nkind = \"rotating_frame\"\nrate = [0, 0, 1]\nbodies = [\"bob\"]\n" +
+            grid);
+  const Outcome r = run("run " + file.string() + " --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Outcome slips = run("run " + file.string() + " --set body.1.angular_velocity=[0,0.9,0]");
+  EXPECT_EQ(slips.code, 2);
+  EXPECT_NE(slips.err.find("give it angular_velocity = [0, 1, 0]"), std::string::npos) << slips.err;
+  const Outcome turns = run("run " + file.string() + " --set body.1.angular_velocity=[0,1,1]");
+  EXPECT_EQ(turns.code, 2);
+  const Outcome body = run("run " + file.string() + " --set effect.0.bodies=[\\\"ball\\\"]");
+  EXPECT_EQ(body.code, 2);
+  EXPECT_NE(body.err.find("point mass"), std::string::npos) << body.err;
+}
+
+/// The page on scenes has a row for every kind that is read.
+TEST_F(Scenes, EveryKindIsDocumented) {
+  const std::string page = contents(fs::path(LAGROID_EXAMPLES).parent_path() / "docs" / "scenes.md");
+  int kinds = 0;
+  for (const std::string table : {"body", "joint", "effect"}) {
+    const fs::path file = write(bob + "[[" + table + "]]\nkind = \"?\"\n" + grid);
+    const std::string said = run("run " + file.string()).err;
+    const std::string words = "is none of ";
+    std::istringstream names(said.substr(said.find(words) + words.size()));
+    for (std::string name; names >> name; ++kinds) {
+      if (name.ends_with(',')) name.pop_back();
+      EXPECT_NE(page.find("| `" + name + "`"), std::string::npos) << table << " " << name;
+    }
+  }
+  EXPECT_GE(kinds, 24);
+}
+
 TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
   const std::string rod = "[[joint]]\nkind = \"rod\"\nbetween = [\"ground\", \"bob\"]\n";
   const std::vector<std::pair<std::string, std::string>> cases{

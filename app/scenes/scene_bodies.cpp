@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -210,12 +211,12 @@ std::array<End, 2> SceneBodies::ends(const Section& table) {
 }
 
 void read_body(SceneBodies& bodies, const Section& table) {
-  const std::string kind = table.choice("kind", {"point", "rigid", "pivoted", "planar", "chain"});
-  if (kind == "point") read_point(bodies, table);
-  if (kind == "rigid") read_rigid(bodies, table);
-  if (kind == "pivoted") read_pivoted(bodies, table);
-  if (kind == "planar") read_planar(bodies, table);
-  if (kind == "chain") read_chain(bodies, table);
+  constexpr std::array<SceneKind, 5> kinds{{{"point", read_point},
+                                            {"rigid", read_rigid},
+                                            {"pivoted", read_pivoted},
+                                            {"planar", read_planar},
+                                            {"chain", read_chain}}};
+  read_kind(kinds, bodies, table);
 }
 
 SceneBodies read_scene_bodies(const Section& scene) {

@@ -10,6 +10,7 @@
 #include <deque>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
@@ -27,6 +28,7 @@ struct NamedBody {
   multibody::Vec velocity = multibody::Vec::Zero();
   multibody::Vec angular_velocity = multibody::Vec::Zero();  ///< in space
   multibody::Vec inertia = multibody::Vec::Zero();           ///< principal moments; zero for a point mass
+  double radius = 0;                                         ///< of a ball; else of no use
   multibody::Vec to_centre = multibody::Vec::Zero();  ///< from its reference point to its centre of mass, in its frame
 };
 
@@ -56,6 +58,7 @@ struct SceneBodies {
     double width;
   };
   std::vector<Line> lines;
+  std::vector<Shape> scenery;  ///< what stands around: a plate
   bool nonholonomic = false;
   bool dissipates = false;  ///< damping takes energy
   bool driven = false;      ///< forces that are not derived from a potential
@@ -67,6 +70,9 @@ struct SceneBodies {
   /// The bodies named under `key`; all of them where it is missing.
   std::vector<const NamedBody*> chosen(const Section& table, std::string_view key) const;
   const NamedBody& named(const Section& table, std::string_view key, const std::string& name) const;
+  NamedBody& named(const Section& table, std::string_view key, const std::string& name) {
+    return const_cast<NamedBody&>(std::as_const(*this).named(table, key, name));
+  }
   End end_of(const NamedBody* body, const multibody::Vec& arm);
 };
 
@@ -74,6 +80,20 @@ struct SceneBodies {
 multibody::Vec vector_or(const Section& table, std::string_view key, std::string_view meaning,
                          const multibody::Vec& fallback = multibody::Vec::Zero());
 multibody::Vec vector_of(const Section& table, std::string_view key, std::string_view meaning);
+
+/// What a table's `kind` stands for.
+struct SceneKind {
+  const char* name;
+  void (*read)(SceneBodies& bodies, const Section& table);
+};
+/// Reads a table by its `kind`.
+template <class Kinds> void read_kind(const Kinds& kinds, SceneBodies& bodies, const Section& table) {
+  std::vector<std::string> names;
+  for (const SceneKind& kind : kinds) names.emplace_back(kind.name);
+  const std::string name = table.choice("kind", names);
+  for (const SceneKind& kind : kinds)
+    if (kind.name == name) kind.read(bodies, table);
+}
 
 /// Reads [[body]], [[joint]] and [[effect]].
 SceneBodies read_scene_bodies(const Section& scene);

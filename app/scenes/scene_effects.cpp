@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -90,6 +91,33 @@ void read_drag(SceneBodies& bodies, const Section& table) {
   bodies.isolated = false;
 }
 
+const NamedBody& require_point(const Section& table, const NamedBody* body, std::string_view effect) {
+  if (body->linear < 0 || body->body.attitude.index >= 0 || body->planar)
+    table.fail("bodies", fmt::format("\"{}\" is no point mass: {} acts on point masses alone; name them in bodies",
+                                     body->name, effect));
+  return *body;
+}
+
+void read_rotating_frame(SceneBodies& bodies, const Section& table) {
+  const Vec rate = vector_of(table, "rate", "angular velocity of the frame, rad/s");
+  const bool centrifugal = table.flag_or("centrifugal", true);
+  for (const NamedBody* chosen : bodies.chosen(table, "bodies")) {
+    const NamedBody& body = require_point(table, chosen, "a rotating frame");
+    bodies.scene.deflect(body.body, 2 * body.mass * rate);
+    if (centrifugal) bodies.scene.add(multibody::Centrifugal{{body.body.centre}, body.mass, rate});
+  }
+  bodies.isolated = false;
+}
+
+void read_magnetic(SceneBodies& bodies, const Section& table) {
+  const Vec field = vector_of(table, "field", "T");
+  const auto charged = bodies.chosen(table, "bodies");
+  const auto charges = table.numbers("charges", charged.size(), "of the bodies, in their order, C");
+  for (std::size_t i = 0; i < charged.size(); ++i)
+    bodies.scene.deflect(require_point(table, charged[i], "a magnetic field").body, charges[i] * field);
+  bodies.isolated = false;
+}
+
 void read_force(SceneBodies& bodies, const Section& table) {
   const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
   const Vec arm = vector_or(table, "at", "where it acts, in the body's frame, m");
@@ -115,20 +143,21 @@ void read_torque(SceneBodies& bodies, const Section& table) {
   bodies.isolated = false;
 }
 
+/// The kinds of [[effect]], as they are listed to users.
+constexpr std::array<SceneKind, 11> kinds{{{"gravity", read_gravity},
+                                           {"central_gravity", read_central},
+                                           {"mutual_gravity", read_mutual},
+                                           {"spring", read_spring},
+                                           {"torsion_spring", read_torsion},
+                                           {"drag", read_drag},
+                                           {"force", read_force},
+                                           {"torque", read_torque},
+                                           {"charges", read_charges},
+                                           {"magnetic_field", read_magnetic},
+                                           {"rotating_frame", read_rotating_frame}}};
+
 }  // namespace
 
-void read_effect(SceneBodies& bodies, const Section& table) {
-  const std::string kind = table.choice("kind", {"gravity", "central_gravity", "mutual_gravity", "spring",
-                                                 "torsion_spring", "drag", "force", "torque", "charges"});
-  if (kind == "gravity") read_gravity(bodies, table);
-  if (kind == "central_gravity") read_central(bodies, table);
-  if (kind == "mutual_gravity") read_mutual(bodies, table);
-  if (kind == "spring") read_spring(bodies, table);
-  if (kind == "torsion_spring") read_torsion(bodies, table);
-  if (kind == "drag") read_drag(bodies, table);
-  if (kind == "force") read_force(bodies, table);
-  if (kind == "torque") read_torque(bodies, table);
-  if (kind == "charges") read_charges(bodies, table);
-}
+void read_effect(SceneBodies& bodies, const Section& table) { read_kind(kinds, bodies, table); }
 
 }  // namespace lagroid::app

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 namespace lagroid::app {
@@ -74,12 +75,70 @@ void require_in_plane(const Section& table, const std::array<End, 2>& ends, cons
                                      ends[1].name(), off));
 }
 
-}  // namespace
+std::array<End, 2> tied_ends(SceneBodies& bodies, const Section& table) {
+  const auto ends = bodies.ends(table);
+  if (!ends[0].body && !ends[1].body) table.fail("between", "ties the ground to itself");
+  return ends;
+}
 
-namespace {
+/// Ends that turn in space, and meet.
+std::array<End, 2> joined_ends(SceneBodies& bodies, const Section& table, const std::string& kind) {
+  const auto ends = tied_ends(bodies, table);
+  require_turning(table, ends, kind);
+  require_together(table, ends);
+  bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
+  return ends;
+}
 
-const NamedBody& turning_body(const SceneBodies& bodies, const Section& table) {
-  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+void read_rod(SceneBodies& bodies, const Section& table) {
+  const auto ends = tied_ends(bodies, table);
+  const double apart = (ends[1].place - ends[0].place).norm();
+  const double length = table.number_or("length", apart, positive);
+  if (!(length > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
+  if (std::abs(length - apart) > 1e-9 * length)
+    table.fail("length", fmt::format("is {:.10g} m, but its ends are {:.10g} m apart at the start; leave it out to "
+                                     "take that",
+                                     length, apart));
+  bodies.scene.add(Rod{{ends[0].site, ends[1].site}, length});
+  bodies.lines.push_back({ends[0], ends[1], 0.008});
+}
+
+void read_ball(SceneBodies& bodies, const Section& table) {
+  const auto ends = tied_ends(bodies, table);
+  require_together(table, ends);
+  bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
+}
+
+void read_hinge(SceneBodies& bodies, const Section& table) {
+  const auto ends = joined_ends(bodies, table, "hinge");
+  const Mat frame = frame_along(table, "axis", "in space at the start");
+  for (int i = 0; i < 2; ++i) keep_right_angle(bodies, ends, frame.col(i), frame.col(2));
+}
+
+void read_weld(SceneBodies& bodies, const Section& table) { keep_attitude(bodies, joined_ends(bodies, table, "weld")); }
+
+void read_slider(SceneBodies& bodies, const Section& table) {
+  const auto ends = tied_ends(bodies, table);
+  require_turning(table, ends, "slider");
+  const Mat frame = frame_along(table, "axis", "in space at the start");
+  for (int i = 0; i < 2; ++i) {
+    require_in_plane(table, ends, frame.col(i));
+    keep_in_plane(bodies, ends, frame.col(i));
+  }
+  keep_attitude(bodies, ends);
+}
+
+void read_plane(SceneBodies& bodies, const Section& table) {
+  const auto ends = tied_ends(bodies, table);
+  if (!ends[0].turns_in_space())
+    table.fail("between", "the first holds the plane: it must be a body that turns in space, or the ground");
+  const Vec normal = frame_along(table, "normal", "of the plane, in space at the start").col(2);
+  require_in_plane(table, ends, normal);
+  keep_in_plane(bodies, ends, normal);
+}
+
+NamedBody& turning_body(SceneBodies& bodies, const Section& table) {
+  NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
   if (body.body.attitude.index < 0) table.fail("body", fmt::format("\"{}\" does not turn in space", body.name));
   return body;
 }
@@ -95,7 +154,7 @@ void require_spin(const Section& table, const NamedBody& body, const Vec& wanted
 }
 
 void read_rolling(SceneBodies& bodies, const Section& table) {
-  const NamedBody& ball = turning_body(bodies, table);
+  NamedBody& ball = turning_body(bodies, table);
   if (ball.linear < 0) table.fail("body", fmt::format("\"{}\" turns about a fixed point and cannot roll", ball.name));
   const double radius = table.number("radius", positive);
   const double rate = table.number_or("plate_rate", 0);
@@ -109,6 +168,10 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
   bodies.nonholonomic = true;
   bodies.isolated = false;
   if (rate != 0) bodies.driven = true;
+  Shape plate = turning_plate(rate);
+  plate.position = {0.0, 0.0, ball.place(2) - radius};
+  if (bodies.scenery.empty()) bodies.scenery.push_back(plate);
+  ball.radius = radius;
 }
 
 void read_spin(SceneBodies& bodies, const Section& table) {
@@ -122,58 +185,18 @@ void read_spin(SceneBodies& bodies, const Section& table) {
   if (rate != 0) bodies.driven = true;
 }
 
+/// The kinds of [[joint]], as they are listed to users.
+constexpr std::array<SceneKind, 8> kinds{{{"rod", read_rod},
+                                          {"ball", read_ball},
+                                          {"hinge", read_hinge},
+                                          {"weld", read_weld},
+                                          {"slider", read_slider},
+                                          {"plane", read_plane},
+                                          {"rolling", read_rolling},
+                                          {"spin", read_spin}}};
+
 }  // namespace
 
-void read_joint(SceneBodies& bodies, const Section& table) {
-  const std::string kind = table.choice("kind", {"rod", "ball", "hinge", "weld", "slider", "plane", "rolling", "spin"});
-  if (kind == "rolling") return read_rolling(bodies, table);
-  if (kind == "spin") return read_spin(bodies, table);
-  const auto ends = bodies.ends(table);
-  if (!ends[0].body && !ends[1].body) table.fail("between", "ties the ground to itself");
-  if (kind == "rod") {
-    const double apart = (ends[1].place - ends[0].place).norm();
-    const double length = table.number_or("length", apart, positive);
-    if (!(length > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
-    if (std::abs(length - apart) > 1e-9 * length)
-      table.fail("length", fmt::format("is {:.10g} m, but its ends are {:.10g} m apart at the start; leave it out to "
-                                       "take that",
-                                       length, apart));
-    bodies.scene.add(Rod{{ends[0].site, ends[1].site}, length});
-    bodies.lines.push_back({ends[0], ends[1], 0.008});
-    return;
-  }
-  if (kind == "ball") {
-    require_together(table, ends);
-    bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
-    return;
-  }
-  if (kind == "plane") {
-    if (!ends[0].turns_in_space())
-      table.fail("between", "the first holds the plane: it must be a body that turns in space, or the ground");
-    const Vec normal = frame_along(table, "normal", "of the plane, in space at the start").col(2);
-    require_in_plane(table, ends, normal);
-    keep_in_plane(bodies, ends, normal);
-    return;
-  }
-  require_turning(table, ends, kind);
-  if (kind == "weld") {
-    require_together(table, ends);
-    bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
-    keep_attitude(bodies, ends);
-    return;
-  }
-  const Mat frame = frame_along(table, "axis", "in space at the start");
-  if (kind == "hinge") {
-    require_together(table, ends);
-    bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
-    for (int i = 0; i < 2; ++i) keep_right_angle(bodies, ends, frame.col(i), frame.col(2));
-    return;
-  }
-  for (int i = 0; i < 2; ++i) {
-    require_in_plane(table, ends, frame.col(i));
-    keep_in_plane(bodies, ends, frame.col(i));
-  }
-  keep_attitude(bodies, ends);
-}
+void read_joint(SceneBodies& bodies, const Section& table) { read_kind(kinds, bodies, table); }
 
 }  // namespace lagroid::app

@@ -140,7 +140,7 @@ class Record {
 
 /// The shapes of bodies and lines, in the columns that are recorded.
 std::vector<Shape> shapes(const SceneBodies& bodies, const std::set<std::string>& chosen) {
-  std::vector<Shape> out;
+  std::vector<Shape> out = bodies.scenery;
   const double extent = bodies.extent > 0 ? bodies.extent : 1;
   double heaviest = 0;
   for (const auto& b : bodies.bodies) heaviest = std::max(heaviest, b.mass);
@@ -151,7 +151,10 @@ std::vector<Shape> shapes(const SceneBodies& bodies, const std::set<std::string>
   for (const auto& b : bodies.bodies) {
     if (!seen(b)) continue;
     Shape shape;
-    if (b.body.attitude.index >= 0) {
+    if (b.radius > 0) {
+      shape = {"sphere", {b.radius}};
+      shape.attitude = attitude_of(b.name);
+    } else if (b.body.attitude.index >= 0) {
       const Vec& c = b.to_centre;
       const Vec moments = b.inertia - b.mass * (Vec::Constant(c.squaredNorm()) - c.cwiseAbs2());
       const bool box = b.mass > 0 && 2 * moments.maxCoeff() < moments.sum();

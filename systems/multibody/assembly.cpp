@@ -2,6 +2,8 @@
 
 #include <lagroid/systems/multibody/multibody.hpp>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
@@ -162,11 +164,18 @@ void Multibody::assemble(Scene& scene) {
     const auto& l = scene.linear_[std::size_t(i)];
     const int f = int(inertia_.size());
     inertia_.push_back(l.inertia);
-    response_.push_back((l.inertia / h_ + 0.5 * l.damping).cwiseInverse());
+    response_.push_back(h_ * l.inertia.cwiseInverse());
     planar_.push_back(l.planar);
     now_.x[std::size_t(f)] = l.place;
     momentum_.push_back(l.inertia.cwiseProduct(l.rate));
-    if (!l.damping.isZero(0)) damped_.push_back({f, l.damping});
+    if (!l.drag.isZero(0)) {
+      const Mat inertia = (l.inertia / h_).asDiagonal();
+      dragged_.push_back({f, l.drag, (inertia + 0.5 * l.drag).inverse()});
+      const int island = linear_islands[std::size_t(i)];
+      Range& range = (island < 0 ? free_ : islands_[std::size_t(island)]).dragged;
+      if (range.size() == 0) range.first = int(dragged_.size()) - 1;
+      range.last = int(dragged_.size());
+    }
   }
   for (const int i : rotation_order) {
     const auto& r = scene.rotating_[std::size_t(i)];

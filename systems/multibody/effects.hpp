@@ -129,6 +129,19 @@ struct TorsionSpring {
   }
 };
 
+/// What a frame that turns about an axis through the origin puts on a mass at rest in it: U = -m |Omega x x|^2 / 2. The
+/// other part, on a mass that moves, is `Scene::deflect` by 2 m Omega.
+struct Centrifugal {
+  std::array<Site, 1> sites;
+  double mass = 1;
+  Vec rate{0, 0, 1};  ///< Omega, rad/s
+
+  double energy(const Configuration& at) const { return -0.5 * mass * rate.cross(at(sites[0])).squaredNorm(); }
+  void add_loads(const Configuration& at, Loads& f) const {
+    f(sites[0]) -= mass * rate.cross(Vec(rate.cross(at(sites[0]))));
+  }
+};
+
 /// A force f cos(rate t + phase) at a point, in space.
 struct PeriodicForce {
   std::array<Site, 1> sites;

@@ -172,6 +172,12 @@ StepReport Multibody::solve(Island& island) {
     linear_response_[std::size_t(i)] =
         response_[std::size_t(e.factor)].cwiseProduct(gradients_[std::size_t(e.gradient)]);
   }
+  for (int k = island.dragged.first; k < island.dragged.last; ++k) {
+    const Dragged& d = dragged_[std::size_t(k)];
+    const auto f = std::size_t(d.factor);
+    for (int i = factor_entries_[f]; i < factor_entries_[f + 1]; ++i)
+      linear_response_[std::size_t(i)] = d.response * gradients_[std::size_t(linear_entries_[std::size_t(i)].gradient)];
+  }
   correct(island, lambda);
 
   double* const values = values_.data();
@@ -329,6 +335,7 @@ StepReport Multibody::advance() {
     kicked_[f] = momentum_[f] + (momentum_carry_[f] + impulse_[f]);
     displacement_[f] = response_[f].cwiseProduct(kicked_[f]);
   }
+  for (const Dragged& d : dragged_) displacement_[std::size_t(d.factor)] = d.response * kicked_[std::size_t(d.factor)];
   for (std::size_t r = 0; r < spin_.size(); ++r) spin_kicked_[r] = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
   for (int r = 0; r < free_.rotations.last; ++r)
     if (!note(turn_freely(r))) return worst;
@@ -374,8 +381,7 @@ void Multibody::accept() {
     }
     impulse_[f] = impulse;
   }
-  for (const Damped& d : damped_)
-    impulse_[std::size_t(d.factor)] -= d.coefficient.cwiseProduct(displacement_[std::size_t(d.factor)]);
+  for (const Dragged& d : dragged_) impulse_[std::size_t(d.factor)] -= d.drag * displacement_[std::size_t(d.factor)];
   for (std::size_t i = 0; i < rotation_entries_.size(); ++i) {
     const Entry& e = rotation_entries_[i];
     spin_impulse_[std::size_t(e.factor)] += multipliers_[std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
@@ -418,7 +424,7 @@ std::size_t Multibody::memory() const {
   };
   for (const Configuration* at : {&now_, &next_}) count(at->x, at->attitude);
   count(loads_.on, loads_.torque, places_.sites, places_.attitudes, linear_places_, quaternions_, next_quaternions_,
-        planar_, inertia_, moments_, response_, turns_, turn_damping_, damped_, damped_turns_, momentum_,
+        planar_, inertia_, moments_, response_, turns_, turn_damping_, dragged_, damped_turns_, momentum_,
         momentum_carry_, place_carry_, spin_, spin_carry_, impulse_, kicked_, displacement_, spin_impulse_,
         spin_kicked_, spin_total_, turned_, turned_before_, turn_residual_, spin_size_, turn_inverse_, turn_frame_,
         arms_, planar_arms_, pushed_arms_, pushed_planar_arms_, islands_, batches_, linear_entries_, rotation_entries_,

@@ -140,8 +140,14 @@ class Multibody {
     int factor;
     Vec coefficient;
   };
+  /// A linear factor on which the force -drag v acts; `response` is then no diagonal matrix.
+  struct Dragged {
+    int factor;
+    Mat drag;
+    Mat response;
+  };
   struct Island {
-    Range linear, rotations, arms, planar_arms, rows, batches, linear_entries, rotation_entries, linear_pairs,
+    Range linear, dragged, rotations, arms, planar_arms, rows, batches, linear_entries, rotation_entries, linear_pairs,
         rotation_pairs, levers, planar_levers;
     Elimination matrix;
   };
@@ -182,10 +188,11 @@ class Multibody {
   std::vector<Quaternion> quaternions_, next_quaternions_;
   std::vector<char> planar_;
   std::vector<Vec> inertia_, moments_;
-  std::vector<Vec> response_;  ///< displacement of a linear factor over its momentum
+  std::vector<Vec> response_;  ///< displacement of a linear factor over its momentum, where no drag acts
   std::vector<Turn> turns_;
   std::vector<Vec> turn_damping_;
-  std::vector<Damped> damped_, damped_turns_;
+  std::vector<Dragged> dragged_;
+  std::vector<Damped> damped_turns_;
 
   std::vector<Vec> momentum_, momentum_carry_, place_carry_, spin_, spin_carry_;
   Loads loads_;

@@ -23,7 +23,7 @@ Body Scene::pivoted_body(const Vec& inertia, const Vec& pivot, const Quaternion&
 }
 
 Body Scene::planar_body(double mass, double inertia, const Vec& place, const Vec& rate) {
-  linear_.push_back({Vec(mass, mass, inertia), place, rate, Vec::Zero(), true});
+  linear_.push_back({Vec(mass, mass, inertia), place, rate, Mat::Zero(), true});
   // Its own place is (x, y, angle); as a point it is (x, y, 0).
   sites_.push_back({int(linear_.size()) - 1, -1, -1});
   sites_.push_back({int(linear_.size()) - 1, -1, int(sites_.size()) - 1});
@@ -46,9 +46,13 @@ Site Scene::ground(const Vec& place) {
 void Scene::damp(const Body& body, double of_motion, double of_turning) {
   if (const int linear = sites_[std::size_t(body.centre.index)].linear; linear >= 0) {
     Linear& l = linear_[std::size_t(linear)];
-    l.damping += l.planar ? Vec(of_motion, of_motion, of_turning) : Vec::Constant(of_motion);
+    l.drag.diagonal() += l.planar ? Vec(of_motion, of_motion, of_turning) : Vec::Constant(of_motion);
   }
   if (body.attitude.index >= 0) rotating_[std::size_t(body.attitude.index)].damping += Vec::Constant(of_turning);
+}
+
+void Scene::deflect(const Body& body, const Vec& w) {
+  linear_[std::size_t(sites_[std::size_t(body.centre.index)].linear)].drag += SO3::hat(w);
 }
 
 }  // namespace lagroid::multibody

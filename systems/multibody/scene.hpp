@@ -30,7 +30,7 @@ class Scene {
     Vec inertia;  ///< kg, kg, and kg or kg m^2
     Vec place;
     Vec rate;
-    Vec damping = Vec::Zero();  ///< force over velocity, kg/s (torque over angular velocity, N m s)
+    Mat drag = Mat::Zero();  ///< the force -drag v, kg/s (in the plane also a torque, N m s)
     bool planar = false;
   };
   struct Rotating {
@@ -66,6 +66,9 @@ class Scene {
 
   /// Linear damping of a body's centre and of its turning (N s/m, N m s).
   void damp(const Body& body, double of_motion, double of_turning);
+  /// A force -w x v at right angles to the velocity v of a body in space, which does no work: in a magnetic field B
+  /// w = q B, in a frame that turns w = 2 m Omega.
+  void deflect(const Body& body, const Vec& w);
 
   template <class K> void add(const K& kernel) {
     if constexpr (requires { K::rows; }) {
