@@ -268,6 +268,7 @@ TEST(Multibody, DampingTakesEnergy) {
   const double first = energy(motion);
   advance(motion, 20000);
   EXPECT_LT(energy(motion), first - 0.5);
+  EXPECT_NEAR(energy(motion) + motion.dissipated(), first, 1e-3);
 }
 
 /// Two bars and a ring of rods in free flight: momenta are conserved to round-off.

@@ -207,9 +207,9 @@ std::vector<Panel> panels(const SceneBodies& bodies, const std::set<std::string>
 class Promises {
  public:
   explicit Promises(const SceneBodies& bodies)
-      : keeps_energy_(!bodies.dissipates && !bodies.driven),
+      : keeps_energy_(!bodies.driven),
         isolated_(bodies.isolated),
-        energy_("energy", Promise::bounded, 1),
+        energy_(bodies.dissipates ? "energy and what drag took" : "energy", Promise::bounded, 1),
         momentum_("momentum", Promise::conserved, 3),
         angular_("angular momentum", Promise::conserved, 3) {}
 
@@ -218,7 +218,7 @@ class Promises {
     if (keeps_energy_) {
       const double kinetic = motion.kinetic_energy(m);
       const double potential = motion.potential_energy();
-      const double energy = kinetic + potential;
+      const double energy = kinetic + potential + motion.dissipated();
       energy_.observe(&energy, kinetic + std::abs(potential));
     }
     if (!isolated_) return;
@@ -382,6 +382,7 @@ class Run {
   void persist(Archive& archive) {
     auto state = motion_->state();
     archive("index", state.index);
+    archive("dissipated", state.dissipated);
     archive("place", state.place);
     archive("place carry", state.place_carry);
     archive("momentum", state.momentum);

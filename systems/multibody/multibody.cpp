@@ -381,13 +381,22 @@ void Multibody::accept() {
     }
     impulse_[f] = impulse;
   }
-  for (const Dragged& d : dragged_) impulse_[std::size_t(d.factor)] -= d.drag * displacement_[std::size_t(d.factor)];
+  for (const Dragged& d : dragged_) {
+    const Vec& xi = displacement_[std::size_t(d.factor)];
+    const Vec impulse = d.drag * xi;
+    impulse_[std::size_t(d.factor)] -= impulse;
+    dissipated_ += xi.dot(impulse) / h_;
+  }
   for (std::size_t i = 0; i < rotation_entries_.size(); ++i) {
     const Entry& e = rotation_entries_[i];
     spin_impulse_[std::size_t(e.factor)] += multipliers_[std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
   }
-  for (const Damped& d : damped_turns_)
-    spin_impulse_[std::size_t(d.factor)] -= d.coefficient.cwiseProduct(turned_[std::size_t(d.factor)]) * 0.5;
+  for (const Damped& d : damped_turns_) {
+    const Vec& xi = turned_[std::size_t(d.factor)];
+    const Vec impulse = d.coefficient.cwiseProduct(xi);
+    spin_impulse_[std::size_t(d.factor)] -= 0.5 * impulse;
+    dissipated_ += xi.dot(impulse) / h_;
+  }
   for (std::size_t r = 0; r < spin_.size(); ++r) {
     const Vec total = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
     spin_impulse_[r] += turns_[r].carried_change(turned_[r], total);
@@ -436,15 +445,15 @@ std::size_t Multibody::memory() const {
 }
 
 Multibody::State Multibody::state() const {
-  return {index_,          {now_.x.begin(), now_.x.begin() + std::ptrdiff_t(momentum_.size())},
-          place_carry_,    momentum_,
-          momentum_carry_, spin_,
-          spin_carry_,     turned_before_,
-          quaternions_,    earlier_};
+  return {index_,       dissipated_, {now_.x.begin(), now_.x.begin() + std::ptrdiff_t(momentum_.size())},
+          place_carry_, momentum_,   momentum_carry_,
+          spin_,        spin_carry_, turned_before_,
+          quaternions_, earlier_};
 }
 
 void Multibody::restore(const State& state) {
   index_ = state.index;
+  dissipated_ = state.dissipated;
   std::copy(state.place.begin(), state.place.end(), now_.x.begin());
   place_carry_ = state.place_carry;
   momentum_ = state.momentum;

@@ -36,6 +36,7 @@ class Multibody {
   /// All that the motion depends on: a scene restored to it goes on with the same bits.
   struct State {
     long index = 0;
+    double dissipated = 0;
     std::vector<Vec> place, place_carry, momentum, momentum_carry, spin, spin_carry, turned;
     std::vector<Quaternion> attitude;
     std::array<std::vector<double>, 3> multipliers;  ///< of the last three steps, from which the next are guessed
@@ -70,6 +71,8 @@ class Multibody {
 
   double kinetic_energy(const Momenta& m) const;
   double potential_energy() const;
+  /// What drag and damping have taken since the start, J: the sum of xi.c xi / h over the arrows.
+  double dissipated() const { return dissipated_; }
   Vec linear_momentum(const Momenta& m) const;
   /// About the origin, in space.
   Vec angular_momentum(const Momenta& m) const;
@@ -219,6 +222,7 @@ class Multibody {
   std::vector<double> multipliers_, values_, right_, precision_;  ///< precision: one over the size of a row
   std::array<std::vector<double>, 3> earlier_;                    ///< multipliers of the last steps
   std::vector<char> left_out_, on_arrow_;
+  double dissipated_ = 0;
   double arrow_residual_ = 0;  ///< of the rows on the arrow that led here
   bool has_arrow_rows_ = false;
   int dependent_rows_ = 0;
