@@ -36,7 +36,7 @@ class Archive {
       (*this)(name, flat);
       if (!restoring_) return;
       field.resize(flat.size() / width);
-      for (std::size_t i = 0; i < flat.size(); ++i) field[i / width](Eigen::Index(i % width)) = flat[i];
+      for (std::size_t i = 0; i < flat.size(); ++i) field[i / width].data()[i % width] = flat[i];
     } else if (restoring_) {
       field = fields_.at(name).get<T>();
     } else {

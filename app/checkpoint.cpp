@@ -5,8 +5,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -49,7 +51,20 @@ Json read(const fs::path& file) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(const fs::path& run, long steps) : folder_(run / "checkpoint"), steps_(steps) {}
+Checkpoint::Checkpoint(const fs::path& run, long steps) : folder_(run / "checkpoint"), steps_(steps) {
+  std::error_code error;
+  fs::create_directories(run, error);
+  const fs::path file = run / ".lock";
+  lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+  const bool busy = lock_ >= 0 && errno == EWOULDBLOCK;
+  if (lock_ >= 0) ::close(lock_);
+  throw OutputError(
+      busy ? fmt::format("{}: another run is at work there; wait for it, or choose another folder", run.string())
+           : fmt::format("{}: cannot be written; choose another place", file.string()));
+}
+
+Checkpoint::~Checkpoint() { ::close(lock_); }
 
 fs::path Checkpoint::part(long k) const { return folder_ / fmt::format("rows-{:06}.cbor", k); }
 

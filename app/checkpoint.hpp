@@ -17,7 +17,11 @@ namespace lagroid::app {
 class Checkpoint {
  public:
   /// `steps`: after how many steps the next one is made; 0: when `seconds` have passed.
+  /// Throws OutputError where another run is at work in the folder.
   Checkpoint(const std::filesystem::path& run, long steps);
+  Checkpoint(const Checkpoint&) = delete;
+  Checkpoint& operator=(const Checkpoint&) = delete;
+  ~Checkpoint();
 
   /// Begins anew. Throws OutputError where the folder cannot be written.
   void begin(const std::string& scene);
@@ -38,6 +42,7 @@ class Checkpoint {
   std::filesystem::path part(long k) const;
 
   std::filesystem::path folder_;
+  int lock_ = -1;
   long steps_;
   long parts_ = 0;
   std::size_t rows_ = 0;             ///< of the nodes, kept so far

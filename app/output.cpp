@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <string_view>
@@ -17,8 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// All that a run can leave in its folder.
-constexpr std::array<const char*, 7> output_files{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt",
-                                                  "plot.gp",       "plot.svg",       "plot.png"};
+constexpr std::array<const char*, 8> output_files{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt",
+                                                  "plot.csv",      "plot.gp",        "plot.svg",     "plot.png"};
+
+/// gnuplot looks for a column by its name in every row: of wide files it gets an excerpt.
+constexpr std::size_t most_columns_for_gnuplot = 200;
 
 /// Row `node` of a series; series on arrows have none at the first node.
 const double* row(const Series& s, std::size_t node) {
@@ -81,7 +85,10 @@ void write_hdf5(const RunResult& result, const fs::path& file) {
       const std::size_t rows = width > 0 ? values.size() / width : 0;
       const hsize_t dimensions[2] = {rows, width};
       const H5::DataSpace space(width == 1 ? 1 : 2, dimensions);
-      H5::DataSet set = out.createDataSet(label, H5::PredType::NATIVE_DOUBLE, space);
+      // Without the time of day, so that equal runs make equal files.
+      H5::DSetCreatPropList timeless;
+      H5Pset_obj_track_times(timeless.getId(), false);
+      H5::DataSet set = out.createDataSet(label, H5::PredType::NATIVE_DOUBLE, space, timeless);
       if (!values.empty()) set.write(values.data(), H5::PredType::NATIVE_DOUBLE);
       return set;
     };
@@ -112,11 +119,25 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
-std::string gnuplot_script(const RunResult& result) {
+/// The time, and the series that hold a column of a panel.
+Trajectory excerpt_for_plots(const RunResult& result) {
+  const auto plotted = [&](const std::string& column) {
+    return std::any_of(result.panels.begin(), result.panels.end(), [&](const Panel& panel) {
+      return panel.x == column || std::find(panel.curves.begin(), panel.curves.end(), column) != panel.curves.end();
+    });
+  };
+  Trajectory out;
+  out.time = result.trajectory.time;
+  for (const auto& s : result.trajectory.series)
+    if (std::any_of(s.components.begin(), s.components.end(), plotted)) out.series.push_back(s);
+  return out;
+}
+
+std::string gnuplot_script(const RunResult& result, const std::string& data) {
   const std::size_t panels = result.panels.size();
   const std::size_t columns = panels > 1 ? 2 : 1;
   const std::size_t rows = (panels + columns - 1) / columns;
-  std::string out = "# Draws trajectory.csv; run by lagroid, or by hand: gnuplot plot.gp\n";
+  std::string out = fmt::format("# Draws {}; run by lagroid, or by hand: gnuplot plot.gp\n", data);
   out += "set datafile separator ','\nset grid\n";
   const std::pair<const char*, std::string> terminals[] = {
       {"plot.svg", fmt::format("svg size {},{} background 'white' noenhanced", 520 * columns, 400 * rows)},
@@ -130,8 +151,8 @@ std::string gnuplot_script(const RunResult& result) {
                          quoted(panel.x_label), quoted(panel.y_label),
                          panel.equal_axes ? "set size ratio -1" : "set size noratio");
       for (std::size_t i = 0; i < panel.curves.size(); ++i)
-        out += fmt::format("{}'trajectory.csv' using (column({})):(column({})) with lines linewidth 1.5 title {}",
-                           i ? ", " : "", quoted(panel.x), quoted(panel.curves[i]), quoted(panel.curves[i]));
+        out += fmt::format("{}'{}' using (column({})):(column({})) with lines linewidth 1.5 title {}", i ? ", " : "",
+                           data, quoted(panel.x), quoted(panel.curves[i]), quoted(panel.curves[i]));
       out += "\n";
     }
     out += "unset multiplot\nset output\n";
@@ -149,7 +170,15 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
     write_hdf5(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
     if (result.trajectory.time.size() > 1) {
-      write_text(gnuplot_script(result), staging / "plot.gp");
+      std::size_t columns = 0;
+      for (const auto& s : result.trajectory.series) columns += s.width();
+      std::string data = "trajectory.csv";
+      if (columns > most_columns_for_gnuplot) {
+        data = "plot.csv";
+        write_csv(excerpt_for_plots(result), staging / data);
+        names.push_back(data);
+      }
+      write_text(gnuplot_script(result, data), staging / "plot.gp");
       names.emplace_back("plot.gp");
       if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); reason.empty()) {
         names.insert(names.end(), {"plot.svg", "plot.png"});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -48,6 +49,7 @@ std::string run_gnuplot(const fs::path& folder, const std::string& script, const
   const pid_t child = fork();
   if (child < 0) return "could not start a process";
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // killed with us
     if (chdir(folder.c_str()) != 0) _exit(126);
     if (std::freopen("plot.log", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
       _exit(126);

@@ -183,6 +183,8 @@ std::vector<fs::path> draw_plots(const std::string& run) {
   return write_whole(run, pictures, [&](const fs::path& staging) {
     fs::copy_file(script, staging / "plot.gp");
     fs::create_symlink(fs::absolute(data), staging / "trajectory.csv");
+    if (const fs::path excerpt = data.parent_path() / "plot.csv"; fs::exists(excerpt))
+      fs::create_symlink(fs::absolute(excerpt), staging / "plot.csv");
     if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); !reason.empty())
       throw RunError(fmt::format("{}: {}", run, reason));
     return std::vector<std::string>{"plot.svg", "plot.png"};

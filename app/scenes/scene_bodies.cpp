@@ -53,6 +53,8 @@ std::string read_name(const SceneBodies& bodies, const Section& table) {
   const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), allowed))
     table.fail("name", fmt::format("\"{}\": use letters, digits, - and _", name));
+  for (const char* taken : {"energy", "time", "t", "constraint_residual", "residual"})
+    if (name == taken) table.fail("name", fmt::format("\"{}\" is a column of every run; choose another name", name));
   if (name == "ground") table.fail("name", "\"ground\" is what joints tie bodies to; choose another name");
   const auto taken = [&](const NamedBody& body) { return body.name == name || body.name.starts_with(name + "."); };
   if (std::any_of(bodies.bodies.begin(), bodies.bodies.end(), taken))
@@ -98,6 +100,15 @@ void read_pivoted(SceneBodies& bodies, const Section& table) {
   b.inertia = read_moments(table);
   b.place = vector_or(table, "pivot", "x, y, z of the fixed point in m");
   b.to_centre = vector_or(table, "centre", "from the pivot to the centre of mass, in the body's frame, m");
+  for (int i = 0; i < 3; ++i) {
+    const Vec& c = b.to_centre;
+    const double least = b.mass * (c.squaredNorm() - c(i) * c(i));
+    if (b.inertia(i) < least * (1 - 1e-9))
+      table.fail("inertia",
+                 fmt::format("about the pivot, it is at least the mass times the square of the distance of the "
+                             "centre from the axis: moment {} is {:.6g}, and must be {:.6g} or more",
+                             i + 1, b.inertia(i), least));
+  }
   const Quaternion q = read_attitude(table);
   b.attitude = SO3::from_quaternion(q);
   const Vec w = vector_or(table, "angular_velocity", "in the body's frame, rad/s");
@@ -138,18 +149,18 @@ void read_chain(SceneBodies& bodies, const Section& table) {
   const std::string on = table.has("on") ? table.text("on", "the body it hangs on, or \"ground\"") : "ground";
   const Vec arm = vector_or(table, "at", "where: in the frame of the body it hangs on, of the ground in space");
   const NamedBody* holder = on == "ground" ? nullptr : &bodies.named(table, "on", on);
-  End last = bodies.end_of(holder, arm);
+  End last = bodies.end_of(table, "at", holder, arm);
   if (!holder) bodies.isolated = false;
   const Vec origin = last.place;
   for (long k = 1; k <= links; ++k) {
     NamedBody b;
     b.name = fmt::format("{}.{}", name, k);
     b.mass = mass;
-    b.place = origin + (double(k) * length) * direction.normalized();
+    b.place = origin + (double(k) * length) * direction.stableNormalized();
     b.body = bodies.scene.point_mass(mass, b.place, turning.cross(Vec(b.place - origin)));
     b.mass_centre = b.body.centre;
     keep(bodies, b);
-    const End here = bodies.end_of(&bodies.bodies.back(), Vec::Zero());
+    const End here = bodies.end_of(table, "name", &bodies.bodies.back(), Vec::Zero());
     bodies.scene.add(multibody::Rod{{last.site, here.site}, length});
     bodies.lines.push_back({last, here, 0.008});
     last = here;
@@ -164,21 +175,36 @@ const NamedBody& SceneBodies::named(const Section& table, std::string_view key, 
   std::vector<std::string> names;
   for (const auto& body : bodies)
     if (names.size() < 12) names.push_back(body.name);
+  if (names.empty()) table.fail(key, fmt::format("there is no body \"{}\" above this one", name));
   table.fail(key, fmt::format("there is no body \"{}\"; there are {}{}", name, fmt::join(names, ", "),
                               bodies.size() > names.size() ? ", ..." : ""));
 }
 
 std::vector<const NamedBody*> SceneBodies::chosen(const Section& table, std::string_view key) const {
   std::vector<const NamedBody*> out;
-  if (table.has(key)) {
-    for (const std::string& name : table.texts_or_none(key, "names of bodies")) out.push_back(&named(table, key, name));
-  } else {
+  if (!table.has(key)) {
     for (const auto& body : bodies) out.push_back(&body);
+    return out;
   }
+  for (const std::string& name : table.texts_or_none(key, "names of bodies")) {
+    const std::size_t before = out.size();
+    for (const auto& body : bodies)
+      if (body.name == name || body.name.starts_with(name + ".")) {
+        if (std::find(out.begin(), out.end(), &body) != out.end())
+          table.fail(key, fmt::format("\"{}\" is named twice", body.name));
+        out.push_back(&body);
+      }
+    if (out.size() == before) named(table, key, name);  // says that there is none
+  }
+  if (out.empty()) table.fail(key, "names no body; leave it out for all of them");
   return out;
 }
 
-End SceneBodies::end_of(const NamedBody* body, const Vec& arm) {
+End SceneBodies::end_of(const Section& table, std::string_view key, const NamedBody* body, const Vec& arm) {
+  if (body && body->body.attitude.index < 0 && !body->planar && !arm.isZero(0))
+    table.fail(key, fmt::format("\"{}\" is a point mass and has no other points: give [0, 0, 0]", body->name));
+  if (body && body->planar && arm(2) != 0)
+    table.fail(key, fmt::format("\"{}\" moves in the plane: give it a third coordinate of 0", body->name));
   End end;
   end.body = body;
   end.arm = arm;
@@ -187,25 +213,20 @@ End SceneBodies::end_of(const NamedBody* body, const Vec& arm) {
   return end;
 }
 
-std::array<End, 2> SceneBodies::ends(const Section& table) {
+std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
   const auto names = table.texts_or_none("between", "two names of bodies, or \"ground\"");
   if (names.size() != 2)
     table.fail(table.has("between") ? "between" : "",
-               "between: give the two names of the bodies that it ties, or \"ground\" for one of them");
+               "give in between the two names of the bodies that it ties, or \"ground\" for one of them");
   if (names[0] == names[1]) table.fail("between", fmt::format("\"{}\" is tied to itself", names[0]));
   std::vector<std::vector<double>> points(2, {0, 0, 0});
-  if (table.has("points"))
+  if (with_points && table.has("points"))
     points = table.points("points", 2, 3, "a point of each, in its body's frame, of the ground in space");
   std::array<End, 2> out;
   for (std::size_t i = 0; i < 2; ++i) {
     const Vec arm(points[i][0], points[i][1], points[i][2]);
-    const NamedBody* body = names[i] == "ground" ? nullptr : &named(table, "between", names[i]);
-    if (body && body->body.attitude.index < 0 && !body->planar && !arm.isZero(0))
-      table.fail("points", fmt::format("\"{}\" is a point mass and has no other points: give [0, 0, 0]", names[i]));
-    if (body && body->planar && arm(2) != 0)
-      table.fail("points", fmt::format("\"{}\" moves in the plane: give it a third coordinate of 0", names[i]));
-    out[i] = end_of(body, arm);
-    if (!body) isolated = false;
+    out[i] = end_of(table, "points", names[i] == "ground" ? nullptr : &named(table, "between", names[i]), arm);
+    if (!out[i].body) isolated = false;
   }
   return out;
 }
@@ -226,6 +247,11 @@ SceneBodies read_scene_bodies(const Section& scene) {
   for (const auto& table : scene.tables("body")) read_body(out, table);
   for (const auto& table : scene.tables("joint")) read_joint(out, table);
   for (const auto& table : scene.tables("effect")) read_effect(out, table);
+  // The plane of planar bodies holds what is tied to bodies in space.
+  const auto planar = [](const NamedBody& body) { return body.planar; };
+  if (std::any_of(out.bodies.begin(), out.bodies.end(), planar) &&
+      !std::all_of(out.bodies.begin(), out.bodies.end(), planar))
+    out.isolated = false;
   Vec least = Vec::Zero();
   Vec most = Vec::Zero();
   const auto cover = [&](const Vec& x) {

@@ -66,14 +66,15 @@ struct SceneBodies {
   double extent = 0;        ///< size of the scene at the start, m
 
   /// The ends of a table: `between`, two names, and `points`, in the bodies' frames (of the ground: in space).
-  std::array<End, 2> ends(const Section& table);
-  /// The bodies named under `key`; all of them where it is missing.
+  std::array<End, 2> ends(const Section& table, bool with_points = true);
+  /// The bodies named under `key`, each once, a chain by its own name too; all of them where it is missing.
   std::vector<const NamedBody*> chosen(const Section& table, std::string_view key) const;
   const NamedBody& named(const Section& table, std::string_view key, const std::string& name) const;
   NamedBody& named(const Section& table, std::string_view key, const std::string& name) {
     return const_cast<NamedBody&>(std::as_const(*this).named(table, key, name));
   }
-  End end_of(const NamedBody* body, const multibody::Vec& arm);
+  /// The point of a body (null: the ground) that `key` of the table gives.
+  End end_of(const Section& table, std::string_view key, const NamedBody* body, const multibody::Vec& arm);
 };
 
 /// Three numbers; `fallback` where the key is missing.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -18,7 +19,15 @@ namespace {
 
 void read_gravity(SceneBodies& bodies, const Section& table) {
   const Vec g = vector_or(table, "acceleration", "m/s^2", {0, 0, -9.81});
-  for (const NamedBody* body : bodies.chosen(table, "bodies"))
+  const auto heavy = bodies.chosen(table, "bodies");
+  const auto planar = [](const NamedBody* body) { return body->planar; };
+  const bool across = g(0) == 0 && g(1) == 0;
+  if (across && (table.has("bodies") ? std::any_of(heavy.begin(), heavy.end(), planar)
+                                     : std::all_of(heavy.begin(), heavy.end(), planar)))
+    table.fail(table.has("acceleration") ? "acceleration" : "",
+               "planar bodies move in the plane of x and y, across which this gravity acts: give acceleration = "
+               "[0, -9.81, 0]");
+  for (const NamedBody* body : heavy)
     if (body->mass > 0) bodies.scene.add(multibody::ConstantForce{{body->mass_centre}, body->mass * g});
   bodies.isolated = false;
 }
@@ -66,14 +75,14 @@ void read_spring(SceneBodies& bodies, const Section& table) {
 }
 
 void read_torsion(SceneBodies& bodies, const Section& table) {
-  const auto ends = bodies.ends(table);
+  const auto ends = bodies.ends(table, /*with_points=*/false);
   for (const End& end : ends)
     if (!end.turns_in_space())
       table.fail("between",
                  fmt::format("\"{}\" does not turn in space: a torsion spring acts on bodies that do", end.name()));
   const Vec axis = vector_of(table, "direction", "in space at the start, fixed in both bodies");
   if (!(axis.norm() > 0)) table.fail("direction", "must not vanish");
-  const Vec unit = axis.normalized();
+  const Vec unit = axis.stableNormalized();
   bodies.scene.add(multibody::TorsionSpring{{},
                                             {ends[0].attitude(), ends[1].attitude()},
                                             ends[0].seen(unit),
@@ -86,7 +95,14 @@ void read_drag(SceneBodies& bodies, const Section& table) {
   const double turning = table.number_or("turning", 0, nonnegative);
   if (motion == 0 && turning == 0)
     table.fail("", "give motion (force over velocity, kg/s) or turning (torque over angular velocity, N m s)");
-  for (const NamedBody* body : bodies.chosen(table, "bodies")) bodies.scene.damp(body->body, motion, turning);
+  const auto damped = bodies.chosen(table, "bodies");
+  const auto turns = [](const NamedBody* body) { return body->planar || body->body.attitude.index >= 0; };
+  const auto moves = [](const NamedBody* body) { return body->linear >= 0; };
+  if (turning > 0 && std::none_of(damped.begin(), damped.end(), turns))
+    table.fail("turning", "none of the bodies turns");
+  if (motion > 0 && std::none_of(damped.begin(), damped.end(), moves))
+    table.fail("motion", "none of the bodies has a centre that moves");
+  for (const NamedBody* body : damped) bodies.scene.damp(body->body, motion, turning);
   bodies.dissipates = true;
   bodies.isolated = false;
 }
@@ -123,7 +139,9 @@ void read_force(SceneBodies& bodies, const Section& table) {
   const Vec arm = vector_or(table, "at", "where it acts, in the body's frame, m");
   const Vec force = vector_of(table, "force", "in space, N");
   const double rate = table.number_or("rate", 0);
-  const End end = bodies.end_of(&body, arm);
+  if (body.planar && force(2) != 0)
+    table.fail("force", fmt::format("\"{}\" moves in the plane: give a third part of 0", body.name));
+  const End end = bodies.end_of(table, "at", &body, arm);
   if (rate == 0 && !table.has("phase")) {
     bodies.scene.add(multibody::ConstantForce{{end.site}, force});
   } else {

@@ -24,7 +24,7 @@ namespace {
 Mat frame_along(const Section& table, std::string_view key, std::string_view meaning) {
   const Vec axis = vector_of(table, key, meaning);
   if (!(axis.norm() > 0)) table.fail(key, "must not vanish");
-  const Vec third = axis.normalized();
+  const Vec third = axis.stableNormalized();
   int least = 0;
   third.cwiseAbs().minCoeff(&least);
   const Vec first = Vec(Vec::Unit(least)).cross(third).normalized();

@@ -3,6 +3,7 @@
 #include "../checkpoint.hpp"
 #include "../interrupt.hpp"
 #include "../ledger.hpp"
+#include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../simulation.hpp"
 #include "../systems/attitude.hpp"
@@ -20,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <stdexcept>
 
 namespace lagroid::app {
 
@@ -277,7 +279,11 @@ class Run {
     const bool project = scene.flag_or("project_velocities", false);
     scene.finish();
 
-    motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), grid_.step, options);
+    try {
+      motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), grid_.step, options);
+    } catch (const std::invalid_argument& error) {
+      scene.fail("", fmt::format("{}: a position, a length or a point is too large", error.what()));
+    }
     if (project) motion_->make_tangent();
     if (const double defect = motion_->velocity_defect(); !(defect < 1e-8))
       scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
@@ -312,7 +318,12 @@ class Run {
       double seconds = before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       archive("seconds", seconds);
       persist(archive);
-      checkpoint->keep(result_.trajectory, archive.fields());
+      try {
+        checkpoint->keep(result_.trajectory, archive.fields());
+      } catch (const OutputError& error) {  // a full disk: what is computed is worth more
+        result_.output_error = error.what();
+        checkpoint.reset();
+      }
     };
     if (context_.resume) {
       restore(*checkpoint, before);
@@ -358,7 +369,13 @@ class Run {
     if (!report.converged()) {
       result_.status = std::string(to_string(report.status));
       result_.residual = report.residual;
-      result_.message = step_failure(report, k, motion_->time(), TimeMode::fixed);
+      result_.message =
+          motion_->dependence_ended()
+              ? fmt::format(
+                    "step {} (from t = {:.6g}): equations of joints that depended on others at the start no longer "
+                    "do; the scene starts in a singular position (parts in line, a taut loop): start it elsewhere",
+                    k, motion_->time())
+              : step_failure(report, k, motion_->time(), TimeMode::fixed);
       return false;
     }
     result_.steps = k;
@@ -374,6 +391,9 @@ class Run {
     } catch (const nlohmann::json::exception&) {
       throw RunError(
           fmt::format("{}: its checkpoint is of another lagroid; run the scene again", context_.folder.string()));
+    } catch (const std::invalid_argument&) {
+      throw RunError(
+          fmt::format("{}: its checkpoint is of another scene; run the scene again", context_.folder.string()));
     }
     if (result_.steps > grid_.steps)
       throw RunError(fmt::format("--set time.steps={}: the run has {} steps already", grid_.steps, result_.steps));
@@ -393,6 +413,7 @@ class Run {
     archive("attitude", state.attitude);
     for (std::size_t i = 0; i < state.multipliers.size(); ++i)
       archive(fmt::format("multipliers {}", i), state.multipliers[i]);
+    archive("derived", state.derived);
     if (archive.restoring()) motion_->restore(state);
     archive("steps", result_.steps);
     archive("iterations", result_.iterations);

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -70,7 +71,6 @@ void Multibody::assemble(Scene& scene) {
     }
     for (const Attitude a : joints.attitudes(joint))
       if (a.index >= 0) out.push_back(linears + a.index);
-    if (out.empty()) throw std::invalid_argument("a joint between points of the ground ties nothing");
     return out;
   };
 
@@ -121,8 +121,9 @@ void Multibody::assemble(Scene& scene) {
   std::vector<int> touched_in(scene.sites_.size(), islands);
   for (const auto& joints : scene.joints_)
     for (int j = 0; j < joints->count(); ++j)
-      for (const Site s : joints->sites(j))
-        touched_in[std::size_t(s.index)] = island_of[std::size_t(factors_of(*joints, j).front())];
+      if (const auto factors = factors_of(*joints, j); !factors.empty())
+        for (const Site s : joints->sites(j))
+          touched_in[std::size_t(s.index)] = island_of[std::size_t(factors.front())];
   int slot = linears;
   places_.sites.resize(scene.sites_.size());
   const auto site_order = sorted_by(touched_in);
@@ -135,6 +136,7 @@ void Multibody::assemble(Scene& scene) {
     }
   }
   now_.x.resize(scene.sites_.size(), Vec::Zero());
+  now_.arm.resize(scene.sites_.size(), 0.0);
   for (std::size_t s = 0; s < scene.sites_.size(); ++s) {
     if (!is_ground(scene.sites_[s])) continue;
     now_.x[std::size_t(slot)] = scene.sites_[s].place;
@@ -148,6 +150,7 @@ void Multibody::assemble(Scene& scene) {
     const int island = touched_in[std::size_t(s)];
     const int at = places_.sites[std::size_t(s)];
     const int base = places_.sites[std::size_t(p.base)];
+    now_.arm[std::size_t(at)] = p.place.norm();
     if (p.rotation >= 0) {
       arms_.push_back({at, base, places_.attitudes[std::size_t(p.rotation)], p.place});
       arm_islands.push_back(island == islands ? -1 : island);
@@ -209,8 +212,14 @@ void Multibody::assemble(Scene& scene) {
   std::vector<std::vector<std::vector<Touch>>> touches(islands_.size());
   for (const auto& joints : joints_) {
     std::vector<int> island;
-    for (int j = 0; j < joints->count(); ++j) island.push_back(island_of[std::size_t(factors_of(*joints, j).front())]);
-    const auto order = sorted_by(island);
+    for (int j = 0; j < joints->count(); ++j) {
+      const auto factors = factors_of(*joints, j);
+      island.push_back(factors.empty() ? -1 : island_of[std::size_t(factors.front())]);
+    }
+    // Joints of what does not move have no rows.
+    auto order = sorted_by(island);
+    order.erase(order.begin(),
+                std::find_if(order.begin(), order.end(), [&](int j) { return island[std::size_t(j)] >= 0; }));
     for (int k = 0; k < int(order.size()); ++k) {
       const int j = order[std::size_t(k)];
       const auto i = std::size_t(island[std::size_t(j)]);
@@ -357,24 +366,42 @@ void Multibody::assemble(Scene& scene) {
 }
 
 void Multibody::leave_out_dependent() {
+  // Whether rows depend on others is a matter of geometry: neither masses nor units count. Gradients are taken in units
+  // of the largest that moves the same factor.
+  std::vector<double> linear_unit(inertia_.size(), 0.0);
+  std::vector<double> rotation_unit(moments_.size(), 0.0);
+  const auto measure = [&](const std::vector<Entry>& entries, std::vector<double>& unit) {
+    for (const Entry& e : entries) {
+      const double size = gradients_[std::size_t(e.gradient)].squaredNorm();
+      if (!std::isfinite(size)) throw std::invalid_argument("the gradient of a joint is not finite");
+      unit[std::size_t(e.factor)] = std::max(unit[std::size_t(e.factor)], size);
+    }
+  };
+  measure(linear_entries_, linear_unit);
+  measure(rotation_entries_, rotation_unit);
+  const auto couple = [&](Island& island, const Pair& p, int gradient, const Entry& b,
+                          const std::vector<double>& unit) {
+    const double size = unit[std::size_t(b.factor)];
+    if (size > 0)
+      island.matrix.value(p.value) += gradients_[std::size_t(gradient)].dot(gradients_[std::size_t(b.gradient)]) / size;
+  };
   for (Island& island : islands_) {
     island.matrix.clear();
     for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
       const Pair& p = linear_pairs_[std::size_t(i)];
-      const Entry& b = linear_entries_[std::size_t(p.entry)];
-      island.matrix.value(p.value) += gradients_[std::size_t(p.gradient)].dot(
-          gradients_[std::size_t(b.gradient)].cwiseQuotient(inertia_[std::size_t(b.factor)]));
+      couple(island, p, p.gradient, linear_entries_[std::size_t(p.entry)], linear_unit);
     }
     for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
       const Pair& p = rotation_pairs_[std::size_t(i)];
-      const Entry& a = rotation_entries_[std::size_t(p.gradient)];
-      const Entry& b = rotation_entries_[std::size_t(p.entry)];
-      island.matrix.value(p.value) += gradients_[std::size_t(a.gradient)].dot(
-          gradients_[std::size_t(b.gradient)].cwiseQuotient(moments_[std::size_t(b.factor)]));
+      couple(island, p, rotation_entries_[std::size_t(p.gradient)].gradient, rotation_entries_[std::size_t(p.entry)],
+             rotation_unit);
     }
+    std::vector<char> moves_something(std::size_t(island.rows.size()));
+    for (int row = 0; row < island.rows.size(); ++row)
+      moves_something[std::size_t(row)] = island.matrix.value(island.matrix.index(row, row)) != 0;
     for (const int row : island.matrix.leave_out_dependent()) {
       left_out_[std::size_t(island.rows.first + row)] = 1;
-      ++dependent_rows_;
+      dependent_rows_ += moves_something[std::size_t(row)];
     }
   }
 }

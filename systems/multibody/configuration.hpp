@@ -29,6 +29,13 @@ struct Configuration {
   double time = 0;
   std::vector<Vec> x;
   std::vector<Mat> attitude;
+  std::vector<double> arm;  ///< how far each point is from the place that moves it, m
+
+  /// The size of the numbers that a site's place is a sum of, m.
+  double size(Site s) const {
+    const auto i = std::size_t(s.index);
+    return x[i].lpNorm<Eigen::Infinity>() + arm[i];
+  }
 
   const Vec& operator()(Site s) const { return x[std::size_t(s.index)]; }
   const Mat& operator()(Attitude a) const { return attitude[std::size_t(a.index)]; }

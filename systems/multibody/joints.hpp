@@ -21,7 +21,7 @@ struct Rod {
     const Vec& b = at(sites[1]);
     g[1] = b - a;
     g[0] = -g[1];
-    size[0] = {length * (length + a.lpNorm<1>() + b.lpNorm<1>()), 2 * length};
+    size[0] = {length * (length + at.size(sites[0]) + at.size(sites[1])), 2 * length};
   }
 };
 
@@ -38,7 +38,7 @@ struct Coincidence {
     for (int i = 0; i < 3; ++i) {
       g[2 * i] = -Vec::Unit(i);
       g[2 * i + 1] = Vec::Unit(i);
-      size[i] = {2 * at(sites[0]).lpNorm<Eigen::Infinity>(), 2};
+      size[i] = {at.size(sites[0]) + at.size(sites[1]), 2};
     }
   }
 };
@@ -81,7 +81,7 @@ struct InPlane {
     g[0] = -n;
     g[1] = n;
     g[2] = normal.cross(Vec(a.transpose() * d));
-    size[0] = {at(sites[0]).norm() + at(sites[1]).norm() + d.norm(), 2 + d.norm()};
+    size[0] = {at.size(sites[0]) + at.size(sites[1]), 2 + d.norm()};
   }
 };
 

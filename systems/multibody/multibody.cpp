@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace lagroid::multibody {
 
@@ -184,7 +185,9 @@ StepReport Multibody::solve(Island& island) {
   double* const right = right_.data();
   bool factorised = false;
   bool fresh = false;
-  bool was_below = false;
+  int times_below = 0;
+  int stalls = 0;
+  double least = std::numeric_limits<double>::infinity();
   double previous = std::numeric_limits<double>::infinity();
   double rate = 1;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
@@ -233,19 +236,23 @@ StepReport Multibody::solve(Island& island) {
       return report;
     }
     const bool below = excess <= 1 || residual <= options_.tolerance;
-    if (below && (was_below || previous * rate <= 0.1 || options_.tolerance > 0)) {
+    times_below += below ? 1 : 0;
+    stalls = excess > 0.5 * least ? stalls + 1 : 0;
+    least = std::min(least, excess);
+    // Near round-off an iteration may go up and down for ever.
+    const bool at_the_floor = excess <= 100 && stalls >= 3;
+    if (at_the_floor || (below && (times_below > 1 || previous * rate <= 0.1 || options_.tolerance > 0))) {
       report.status = SolveStatus::converged;
-      return report;
+      break;
     }
     if (factorised && excess > 0.3 * previous && !below) {
       if (fresh && std::min(previous, excess) <= 100) {
         report.status = excess <= 100 ? SolveStatus::converged : SolveStatus::stagnated;
-        return report;
+        break;
       }
       factorised = false;
     }
     if (std::isfinite(previous)) rate = std::min(1.0, excess / previous);
-    was_below = below;
     previous = excess;
     fresh = !factorised;
     if (!factorised) {
@@ -272,7 +279,11 @@ StepReport Multibody::solve(Island& island) {
       turned_[std::size_t(e.factor)] += right[e.row] * rotation_response_[std::size_t(i)];
     }
   }
-  report.status = SolveStatus::not_converged;
+  for (int row = rows.first; row < rows.last && report.converged(); ++row)
+    if (left_out_[std::size_t(row)] && !(std::abs(values[row]) * precision[row] < 1e-9)) {
+      dependence_ended_ = true;
+      report.status = SolveStatus::singular;
+    }
   return report;
 }
 
@@ -318,6 +329,7 @@ StepReport Multibody::turn_freely(int rotation) {
 }
 
 StepReport Multibody::advance() {
+  dependence_ended_ = false;
   std::fill(impulse_.begin(), impulse_.end(), Vec::Zero());
   std::fill(spin_impulse_.begin(), spin_impulse_.end(), Vec::Zero());
   StepReport worst;
@@ -445,13 +457,37 @@ std::size_t Multibody::memory() const {
 }
 
 Multibody::State Multibody::state() const {
-  return {index_,       dissipated_, {now_.x.begin(), now_.x.begin() + std::ptrdiff_t(momentum_.size())},
-          place_carry_, momentum_,   momentum_carry_,
-          spin_,        spin_carry_, turned_before_,
-          quaternions_, earlier_};
+  State s;
+  s.index = index_;
+  s.dissipated = dissipated_;
+  s.place.assign(now_.x.begin(), now_.x.begin() + std::ptrdiff_t(momentum_.size()));
+  s.place_carry = place_carry_;
+  s.momentum = momentum_;
+  s.momentum_carry = momentum_carry_;
+  s.spin = spin_;
+  s.spin_carry = spin_carry_;
+  s.turned = turned_before_;
+  s.attitude = quaternions_;
+  s.multipliers = earlier_;
+  s.derived = {now_.x, loads_.on, loads_.torque, gradients_, now_.attitude, {}, {}};
+  for (const RowSize& size : sizes_) {
+    s.derived.terms.push_back(size.terms);
+    s.derived.slopes.push_back(size.slope);
+  }
+  return s;
 }
 
 void Multibody::restore(const State& state) {
+  const auto as_long_as = [](const auto& list, const auto&... others) {
+    return ((others.size() == list.size()) && ...);
+  };
+  const auto& d = state.derived;
+  const bool fits = as_long_as(momentum_, state.place, state.place_carry, state.momentum, state.momentum_carry) &&
+                    as_long_as(spin_, state.spin, state.spin_carry, state.turned, state.attitude) &&
+                    as_long_as(earlier_[0], state.multipliers[0], state.multipliers[1], state.multipliers[2]);
+  const bool derived_fits = as_long_as(now_.x, d.x, d.forces) && as_long_as(now_.attitude, d.attitude, d.torques) &&
+                            as_long_as(gradients_, d.gradients) && as_long_as(sizes_, d.terms, d.slopes);
+  if (!fits || (!d.x.empty() && !derived_fits)) throw std::invalid_argument("a state of another scene");
   index_ = state.index;
   dissipated_ = state.dissipated;
   std::copy(state.place.begin(), state.place.end(), now_.x.begin());
@@ -463,7 +499,17 @@ void Multibody::restore(const State& state) {
   turned_before_ = state.turned;
   quaternions_ = state.attitude;
   earlier_ = state.multipliers;
-  begin();
+  if (d.x.empty()) {
+    begin();
+    return;
+  }
+  now_.time = start_ + h_ * double(index_);
+  now_.x = d.x;
+  now_.attitude = d.attitude;
+  next_ = now_;
+  loads_ = {d.forces, d.torques};
+  gradients_ = d.gradients;
+  for (std::size_t row = 0; row < sizes_.size(); ++row) sizes_[row] = {d.terms[row], d.slopes[row]};
 }
 
 void Multibody::reverse() {
@@ -571,8 +617,8 @@ double Multibody::constraint_residual() const {
     batch.joints->values({now_, now_, displacement_, turned_, h_}, batch.first, batch.count, values.data() + batch.row);
     for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
       const double value = std::abs(values[std::size_t(row)]);
-      const RowSize& size = sizes_[std::size_t(row)];
-      const double relative = value == 0 ? 0 : value / std::max(size.terms, size.slope);
+      const double moved = precision_[std::size_t(row)] > 0 ? 1 / precision_[std::size_t(row)] : 0;
+      const double relative = value == 0 ? 0 : value / std::max(sizes_[std::size_t(row)].terms, moved);
       largest = std::isnan(relative) ? relative : std::max(largest, relative);
     }
   }

@@ -27,7 +27,8 @@ struct Options {
 /// Damping c of a velocity is a pair of discrete forces -c xi / 2 at both ends of the arrow.
 class Multibody {
  public:
-  /// The scene at its first node. Rows of joints that depend on others there are left out (`dependent_rows`).
+  /// The scene at its first node. Rows of joints that depend on others there are left out (`dependent_rows`), and
+  /// joints that touch nothing that moves. Throws std::invalid_argument where a gradient is not finite.
   Multibody(Scene scene, double h, const Options& options = {});
 
   /// One step. Where it does not converge nothing changes, and the report says why.
@@ -40,9 +41,27 @@ class Multibody {
     std::vector<Vec> place, place_carry, momentum, momentum_carry, spin, spin_carry, turned;
     std::vector<Quaternion> attitude;
     std::array<std::vector<double>, 3> multipliers;  ///< of the last three steps, from which the next are guessed
+    /// What follows from places and attitudes. Computed anew at another place of the program it could differ in its
+    /// last bits; where it is empty, it is.
+    struct Derived {
+      std::vector<Vec> x, forces, torques, gradients;
+      std::vector<Mat> attitude;
+      std::vector<double> terms, slopes;
+
+      /// Visits the fields.
+      template <class Archive> void persist(Archive& archive) {
+        archive("x", x);
+        archive("forces", forces);
+        archive("torques", torques);
+        archive("gradients", gradients);
+        archive("attitude", attitude);
+        archive("terms", terms);
+        archive("slopes", slopes);
+      }
+    } derived;
   };
   State state() const;
-  /// Requires a state of the same scene.
+  /// Throws std::invalid_argument where it is no state of this scene.
   void restore(const State& state);
   /// Back along the same trajectory: momenta change their signs.
   void reverse();
@@ -85,6 +104,8 @@ class Multibody {
   int islands() const { return int(islands_.size()); }
   int rows() const { return int(values_.size()); }
   int dependent_rows() const { return dependent_rows_; }
+  /// Whether the last step was refused because rows left out as dependent no longer follow from the others.
+  bool dependence_ended() const { return dependence_ended_; }
   /// Multipliers lambda of the constraints C, in the order of the islands' joints, of the last step (per h).
   const std::vector<double>& multipliers() const { return earlier_[0]; }
   /// Of all arrays that the motion needs beyond its effects' and joints' own, B.
@@ -226,6 +247,7 @@ class Multibody {
   double arrow_residual_ = 0;  ///< of the rows on the arrow that led here
   bool has_arrow_rows_ = false;
   int dependent_rows_ = 0;
+  bool dependence_ended_ = false;
 };
 
 }  // namespace lagroid::multibody

@@ -24,6 +24,7 @@ inline multibody::Configuration draw_configuration(int sites, int attitudes) {
   for (int i = 0; i < attitudes; ++i)
     at.attitude.push_back(SO3::exp(multibody::Vec(2 * draw_uniform(), 2 * draw_uniform(), 2 * draw_uniform())));
   at.attitude.push_back(multibody::Mat::Identity());
+  at.arm.assign(at.x.size(), 0.0);
   return at;
 }
 
