@@ -3,10 +3,12 @@
 #include "certificate.hpp"
 #include "command.hpp"
 #include "registry.hpp"
+#include "scenes/scene_run.hpp"
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/systems/certificates.hpp>
+#include <lagroid/systems/multibody/testing/scene_laws.hpp>
 
 #include <fmt/format.h>
 
@@ -93,13 +95,31 @@ template <DiscreteSystem Sys> Certificate certify(const Task<Sys>& task, const C
   return certificate;
 }
 
+/// The laws of the step of a scene of bodies, where it starts.
+Certificate certify_bodies(const Section& scene, const CheckOptions& options) {
+  const auto clock = std::chrono::steady_clock::now();
+  const BodiesToCheck bodies = bodies_to_check(scene);
+  Certificate certificate;
+  certificate.system = bodies.name;
+  certificate.groupoid = "the product of its bodies' groupoids";
+  certificate.states = 1;
+  certificate.samples = 1;
+  certificate.seed = options.seed;
+  certificate.suites.push_back(
+      laws::scene_laws({bodies.name, bodies.make, bodies.step, 20 * bodies.step, bodies.symplectic}));
+  certificate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return certificate;
+}
+
 int check(const CheckOptions& options) {
   // RapidCheck reads its options from here, and reports each law on std::cerr: the certificate does.
   ::setenv("RC_PARAMS", fmt::format("seed={} max_success={}", options.seed, options.samples).c_str(), 1);
   std::cerr.setstate(std::ios::failbit);
   const Section scene = read_scene(options.scene, options.overrides);
-  const Certificate certificate = with_system_of(
-      scene, [&](const auto& entry) { return certify(entry.read(scene, {.progress = !options.json}), options); });
+  const Certificate certificate =
+      scene.has("body") ? certify_bodies(scene, options) : with_system_of(scene, [&](const auto& entry) {
+        return certify(entry.read(scene, {.progress = !options.json}), options);
+      });
   print(options.json ? json_certificate(certificate) + "\n" : text_certificate(certificate));
   if (!certificate.failure.empty()) fmt::print(stderr, "lagroid: {}: {}\n", options.scene, certificate.failure);
   return certificate.holds() ? 0 : exit_failed;

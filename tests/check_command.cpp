@@ -15,8 +15,12 @@ TEST_F(CommandLine, EveryExampleIsCertified) {
     EXPECT_EQ(r.code, 0) << entry.path() << r.err << r.out;
     const auto json = nlohmann::json::parse(r.out);
     EXPECT_EQ(json.at("status"), "certified");
+    // The step of a scene of bodies is asked where it starts.
+    std::ifstream file(entry.path());
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    const int samples = text.find("[[body]]") == std::string::npos ? 10 : 1;
     for (const auto& suite : json.at("suites"))
-      for (const auto& law : suite.at("laws")) EXPECT_EQ(law.at("samples"), 10) << law;
+      for (const auto& law : suite.at("laws")) EXPECT_EQ(law.at("samples"), samples) << law;
   }
 }
 

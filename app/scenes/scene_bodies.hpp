@@ -60,6 +60,7 @@ struct SceneBodies {
   std::vector<Line> lines;
   std::vector<Shape> scenery;  ///< what stands around: a plate
   bool nonholonomic = false;
+  bool deflected = false;   ///< by magnetic fields or the frame: momenta are not the canonical ones
   bool dissipates = false;  ///< damping takes energy
   bool driven = false;      ///< forces that are not derived from a potential
   bool isolated = true;     ///< nothing acts from outside: momenta are conserved
@@ -94,6 +95,11 @@ template <class Kinds> void read_kind(const Kinds& kinds, SceneBodies& bodies, c
   const std::string name = table.choice("kind", names);
   for (const SceneKind& kind : kinds)
     if (kind.name == name) kind.read(bodies, table);
+}
+
+/// Whether the step of the scene is symplectic in its momenta, and goes back where they change their signs.
+inline bool is_symplectic(const SceneBodies& bodies) {
+  return !bodies.dissipates && !bodies.driven && !bodies.nonholonomic && !bodies.deflected;
 }
 
 /// Reads [[body]], [[joint]] and [[effect]].

@@ -122,6 +122,7 @@ void read_rotating_frame(SceneBodies& bodies, const Section& table) {
     bodies.scene.deflect(body.body, 2 * body.mass * rate);
     if (centrifugal) bodies.scene.add(multibody::Centrifugal{{body.body.centre}, body.mass, rate});
   }
+  bodies.deflected = true;
   bodies.isolated = false;
 }
 
@@ -131,6 +132,7 @@ void read_magnetic(SceneBodies& bodies, const Section& table) {
   const auto charges = table.numbers("charges", charged.size(), "of the bodies, in their order, C");
   for (std::size_t i = 0; i < charged.size(); ++i)
     bodies.scene.deflect(require_point(table, charged[i], "a magnetic field").body, charges[i] * field);
+  bodies.deflected = true;
   bodies.isolated = false;
 }
 

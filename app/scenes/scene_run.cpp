@@ -458,4 +458,11 @@ RunResult run_bodies(const Section& scene, const RunContext& context, long most_
       .go(context.folder.empty() || context.resume ? std::string() : kept_scene(scene));
 }
 
+BodiesToCheck bodies_to_check(const Section& scene) {
+  const Run run(scene, {}, 0);  // refuses what a run refuses
+  const SceneBodies bodies = read_scene_bodies(scene);
+  return {scene.has("name") ? scene.text("name", "what the scene shows") : "scene",
+          [scene] { return std::move(read_scene_bodies(scene).scene); }, read_time(scene).step, is_symplectic(bodies)};
+}
+
 }  // namespace lagroid::app

@@ -4,7 +4,11 @@
 #include "../run_result.hpp"
 #include "../task.hpp"
 
+#include <lagroid/systems/multibody/scene.hpp>
+
+#include <functional>
 #include <limits>
+#include <string>
 
 namespace lagroid::app {
 
@@ -13,5 +17,14 @@ class Section;
 /// Reads a scene of [[body]], [[joint]] and [[effect]] and runs it, over `most_steps` at most.
 RunResult run_bodies(const Section& scene, const RunContext& context,
                      long most_steps = std::numeric_limits<long>::max());
+
+/// A scene of bodies whose step is to be asked its laws.
+struct BodiesToCheck {
+  std::string name;
+  std::function<multibody::Scene()> make;
+  double step = 0;
+  bool symplectic = true;
+};
+BodiesToCheck bodies_to_check(const Section& scene);
 
 }  // namespace lagroid::app
