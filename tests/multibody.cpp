@@ -296,6 +296,23 @@ TEST(Multibody, FreeFlightKeepsMomenta) {
   }
 }
 
+/// A motor turns two hinged bodies against each other: their angular momentum stays.
+TEST(Multibody, AMotorActsOnBothOfItsBodies) {
+  Scene scene;
+  const Body a = scene.rigid_body(1, {0.1, 0.2, 0.25}, {0, 0, 0}, upright, {0.1, 0.2, 0}, {0, 0, 0});
+  const Body b = scene.rigid_body(2, {0.3, 0.2, 0.25}, {1, 0, 0}, upright, {0.1, 0.2, 0}, {0, 0, 0});
+  scene.add(Coincidence{{scene.point_of(a, {0.5, 0, 0}), scene.point_of(b, {-0.5, 0, 0})}});
+  scene.add(FixedAngle{{}, {a.attitude, b.attitude}, {1, 0, 0}, {0, 1, 0}});
+  scene.add(FixedAngle{{}, {a.attitude, b.attitude}, {0, 0, 1}, {0, 1, 0}});
+  scene.add(Motor{{}, {a.attitude, b.attitude}, {0, 0.4, 0}, 3, 0.2});
+  Multibody motion(std::move(scene), 0.01);
+  const Vec l = motion.angular_momentum(motion.momenta());
+  advance(motion, 1000);
+  const auto m = motion.momenta();
+  EXPECT_LT((motion.angular_momentum(m) - l).norm(), 1e-12);
+  EXPECT_GT(m.spin[0].norm(), 0.01);
+}
+
 /// Six equal bars in a plane, hinged to a ring, of bodies in space: three of the hinges' equations depend on the
 /// others.
 TEST(Multibody, RowsThatDependOnOthersAreLeftOut) {

@@ -56,7 +56,8 @@ TEST_F(Scenes, EveryKindOfBodyJointAndEffectRuns) {
       "[[effect]]\nkind = \"torsion_spring\"\nbetween = [\"ground\", \"top\"]\ndirection = [0, 1, 0]\nstiffness = 3\n"
       "[[effect]]\nkind = \"drag\"\nmotion = 0.1\nturning = 0.1\n"
       "[[effect]]\nkind = \"force\"\nbody = \"brick\"\nat = [0, 0.1, 0]\nforce = [0, 0.1, 0]\nrate = 2\n"
-      "[[effect]]\nkind = \"torque\"\nbody = \"top\"\ntorque = [0, 0, 0.1]\n" +
+      "[[effect]]\nkind = \"torque\"\nbody = \"top\"\ntorque = [0, 0, 0.1]\n"
+      "[[effect]]\nkind = \"motor\"\nbetween = [\"brick\", \"lid\"]\ntorque = [0.1, 0, 0]\nrate = 3\n" +
       grid);
   const fs::path out = folder_ / "out";
   const Outcome r = run("run " + file.string() + " --json --out " + out.string());

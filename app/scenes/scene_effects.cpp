@@ -163,8 +163,22 @@ void read_torque(SceneBodies& bodies, const Section& table) {
   bodies.isolated = false;
 }
 
+void read_motor(SceneBodies& bodies, const Section& table) {
+  const auto ends = bodies.ends(table, /*with_points=*/false);
+  for (const End& end : ends)
+    if (!end.turns_in_space())
+      table.fail("between", fmt::format("\"{}\" does not turn in space: a motor acts on bodies that do", end.name()));
+  const Vec torque = vector_of(table, "torque", "on the second, in space at the start, fixed in the first, N m");
+  bodies.scene.add(multibody::Motor{{},
+                                    {ends[0].attitude(), ends[1].attitude()},
+                                    ends[0].seen(torque),
+                                    table.number_or("rate", 0),
+                                    table.number_or("phase", 0)});
+  bodies.driven = true;
+}
+
 /// The kinds of [[effect]], as they are listed to users.
-constexpr std::array<SceneKind, 11> kinds{{{"gravity", read_gravity},
+constexpr std::array<SceneKind, 12> kinds{{{"gravity", read_gravity},
                                            {"central_gravity", read_central},
                                            {"mutual_gravity", read_mutual},
                                            {"spring", read_spring},
@@ -172,6 +186,7 @@ constexpr std::array<SceneKind, 11> kinds{{{"gravity", read_gravity},
                                            {"drag", read_drag},
                                            {"force", read_force},
                                            {"torque", read_torque},
+                                           {"motor", read_motor},
                                            {"charges", read_charges},
                                            {"magnetic_field", read_magnetic},
                                            {"rotating_frame", read_rotating_frame}}};

@@ -163,4 +163,21 @@ struct BodyTorque {
   void add_loads(const Configuration&, Loads& f) const { f(attitudes[0]) += torque; }
 };
 
+/// A motor between two bodies: the torque cos(rate t + phase) on the second about an axis fixed in the first, and its
+/// opposite on the first.
+struct Motor {
+  std::array<Site, 0> sites;
+  std::array<Attitude, 2> attitudes;
+  Vec torque;        ///< in the first body's frame, N m
+  double rate = 0;   ///< rad/s
+  double phase = 0;  ///< rad
+
+  double energy(const Configuration&) const { return 0; }
+  void add_loads(const Configuration& at, Loads& f) const {
+    const Vec now = std::cos(rate * at.time + phase) * torque;
+    f(attitudes[0]) -= now;
+    f(attitudes[1]) += at(attitudes[1]).transpose() * (at(attitudes[0]) * now);
+  }
+};
+
 }  // namespace lagroid::multibody

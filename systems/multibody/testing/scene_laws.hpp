@@ -182,13 +182,9 @@ inline LawReport scene_laws(const SceneSubject& subject) {
   });
   if (subject.symplectic)
     ask("symplectic", 1e-6, [&] {
-      // The loop: momenta of the first two linear factors (or one) moved along a circle, kept tangent.
-      constexpr int points = 64;
-      std::vector<Multibody> loop;
-      for (int k = 0; k < points; ++k) {
-        const double phase = 2 * M_PI * k / points;
-        Multibody motion = begun(subject.h);
-        march(motion, 5);
+      static constexpr int points = 64;
+      // Places that have moved under one push, momenta that have had another: the loop encloses an area.
+      const auto push = [](Multibody& motion, double phase) {
         auto state = motion.state();
         double largest = 0;
         for (const auto* momenta : {&state.momentum, &state.spin})
@@ -196,18 +192,31 @@ inline LawReport scene_laws(const SceneSubject& subject) {
         double along = 0.1;
         for (auto* momenta : {&state.momentum, &state.spin})
           for (Vec& p : *momenta) {
-            p += (0.1 * p.norm() + 1e-3 * largest) *
+            p += (0.2 * p.norm() + 1e-3 * largest) *
                  Vec(std::cos(phase + along), std::sin(phase), std::sin(2 * phase + along));
             along += 0.7;
           }
         motion.restore(state);
         motion.make_tangent();
+      };
+      std::vector<Multibody> loop;
+      for (int k = 0; k < points; ++k) {
+        const double phase = 2 * M_PI * k / points;
+        Multibody motion = begun(subject.h);
         march(motion, 5);
+        push(motion, phase);
+        march(motion, 10);
+        push(motion, phase + 0.5 * M_PI);
         loop.push_back(std::move(motion));
       }
       // Two loop integrals, five steps apart, of p dq by the periodic trapezoid with spectral derivatives.
+      double variation = 0;
       const auto integral = [&] {
         double sum = 0;
+        const auto add = [&](const auto& p, const auto& rate) {
+          sum += p.dot(rate);
+          variation += p.norm() * rate.norm() * 2 * M_PI / points;
+        };
         std::vector<multibody::Multibody::Momenta> momenta;
         for (const auto& motion : loop) momenta.push_back(motion.momenta());
         const auto weight = [](int d) {
@@ -220,7 +229,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
             Vec rate = Vec::Zero();
             for (int j = 0; j < points; ++j)
               if (j != k) rate += weight(k - j) * loop[std::size_t(j)].configuration().x[f];
-            sum += momenta[std::size_t(k)].linear[f].dot(rate);
+            add(momenta[std::size_t(k)].linear[f], rate);
           }
           for (std::size_t r = 0; r < at.spin.size(); ++r) {
             Vector<double, 4> rate = Vector<double, 4>::Zero();
@@ -229,14 +238,14 @@ inline LawReport scene_laws(const SceneSubject& subject) {
             // w = 2 conj(q) q'
             const auto& q = at.attitude[r];
             const Vec w = 2 * (q(0) * rate.tail<3>() - rate(0) * q.tail<3>() - q.tail<3>().cross(rate.tail<3>()));
-            sum += momenta[std::size_t(k)].spin[r].dot(w);
+            add(momenta[std::size_t(k)].spin[r], w);
           }
         }
         return sum * 2 * M_PI / points;
       };
       const double before = integral();
       for (auto& motion : loop) march(motion, 5);
-      return std::abs(integral() - before) / std::abs(before);
+      return std::abs(integral() - before) / variation;
     });
   return report;
 }
