@@ -248,32 +248,33 @@ std::vector<double> Section::numbers_at(std::string_view path) const {
   return out;
 }
 
-Section Section::with(std::string_view path, const std::vector<double>& values) const {
-  Section out = *this;
-  out.source_ = std::make_shared<Source>(*source_);
-  out.table_ = &out.source_->root;
+std::pair<toml::table*, std::string_view> Section::copied(std::string_view path, Section& copy) const {
+  copy = *this;
+  copy.source_ = std::make_shared<Source>(*source_);
+  toml::table& root = copy.source_->root;
+  copy.table_ = &root;
   const auto dot = path.rfind('.');
-  toml::table* parent =
-      dot == std::string_view::npos ? &out.source_->root : out.source_->root.at_path(path.substr(0, dot)).as_table();
-  const std::string_view key = dot == std::string_view::npos ? path : path.substr(dot + 1);
-  if (parent->get_as<toml::array>(key) != nullptr) {
+  if (dot == std::string_view::npos) return {&root, path};
+  return {root.at_path(path.substr(0, dot)).as_table(), path.substr(dot + 1)};
+}
+
+Section Section::with(std::string_view path, const std::vector<double>& values) const {
+  Section out;
+  const auto [table, key] = copied(path, out);
+  if (table->get_as<toml::array>(key) != nullptr) {
     toml::array array;
     for (const double x : values) array.push_back(x);
-    parent->insert_or_assign(key, array);
+    table->insert_or_assign(key, array);
   } else {
-    parent->insert_or_assign(key, values.front());
+    table->insert_or_assign(key, values.front());
   }
   return out;
 }
 
 Section Section::without(std::string_view path) const {
-  Section out = *this;
-  out.source_ = std::make_shared<Source>(*source_);
-  out.table_ = &out.source_->root;
-  const auto dot = path.rfind('.');
-  toml::table* parent =
-      dot == std::string_view::npos ? &out.source_->root : out.source_->root.at_path(path.substr(0, dot)).as_table();
-  if (parent != nullptr) parent->erase(dot == std::string_view::npos ? path : path.substr(dot + 1));
+  Section out;
+  const auto [table, key] = copied(path, out);
+  if (table != nullptr) table->erase(key);
   return out;
 }
 

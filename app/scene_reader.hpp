@@ -103,6 +103,8 @@ class Section {
     bool interpolated = false;
   };
 
+  /// A copy of the whole scene; where in it the path's last key is, or null and that key.
+  std::pair<toml::table*, std::string_view> copied(std::string_view path, Section& copy) const;
   const toml::node* find(std::string_view key) const;
   const toml::node& require(std::string_view key, std::string_view what) const;
   double checked(std::string_view key, const toml::node& node, const NumberRule& rule) const;
