@@ -359,6 +359,7 @@ class Run {
     last_observed_ = motion_->index();
     const auto m = motion_->momenta();
     promises_->observe(*motion_, m);
+    overflowed_ = !std::isfinite(motion_->kinetic_energy(m) + motion_->potential_energy());
     if (context_.record) record_->observe(*motion_, m, result_.trajectory);
   }
 
@@ -380,7 +381,10 @@ class Run {
     }
     result_.steps = k;
     if (k % every_ == 0) observe();
-    return true;
+    if (!overflowed_) return true;
+    result_.status = std::string(to_string(SolveStatus::not_finite));
+    result_.message = fmt::format("step {}: the energy is no finite number any more; use a smaller step", k);
+    return false;
   }
 
   void restore(Checkpoint& checkpoint, double& seconds) {
@@ -442,6 +446,7 @@ class Run {
   std::optional<Record> record_;
   std::optional<Promises> promises_;
   long last_observed_ = -1;
+  bool overflowed_ = false;  ///< the energy, at the node observed last
   RunResult result_;
 };
 

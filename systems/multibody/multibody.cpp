@@ -359,6 +359,19 @@ StepReport Multibody::advance() {
       worst.status = SolveStatus::left_domain;
       return worst;
     }
+  // The joints' reactions.
+  for (std::size_t f = 0; f < momentum_.size(); ++f) {
+    Vec impulse = impulse_[f];
+    for (int e = factor_entries_[f]; e < factor_entries_[f + 1]; ++e) {
+      const Entry& entry = linear_entries_[std::size_t(e)];
+      impulse += multipliers_[std::size_t(entry.row)] * gradients_[std::size_t(entry.gradient)];
+    }
+    impulse_[f] = impulse;
+  }
+  for (std::size_t i = 0; i < rotation_entries_.size(); ++i) {
+    const Entry& e = rotation_entries_[i];
+    spin_impulse_[std::size_t(e.factor)] += multipliers_[std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
+  }
   act(next_);
   if (!next_is_finite()) {
     act(now_);
@@ -372,9 +385,9 @@ StepReport Multibody::advance() {
 bool Multibody::next_is_finite() const {
   double sum = 0;  // which no NaN and no infinity escapes
   for (std::size_t f = 0; f < momentum_.size(); ++f)
-    sum += displacement_[f].lpNorm<1>() + kicked_[f].lpNorm<1>() + loads_.on[f].lpNorm<1>();
+    sum += displacement_[f].lpNorm<1>() + momentum_[f].lpNorm<1>() + impulse_[f].lpNorm<1>() + loads_.on[f].lpNorm<1>();
   for (std::size_t r = 0; r < spin_.size(); ++r)
-    sum += turned_[r].lpNorm<1>() + spin_kicked_[r].lpNorm<1>() + loads_.torque[r].lpNorm<1>();
+    sum += turned_[r].lpNorm<1>() + spin_[r].lpNorm<1>() + spin_impulse_[r].lpNorm<1>() + loads_.torque[r].lpNorm<1>();
   return std::isfinite(sum);
 }
 
@@ -385,23 +398,11 @@ void Multibody::accept() {
     for (std::size_t row = 0; row < values_.size(); ++row)
       if (on_arrow_[row]) arrow_residual_ = std::max(arrow_residual_, std::abs(values_[row]) * precision_[row]);
   }
-  for (std::size_t f = 0; f < momentum_.size(); ++f) {
-    Vec impulse = impulse_[f];
-    for (int e = factor_entries_[f]; e < factor_entries_[f + 1]; ++e) {
-      const Entry& entry = linear_entries_[std::size_t(e)];
-      impulse += multipliers_[std::size_t(entry.row)] * gradients_[std::size_t(entry.gradient)];
-    }
-    impulse_[f] = impulse;
-  }
   for (const Dragged& d : dragged_) {
     const Vec& xi = displacement_[std::size_t(d.factor)];
     const Vec impulse = d.drag * xi;
     impulse_[std::size_t(d.factor)] -= impulse;
     dissipated_ += xi.dot(impulse) / h_;
-  }
-  for (std::size_t i = 0; i < rotation_entries_.size(); ++i) {
-    const Entry& e = rotation_entries_[i];
-    spin_impulse_[std::size_t(e.factor)] += multipliers_[std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
   }
   for (const Damped& d : damped_turns_) {
     const Vec& xi = turned_[std::size_t(d.factor)];
