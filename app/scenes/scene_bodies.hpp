@@ -8,7 +8,6 @@
 
 #include <array>
 #include <deque>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -97,10 +96,12 @@ template <class Kinds> void read_kind(const Kinds& kinds, SceneBodies& bodies, c
     if (kind.name == name) kind.read(bodies, table);
 }
 
-/// Whether the step of the scene is symplectic in its momenta, and goes back where they change their signs.
-inline bool is_symplectic(const SceneBodies& bodies) {
-  return !bodies.dissipates && !bodies.driven && !bodies.nonholonomic && !bodies.deflected;
+/// Whether the step of the scene is that of an action principle, and so symplectic in the canonical momenta.
+inline bool is_variational(const SceneBodies& bodies) {
+  return !bodies.dissipates && !bodies.driven && !bodies.nonholonomic;
 }
+/// Whether it is symplectic in its own momenta, m v, and goes back where they change their signs.
+inline bool is_symplectic(const SceneBodies& bodies) { return is_variational(bodies) && !bodies.deflected; }
 
 /// Reads [[body]], [[joint]] and [[effect]].
 SceneBodies read_scene_bodies(const Section& scene);

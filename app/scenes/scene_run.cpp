@@ -40,10 +40,26 @@ std::vector<std::string> columns(const std::string& body, std::initializer_list<
 
 std::vector<std::string> attitude_of(const std::string& body) { return columns(body, {"A_w", "A_x", "A_y", "A_z"}); }
 
-/// A series and how its row is read off the motion.
+/// The motion at a node, with what is computed of it there once for all who want it.
+struct Node {
+  explicit Node(const Multibody& at)
+      : motion(at),
+        momenta(at.momenta()),
+        kinetic(at.kinetic_energy(momenta)),
+        potential(at.potential_energy()),
+        residual(at.constraint_residual()) {}
+
+  double energy() const { return kinetic + potential; }
+
+  const Multibody& motion;
+  Multibody::Momenta momenta;
+  double kinetic, potential, residual;
+};
+
+/// A series and how its row is read off a node.
 struct Recorded {
   Series series;
-  std::function<void(const Multibody&, const Multibody::Momenta&, std::vector<double>&)> read;
+  std::function<void(const Node&, std::vector<double>&)> read;
 };
 
 void put(std::vector<double>& row, const Vec& v) { row.insert(row.end(), v.data(), v.data() + 3); }
@@ -59,68 +75,60 @@ class Record {
     for (std::size_t k = 0; k < bodies.lines.size(); ++k)
       for (const auto& [end, name] : {std::pair{&bodies.lines[k].from, "from"}, {&bodies.lines[k].to, "to"}})
         if (end->body && !end->arm.isZero(0) && (chosen.empty() || chosen.contains(end->body->name)))
-          add_point(end_column(bodies, k, name), end->site);
+          add_point(end_column(k, name), end->site);
     series_.push_back({{"energy", {"energy"}, "J", "kinetic and potential energy", false, {}},
-                       [](const Multibody& motion, const Multibody::Momenta& m, std::vector<double>& row) {
-                         row.push_back(motion.kinetic_energy(m) + motion.potential_energy());
-                       }});
-    if (!bodies.lines.empty() || bodies.bodies.size() > 0)
-      series_.push_back(
-          {{"constraint_residual", {"residual"}, "1", "largest |C|, over the size of its terms", false, {}},
-           [](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
-             row.push_back(motion.constraint_residual());
-           }});
+                       [](const Node& node, std::vector<double>& row) { row.push_back(node.energy()); }});
+    series_.push_back({{"constraint_residual", {"residual"}, "1", "largest |C|, over the size of its terms", false, {}},
+                       [](const Node& node, std::vector<double>& row) { row.push_back(node.residual); }});
   }
 
-  static std::string end_column(const SceneBodies&, std::size_t line, const char* end) {
-    return fmt::format("line{}.{}", line, end);
-  }
+  static std::string end_column(std::size_t line, const char* end) { return fmt::format("line{}.{}", line, end); }
 
   void declare(Trajectory& trajectory) const {
     for (const auto& r : series_) trajectory.series.push_back(r.series);
   }
 
-  void observe(const Multibody& motion, const Multibody::Momenta& m, Trajectory& trajectory) {
-    trajectory.time.push_back(motion.time());
-    for (std::size_t i = 0; i < series_.size(); ++i) series_[i].read(motion, m, trajectory.series[i].values);
+  void observe(const Node& node, Trajectory& trajectory) {
+    trajectory.time.push_back(node.motion.time());
+    for (std::size_t i = 0; i < series_.size(); ++i) series_[i].read(node, trajectory.series[i].values);
   }
 
  private:
   void add_point(const std::string& name, multibody::Site site) {
     series_.push_back({{name, columns(name, {"x", "y", "z"}), "m", "position in space", false, {}},
-                       [site](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
-                         put(row, motion.configuration()(motion(site)));
+                       [site](const Node& node, std::vector<double>& row) {
+                         put(row, node.motion.configuration()(node.motion(site)));
                        }});
   }
 
   void add_body(const NamedBody& b) {
     add_point(b.name, b.body.centre);
     if (b.body.attitude.index >= 0) {
-      series_.push_back(
-          {{b.name + ".attitude",
-            attitude_of(b.name),
-            "1",
-            "rotation A from body to space, unit quaternion w, x, y, z",
-            false,
-            {}},
-           [a = b.body.attitude](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
-             const auto& q = motion.quaternion(a);
-             row.insert(row.end(), q.data(), q.data() + 4);
-           }});
+      series_.push_back({{b.name + ".attitude",
+                          attitude_of(b.name),
+                          "1",
+                          "rotation A from body to space, unit quaternion w, x, y, z",
+                          false,
+                          {}},
+                         [a = b.body.attitude](const Node& node, std::vector<double>& row) {
+                           const auto& q = node.motion.quaternion(a);
+                           row.insert(row.end(), q.data(), q.data() + 4);
+                         }});
       series_.push_back(
           {{b.name + ".spin", columns(b.name, {"M1", "M2", "M3"}), "kg m^2/s", "body angular momentum", false, {}},
-           [a = b.body.attitude](const Multibody& motion, const Multibody::Momenta& m, std::vector<double>& row) {
-             put(row, m.spin[std::size_t(motion(a).index)]);
+           [a = b.body.attitude](const Node& node, std::vector<double>& row) {
+             put(row, node.momenta.spin[std::size_t(node.motion(a).index)]);
            }});
     }
     if (const int linear = b.linear; linear >= 0) {
-      const auto momentum = [linear](const Multibody& motion, const Multibody::Momenta& m, std::vector<double>& row) {
-        put(row, m.linear[std::size_t(motion.linear_place(linear))]);
+      const auto momentum = [linear](const Node& node, std::vector<double>& row) {
+        put(row, node.momenta.linear[std::size_t(node.motion.linear_place(linear))]);
       };
       if (b.planar) {
         series_.push_back({{b.name + ".angle", {column(b.name, "angle")}, "rad", "of the body in the plane", false, {}},
-                           [linear](const Multibody& motion, const Multibody::Momenta&, std::vector<double>& row) {
-                             row.push_back(motion.configuration().x[std::size_t(motion.linear_place(linear))](2));
+                           [linear](const Node& node, std::vector<double>& row) {
+                             row.push_back(
+                                 node.motion.configuration().x[std::size_t(node.motion.linear_place(linear))](2));
                            }});
         series_.push_back({{b.name + ".momentum",
                             columns(b.name, {"px", "py", "L"}),
@@ -179,7 +187,7 @@ std::vector<Shape> shapes(const SceneBodies& bodies, const std::set<std::string>
     const auto& line = bodies.lines[k];
     const auto end = [&](const End& e, const char* name) -> std::vector<Coordinate> {
       if (!e.body) return {e.place(0), e.place(1), e.place(2)};
-      return at(e.arm.isZero(0) ? e.body->name : Record::end_column(bodies, k, name));
+      return at(e.arm.isZero(0) ? e.body->name : Record::end_column(k, name));
     };
     if ((line.from.body && !seen(*line.from.body)) || (line.to.body && !seen(*line.to.body))) continue;
     Shape rod{"rod", {(line.to.place - line.from.place).norm(), line.width * extent}};
@@ -215,11 +223,10 @@ class Promises {
         momentum_("momentum", Promise::conserved, 3),
         angular_("angular momentum", Promise::conserved, 3) {}
 
-  void observe(const Multibody& motion, const Multibody::Momenta& m) {
-    residual_ = std::max(residual_, motion.constraint_residual());
+  void observe(const Node& node) {
+    const auto& [motion, m, kinetic, potential, residual] = node;
+    residual_ = std::max(residual_, residual);
     if (keeps_energy_) {
-      const double kinetic = motion.kinetic_energy(m);
-      const double potential = motion.potential_energy();
       const double energy = kinetic + potential + motion.dissipated();
       energy_.observe(&energy, kinetic + std::abs(potential));
     }
@@ -289,15 +296,13 @@ class Run {
       scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
                                  "them, or take what the joints allow of them with project_velocities = true",
                                  defect));
-    const auto momenta = motion_->momenta();
-    if (!std::isfinite(motion_->kinetic_energy(momenta) + motion_->potential_energy()))
+    if (!std::isfinite(Node(*motion_).energy()))
       scene.fail("",
                  "the energy at the start is no finite number: a velocity or a mass is too large, or bodies that act "
                  "on each other meet");
     grid_.steps = std::min(grid_.steps, most_steps);
     result_.steps_asked = grid_.steps;
-    const bool symplectic = !bodies_.dissipates && !bodies_.driven && !bodies_.nonholonomic;
-    result_.method = description({"steps of the discrete Lagrangian", 2, true, symplectic, false});
+    result_.method = description({"steps of the discrete Lagrangian", 2, true, is_variational(bodies_), false});
     if (motion_->dependent_rows() > 0)
       result_.notes.push_back(
           fmt::format("{} of {} equations of the joints depend on the others at the start; they hold because those do, "
@@ -306,6 +311,12 @@ class Run {
     record_.emplace(bodies_, chosen_);
     promises_.emplace(bodies_);
     if (context_.record) record_->declare(result_.trajectory);
+  }
+
+  /// What is asked instead of running it; `scene` is the one that was read.
+  BodiesToCheck to_check(const Section& scene) const {
+    return {result_.system, [scene] { return std::move(read_scene_bodies(scene).scene); }, grid_.step,
+            is_symplectic(bodies_)};
   }
 
   RunResult go(const std::string& scene) {
@@ -357,10 +368,10 @@ class Run {
  private:
   void observe() {
     last_observed_ = motion_->index();
-    const auto m = motion_->momenta();
-    promises_->observe(*motion_, m);
-    overflowed_ = !std::isfinite(motion_->kinetic_energy(m) + motion_->potential_energy());
-    if (context_.record) record_->observe(*motion_, m, result_.trajectory);
+    const Node node(*motion_);
+    promises_->observe(node);
+    overflowed_ = !std::isfinite(node.energy());
+    if (context_.record) record_->observe(node, result_.trajectory);
   }
 
   bool advance(long k) {
@@ -463,11 +474,6 @@ RunResult run_bodies(const Section& scene, const RunContext& context, long most_
       .go(context.folder.empty() || context.resume ? std::string() : kept_scene(scene));
 }
 
-BodiesToCheck bodies_to_check(const Section& scene) {
-  const Run run(scene, {}, 0);  // refuses what a run refuses
-  const SceneBodies bodies = read_scene_bodies(scene);
-  return {scene.has("name") ? scene.text("name", "what the scene shows") : "scene",
-          [scene] { return std::move(read_scene_bodies(scene).scene); }, read_time(scene).step, is_symplectic(bodies)};
-}
+BodiesToCheck bodies_to_check(const Section& scene) { return Run(scene, {}, 0).to_check(scene); }
 
 }  // namespace lagroid::app
