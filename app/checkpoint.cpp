@@ -1,7 +1,6 @@
 #include "checkpoint.hpp"
 
 #include "output_folder.hpp"
-#include "view.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -16,6 +16,11 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A folder that holds no run, or one that cannot be shown or taken up. The message is one line with the remedy.
+class RunError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Throws OutputError, with the remedy, unless `folder` can be created and `files` be written there. Leaves nothing
 /// behind.
 void require_writable(const std::filesystem::path& folder, std::span<const char* const> files);

@@ -1,17 +1,13 @@
 #pragma once
 /// The page and the plots of a run, from its folder.
 
+#include "output_folder.hpp"
+
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace lagroid::app {
-
-/// A folder that holds no run, or one that cannot be shown. The message is one line with the remedy.
-class RunError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 struct ViewOptions {
   std::string run;        ///< the folder

@@ -30,10 +30,8 @@ Vec vector_or(const Section& table, std::string_view key, std::string_view meani
 namespace {
 
 Vec read_moments(const Section& table) {
-  const Vec inertia = vector_of(table, "inertia", "three principal moments, kg m^2");
+  const Vec inertia = read_inertia(table);
   for (int i = 0; i < 3; ++i) {
-    if (!(inertia(i) > 0))
-      table.fail("inertia", fmt::format("principal moments must be positive, got {:.8g}", inertia(i)));
     const double others = inertia((i + 1) % 3) + inertia((i + 2) % 3);
     if (inertia(i) > others * (1 + 1e-12))
       table.fail("inertia",

@@ -7,7 +7,6 @@
 #include "../progress.hpp"
 #include "../simulation.hpp"
 #include "../systems/attitude.hpp"
-#include "../view.hpp"
 #include "scene_bodies.hpp"
 
 #include <lagroid/systems/multibody/multibody.hpp>

@@ -1,11 +1,14 @@
 #pragma once
-/// Attitudes between scenes (quaternions) and systems (rotation matrices).
+/// Attitudes between scenes (quaternions) and systems (rotation matrices), and the moments of what turns.
 
 #include "../scene_reader.hpp"
 
 #include <lagroid/groupoids/so3.hpp>
 
+#include <fmt/format.h>
+
 #include <array>
+#include <string_view>
 
 namespace lagroid::app {
 
@@ -19,6 +22,18 @@ inline Matrix<double, 3, 3> read_rotation(const Section& section) {
 inline std::array<double, 4> quaternion_of(const Matrix<double, 3, 3>& rotation) {
   const auto q = SO3::quaternion(rotation);
   return {q(0), q(1), q(2), q(3)};
+}
+
+/// Three positive numbers; `meaning` names them in messages.
+inline Vector<double, 3> read_positive(const Section& parameters, std::string_view key, std::string_view meaning) {
+  const auto values = parameters.numbers(key, 3, meaning);
+  for (const double value : values)
+    if (!(value > 0)) parameters.fail(key, fmt::format("{} must be positive, got {}", meaning, value));
+  return Eigen::Map<const Vector<double, 3>>(values.data());
+}
+/// `inertia`: three positive principal moments.
+inline Vector<double, 3> read_inertia(const Section& parameters) {
+  return read_positive(parameters, "inertia", "principal moments");
 }
 
 }  // namespace lagroid::app

@@ -13,17 +13,6 @@
 
 namespace lagroid::app {
 
-/// Three positive numbers; `meaning` names them in messages.
-inline Vector<double, 3> read_positive(const Section& parameters, std::string_view key, std::string_view meaning) {
-  const auto values = parameters.numbers(key, 3, meaning);
-  for (const double value : values)
-    if (!(value > 0)) parameters.fail(key, fmt::format("{} must be positive, got {}", meaning, value));
-  return Eigen::Map<const Vector<double, 3>>(values.data());
-}
-/// `inertia`: three positive principal moments.
-inline Vector<double, 3> read_inertia(const Section& parameters) {
-  return read_positive(parameters, "inertia", "principal moments");
-}
 /// `momentum`: the body angular momentum.
 inline State<SO3> read_turning(const Section& initial) {
   State<SO3> state;

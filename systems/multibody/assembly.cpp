@@ -190,7 +190,7 @@ void Multibody::assemble(Scene& scene) {
     now_.attitude.push_back(SO3::from_quaternion(r.attitude));
     spin_.push_back(r.inertia.cwiseProduct(r.rate));
     turned_before_.push_back(h_ * r.rate);
-    if (!r.damping.isZero(0)) damped_turns_.push_back({k, r.damping});
+    if (!r.damping.isZero(0)) damped_turns_.push_back(k);
   }
   now_.attitude.push_back(Mat::Identity());
   next_quaternions_ = quaternions_;

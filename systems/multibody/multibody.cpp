@@ -341,7 +341,7 @@ StepReport Multibody::advance() {
     if (worst.converged()) worst.status = report.status;
     return report.converged();
   };
-  next_.time = start_ + h_ * double(index_ + 1);
+  next_.time = h_ * double(index_ + 1);
   kick();
   for (std::size_t f = 0; f < momentum_.size(); ++f) {
     kicked_[f] = momentum_[f] + (momentum_carry_[f] + impulse_[f]);
@@ -404,18 +404,21 @@ void Multibody::accept() {
     impulse_[std::size_t(d.factor)] -= impulse;
     dissipated_ += xi.dot(impulse) / h_;
   }
-  for (const Damped& d : damped_turns_) {
-    const Vec& xi = turned_[std::size_t(d.factor)];
-    const Vec impulse = d.coefficient.cwiseProduct(xi);
-    spin_impulse_[std::size_t(d.factor)] -= 0.5 * impulse;
+  for (const int d : damped_turns_) {
+    const auto r = std::size_t(d);
+    const Vec& xi = turned_[r];
+    const Vec impulse = turn_damping_[r].cwiseProduct(xi);
+    spin_impulse_[r] -= 0.5 * impulse;
     dissipated_ += xi.dot(impulse) / h_;
   }
   for (std::size_t r = 0; r < spin_.size(); ++r) {
     const Vec total = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
     spin_impulse_[r] += turns_[r].carried_change(turned_[r], total);
   }
-  for (const Damped& d : damped_turns_)
-    spin_impulse_[std::size_t(d.factor)] -= d.coefficient.cwiseProduct(turned_[std::size_t(d.factor)]) * 0.5;
+  for (const int d : damped_turns_) {
+    const auto r = std::size_t(d);
+    spin_impulse_[r] -= turn_damping_[r].cwiseProduct(turned_[r]) * 0.5;
+  }
   for (std::size_t f = 0; f < momentum_.size(); ++f) {
     const Vec step = place_carry_[f] + displacement_[f];
     place_carry_[f] = step - (next_.x[f] - now_.x[f]);
@@ -504,7 +507,7 @@ void Multibody::restore(const State& state) {
     begin();
     return;
   }
-  now_.time = start_ + h_ * double(index_);
+  now_.time = h_ * double(index_);
   now_.x = d.x;
   now_.attitude = d.attitude;
   next_ = now_;
@@ -525,7 +528,7 @@ void Multibody::make_tangent() {
 }
 
 void Multibody::begin() {
-  now_.time = start_ + h_ * double(index_);
+  now_.time = h_ * double(index_);
   for (std::size_t r = 0; r < spin_.size(); ++r) now_.attitude[r] = SO3::from_quaternion(quaternions_[r]);
   place_arms(now_, {0, int(arms_.size())}, {0, int(planar_arms_.size())});
   next_ = now_;

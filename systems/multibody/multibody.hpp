@@ -160,10 +160,6 @@ class Multibody {
     int rotation;
     Vec arm;
   };
-  struct Damped {
-    int factor;
-    Vec coefficient;
-  };
   /// A linear factor on which the force -drag v acts; `response` is then no diagonal matrix.
   struct Dragged {
     int factor;
@@ -200,7 +196,6 @@ class Multibody {
 
   double h_;
   Options options_;
-  double start_ = 0;
   long index_ = 0;
   Places places_;
   std::vector<int> linear_places_;
@@ -216,7 +211,7 @@ class Multibody {
   std::vector<Turn> turns_;
   std::vector<Vec> turn_damping_;
   std::vector<Dragged> dragged_;
-  std::vector<Damped> damped_turns_;
+  std::vector<int> damped_turns_;  ///< the rotations of which it is not zero
 
   std::vector<Vec> momentum_, momentum_carry_, place_carry_, spin_, spin_carry_;
   Loads loads_;
