@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -14,7 +15,7 @@ namespace lagroid {
 /// value(z_k) - gain(g_1) - ... - gain(g_k): constant where gain is by how much each arrow changes the value.
 ///
 /// The sum is kept by the quantity, which must therefore see every point of a trajectory in order, from index 0 on, and
-/// is not a number where one was left out. The same point again changes nothing; index 0 begins anew.
+/// is not a number where one was left out. The same point again changes nothing; index 0 begins anew. Copies share it.
 template <class Sys>
 Quantity<Sys> balance(std::string name, Promise promise,
                       std::function<double(const State<typename Sys::GroupoidType>&)> value,
@@ -23,22 +24,21 @@ Quantity<Sys> balance(std::string name, Promise promise,
     long index = 0;
     double gained = 0;
   };
-  return {name,
-          {name},
-          promise,
-          false,
-          [value = std::move(value), gain = std::move(gain), account = Account{}](const TrajectoryPoint<Sys>& p,
-                                                                                  double* out) mutable {
-            if (p.index == 0) {
-              account = {};
-            } else if (p.index == account.index + 1) {
-              account = {p.index, account.gained + gain(p.step)};
-            } else if (p.index != account.index) {
-              account.gained = std::numeric_limits<double>::quiet_NaN();
-            }
-            *out = value(p.state) - account.gained;
-          },
-          std::move(size)};
+  const auto account = std::make_shared<Account>();
+  const auto evaluate = [value = std::move(value), gain = std::move(gain), account](const TrajectoryPoint<Sys>& p,
+                                                                                    double* out) {
+    if (p.index == 0) {
+      *account = {};
+    } else if (p.index == account->index + 1) {
+      *account = {p.index, account->gained + gain(p.step)};
+    } else if (p.index != account->index) {
+      account->gained = std::numeric_limits<double>::quiet_NaN();
+    }
+    *out = value(p.state) - account->gained;
+  };
+  Quantity<Sys> quantity{name, {name}, promise, false, evaluate, std::move(size)};
+  quantity.persist = [account](Tape& tape) { tape(account->index, account->gained); };
+  return quantity;
 }
 
 /// The discrete nonholonomic momentum equation along a section X of D (Cortes & Martinez 2001; Iglesias et al. 2008,

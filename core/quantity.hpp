@@ -2,6 +2,7 @@
 /// Quantities a system promises to keep, and the trajectory points they are evaluated on.
 
 #include <lagroid/core/system.hpp>
+#include <lagroid/core/tape.hpp>
 
 #include <functional>
 #include <string>
@@ -29,6 +30,14 @@ template <class Sys> struct TrajectoryPoint {
   State<typename Sys::GroupoidType> state;
   ArrowOf<typename Sys::GroupoidType> configuration;
   Step<Sys> step;
+
+  /// Visits its numbers.
+  void persist(const typename Sys::GroupoidType& groupoid, Tape& tape) {
+    tape(index, time, step_size, state.momentum, step.multipliers);
+    tape.object(groupoid, state.object);
+    tape.arrow(groupoid, configuration);
+    tape.arrow(groupoid, step.arrow);
+  }
 };
 
 /// A (vector-valued) function of trajectory points with a promise attached.
@@ -51,6 +60,8 @@ template <class Sys> struct Quantity {
   bool needs_step;  ///< evaluated on the arrow that led to the point, hence from k = 1 on
   Evaluate evaluate;
   Size size;  ///< size of the terms it is made of, to which its round-off is relative; its own size where null
+  std::function<void(Tape&)>
+      persist;  ///< visits what `evaluate` keeps from point to point; null where it keeps nothing
 };
 
 }  // namespace lagroid

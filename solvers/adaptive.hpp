@@ -59,6 +59,15 @@ template <Timed Sys> class AdaptiveIntegrator {
   long without_root() const { return without_root_; }
 
   StepReport advance();
+  /// Visits all that the next step goes on from.
+  void persist(Tape& tape) {
+    tape(last_size_, time_momentum_, time_momentum_carry_, degenerate_, without_root_);
+    fixed_.persist(tape);
+    free_->persist(tape);
+    walk_.persist(fixed_.system().groupoid, tape);
+    past_.persist(tape);
+    if (controller_) controller_->persist(tape);
+  }
 
  private:
   struct Solved {

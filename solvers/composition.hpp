@@ -61,7 +61,7 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
         walk_(parts.front().groupoid, initial, configuration, start_) {
     for (const Sys& part : parts) {
       h_ += part.h;
-      stages_.push_back({Stepper<Sys>(part, make_solver()), {}});
+      stages_.push_back({Stepper<Sys>(part, make_solver()), walk_.point().step});
     }
   }
 
@@ -79,6 +79,15 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
   }
 
   StepReport advance();
+  /// Visits all that the next step goes on from.
+  void persist(Tape& tape) {
+    for (Stage& stage : stages_) {
+      stage.stepper.persist(tape);
+      tape.arrow(stage.stepper.system().groupoid, stage.last.arrow);
+      tape(stage.last.multipliers);
+    }
+    walk_.persist(stages_.front().stepper.system().groupoid, tape);
+  }
 
  private:
   struct Stage {

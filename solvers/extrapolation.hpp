@@ -1,6 +1,7 @@
 #pragma once
 /// First guesses: a smooth sequence of vectors continued by one.
 
+#include <lagroid/core/tape.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <algorithm>
@@ -31,6 +32,16 @@ template <int Size, int MaxDegree> class Extrapolation {
     Vector<double, Size> sum = Vector<double, Size>::Zero();
     for (int j = degree_; j >= 0; --j) sum += weight[std::size_t(j)] * back(j);
     return sum;
+  }
+
+  /// Visits all that it goes on from.
+  void persist(Tape& tape) {
+    tape(newest_, known_, degree_, until_review_);
+    for (int j = 0; j < known_; ++j) {
+      auto& x = past_[std::size_t(newest_ + j)];
+      tape(x);
+      past_[std::size_t((newest_ + j + length) % (2 * length))] = x;
+    }
   }
 
  private:

@@ -36,6 +36,11 @@ template <DiscreteSystem Sys> class Integrator {
   }
 
   StepReport advance();
+  /// Visits all that the next step goes on from.
+  void persist(Tape& tape) {
+    stepper_.persist(tape);
+    walk_.persist(system().groupoid, tape);
+  }
 
  private:
   Stepper<Sys> stepper_;

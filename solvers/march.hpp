@@ -49,6 +49,9 @@ template <DiscreteSystem Sys> class March {
   virtual void for_each_inner_stage(const Visit&) const {}
   /// Steps so far whose size was not what the mode asks for.
   virtual long without_root() const { return 0; }
+  /// Visits all that the next step goes on from: a march begun with the same arguments, to which it is restored, goes
+  /// on with the same bits.
+  virtual void persist(Tape& tape) = 0;
 };
 
 /// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one

@@ -37,6 +37,8 @@ template <DiscreteSystem Sys, class Integrating> class MarchOf final : public Ma
     }
   }
 
+  void persist(Tape& tape) override { integrator_.persist(tape); }
+
  private:
   Integrating integrator_;
 };

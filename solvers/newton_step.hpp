@@ -34,6 +34,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   explicit NewtonStep(NewtonOptions options = {}) : options_(options) {}
 
   StepReport solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) override;
+  void persist(Tape& tape) override;
 
  private:
   using E = StepEquations<Sys>;
@@ -101,6 +102,13 @@ StepReport NewtonStep<Sys>::solve(const Sys& system, const State<G>& state, Step
   const typename E::Jacobian jacobian = by_newton(system, state, solution, report);
   if (report.converged()) keep(jacobian);
   return report;
+}
+
+template <DiscreteSystem Sys> void NewtonStep<Sys>::persist(Tape& tape) {
+  tape(chord_.kept);
+  if (!chord_.kept) return;
+  tape(chord_.jacobian, chord_.first, chord_.rate, chord_.age, chord_.iterations);
+  tape(scaling_.row, scaling_.column, inverse_);
 }
 
 // ---- the short way

@@ -3,6 +3,7 @@
 
 #include <lagroid/core/lanes.hpp>
 #include <lagroid/core/step_equations.hpp>
+#include <lagroid/core/tape.hpp>
 
 #include <Eigen/LU>
 
@@ -62,6 +63,16 @@ template <int Size> class SmallInverse {
     Column out;
     unrolled<Size>([&]<int I>() { out(I) = x[I]; });
     return out;
+  }
+
+  /// Visits the inverse, and the order and the scales that later ones are made with.
+  void persist(Tape& tape) {
+    tape(row_of_, column_of_, row_scale_, column_scale_);
+    for (auto& lanes : columns_) {
+      Vector<double, Size> column = lanes.vector();
+      tape(column);
+      lanes = Lanes<double, Size>::load(column.data());
+    }
   }
 
  private:

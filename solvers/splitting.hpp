@@ -95,6 +95,8 @@ template <SplitSystem Sys> class SplittingIntegrator {
 
   /// `converged`, or `not_finite` (at a singularity of a flow), which leaves everything as it was.
   StepReport advance();
+  /// Visits all that the next step goes on from.
+  void persist(Tape& tape) { walk_.persist(system_.groupoid, tape); }
 
  private:
   Sys system_;

@@ -41,6 +41,7 @@ class StepController {
   double step() const { return epsilon_ / density_; }
   /// Moves on to a state with this rate, by a step of this size: epsilon / rho, unless another was taken.
   void pass(double rate, double size) { density_ -= density_ * size * rate; }
+  void persist(Tape& tape) { tape(epsilon_, density_); }
 
  private:
   double epsilon_;
@@ -77,6 +78,13 @@ class ControlledIntegrator {
     walk_.arrive(system.h);
     controller_.pass(time_scale_rate(system, point().state), system.h);
     return report;
+  }
+
+  /// Visits all that the next step goes on from.
+  void persist(Tape& tape) {
+    stepper_.persist(tape);
+    walk_.persist(stepper_.system().groupoid, tape);
+    controller_.persist(tape);
   }
 
  private:

@@ -2,6 +2,7 @@
 /// The interface of everything that solves one implicit step.
 
 #include <lagroid/core/step_equations.hpp>
+#include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/status.hpp>
 
 #include <limits>
@@ -37,6 +38,8 @@ template <DiscreteSystem Sys> class StepSolver {
   /// the solution, and otherwise the last iterate.
   virtual StepReport solve(const Sys& system, const State<typename Sys::GroupoidType>& state,
                            StepSolution<Sys>& solution) = 0;
+  /// Visits what it keeps from one solve to the next, if anything.
+  virtual void persist(Tape&) {}
 };
 
 /// The solvers of a step that a user can name.

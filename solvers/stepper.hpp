@@ -1,6 +1,7 @@
 #pragma once
 /// One implicit step after another: where each solve starts, and which solution is taken.
 
+#include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/extrapolation.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
@@ -28,6 +29,13 @@ template <DiscreteSystem Sys> class Stepper {
   /// The step from `state`. One that does not converge is not remembered.
   StepReport solve(const State<G>& state, StepSolution<Sys>& solution);
   void forget() { past_.clear(); }
+  /// Visits all that the next solve goes on from.
+  void persist(Tape& tape) {
+    if constexpr (HasTimeStep<Sys>) tape(system_.h);
+    if constexpr (TimeDependent<Sys>) tape(system_.time);
+    past_.persist(tape);
+    solver_->persist(tape);
+  }
 
  private:
   /// A guess with no predecessor: the system's own, else the unit arrow.

@@ -44,6 +44,12 @@ template <DiscreteSystem Sys> class Walk {
     point_.time = time;
   }
 
+  /// Visits all that it goes on from.
+  void persist(const G& groupoid, Tape& tape) {
+    point_.persist(groupoid, tape);
+    tape(momentum_carry_, carry_, time_carry_);
+  }
+
  private:
   TrajectoryPoint<Sys> point_;
   AlgebroidVector<G> momentum_carry_ = AlgebroidVector<G>::Zero();
