@@ -1,9 +1,12 @@
 #pragma once
 /// State that is kept and restored by one function.
 
+#include <lagroid/core/tape.hpp>
+
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +44,17 @@ class Archive {
       field = fields_.at(name).get<T>();
     } else {
       fields_[name] = field;
+    }
+  }
+
+  /// What is visited on a tape. Throws std::out_of_range where it was written by another computation.
+  template <class Visit> void tape(const std::string& name, const Visit& visit) {
+    Tape tape = restoring_ ? Tape(fields_.at(name).get<std::vector<double>>()) : Tape();
+    visit(tape);
+    if (!restoring_) {
+      fields_[name] = tape.numbers();
+    } else if (!tape.at_end()) {
+      throw std::out_of_range("a tape of another computation");
     }
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Boundary-value runs of any system.
 
+#include "checkpoint.hpp"
 #include "progress.hpp"
 #include "recorder.hpp"
 #include "scene_reader.hpp"
@@ -276,8 +277,10 @@ Task<Sys> boundary_value(const Section& scene, const RunContext& context, const 
   if (problem.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
   run.first = run.along ? read_along(scene, *run.along, 0, read).stage : problem;
   if (const auto why = inadmissible_ends(run.first.problem)) scene.section("continuation", "").fail("from", *why);
-  return {problem.problem.system,
-          [=](const Observer<Sys>& observer) { return solve_boundary_scene(run, context, read, search, observer); }};
+  return {problem.problem.system, [=](const Observer<Sys>& observer) {
+            if (!context.folder.empty()) Checkpoint::remove(context.folder);
+            return solve_boundary_scene(run, context, read, search, observer);
+          }};
 }
 
 /// The same with the multistart that serves any system.

@@ -1,6 +1,7 @@
 #pragma once
 /// From trajectory points to ledger, series and endpoints.
 
+#include "archive.hpp"
 #include "ledger.hpp"
 #include "run_result.hpp"
 #include "task.hpp"
@@ -110,6 +111,25 @@ template <DiscreteSystem Sys> class Recorder {
       }
       return residual;
     }
+  }
+
+  Trajectory& trajectory() { return trajectory_; }
+
+  /// Visits what it has seen, but for the rows and the first point.
+  void persist(Archive& archive) {
+    for (std::size_t i = 0; i < watches_.size(); ++i) archive("watch " + std::to_string(i), watches_[i]);
+    archive("first", first_);
+    archive("now", now_);
+    archive("largest residual", largest_residual_);
+    archive("constraint size", constraint_size_);
+    archive("last residual", last_residual_);
+    archive("pending", pending_);
+    archive("first multipliers", first_multipliers_);
+    archive.tape("point and quantities", [&](Tape& tape) {
+      last_point_.persist(system_.groupoid, tape);
+      for (auto& quantity : quantities_)
+        if (quantity.persist) quantity.persist(tape);
+    });
   }
 
   /// Moves what was observed into the result.

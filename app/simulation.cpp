@@ -4,16 +4,21 @@
 
 namespace lagroid::app {
 
+namespace {
+
+constexpr long most_steps = 2'000'000'000;
+
+}  // namespace
+
 TimeGrid read_time(const Section& scene) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
-  constexpr long most = 2'000'000'000;
   TimeGrid grid;
   const bool has_duration = time.has("duration");
   const bool has_step = time.has("step");
   constexpr double first_tried = 0.01;
   if (has_step && time.has("accuracy")) time.fail("accuracy", "finds the first step: leave out step or accuracy");
   if (has_duration && has_step) time.fail("duration", "give step or duration, not both (steps goes with either)");
-  grid.steps = time.integer("steps", 1, most);
+  grid.steps = time.integer("steps", 1, most_steps);
   grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
               : !has_step && time.has("accuracy") ? first_tried
                                                   : time.number("step", positive);
@@ -103,8 +108,28 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
 }
 
 long read_every(const Section& scene, const RunContext& context) {
-  const long every = scene.section_or_empty("output").integer_or("every", 1, 1, 1'000'000'000);
+  const long every = scene.section_or_empty("output").integer_or("every", 1, 1, most_steps);
   return context.record ? every : 0;
+}
+
+namespace {
+
+/// The scene to be kept: with the step itself in place of a duration, so that more steps can be asked for later.
+std::string kept_scene(const Section& scene) {
+  if (!scene.section_or_empty("time").has("duration")) return scene.whole();
+  return scene.with("time.step", {read_time(scene).step}).without("time.duration").whole();
+}
+
+}  // namespace
+
+Pace read_pace(const Section& scene, const RunContext& context) {
+  Pace pace;
+  pace.steps = read_time(scene).steps;
+  const Section output = scene.section_or_empty("output");
+  pace.every = output.integer_or("every", 1, 1, most_steps);
+  pace.checkpoint = output.integer_or("checkpoint", 0, 1, most_steps);
+  if (!context.folder.empty() && !context.resume) pace.scene = kept_scene(scene);
+  return pace;
 }
 
 std::string step_failure(const StepReport& report, long step, double time, TimeMode mode) {

@@ -1,10 +1,9 @@
 #pragma once
 /// Initial-value runs of any system.
 
-#include "interrupt.hpp"
-#include "progress.hpp"
 #include "recorder.hpp"
 #include "scene_reader.hpp"
+#include "stepped_run.hpp"
 #include "task.hpp"
 
 #include <lagroid/core/discrete_energy.hpp>
@@ -15,7 +14,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -49,6 +47,9 @@ MarchChoice read_march(const Section& scene, const Abilities& able);
 
 /// [output]: every n-th node is recorded (and the last); 0 when nothing is.
 long read_every(const Section& scene, const RunContext& context);
+
+/// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint.
+Pace read_pace(const Section& scene, const RunContext& context);
 
 /// What to say of a step that failed.
 std::string step_failure(const StepReport& report, long step, double time, TimeMode mode);
@@ -86,15 +87,52 @@ template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys
   return p;
 }
 
-/// Runs the system; a step that fails, Ctrl-C or SIGTERM ends the run with what was computed so far.
+/// A system's march with all that is told of it.
+template <DiscreteSystem Sys> class SystemRun final : public SteppedRun {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  SystemRun(const Sys& system, const Presentation<Sys>& presentation, const State<G>& initial,
+            const ArrowOf<G>& configuration, const MarchOptions& options, long every, const Observer<Sys>& observer)
+      : system_(system),
+        mode_(options.mode),
+        march_(make_march(system, initial, configuration, options)),
+        recorder_(system, presentation, watched(system, options), every, observer) {}
+
+  const March<Sys>& march() const { return *march_; }
+  Recorder<Sys>& recorder() { return recorder_; }
+
+  StepReport advance() override { return march_->advance(); }
+  std::string failure(const StepReport& report, long step) const override {
+    return step_failure(report, step, march_->point().time, mode_);
+  }
+  bool observe(long) override {
+    march_->for_each_inner_stage(
+        [&](const Step<Sys>& step, double from, double size) { recorder_.watch_constraint(step, from, size); });
+    recorder_.observe(reported(system_, march_->point()));
+    return true;
+  }
+  Trajectory& trajectory() override { return recorder_.trajectory(); }
+  void persist(Archive& archive) override {
+    archive.tape("march", [&](Tape& tape) { march_->persist(tape); });
+    archive("recorder", recorder_);
+  }
+
+ private:
+  Sys system_;
+  TimeMode mode_;
+  std::unique_ptr<March<Sys>> march_;
+  Recorder<Sys> recorder_;
+};
+
+/// Runs the system.
 template <DiscreteSystem Sys>
 RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typename Sys::GroupoidType>& initial,
-                   const ArrowOf<typename Sys::GroupoidType>& configuration, long steps, const MarchChoice& choice,
-                   long every, const RunContext& context, const Observer<Sys>& observer) {
-  const auto start = std::chrono::steady_clock::now();
+                   const ArrowOf<typename Sys::GroupoidType>& configuration, const MarchChoice& choice, Pace pace,
+                   const RunContext& context, const Observer<Sys>& observer) {
   const Presentation<Sys> presentation = with_step_sizes(own, choice.options);
   RunResult result;
-  result.steps_asked = steps;
+  result.system = presentation.name;
   if (choice.accuracy > 0) {
     const double h = step_for_accuracy(system, initial, choice.accuracy, choice.options);
     if (h > 0) {
@@ -103,47 +141,18 @@ RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typenam
     } else {
       result.status = std::string(to_string(SolveStatus::no_step));
       result.message = "no step from the initial state has the accuracy asked for; give time.step in place of accuracy";
-      steps = 0;
+      pace.steps = 0;
     }
   }
-  Recorder<Sys> recorder(system, presentation, watched(system, choice.options), every, observer);
-  const auto march = make_march(system, initial, configuration, choice.options);
-  result.method = description(march->traits());
-  const auto watch_stage = [&](const Step<Sys>& step, double from, double size) {
-    recorder.watch_constraint(step, from, size);
-  };
-  recorder.observe(reported(system, march->point()));
-  {
-    Progress progress(presentation.name, steps, context.progress);
-    const InterruptGuard guard;
-    for (long k = 1; k <= steps; ++k) {
-      const StepReport report = march->advance();
-      result.iterations += report.iterations;
-      result.ledger.most_iterations = std::max(result.ledger.most_iterations, report.iterations);
-      if (!report.converged()) {
-        result.status = std::string(to_string(report.status));
-        result.residual = report.residual;
-        result.message = step_failure(report, k, march->point().time, choice.options.mode);
-        break;
-      }
-      result.steps = k;
-      march->for_each_inner_stage(watch_stage);
-      recorder.observe(reported(system, march->point()));
-      progress.update(k);
-      if (guard.interrupted() && k < steps) {
-        result.status = interrupted_status;
-        result.message = fmt::format("interrupted after step {} of {}; what was computed is kept", k, steps);
-        break;
-      }
-    }
-  }
-  recorder.finish(result);
-  if (const long count = march->without_root(); count > 0) {
+  SystemRun<Sys> run(system, presentation, initial, configuration, choice.options, context.record ? pace.every : 0,
+                     observer);
+  result.method = description(run.march().traits());
+  drive(run, pace, context, result);
+  run.recorder().finish(result);
+  if (const long count = run.march().without_root(); count > 0) {
     result.notes.push_back(without_root_note(count, result.steps, choice.options.without_root));
     result.ledger.entries.push_back(counted_entry("steps off the energy", count, result.steps));
   }
-  result.ledger.mean_iterations = result.steps > 0 ? double(result.iterations) / double(result.steps) : 0;
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 
@@ -153,12 +162,11 @@ template <DiscreteSystem Sys>
 Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys& system,
                      const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                      const ArrowOf<typename Sys::GroupoidType>& configuration) {
-  const long steps = read_time(scene).steps;
   const MarchChoice choice = read_march(scene, abilities_of<Sys>);
-  const long every = read_every(scene, context);
+  const Pace pace = read_pace(scene, context);
   scene.finish();
   return {system, [=](const Observer<Sys>& observer) {
-            return simulate(system, presentation, initial, configuration, steps, choice, every, context, observer);
+            return simulate(system, presentation, initial, configuration, choice, pace, context, observer);
           }};
 }
 

@@ -1,11 +1,8 @@
 #include "scene_run.hpp"
 
-#include "../checkpoint.hpp"
-#include "../interrupt.hpp"
 #include "../ledger.hpp"
-#include "../output_folder.hpp"
-#include "../progress.hpp"
 #include "../simulation.hpp"
+#include "../stepped_run.hpp"
 #include "../systems/attitude.hpp"
 #include "scene_bodies.hpp"
 
@@ -14,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -264,29 +260,29 @@ class Promises {
   QuantityWatch energy_, momentum_, angular_;
 };
 
-/// A scene's motion with all that is told of it, step by step.
-class Run {
+/// A scene's motion with all that is told of it.
+class Run final : public SteppedRun {
  public:
   Run(const Section& scene, const RunContext& context, long most_steps)
       : bodies_(read_scene_bodies(scene)), context_(context) {
     if (bodies_.bodies.empty()) scene.fail("body", "there is no body in it");
     result_.system = scene.has("name") ? scene.text("name", "what the scene shows") : "scene";
-    grid_ = read_time(scene);
+    step_ = read_time(scene).step;
     refuse_accuracy(scene);
     const Section solver = scene.section_or_empty("solver");
     multibody::Options options;
     options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, 100000));
     options.tolerance = solver.number_or("tolerance", 0, nonnegative);
     const Section output = scene.section_or_empty("output");
-    every_ = output.integer_or("every", 1, 1, 1'000'000'000);
-    checkpoint_steps_ = output.integer_or("checkpoint", 0, 1, 1'000'000'000);
+    pace_ = read_pace(scene, context);
+    pace_.steps = std::min(pace_.steps, most_steps);
     for (const NamedBody* body : bodies_.chosen(output, "bodies"))
       if (output.has("bodies")) chosen_.insert(body->name);
     const bool project = scene.flag_or("project_velocities", false);
     scene.finish();
 
     try {
-      motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), grid_.step, options);
+      motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), step_, options);
     } catch (const std::invalid_argument& error) {
       scene.fail("", fmt::format("{}: a position, a length or a point is too large", error.what()));
     }
@@ -299,8 +295,6 @@ class Run {
       scene.fail("",
                  "the energy at the start is no finite number: a velocity or a mass is too large, or bodies that act "
                  "on each other meet");
-    grid_.steps = std::min(grid_.steps, most_steps);
-    result_.steps_asked = grid_.steps;
     result_.method = description({"steps of the discrete Lagrangian", 2, true, is_variational(bodies_), false});
     if (motion_->dependent_rows() > 0)
       result_.notes.push_back(
@@ -314,106 +308,33 @@ class Run {
 
   /// What is asked instead of running it; `scene` is the one that was read.
   BodiesToCheck to_check(const Section& scene) const {
-    return {result_.system, [scene] { return std::move(read_scene_bodies(scene).scene); }, grid_.step,
+    return {result_.system, [scene] { return std::move(read_scene_bodies(scene).scene); }, step_,
             is_symplectic(bodies_)};
   }
 
-  RunResult go(const std::string& scene) {
-    const auto start = std::chrono::steady_clock::now();
-    double before = 0;
-    std::optional<Checkpoint> checkpoint;
-    if (!context_.folder.empty()) checkpoint.emplace(context_.folder, checkpoint_steps_);
-    const auto keep = [&] {
-      Archive archive;
-      double seconds = before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      archive("seconds", seconds);
-      persist(archive);
-      try {
-        checkpoint->keep(result_.trajectory, archive.fields());
-      } catch (const OutputError& error) {  // a full disk: what is computed is worth more
-        result_.output_error = error.what();
-        checkpoint.reset();
-      }
-    };
-    if (context_.resume) {
-      restore(*checkpoint, before);
-    } else {
-      if (checkpoint) checkpoint->begin(scene);
-      observe();
-      if (checkpoint) keep();
-    }
-    {
-      Progress progress(result_.system, grid_.steps, context_.progress);
-      const InterruptGuard guard;
-      for (long k = motion_->index() + 1; k <= grid_.steps && advance(k); ++k) {
-        progress.update(k);
-        if (guard.interrupted() && k < grid_.steps) {
-          result_.status = interrupted_status;
-          result_.message = fmt::format(
-              "interrupted after step {} of {}; what was computed is kept{}", k, grid_.steps,
-              checkpoint ? fmt::format(", and lagroid resume {} goes on", context_.folder.string()) : std::string());
-          break;
-        }
-        if (checkpoint && checkpoint->due(k)) keep();
-      }
-    }
-    if (checkpoint) keep();
-    if (last_observed_ != motion_->index()) observe();
-    finish();
-    result_.seconds = before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  RunResult go() {
+    drive(*this, pace_, context_, result_);
+    if (last_observed_ != motion_->index()) see();
+    promises_->report(*motion_, result_.ledger);
+    result_.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
+                                      {"attitude", "A carries body to space"},
+                                      {"momenta", "tangent to the joints"}};
+    result_.panels = panels(bodies_, chosen_);
+    result_.shapes = shapes(bodies_, chosen_);
     return std::move(result_);
   }
 
- private:
-  void observe() {
-    last_observed_ = motion_->index();
-    const Node node(*motion_);
-    promises_->observe(node);
-    overflowed_ = !std::isfinite(node.energy());
-    if (context_.record) record_->observe(node, result_.trajectory);
+  StepReport advance() override { return motion_->advance(); }
+  std::string failure(const StepReport& report, long step) const override {
+    if (!motion_->dependence_ended()) return step_failure(report, step, motion_->time(), TimeMode::fixed);
+    return fmt::format(
+        "step {} (from t = {:.6g}): equations of joints that depended on others at the start no longer do; the scene "
+        "starts in a singular position (parts in line, a taut loop): start it elsewhere",
+        step, motion_->time());
   }
-
-  bool advance(long k) {
-    const StepReport report = motion_->advance();
-    result_.iterations += report.iterations;
-    result_.ledger.most_iterations = std::max(result_.ledger.most_iterations, report.iterations);
-    if (!report.converged()) {
-      result_.status = std::string(to_string(report.status));
-      result_.residual = report.residual;
-      result_.message =
-          motion_->dependence_ended()
-              ? fmt::format(
-                    "step {} (from t = {:.6g}): equations of joints that depended on others at the start no longer "
-                    "do; the scene starts in a singular position (parts in line, a taut loop): start it elsewhere",
-                    k, motion_->time())
-              : step_failure(report, k, motion_->time(), TimeMode::fixed);
-      return false;
-    }
-    result_.steps = k;
-    if (k % every_ == 0) observe();
-    if (!overflowed_) return true;
-    result_.status = std::string(to_string(SolveStatus::not_finite));
-    result_.message = fmt::format("step {}: the energy is no finite number any more; use a smaller step", k);
-    return false;
-  }
-
-  void restore(Checkpoint& checkpoint, double& seconds) {
-    Archive archive(checkpoint.restore(result_.trajectory));
-    try {
-      archive("seconds", seconds);
-      persist(archive);
-    } catch (const nlohmann::json::exception&) {
-      throw RunError(
-          fmt::format("{}: its checkpoint is of another lagroid; run the scene again", context_.folder.string()));
-    } catch (const std::invalid_argument&) {
-      throw RunError(
-          fmt::format("{}: its checkpoint is of another scene; run the scene again", context_.folder.string()));
-    }
-    if (result_.steps > grid_.steps)
-      throw RunError(fmt::format("--set time.steps={}: the run has {} steps already", grid_.steps, result_.steps));
-  }
-
-  void persist(Archive& archive) {
+  bool observe(long step) override { return step % pace_.every != 0 || see(); }
+  Trajectory& trajectory() override { return result_.trajectory; }
+  void persist(Archive& archive) override {
     auto state = motion_->state();
     archive("index", state.index);
     archive("dissipated", state.dissipated);
@@ -429,48 +350,36 @@ class Run {
       archive(fmt::format("multipliers {}", i), state.multipliers[i]);
     archive("derived", state.derived);
     if (archive.restoring()) motion_->restore(state);
-    archive("steps", result_.steps);
-    archive("iterations", result_.iterations);
-    archive("most iterations", result_.ledger.most_iterations);
     archive("last observed", last_observed_);
     archive("promises", *promises_);
   }
 
-  void finish() {
-    promises_->report(*motion_, result_.ledger);
-    result_.ledger.mean_iterations = result_.steps > 0 ? double(result_.iterations) / double(result_.steps) : 0;
-    result_.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
-                                      {"attitude", "A carries body to space"},
-                                      {"momenta", "tangent to the joints"}};
-    result_.panels = panels(bodies_, chosen_);
-    result_.shapes = shapes(bodies_, chosen_);
+ private:
+  /// False where the energy is no finite number.
+  bool see() {
+    last_observed_ = motion_->index();
+    const Node node(*motion_);
+    promises_->observe(node);
+    if (context_.record) record_->observe(node, result_.trajectory);
+    return std::isfinite(node.energy());
   }
 
   SceneBodies bodies_;
   RunContext context_;
-  TimeGrid grid_;
-  long every_ = 1;
-  long checkpoint_steps_ = 0;
+  double step_ = 0;
+  Pace pace_;
   std::set<std::string> chosen_;
   std::unique_ptr<Multibody> motion_;
   std::optional<Record> record_;
   std::optional<Promises> promises_;
   long last_observed_ = -1;
-  bool overflowed_ = false;  ///< the energy, at the node observed last
   RunResult result_;
 };
-
-/// The scene to be kept: with the step itself, whatever gave it, so that more steps can be asked for later.
-std::string kept_scene(const Section& scene) {
-  const TimeGrid grid = read_time(scene);
-  return scene.with("time.step", {grid.step}).without("time.duration").whole();
-}
 
 }  // namespace
 
 RunResult run_bodies(const Section& scene, const RunContext& context, long most_steps) {
-  return Run(scene, context, most_steps)
-      .go(context.folder.empty() || context.resume ? std::string() : kept_scene(scene));
+  return Run(scene, context, most_steps).go();
 }
 
 BodiesToCheck bodies_to_check(const Section& scene) { return Run(scene, {}, 0).to_check(scene); }

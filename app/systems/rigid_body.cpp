@@ -44,8 +44,7 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
   refuse_accuracy(scene);
   const int order = int(time.integer_or("order", 10, 2, 10));
   if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6, 8 or 10, got {}", order));
-  const long steps = read_time(scene).steps;
-  const long every = read_every(scene, context);
+  const Pace pace = read_pace(scene, context);
   scene.finish();
   MoserVeselov system;
   try {
@@ -57,7 +56,7 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
             const Observer<MoserVeselov> as_body = [&](const TrajectoryPoint<MoserVeselov>& p) {
               observer({p.index, p.time, p.step_size, p.state, p.configuration, {p.step.arrow, {}}});
             };
-            return simulate(system, presentation(system), state, attitude, steps, {}, every, context,
+            return simulate(system, presentation(system), state, attitude, {}, pace, context,
                             observer ? as_body : nullptr);
           }};
 }
