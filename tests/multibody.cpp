@@ -3,6 +3,7 @@
 #include "allocation_counter.hpp"
 #include "marching.hpp"
 
+#include <lagroid/systems/chaplygin_sleigh.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/multibody/effects.hpp>
@@ -272,6 +273,208 @@ TEST(Multibody, DampingTakesEnergy) {
 }
 
 /// Two bars and a ring of rods in free flight: momenta are conserved to round-off.
+/// A dashpot between two bodies, a ball joint that turns hard: what they take is what is lost, and momenta are kept.
+TEST(Multibody, DampersTakeEnergyAndKeepMomenta) {
+  const auto error = [](double h) {
+    Scene scene;
+    const Vec moments(0.3, 0.4, 0.5);
+    const Body a = scene.rigid_body(1, moments, {0, 0, 0}, upright, {0.3, 0, 0.1}, {0, 0, 1});
+    const Body b = scene.rigid_body(2, moments, {1, 0, 0}, upright, {0.3, 1, 0.1}, {0.2, 0.1, -2});
+    const Body c = scene.rigid_body(1.5, moments, {2, 0.3, 0}, upright, {-0.5, 0, 0}, {0.3, 0, 1});
+    scene.add(Coincidence{{scene.point_of(a, {0.5, 0, 0}), scene.point_of(b, {-0.5, 0, 0})}});
+    scene.add(Damper<RelativeTurn>{{{}, {a.attitude, b.attitude}}, 0.2});
+    scene.add(Damper<Length>{{{scene.point_of(b, {0.5, 0.1, 0}), scene.point_of(c, {0, 0.2, 0})}}, 0.8});
+    Multibody motion(std::move(scene), h);
+    motion.make_tangent();
+    const double before = energy(motion);
+    const Vec p = motion.linear_momentum(motion.momenta());
+    const Vec l = motion.angular_momentum(motion.momenta());
+    advance(motion, std::lround(2 / h));
+    EXPECT_GT(motion.dissipated(), 0.2);
+    EXPECT_LT((motion.linear_momentum(motion.momenta()) - p).norm(), 1e-13);
+    EXPECT_LT((motion.angular_momentum(motion.momenta()) - l).norm(), 1e-12);
+    return std::abs(energy(motion) + motion.dissipated() - before);
+  };
+  EXPECT_NEAR(std::log2(error(0.01) / error(0.005)), 2, 0.2);
+}
+
+/// A hinge that rubs: the rate decays by (1 - x) / (1 + x) a step, x = c h / (2 I).
+TEST(Multibody, ADampedHingeSlowsDown) {
+  Scene scene;
+  const Body wheel = scene.pivoted_body({1, 1.2, 0.8}, Vec::Zero(), upright, {0, 0, 3});
+  for (const Vec& u : {Vec(Vec::UnitX()), Vec(Vec::UnitY())})
+    scene.add(FixedAngle{{}, {Attitude{}, wheel.attitude}, u, {0, 0, 1}, 0});
+  scene.add(Damper<HingeTurn>{{{}, {Attitude{}, wheel.attitude}, {0, 0, 1}, {0, 0, 1}, 0}, 0.7});
+  Multibody motion(std::move(scene), 0.05);
+  advance(motion, 100);
+  const double x = 0.7 * 0.05 / (2 * 0.8);
+  EXPECT_NEAR(motion.momenta().spin[0](2), 2.4 * std::pow((1 - x) / (1 + x), 100), 1e-14);
+  EXPECT_NEAR(energy(motion) + motion.dissipated(), 0.5 * 0.8 * 9, 1e-13);
+}
+
+/// The harder it rubs, the nearer to a weld.
+TEST(Multibody, AHardDamperIsAJoint) {
+  Scene scene;
+  const Body a = scene.rigid_body(1, {1, 1, 1}, {0, 0, 0}, upright, {0, 0, 0}, {0, 0, 1});
+  const Body b = scene.rigid_body(1, {1, 1, 1}, {0, 0, 1}, upright, {0, 0, 0}, {0, 0, -0.5});
+  scene.add(Damper<RelativeTurn>{{{}, {a.attitude, b.attitude}}, 1e12});
+  Multibody motion(std::move(scene), 0.01);
+  advance(motion, 1);
+  const auto spin = motion.momenta().spin;
+  advance(motion, 1);
+  const auto next = motion.momenta().spin;
+  EXPECT_NEAR(0.5 * (spin[0](2) + next[0](2)), 0.25, 1e-9);
+  EXPECT_NEAR(0.5 * (spin[1](2) + next[1](2)), 0.25, 1e-9);
+}
+
+/// A pendulum whose support is shaken: as the one seen from the support, under the gravity felt there.
+TEST(Multibody, AMovedSupportIsAGravityThatChanges) {
+  constexpr double w = 3;
+  constexpr double amplitude = 0.2;
+  const auto error = [&](int steps) {
+    const double h = 2.0 / steps;
+    Scene scene;
+    const Body bob = scene.point_mass(1, {1, 0, 0}, {0, 0, 0});
+    scene.add(Rod{{scene.moving_ground(Vec::Zero(), {0, 0, amplitude}, w), bob.centre}, 1});
+    scene.add(ConstantForce{{bob.centre}, {0, 0, -9.81}});
+    Multibody motion(std::move(scene), h);
+    EXPECT_EQ(motion.velocity_defect(), 0);
+    advance(motion, steps);
+    EXPECT_LT(motion.constraint_residual(), 1e-14);
+    const double t = motion.time();
+    const Vec velocity = motion.momenta().linear[0] - Vec(0, 0, amplitude * w * std::sin(w * t));
+    const Vec arm = motion.configuration()(motion(bob.centre)) - Vec(0, 0, amplitude * (1 - std::cos(w * t)));
+    EXPECT_LT(std::abs(velocity.dot(arm)), 1e-13) << "reported velocities agree with the support's";
+    // theta'' = -(g + z'') sin theta, theta from below; by Runge and Kutta in fine steps.
+    Eigen::Vector2d y(M_PI / 2, 0);
+    const auto rate = [&](double at, const Eigen::Vector2d& z) {
+      return Eigen::Vector2d(z(1), -(9.81 + amplitude * w * w * std::cos(w * at)) * std::sin(z(0)));
+    };
+    constexpr int fine = 20000;
+    const double k = 2.0 / fine;
+    for (int i = 0; i < fine; ++i) {
+      const double at = i * k;
+      const Eigen::Vector2d k1 = rate(at, y);
+      const Eigen::Vector2d k2 = rate(at + 0.5 * k, y + 0.5 * k * k1);
+      const Eigen::Vector2d k3 = rate(at + 0.5 * k, y + 0.5 * k * k2);
+      const Eigen::Vector2d k4 = rate(at + k, y + k * k3);
+      y += k / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+    return std::abs(arm(0) - std::sin(y(0))) + std::abs(arm(2) + std::cos(y(0)));
+  };
+  EXPECT_NEAR(std::log2(error(200) / error(400)), 2, 0.1);
+}
+
+/// A hinge that turns at a given rate.
+TEST(Multibody, ADrivenHingeKeepsItsRate) {
+  Scene scene;
+  const Body arm = scene.rigid_body(1, {0.1, 0.2, 0.2}, {0.5, 0, 0}, upright, {0, 1, 0}, {0, 0, 2});
+  scene.add(Coincidence{{scene.ground(Vec::Zero()), scene.point_of(arm, {-0.5, 0, 0})}});
+  for (const Vec& u : {Vec(Vec::UnitX()), Vec(Vec::UnitY())})
+    scene.add(FixedAngle{{}, {Attitude{}, arm.attitude}, u, {0, 0, 1}, 0});
+  scene.add(HingeTurn{{}, {Attitude{}, arm.attitude}, {0, 0, 1}, {0, 0, 1}, 2});
+  scene.add(ConstantForce{{arm.centre}, {0, -9.81, 0}});
+  Multibody motion(std::move(scene), 0.01);
+  advance(motion, 300);
+  const Vec tip = motion.configuration()(motion(arm.centre));
+  EXPECT_LT((tip - 0.5 * Vec(std::cos(6.0), std::sin(6.0), 0)).norm(), 1e-12);
+}
+
+/// Two bodies that circle each other closely and far: steps shrink with their distance, the way back is the way there,
+/// and the error is a fraction of that of as many equal steps.
+TEST(Multibody, ControlledStepsFollowTheAttraction) {
+  constexpr double e = 0.9;
+  const auto make = [] {
+    Scene scene;
+    const Body body = scene.point_mass(1, {1 - e, 0, 0}, {0, std::sqrt((1 + e) / (1 - e)), 0});
+    scene.add(CentralGravity{{body.centre}, Vec::Zero(), 1});
+    return scene;
+  };
+  const auto drift = [](Multibody& motion, int steps) {
+    const double before = energy(motion);
+    double worst = 0;
+    for (int k = 0; k < steps; ++k) {
+      EXPECT_TRUE(motion.advance().converged());
+      worst = std::max(worst, std::abs(energy(motion) - before));
+    }
+    return worst;
+  };
+  Multibody controlled(make(), 0.002, {.controlled = true});
+  constexpr int steps = 3000;
+  const double with = drift(controlled, steps);
+  EXPECT_GT(controlled.time(), 2 * M_PI);
+  Multibody equal(make(), controlled.time() / steps);
+  EXPECT_LT(with, 0.1 * drift(equal, steps));
+  Multibody back(make(), 0.002, {.controlled = true});
+  const Vec start = back.configuration().x[0];
+  advance(back, 1000);
+  EXPECT_GT((back.configuration().x[0] - start).norm(), 0.1);
+  back.reverse();
+  advance(back, 1000);
+  EXPECT_LT((back.configuration().x[0] - start).norm(), 1e-9);
+  Multibody whole(make(), 0.002, {.controlled = true});
+  advance(whole, 50);
+  Multibody taken_up(make(), 0.002, {.controlled = true});
+  taken_up.restore(whole.state());
+  advance(whole, 100);
+  advance(taken_up, 100);
+  EXPECT_EQ(whole.configuration().x[0], taken_up.configuration().x[0]);
+  EXPECT_EQ(whole.time(), taken_up.time());
+  Scene other = make();
+  other.add(ConstantForce{{other.point_mass(1, Vec::Ones(), Vec::Zero()).centre}, {0, 0, 1}});
+  EXPECT_THROW(Multibody(std::move(other), 0.01, {.controlled = true}), std::invalid_argument);
+}
+
+/// A sleigh on a blade ahead of its centre, in closed form.
+TEST(Multibody, ASleighMovesInClosedForm) {
+  ChaplyginSleigh system;
+  const auto start = system.sliding(0.8, 0.3);
+  const auto error = [&](int steps) {
+    const double h = 3.0 / steps;
+    Scene scene;
+    // The blade behind the centre of mass by a: the centre moves across at a w.
+    const Body body = scene.planar_body(1, 1, {1, 0, 0}, {0.3, 0.8, 0.8});
+    scene.add(Blade{{scene.planar_place(body)}, 0, -1, 0});
+    Multibody motion(std::move(scene), h);
+    const double before = energy(motion);
+    advance(motion, steps);
+    EXPECT_LT(motion.constraint_residual(), 1e-14);
+    EXPECT_NEAR(energy(motion), before, 1e-3);
+    const auto end = system.closed_form(start, 3);
+    const Vec p = motion.momenta().linear[0];
+    const double angle = motion.configuration().x[0](2);
+    return std::abs(p(2) - end(0)) + std::abs(std::cos(angle) * p(0) + std::sin(angle) * p(1) - end(1));
+  };
+  EXPECT_LT(error(300), 1e-3);
+  EXPECT_GT(std::log2(error(300) / error(600)), 0.9);
+}
+
+/// Two blades under the vakonomic principle: a unicycle that pays for turning, on an elastica. |p| and the energy of
+/// its equations are constant to the order of the step, and its force in space to round-off.
+TEST(Multibody, AVakonomicUnicycleFollowsAnElastica) {
+  const auto change = [](int steps) {
+    Scene scene;
+    const Body body = scene.planar_body(1, 1, {0, 0, 0}, {1, 0, 0.4});
+    const Site place = scene.planar_place(body);
+    scene.add(Vakonomic<Blade>{{{place}, 0, 0, 0}, {0.7}});
+    scene.add(Vakonomic<Blade>{{{place}, -M_PI / 2, 0, 1}, {0.5}});
+    Multibody motion(std::move(scene), 4.0 / steps);
+    const Vec force = motion.state().momentum[0];
+    const double energy_before = 0.5 * 0.4 * 0.4 + 1 + 0.5;  // w^2 / 2 + v p1, p1 = m v + lambda
+    EXPECT_NEAR(force(0), 1.5, 1e-15);
+    EXPECT_NEAR(force(1), 0.7, 1e-15);
+    advance(motion, steps);
+    const Vec after = motion.state().momentum[0];
+    EXPECT_LT((after - force).head<2>().norm(), 1e-13);
+    EXPECT_LT(motion.constraint_residual(), 1e-14);
+    const Vec x = motion.configuration().x[0];
+    EXPECT_NEAR(after(2) + x(0) * after(1) - x(1) * after(0), force(2), 1e-13) << "the moment";
+    EXPECT_GT(std::abs(x(2)), 0.3);
+    return std::abs(0.5 * after(2) * after(2) + std::cos(x(2)) * after(0) + std::sin(x(2)) * after(1) - energy_before);
+  };
+  EXPECT_NEAR(std::log2(change(200) / change(400)), 2, 0.2);
+}
+
 TEST(Multibody, FreeFlightKeepsMomenta) {
   Scene scene;
   const Body a = scene.rigid_body(1, {0.1, 0.2, 0.25}, {0, 0, 0}, upright, {0.1, 0.2, 0}, {0, 0, 0});

@@ -5,6 +5,8 @@
 #include <lagroid/core/testing/derivative_laws.hpp>
 #include <lagroid/solvers/testing/dalembert_laws.hpp>
 #include <lagroid/systems/chaplygin_sleigh.hpp>
+#include <lagroid/systems/multibody/joints.hpp>
+#include <lagroid/systems/multibody/multibody.hpp>
 #include <lagroid/systems/rolling_ball.hpp>
 #include <lagroid/systems/rolling_disk.hpp>
 
@@ -157,6 +159,33 @@ TEST(BrokenReaction, ThatTurnsTheBallTheWrongWay) {
   EXPECT_GT(std::abs(drift), 1e-2);
   const auto report = laws::dalembert_laws(ball, [&] { return start; });
   EXPECT_FALSE(report.law("the distribution is that of the constraints").holds()) << report;
+}
+
+/// The same ball in a scene of bodies.
+TEST(RollingBall, VakonomicPathsAreThoseOfAScene) {
+  namespace mb = multibody;
+  VakonomicBall system;
+  static_cast<RollingBall&>(system) = ball_on_turning_plate();
+  const auto start = system.rolling({0.3, -0.2}, {0.4, 0.1}, 0.7);
+  State<Plane> from = start;
+  const Vector<double, 2> lambda(0.3, -0.2);
+  from.momentum += system.annihilator(start.object) * lambda;
+  constexpr int steps = 200;
+  const auto end = march(system, from, steps);
+  mb::Scene scene;
+  const double inertia = system.inertia();
+  const mb::Quaternion turned = mb::Quaternion(1, 0.2, 0.3, 0.4).normalized();
+  const mb::Body ball =
+      scene.rigid_body(system.mass, {inertia, inertia, inertia}, {0.3, -0.2, system.radius}, turned, {0.4, 0.1, 0},
+                       SO3::from_quaternion(turned).transpose() * system.angular_velocity(start));
+  scene.add(mb::Vakonomic<mb::Rolling>{{{ball.centre}, {ball.attitude}, system.radius, system.plate_rate},
+                                       {lambda(1), lambda(0)}});
+  mb::Multibody motion(std::move(scene), system.h);
+  for (int k = 0; k < steps; ++k) ASSERT_TRUE(motion.advance().converged()) << k;
+  const mb::Vec at = motion.configuration()(motion(ball.centre));
+  EXPECT_LT((at.head<2>() - std::get<0>(end.state.object)).norm(), 1e-11);
+  EXPECT_LT((motion.state().momentum[0].head<2>() - end.state.momentum.head<2>()).norm(), 1e-11);
+  EXPECT_LT(motion.constraint_residual(), 1e-14);
 }
 
 TEST(RollingBall, VakonomicPathsAreOthers) {

@@ -57,6 +57,19 @@ Multibody::Multibody(Scene scene, double h, const Options& options) : h_(h), opt
   assemble(scene);
   begin();
   leave_out_dependent();
+  const auto add_multiplier = [&](const Entry& e, std::vector<Vec>& momentum) {
+    if (e.role == Role::vakonomic)
+      momentum[std::size_t(e.factor)] -= earlier_[0][std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
+  };
+  for (const Entry& e : linear_entries_) add_multiplier(e, momentum_);
+  for (const Entry& e : rotation_entries_) add_multiplier(e, spin_);
+  if (options.controlled) {
+    const auto attracts = [](const auto& effect) { return effect->attracts(); };
+    const bool all = std::all_of(effects_.begin(), effects_.end(), attracts);
+    if (effects_.empty() || !all || !islands_.empty())
+      throw std::invalid_argument("steps are controlled by attractions alone: no joints, no other effects");
+    control_.emplace(h, time_scale_rate());
+  }
 }
 
 void Multibody::assemble(Scene& scene) {
@@ -138,8 +151,13 @@ void Multibody::assemble(Scene& scene) {
   now_.x.resize(scene.sites_.size(), Vec::Zero());
   now_.arm.resize(scene.sites_.size(), 0.0);
   for (std::size_t s = 0; s < scene.sites_.size(); ++s) {
-    if (!is_ground(scene.sites_[s])) continue;
-    now_.x[std::size_t(slot)] = scene.sites_[s].place;
+    const auto& p = scene.sites_[s];
+    if (!is_ground(p)) continue;
+    now_.x[std::size_t(slot)] = p.place;
+    if (!p.amplitude.isZero(0)) {
+      now_.arm[std::size_t(slot)] = 2 * p.amplitude.norm();
+      moving_.push_back({slot, p.place, p.amplitude, p.rate});
+    }
     places_.sites[s] = slot++;
   }
   std::vector<int> arm_islands;
@@ -167,13 +185,11 @@ void Multibody::assemble(Scene& scene) {
     const auto& l = scene.linear_[std::size_t(i)];
     const int f = int(inertia_.size());
     inertia_.push_back(l.inertia);
-    response_.push_back(h_ * l.inertia.cwiseInverse());
     planar_.push_back(l.planar);
     now_.x[std::size_t(f)] = l.place;
     momentum_.push_back(l.inertia.cwiseProduct(l.rate));
     if (!l.drag.isZero(0)) {
-      const Mat inertia = (l.inertia / h_).asDiagonal();
-      dragged_.push_back({f, l.drag, (inertia + 0.5 * l.drag).inverse()});
+      dragged_.push_back({f, l.drag, {}});
       const int island = linear_islands[std::size_t(i)];
       Range& range = (island < 0 ? free_ : islands_[std::size_t(island)]).dragged;
       if (range.size() == 0) range.first = int(dragged_.size()) - 1;
@@ -184,7 +200,7 @@ void Multibody::assemble(Scene& scene) {
     const auto& r = scene.rotating_[std::size_t(i)];
     const int k = int(moments_.size());
     moments_.push_back(r.inertia);
-    turns_.push_back({r.inertia / h_, scene.rotation});
+    turns_.push_back({{}, scene.rotation});
     turn_damping_.push_back(r.damping);
     quaternions_.push_back(r.attitude);
     now_.attitude.push_back(SO3::from_quaternion(r.attitude));
@@ -193,6 +209,8 @@ void Multibody::assemble(Scene& scene) {
     if (!r.damping.isZero(0)) damped_turns_.push_back(k);
   }
   now_.attitude.push_back(Mat::Identity());
+  response_.resize(inertia_.size());
+  set_step(h_);
   next_quaternions_ = quaternions_;
   const auto zeros = [](std::size_t n) { return std::vector<Vec>(n, Vec::Zero()); };
   momentum_carry_ = place_carry_ = impulse_ = kicked_ = displacement_ = zeros(momentum_.size());
@@ -224,7 +242,7 @@ void Multibody::assemble(Scene& scene) {
       const int j = order[std::size_t(k)];
       const auto i = std::size_t(island[std::size_t(j)]);
       if (batches[i].empty() || batches[i].back().joints != joints.get()) {
-        batches[i].push_back({joints.get(), joints->on_arrows(), k, 0, 0, 0});
+        batches[i].push_back({joints.get(), joints->role(), k, 0, 0, 0});
         touches[i].emplace_back();
       }
       ++batches[i].back().count;
@@ -257,6 +275,8 @@ void Multibody::assemble(Scene& scene) {
     for (std::size_t b = 0; b < batches[i].size(); ++b) {
       const Batch& batch = batches[i][b];
       batches_.push_back(batch);
+      island.vakonomic = island.vakonomic || batch.role == Role::vakonomic;
+      const bool along_arrows = batch.joints->along_arrows();
       int at = batch.gradient;
       int r = batch.row;
       for (const Touch& touch : touches[i][b])
@@ -266,18 +286,20 @@ void Multibody::assemble(Scene& scene) {
             if (p.rotation >= 0) {
               const int rotation = places_.attitudes[std::size_t(p.rotation)];
               levers_.push_back({at, further, rotation, p.place});
-              rotation_entries_.push_back({further++, rotation, r, batch.on_arrows});
+              rotation_entries_.push_back({further++, rotation, r, batch.role, along_arrows});
             }
             if (p.linear >= 0) {
               const int body = linear_place[std::size_t(p.linear)];
-              const bool planar = scene.linear_[std::size_t(p.linear)].planar;
+              const bool planar = scene.linear_[std::size_t(p.linear)].planar && !is_factor(p);
               if (planar) planar_levers_.push_back({at, further, places_(s).index, body});
-              linear_entries_.push_back({planar ? further++ : at, body, r, batch.on_arrows});
+              linear_entries_.push_back({planar ? further++ : at, body, r, batch.role, along_arrows});
             }
+            for (int m = 0; m < int(moving_.size()); ++m)
+              if (moving_[std::size_t(m)].site == places_(s).index) moving_entries_.push_back({at, r, m});
             ++at;
           }
           for (const Attitude a : touch.attitudes) {
-            if (a.index >= 0) rotation_entries_.push_back({at, places_(a).index, r, batch.on_arrows});
+            if (a.index >= 0) rotation_entries_.push_back({at, places_(a).index, r, batch.role, along_arrows});
             ++at;
           }
         }
@@ -304,13 +326,26 @@ void Multibody::assemble(Scene& scene) {
   values_ = right_ = multipliers_;
   precision_ = multipliers_;
   sizes_.resize(std::size_t(row));
-  earlier_ = {multipliers_, multipliers_, multipliers_};
   left_out_.assign(std::size_t(row), 0);
-  on_arrow_.assign(std::size_t(row), 0);
+  roles_.assign(std::size_t(row), Role::holonomic);
+  softness_.assign(std::size_t(row), 0.0);
   for (const Batch& batch : batches_) {
-    if (!batch.on_arrows) continue;
-    has_arrow_rows_ = true;
-    std::fill_n(on_arrow_.begin() + batch.row, batch.count * batch.joints->rows(), char(1));
+    has_arrow_rows_ = has_arrow_rows_ || batch.role == Role::nonholonomic || batch.role == Role::vakonomic;
+    has_vakonomic_ = has_vakonomic_ || batch.role == Role::vakonomic;
+    has_dampers_ = has_dampers_ || batch.role == Role::damping;
+    const int rows = batch.joints->rows();
+    for (int i = 0; i < batch.count * rows; ++i) {
+      const auto at = std::size_t(batch.row + i);
+      const int joint = batch.first + i / rows;
+      roles_[at] = batch.role;
+      if (batch.role == Role::damping) softness_[at] = 2 / batch.joints->damping(joint);
+      multipliers_[at] = -batch.joints->multiplier(joint, i % rows);
+    }
+  }
+  earlier_ = {multipliers_, multipliers_, multipliers_};
+  if (has_vakonomic_) {
+    drifts_ = gradients_;
+    free_displacement_ = displacement_;
   }
 
   // Which products of gradients and responses make the matrices.
@@ -396,6 +431,8 @@ void Multibody::leave_out_dependent() {
       couple(island, p, rotation_entries_[std::size_t(p.gradient)].gradient, rotation_entries_[std::size_t(p.entry)],
              rotation_unit);
     }
+    for (int row = 0; row < island.rows.size(); ++row)  // dampers add to what they share with others
+      if (role(island.rows.first + row) == Role::damping) island.matrix.value(island.matrix.index(row, row)) += 1;
     std::vector<char> moves_something(std::size_t(island.rows.size()));
     for (int row = 0; row < island.rows.size(); ++row)
       moves_something[std::size_t(row)] = island.matrix.value(island.matrix.index(row, row)) != 0;

@@ -31,6 +31,8 @@ class Effects {
   /// The potential energy, J; zero for what has none.
   virtual double energy(const Configuration& at) const = 0;
   virtual void place(const Places& places) = 0;
+  /// Whether it attracts by inverse squares, so that a time scale follows from its energy.
+  virtual bool attracts() const { return false; }
   /// The sites that forces act on.
   virtual std::vector<Site> sites() const = 0;
 };
@@ -139,6 +141,9 @@ template <class E> class EffectsOf final : public Effects {
     for (E& effect : all_) place_kernel(effect, places);
   }
 
+  bool attracts() const override {
+    return requires { E::attracts; };
+  }
   std::vector<Site> sites() const override {
     std::vector<Site> out;
     for (const E& effect : all_) out.insert(out.end(), effect.sites.begin(), effect.sites.end());

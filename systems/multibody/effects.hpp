@@ -18,6 +18,7 @@ struct ConstantForce {
 
 /// Attraction by a fixed centre: U = -strength / |x - centre|.
 struct CentralGravity {
+  static constexpr bool attracts = true;
   std::array<Site, 1> sites;
   Vec centre = Vec::Zero();  ///< m
   double strength = 1;       ///< G m M, kg m^3/s^2
@@ -57,6 +58,7 @@ class MutualGravity final : public Effects {
     sites_.push_back(site);
     masses_.push_back(mass);
   }
+  bool attracts() const override { return true; }
 
   double energy(const Configuration& at) const override {
     double sum = 0;

@@ -22,52 +22,77 @@ struct Motion {
   const std::vector<Vec>& turns;          ///< coordinates xi of the attitudes' turns, in the bodies' frames
   double h;
 
-  /// Of a point mass or a centre of mass.
+  /// Of a point mass or a centre of mass; of a planar body's own place (Scene::planar_place) with its angle.
   const Vec& displacement(Site s) const { return displacements[std::size_t(s.index)]; }
-  const Vec& turn(Attitude a) const { return turns[std::size_t(a.index)]; }
+  /// Zero for the ground.
+  Vec turn(Attitude a) const {
+    const auto i = std::size_t(a.index);
+    return i < turns.size() ? turns[i] : Vec(Vec::Zero());
+  }
+};
+
+/// How the rows of a joint act.
+enum class Role {
+  holonomic,     ///< C(q') = 0, with reactions along dC
+  nonholonomic,  ///< phi(g) = 0, with reactions along covectors omega(q) of its own
+  vakonomic,     ///< phi(g) = 0, L + <lambda, phi> being the Lagrangian
+  damping        ///< no constraint: discrete forces -c phi(g) omega / 2 at both ends
 };
 
 /// All joints of one kind: rows of one step's equations.
 ///
-/// Those on objects are holonomic constraints C(q) = 0, whose reactions are multiples of dC. Those on arrows are
-/// nonholonomic: phi(g) = 0, with reactions of their own at the source.
-///
 /// `first` and `count` choose some of them. Of each joint the gradients stand one after another: for every row one
-/// vector a site and one an attitude. On objects dC/dx, and the derivative along turns of the body about its axes; on
-/// arrows the derivatives along the displacement and the coordinates xi of the turn.
+/// vector a site and one an attitude: along displacements of the point, and along turns of the body about its axes,
+/// both at the target; or, `along_arrows`, along the displacement and the coordinates xi of the turn, the source being
+/// held.
 class Joints {
  public:
   virtual ~Joints() = default;
   virtual int rows() const = 0;
-  virtual bool on_arrows() const = 0;
+  virtual Role role() const = 0;
+  virtual bool along_arrows() const = 0;
   virtual std::vector<Site> sites(int joint) const = 0;
   virtual std::vector<Attitude> attitudes(int joint) const = 0;
   virtual int count() const = 0;
   virtual void values(const Motion& motion, int first, int count, double* c) const = 0;
   virtual void gradients(const Motion& motion, int first, int count, Vec* g) const = 0;
+  /// Of vakonomic rows: the gradients along the source, displacement and xi being held.
+  virtual void drifts(const Motion& motion, int first, int count, Vec* g) const = 0;
   /// The covectors of the reactions at an object, and the sizes of the rows there.
   virtual void reactions(const Configuration& at, int first, int count, Vec* g, RowSize* size) const = 0;
+  /// Of damping rows: c.
+  virtual double damping(int joint) const = 0;
+  /// Of vakonomic rows: lambda at the start.
+  virtual double multiplier(int joint, int row) const = 0;
   virtual void place(const Places& places) = 0;
   /// Puts them into this order.
   virtual void reorder(const std::vector<int>& order) = 0;
 };
 
-/// A joint is a small struct with `rows`, the `sites` and, if it needs them, the `attitudes` it touches. On objects it
-/// writes
+/// A joint is a small struct with `rows`, the `sites` and, if it needs them, the `attitudes` it touches. On objects,
+/// C(q) = 0, it writes
 ///     void value(const Configuration& at, double* c) const;
 ///     void gradient(const Configuration& at, Vec* g, RowSize* size) const;
-/// on arrows, between centres of mass and attitudes,
+/// on arrows, phi(g) = 0 between centres of mass and attitudes,
 ///     void value(const Motion& motion, double* c) const;
 ///     void gradient(const Motion& motion, Vec* g) const;
 ///     void reaction(const Configuration& at, Vec* g, RowSize* size) const;
+/// and, to be `Vakonomic` too,
+///     void drift(const Motion& motion, Vec* g) const;
+/// With a member `damping` it is no constraint but a damper, of the rate of C or of phi.
 template <class J> class JointsOf final : public Joints {
  public:
   static constexpr int width = J::rows * (site_count<J>() + attitude_count<J>());
   static constexpr bool arrows = requires(const J& joint, const Motion& motion, double* c) { joint.value(motion, c); };
+  static constexpr bool damps = requires(const J& joint) { joint.damping; };
+  static constexpr bool optimal = requires(const J& joint) { joint.multipliers; };
 
   void add(const J& joint) { all_.push_back(joint); }
   int rows() const override { return J::rows; }
-  bool on_arrows() const override { return arrows; }
+  Role role() const override {
+    return damps ? Role::damping : optimal ? Role::vakonomic : arrows ? Role::nonholonomic : Role::holonomic;
+  }
+  bool along_arrows() const override { return arrows; }
   int count() const override { return int(all_.size()); }
   std::vector<Site> sites(int joint) const override {
     const auto& s = all_[std::size_t(joint)].sites;
@@ -88,6 +113,11 @@ template <class J> class JointsOf final : public Joints {
         joint[i].value(motion, c + i * J::rows);
       } else {
         joint[i].value(motion.after, c + i * J::rows);
+        if constexpr (damps) {
+          double before[J::rows];
+          joint[i].value(motion.before, before);
+          for (int row = 0; row < J::rows; ++row) c[i * J::rows + row] -= before[row];
+        }
       }
     }
   }
@@ -101,6 +131,18 @@ template <class J> class JointsOf final : public Joints {
         joint[i].gradient(motion.after, g + i * width, size);
       }
     }
+  }
+  void drifts(const Motion& motion, int first, int count, Vec* g) const override {
+    if constexpr (optimal)
+      for (int i = 0; i < count; ++i) all_[std::size_t(first + i)].drift(motion, g + i * width);
+  }
+  double damping(int joint) const override {
+    if constexpr (damps) return all_[std::size_t(joint)].damping;
+    return 0;
+  }
+  double multiplier(int joint, int row) const override {
+    if constexpr (optimal) return all_[std::size_t(joint)].multipliers[std::size_t(row)];
+    return 0;
   }
   void reactions(const Configuration& at, int first, int count, Vec* g, RowSize* size) const override {
     const J* joint = all_.data() + first;

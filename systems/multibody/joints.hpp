@@ -3,6 +3,7 @@
 
 #include <lagroid/systems/multibody/joint.hpp>
 
+#include <array>
 #include <cmath>
 
 namespace lagroid::multibody {
@@ -111,6 +112,15 @@ struct Rolling {
     g[0](1) += half;
     g[2](0) -= half;
   }
+  void drift(const Motion& motion, Vec* g) const {
+    const Mat& a = motion.before(attitudes[0]);
+    const Vec xi = motion.turn(attitudes[0]);
+    const double turned = motion.h * plate_rate;
+    g[0] = {0, turned, 0};
+    g[1] = -radius * xi.cross(Vec(a.row(1)));
+    g[2] = {-turned, 0, 0};
+    g[3] = radius * xi.cross(Vec(a.row(0)));
+  }
   void reaction(const Configuration& at, Vec* g, RowSize* size) const {
     const Mat& a = at(attitudes[0]);
     g[0] = Vec::UnitX();
@@ -136,10 +146,118 @@ struct PrescribedSpin {
     RowSize size[rows];
     reaction(motion.before, g, size);
   }
+  void drift(const Motion& motion, Vec* g) const {
+    g[0] = motion.turn(attitudes[0]).cross(Vec(motion.before(attitudes[0]).transpose() * axis));
+  }
   void reaction(const Configuration& at, Vec* g, RowSize* size) const {
     g[0] = at(attitudes[0]).transpose() * axis;
     size[0] = {0, 1};
   }
+};
+
+/// A blade under a planar body, which slides along it and not across (a sleigh, a wheel): n(theta + dtheta / 2).dx +
+/// arm dtheta = h rate, with n at right angles to the blade and rate zero. Another rate is that of a belt; a blade at
+/// right angles to the first, with a rate, keeps the speed.
+struct Blade {
+  static constexpr int rows = 1;
+  std::array<Site, 1> sites;  ///< Scene::planar_place of the body
+  double direction = 0;       ///< of the blade in the body, rad
+  double arm = 0;             ///< how far the blade stands ahead of the centre of mass, along itself, m
+  double rate = 0;            ///< m/s
+
+  void value(const Motion& motion, double* c) const {
+    const Vec& d = motion.displacement(sites[0]);
+    c[0] = across(motion.before(sites[0])(2) + 0.5 * d(2)).dot(d) + arm * d(2) - motion.h * rate;
+  }
+  void gradient(const Motion& motion, Vec* g) const {
+    const Vec& d = motion.displacement(sites[0]);
+    const double angle = motion.before(sites[0])(2) + 0.5 * d(2);
+    g[0] = across(angle);
+    g[0](2) = arm + 0.5 * across(angle + 0.5 * M_PI).dot(d);
+  }
+  void drift(const Motion& motion, Vec* g) const {
+    const Vec& d = motion.displacement(sites[0]);
+    g[0] = {0, 0, across(motion.before(sites[0])(2) + 0.5 * d(2) + 0.5 * M_PI).dot(d)};
+  }
+  void reaction(const Configuration& at, Vec* g, RowSize* size) const {
+    g[0] = across(at(sites[0])(2));
+    g[0](2) = arm;
+    size[0] = {0, 1 + std::abs(arm)};
+  }
+
+ private:
+  Vec across(double angle) const { return {-std::sin(angle + direction), std::cos(angle + direction), 0}; }
+};
+
+/// A constraint on arrows under the vakonomic principle, with its multipliers at the start: what an optimal control
+/// that minimises the kinetic terms obeys.
+template <class J> struct Vakonomic : J { std::array<double, std::size_t(J::rows)> multipliers{}; };
+
+/// Two bodies that turn against each other about an axis fixed in both, u in the first and v in the second, at a given
+/// rate: v.xi1 - u.xi0 = h rate.
+struct HingeTurn {
+  static constexpr int rows = 1;
+  std::array<Site, 0> sites;
+  std::array<Attitude, 2> attitudes;
+  Vec u{0, 0, 1};
+  Vec v{0, 0, 1};
+  double rate = 0;  ///< rad/s
+
+  void value(const Motion& motion, double* c) const {
+    c[0] = v.dot(motion.turn(attitudes[1])) - u.dot(motion.turn(attitudes[0])) - motion.h * rate;
+  }
+  void gradient(const Motion&, Vec* g) const {
+    g[0] = -u;
+    g[1] = v;
+  }
+  void drift(const Motion&, Vec* g) const { g[0] = g[1] = Vec::Zero(); }
+  void reaction(const Configuration&, Vec* g, RowSize* size) const {
+    g[0] = -u;
+    g[1] = v;
+    size[0] = {0, 2};
+  }
+};
+
+/// How two bodies turn against each other: A1 xi1 - A0 xi0, in space.
+struct RelativeTurn {
+  static constexpr int rows = 3;
+  std::array<Site, 0> sites;
+  std::array<Attitude, 2> attitudes;
+
+  void value(const Motion& motion, double* c) const {
+    const Vec w = motion.before(attitudes[1]) * motion.turn(attitudes[1]) -
+                  motion.before(attitudes[0]) * motion.turn(attitudes[0]);
+    for (int i = 0; i < 3; ++i) c[i] = w(i);
+  }
+  void gradient(const Motion& motion, Vec* g) const {
+    RowSize size[rows];
+    reaction(motion.before, g, size);
+  }
+  void reaction(const Configuration& at, Vec* g, RowSize* size) const {
+    for (int i = 0; i < 3; ++i) {
+      g[2 * i] = -at(attitudes[0]).row(i).transpose();
+      g[2 * i + 1] = at(attitudes[1]).row(i).transpose();
+      size[i] = {0, 2};
+    }
+  }
+};
+
+/// The distance of two points.
+struct Length {
+  static constexpr int rows = 1;
+  std::array<Site, 2> sites;
+
+  void value(const Configuration& at, double* c) const { c[0] = (at(sites[1]) - at(sites[0])).norm(); }
+  void gradient(const Configuration& at, Vec* g, RowSize* size) const {
+    g[1] = (at(sites[1]) - at(sites[0])).normalized();
+    g[0] = -g[1];
+    size[0] = {at.size(sites[0]) + at.size(sites[1]), 2};
+  }
+};
+
+/// A damper: a force -c times the rate of what J measures (of Length N s/m, of turns N m s).
+template <class J> struct Damper : J {
+  double damping = 0;  ///< c
 };
 
 }  // namespace lagroid::multibody

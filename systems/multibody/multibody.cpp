@@ -102,6 +102,45 @@ void Multibody::pull_back(const Configuration& at, const Island& island, std::ve
   }
 }
 
+double Multibody::follow(const Island& island) {
+  for (int b = island.batches.first; b < island.batches.last; ++b) {
+    const Batch& batch = batches_[std::size_t(b)];
+    if (batch.role != Role::vakonomic) continue;
+    batch.joints->gradients(motion(), batch.first, batch.count, next_gradients_.data() + batch.gradient);
+    batch.joints->drifts(motion(), batch.first, batch.count, drifts_.data() + batch.gradient);
+  }
+  // F- of phi: the derivative along the source, with the opposite sign.
+  for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
+    const Entry& e = rotation_entries_[std::size_t(i)];
+    if (e.role != Role::vakonomic) continue;
+    const auto r = std::size_t(e.factor);
+    const Mat frame = turns_[r].target_frame(Vec(-turned_[r])).transpose();
+    gradients_[std::size_t(e.gradient)] =
+        frame.inverse() * next_gradients_[std::size_t(e.gradient)] - drifts_[std::size_t(e.gradient)];
+  }
+  double moved = 0;
+  double size = std::numeric_limits<double>::min();
+  for (int f = island.linear.first; f < island.linear.last; ++f) {
+    const auto i = std::size_t(f);
+    Vec displacement = free_displacement_[i];
+    for (int k = factor_entries_[i]; k < factor_entries_[i + 1]; ++k) {
+      const Entry& e = linear_entries_[std::size_t(k)];
+      if (e.role == Role::vakonomic) {
+        gradients_[std::size_t(e.gradient)] =
+            next_gradients_[std::size_t(e.gradient)] - drifts_[std::size_t(e.gradient)];
+        linear_response_[std::size_t(k)] = response_[i].cwiseProduct(gradients_[std::size_t(e.gradient)]);
+      }
+      const Vec part = multipliers_[std::size_t(e.row)] * linear_response_[std::size_t(k)];
+      displacement += part;
+      size = std::max(size, part.lpNorm<Eigen::Infinity>());
+    }
+    size = std::max(size, displacement.lpNorm<Eigen::Infinity>());
+    moved = std::max(moved, (displacement - displacement_[i]).lpNorm<Eigen::Infinity>());
+    displacement_[i] = displacement;
+  }
+  return moved / size;
+}
+
 bool Multibody::factorise(Island& island) {
   for (int b = island.batches.first; b < island.batches.last; ++b) {
     const Batch& batch = batches_[std::size_t(b)];
@@ -126,12 +165,15 @@ bool Multibody::factorise(Island& island) {
     rotation_response_[std::size_t(i)] = turn_inverse_[std::size_t(e.factor)] * gradients_[std::size_t(e.gradient)];
     const Vec& gradient = next_gradients_[std::size_t(e.gradient)];
     rotation_gradient_[std::size_t(i)] =
-        e.on_arrow ? gradient : Vec(turn_frame_[std::size_t(e.factor)].transpose() * gradient);
+        e.along_arrow ? gradient : Vec(turn_frame_[std::size_t(e.factor)].transpose() * gradient);
   }
   for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
     const Pair& p = rotation_pairs_[std::size_t(i)];
     matrix.value(p.value) += rotation_gradient_[std::size_t(p.gradient)].dot(rotation_response_[std::size_t(p.entry)]);
   }
+  if (has_dampers_)
+    for (int row = 0; row < island.rows.size(); ++row)
+      matrix.value(matrix.index(row, row)) += softness_[std::size_t(island.rows.first + row)];
   return matrix.factorise();
 }
 
@@ -192,13 +234,16 @@ StepReport Multibody::solve(Island& island) {
   double rate = 1;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
     report.iterations = iteration;
+    const double moved = island.vakonomic ? follow(island) : 0;
     try_place(island);
     for (int b = island.batches.first; b < island.batches.last; ++b) {
       const Batch& batch = batches_[std::size_t(b)];
       batch.joints->values(motion(), batch.first, batch.count, values + batch.row);
     }
-    double residual = 0;
-    double sum = 0;  // which no NaN escapes
+    if (has_dampers_)
+      for (int row = rows.first; row < rows.last; ++row) values[row] += softness_[std::size_t(row)] * lambda[row];
+    double residual = moved;
+    double sum = moved;  // which no NaN escapes
     for (int row = rows.first; row < rows.last; ++row) {
       if (left_out_[std::size_t(row)]) continue;
       const double relative = std::abs(values[row]) * precision[row];
@@ -341,13 +386,25 @@ StepReport Multibody::advance() {
     if (worst.converged()) worst.status = report.status;
     return report.converged();
   };
-  next_.time = h_ * double(index_ + 1);
+  if (control_) {
+    const double size = control_->step();
+    if (!(size > 0)) {
+      worst.status = SolveStatus::no_step;
+      return worst;
+    }
+    set_step(size);
+    next_.time = now_.time + (time_carry_ + h_);
+  } else {
+    next_.time = h_ * double(index_ + 1);
+  }
+  for (const MovingGround& m : moving_) next_.x[std::size_t(m.site)] = m.at(next_.time);
   kick();
   for (std::size_t f = 0; f < momentum_.size(); ++f) {
     kicked_[f] = momentum_[f] + (momentum_carry_[f] + impulse_[f]);
     displacement_[f] = response_[f].cwiseProduct(kicked_[f]);
   }
   for (const Dragged& d : dragged_) displacement_[std::size_t(d.factor)] = d.response * kicked_[std::size_t(d.factor)];
+  if (has_vakonomic_) free_displacement_ = displacement_;
   for (std::size_t r = 0; r < spin_.size(); ++r) spin_kicked_[r] = spin_[r] + (spin_carry_[r] + spin_impulse_[r]);
   for (int r = 0; r < free_.rotations.last; ++r)
     if (!note(turn_freely(r))) return worst;
@@ -393,10 +450,12 @@ bool Multibody::next_is_finite() const {
 
 void Multibody::accept() {
   ++index_;
+  if (control_) time_carry_ += h_ - (next_.time - now_.time);
   if (has_arrow_rows_) {
     arrow_residual_ = 0;
     for (std::size_t row = 0; row < values_.size(); ++row)
-      if (on_arrow_[row]) arrow_residual_ = std::max(arrow_residual_, std::abs(values_[row]) * precision_[row]);
+      if (roles_[row] == Role::nonholonomic || roles_[row] == Role::vakonomic)
+        arrow_residual_ = std::max(arrow_residual_, std::abs(values_[row]) * precision_[row]);
   }
   for (const Dragged& d : dragged_) {
     const Vec& xi = displacement_[std::size_t(d.factor)];
@@ -419,6 +478,7 @@ void Multibody::accept() {
     const auto r = std::size_t(d);
     spin_impulse_[r] -= turn_damping_[r].cwiseProduct(turned_[r]) * 0.5;
   }
+  if (has_vakonomic_) end_vakonomic();
   for (std::size_t f = 0; f < momentum_.size(); ++f) {
     const Vec step = place_carry_[f] + displacement_[f];
     place_carry_[f] = step - (next_.x[f] - now_.x[f]);
@@ -430,9 +490,54 @@ void Multibody::accept() {
   std::swap(earlier_[1], earlier_[0]);
   std::swap(earlier_[0], multipliers_);
   for (const Island& island : islands_) react(island);
+  if (has_dampers_) end_damping();
   kick();
   for (std::size_t f = 0; f < momentum_.size(); ++f) add(momentum_[f], momentum_carry_[f], impulse_[f]);
   for (std::size_t r = 0; r < spin_.size(); ++r) add(spin_[r], spin_carry_[r], spin_impulse_[r]);
+  if (control_) control_->pass(time_scale_rate(), h_);
+}
+
+void Multibody::end_vakonomic() {
+  for (const Batch& batch : batches_)
+    if (batch.role == Role::vakonomic)
+      batch.joints->gradients(motion(), batch.first, batch.count, next_gradients_.data() + batch.gradient);
+  for (const Entry& e : linear_entries_)
+    if (e.role == Role::vakonomic)
+      impulse_[std::size_t(e.factor)] -= multipliers_[std::size_t(e.row)] * next_gradients_[std::size_t(e.gradient)];
+  for (const Entry& e : rotation_entries_) {
+    if (e.role != Role::vakonomic) continue;
+    const auto r = std::size_t(e.factor);
+    const Mat frame = turns_[r].target_frame(turned_[r]).transpose();
+    spin_impulse_[r] -= multipliers_[std::size_t(e.row)] * (frame.inverse() * next_gradients_[std::size_t(e.gradient)]);
+  }
+}
+
+void Multibody::end_damping() {
+  const auto push = [&](const Entry& e, std::vector<Vec>& impulse) {
+    if (e.role == Role::damping)
+      impulse[std::size_t(e.factor)] += earlier_[0][std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
+  };
+  for (const Entry& e : linear_entries_) push(e, impulse_);
+  for (const Entry& e : rotation_entries_) push(e, spin_impulse_);
+  for (std::size_t row = 0; row < roles_.size(); ++row)
+    if (roles_[row] == Role::damping) dissipated_ += 2 * softness_[row] * earlier_[0][row] * earlier_[0][row] / h_;
+}
+
+void Multibody::set_step(double h) {
+  h_ = h;
+  for (std::size_t f = 0; f < inertia_.size(); ++f) response_[f] = h_ * inertia_[f].cwiseInverse();
+  for (Dragged& d : dragged_) {
+    Mat inertia = 0.5 * d.drag;
+    inertia.diagonal() += inertia_[std::size_t(d.factor)] / h_;
+    d.response = inertia.inverse();
+  }
+  for (std::size_t r = 0; r < moments_.size(); ++r) turns_[r].inertia_over_h = moments_[r] / h_;
+}
+
+double Multibody::time_scale_rate() const {
+  double power = 0;  // of the attractions: -dU/dt
+  for (std::size_t f = 0; f < momentum_.size(); ++f) power += loads_.on[f].dot(momentum_[f].cwiseQuotient(inertia_[f]));
+  return 1.5 * power / potential_energy();
 }
 
 void Multibody::kick() {
@@ -455,7 +560,8 @@ std::size_t Multibody::memory() const {
         arms_, planar_arms_, pushed_arms_, pushed_planar_arms_, islands_, batches_, linear_entries_, rotation_entries_,
         linear_pairs_, rotation_pairs_, levers_, planar_levers_, gradients_, next_gradients_, linear_response_,
         rotation_response_, rotation_gradient_, factor_entries_, sizes_, multipliers_, values_, right_, precision_,
-        earlier_[0], earlier_[1], earlier_[2], left_out_, on_arrow_);
+        earlier_[0], earlier_[1], earlier_[2], left_out_, roles_, softness_, drifts_, free_displacement_, moving_,
+        moving_entries_);
   for (const Island& island : islands_) bytes += island.matrix.entries() * sizeof(double);
   return bytes;
 }
@@ -473,6 +579,14 @@ Multibody::State Multibody::state() const {
   s.turned = turned_before_;
   s.attitude = quaternions_;
   s.multipliers = earlier_;
+  Tape clock;
+  auto control = control_;
+  double time = now_.time;
+  double carry = time_carry_;
+  double step = h_;
+  clock(time, carry, step);
+  if (control) clock(*control);
+  s.clock = clock.numbers();
   s.derived = {now_.x, loads_.on, loads_.torque, gradients_, now_.attitude, {}, {}};
   for (const RowSize& size : sizes_) {
     s.derived.terms.push_back(size.terms);
@@ -503,11 +617,15 @@ void Multibody::restore(const State& state) {
   turned_before_ = state.turned;
   quaternions_ = state.attitude;
   earlier_ = state.multipliers;
+  Tape clock(state.clock);
+  double step = h_;
+  clock(now_.time, time_carry_, step);
+  if (control_) clock(*control_);
+  if (step != h_) set_step(step);
   if (d.x.empty()) {
     begin();
     return;
   }
-  now_.time = h_ * double(index_);
   now_.x = d.x;
   now_.attitude = d.attitude;
   next_ = now_;
@@ -517,27 +635,47 @@ void Multibody::restore(const State& state) {
 }
 
 void Multibody::reverse() {
+  if (control_) control_->pass(-time_scale_rate(), control_->step());
   for (auto* list : {&momentum_, &momentum_carry_, &spin_, &spin_carry_, &turned_before_})
     for (Vec& v : *list) v = -v;
 }
 
 void Multibody::make_tangent() {
-  const Momenta m = momenta();
+  const Momenta m = tangent(/*with_vakonomic=*/false);
   momentum_ = m.linear;
   spin_ = m.spin;
 }
 
 void Multibody::begin() {
-  now_.time = h_ * double(index_);
   for (std::size_t r = 0; r < spin_.size(); ++r) now_.attitude[r] = SO3::from_quaternion(quaternions_[r]);
+  for (const MovingGround& m : moving_) now_.x[std::size_t(m.site)] = m.at(now_.time);
   place_arms(now_, {0, int(arms_.size())}, {0, int(planar_arms_.size())});
   next_ = now_;
   for (const Island& island : islands_) react(island);
   act(now_);
 }
 
-Multibody::Momenta Multibody::momenta() const {
+Multibody::Momenta Multibody::momenta() const { return tangent(/*with_vakonomic=*/true); }
+
+std::vector<double> Multibody::imposed_rates() const {
+  std::vector<double> rates(roles_.size(), 0.0);
+  for (const MovingEntry& e : moving_entries_)
+    rates[std::size_t(e.row)] +=
+        gradients_[std::size_t(e.gradient)].dot(moving_[std::size_t(e.ground)].velocity(now_.time));
+  const std::vector<Vec> at_rest(std::max(momentum_.size(), spin_.size()), Vec::Zero());
+  for (const Batch& batch : batches_) {
+    if (batch.role != Role::vakonomic) continue;
+    double* const rate = rates.data() + batch.row;
+    batch.joints->values({now_, now_, at_rest, at_rest, h_}, batch.first, batch.count, rate);
+    for (int i = 0; i < batch.count * batch.joints->rows(); ++i) rate[i] /= h_;
+  }
+  return rates;
+}
+
+Multibody::Momenta Multibody::tangent(bool with_vakonomic) const {
   Momenta m{momentum_, spin_};
+  const auto counts = [&](Role role) { return role == Role::holonomic || (role == Role::vakonomic && with_vakonomic); };
+  const std::vector<double> rates = imposed_rates();
   std::vector<double> right;
   for (const Island& island : islands_) {
     Elimination matrix = island.matrix;
@@ -548,20 +686,22 @@ Multibody::Momenta Multibody::momenta() const {
     for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
       const Pair& p = linear_pairs_[std::size_t(i)];
       const Entry& b = linear_entries_[std::size_t(p.entry)];
-      if (on_arrow_[std::size_t(p.row)] || b.on_arrow) continue;
-      matrix.value(p.value) += gradients_[std::size_t(p.gradient)].dot(response(b, inertia_));
+      if (counts(role(p.row)) && counts(b.role))
+        matrix.value(p.value) += gradients_[std::size_t(p.gradient)].dot(response(b, inertia_));
     }
     for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
       const Pair& p = rotation_pairs_[std::size_t(i)];
       const Entry& a = rotation_entries_[std::size_t(p.gradient)];
       const Entry& b = rotation_entries_[std::size_t(p.entry)];
-      if (a.on_arrow || b.on_arrow) continue;
-      matrix.value(p.value) += gradients_[std::size_t(a.gradient)].dot(response(b, moments_));
+      if (counts(a.role) && counts(b.role))
+        matrix.value(p.value) += gradients_[std::size_t(a.gradient)].dot(response(b, moments_));
     }
     for (int row = 0; row < island.rows.size(); ++row)
-      if (on_arrow_[std::size_t(island.rows.first + row)]) matrix.value(matrix.index(row, row)) = 1;
+      if (!counts(role(island.rows.first + row))) matrix.value(matrix.index(row, row)) = 1;
     if (!matrix.factorise()) continue;
     right.assign(std::size_t(island.rows.size()), 0.0);
+    for (int row = island.rows.first; row < island.rows.last; ++row)
+      if (counts(role(row))) right[std::size_t(row - island.rows.first)] = -rates[std::size_t(row)];
     const auto each_entry = [&](const auto& visit) {
       for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i)
         visit(linear_entries_[std::size_t(i)], m.linear, inertia_);
@@ -569,12 +709,12 @@ Multibody::Momenta Multibody::momenta() const {
         visit(rotation_entries_[std::size_t(i)], m.spin, moments_);
     };
     each_entry([&](const Entry& e, const std::vector<Vec>& momentum, const std::vector<Vec>& inertia) {
-      if (e.on_arrow) return;
+      if (!counts(e.role)) return;
       right[std::size_t(e.row - island.rows.first)] -= response(e, inertia).dot(momentum[std::size_t(e.factor)]);
     });
     matrix.solve(right.data());
     each_entry([&](const Entry& e, std::vector<Vec>& momentum, const std::vector<Vec>&) {
-      if (e.on_arrow) return;
+      if (!counts(e.role)) return;
       momentum[std::size_t(e.factor)] +=
           right[std::size_t(e.row - island.rows.first)] * gradients_[std::size_t(e.gradient)];
     });
@@ -617,7 +757,7 @@ double Multibody::constraint_residual() const {
   std::vector<double> values(values_.size());
   double largest = arrow_residual_;
   for (const Batch& batch : batches_) {
-    if (batch.on_arrows) continue;
+    if (batch.role != Role::holonomic) continue;
     batch.joints->values({now_, now_, displacement_, turned_, h_}, batch.first, batch.count, values.data() + batch.row);
     for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
       const double value = std::abs(values[std::size_t(row)]);
@@ -630,10 +770,11 @@ double Multibody::constraint_residual() const {
 }
 
 double Multibody::velocity_defect() const {
-  std::vector<double> rate(earlier_[0].size(), 0.0);
-  std::vector<double> size(earlier_[0].size(), 0.0);
+  std::vector<double> rate = imposed_rates();
+  std::vector<double> size(rate.size(), 0.0);
+  for (std::size_t row = 0; row < rate.size(); ++row) size[row] = std::abs(rate[row]);
   const auto look = [&](const Entry& e, const Vec& velocity) {
-    if (e.on_arrow) return;
+    if (e.role != Role::holonomic) return;
     const Vec& g = gradients_[std::size_t(e.gradient)];
     rate[std::size_t(e.row)] += g.dot(velocity);
     size[std::size_t(e.row)] += g.norm() * velocity.norm();
@@ -644,7 +785,7 @@ double Multibody::velocity_defect() const {
     look(e, spin_[std::size_t(e.factor)].cwiseQuotient(moments_[std::size_t(e.factor)]));
   double largest = 0;
   for (std::size_t row = 0; row < rate.size(); ++row)
-    if (size[row] > 0) largest = std::max(largest, std::abs(rate[row]) / size[row]);
+    if (roles_[row] == Role::holonomic && size[row] > 0) largest = std::max(largest, std::abs(rate[row]) / size[row]);
   return largest;
 }
 

@@ -2,11 +2,14 @@
 /// The motion of a scene.
 
 #include <lagroid/solvers/elimination.hpp>
+#include <lagroid/solvers/step_control.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <array>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace lagroid::multibody {
@@ -14,6 +17,9 @@ namespace lagroid::multibody {
 struct Options {
   int max_iterations = 60;
   double tolerance = 0;  ///< 0: to round-off; else residuals this small, relative to their terms, are accepted
+  /// Steps in proportion to |U|^(-3/2), U the energy of attractions by inverse squares; h is then the first of them
+  /// (StepController). Of a scene with such effects alone, and no joints.
+  bool controlled = false;
 };
 
 /// Marches the discrete Lagrangian of a scene,
@@ -24,11 +30,13 @@ struct Options {
 /// momenta at the nodes only, so that no term couples the arrows of two bodies: what is solved together is what joints
 /// tie together (an island), for the multipliers alone, by elimination along the graph of the joints.
 ///
-/// Damping c of a velocity is a pair of discrete forces -c xi / 2 at both ends of the arrow.
+/// Damping c of a velocity is a pair of discrete forces -c xi / 2 at both ends of the arrow. Rows of `Vakonomic` joints
+/// stand in the Lagrangian, L + <lambda, phi>: momenta then hold the multipliers, mu = F-(g, lambda).
 class Multibody {
  public:
   /// The scene at its first node. Rows of joints that depend on others there are left out (`dependent_rows`), and
-  /// joints that touch nothing that moves. Throws std::invalid_argument where a gradient is not finite.
+  /// joints that touch nothing that moves. Throws std::invalid_argument where a gradient is not finite, and where steps
+  /// are to be controlled and the scene has no such time scale.
   Multibody(Scene scene, double h, const Options& options = {});
 
   /// One step. Where it does not converge nothing changes, and the report says why.
@@ -41,6 +49,7 @@ class Multibody {
     std::vector<Vec> place, place_carry, momentum, momentum_carry, spin, spin_carry, turned;
     std::vector<Quaternion> attitude;
     std::array<std::vector<double>, 3> multipliers;  ///< of the last three steps, from which the next are guessed
+    std::vector<double> clock;                       ///< time, and what controls the step
     /// What follows from places and attitudes. Computed anew at another place of the program it could differ in its
     /// last bits; where it is empty, it is.
     struct Derived {
@@ -65,11 +74,12 @@ class Multibody {
   void restore(const State& state);
   /// Back along the same trajectory: momenta change their signs.
   void reverse();
-  /// Takes from the momenta what the joints do not allow.
+  /// Takes from the momenta what the holonomic joints do not allow.
   void make_tangent();
 
   long index() const { return index_; }
   double time() const { return now_.time; }
+  /// Of the arrow that led here (at the start, of the first).
   double step() const { return h_; }
   const Configuration& configuration() const { return now_; }
 
@@ -80,8 +90,8 @@ class Multibody {
   int linear_place(int linear) const { return linear_places_[std::size_t(linear)]; }
   const Quaternion& quaternion(Attitude a) const { return quaternions_[std::size_t(places_(a).index)]; }
 
-  /// Momenta at this node, tangent to the joints (as they are reported); in the order of `configuration()`: of places
-  /// (kg m/s) and of attitudes (body angular momentum, kg m^2/s).
+  /// Inertia times velocity at this node, tangent to holonomic and vakonomic joints (as it is reported); in the order
+  /// of `configuration()`: of places (kg m/s) and of attitudes (body angular momentum, kg m^2/s).
   struct Momenta {
     std::vector<Vec> linear;
     std::vector<Vec> spin;
@@ -90,7 +100,7 @@ class Multibody {
 
   double kinetic_energy(const Momenta& m) const;
   double potential_energy() const;
-  /// What drag and damping have taken since the start, J: the sum of xi.c xi / h over the arrows.
+  /// What drag and dampers have taken since the start, J: the sum of xi.c xi / h over the arrows.
   double dissipated() const { return dissipated_; }
   Vec linear_momentum(const Momenta& m) const;
   /// About the origin, in space.
@@ -120,7 +130,7 @@ class Multibody {
   /// Joints of one kind in one island.
   struct Batch {
     const Joints* joints;
-    bool on_arrows;
+    Role role;
     int first;
     int count;
     int row;
@@ -131,7 +141,22 @@ class Multibody {
     int gradient;
     int factor;
     int row;
-    bool on_arrow;
+    Role role;
+    bool along_arrow;  ///< Joints::along_arrows
+  };
+  /// A gradient of a row along a point of the ground that moves.
+  struct MovingEntry {
+    int gradient;
+    int row;
+    int ground;
+  };
+  /// A point of the ground that moves.
+  struct MovingGround {
+    int site;
+    Vec place, amplitude;
+    double rate;
+    Vec at(double time) const { return place + (1 - std::cos(rate * time)) * amplitude; }
+    Vec velocity(double time) const { return rate * std::sin(rate * time) * amplitude; }
   };
   /// S(row a, row b) += (gradient of a) . (response to b).
   struct Pair {
@@ -169,6 +194,7 @@ class Multibody {
   struct Island {
     Range linear, dragged, rotations, arms, planar_arms, rows, batches, linear_entries, rotation_entries, linear_pairs,
         rotation_pairs, levers, planar_levers;
+    bool vakonomic = false;
     Elimination matrix;
   };
 
@@ -188,14 +214,30 @@ class Multibody {
   void pull_back(const Configuration& at, const Island& island, std::vector<Vec>& gradients) const;
   /// The joints' reactions at this node.
   void react(const Island& island);
+  /// Covectors of vakonomic rows, and the displacements under them, at the arrow as it stands; returns by how much
+  /// these moved, over their size.
+  double follow(const Island& island);
+  void set_step(double h);
+  /// Of the time scale |U|^(-3/2): d log / dt.
+  double time_scale_rate() const;
+  /// Inertia times velocity; without vakonomic rows, the momenta are taken tangent to holonomic ones alone.
+  Momenta tangent(bool with_vakonomic) const;
+  /// The rate at which a row changes where nothing moves by itself: of grounds that move, of plates that turn.
+  std::vector<double> imposed_rates() const;
   Motion motion() const { return {now_, next_, displacement_, turned_, h_}; }
+  Role role(int row) const { return roles_[std::size_t(row)]; }
   bool factorise(Island& island);
   StepReport solve(Island& island);
   StepReport turn_freely(int rotation);
   void accept();
+  /// The momentum that vakonomic rows take away again at the target; the forces of dampers there.
+  void end_vakonomic();
+  void end_damping();
 
   double h_;
   Options options_;
+  std::optional<StepController> control_;
+  double time_carry_ = 0;
   long index_ = 0;
   Places places_;
   std::vector<int> linear_places_;
@@ -237,10 +279,17 @@ class Multibody {
   std::vector<RowSize> sizes_;
   std::vector<double> multipliers_, values_, right_, precision_;  ///< precision: one over the size of a row
   std::array<std::vector<double>, 3> earlier_;                    ///< multipliers of the last steps
-  std::vector<char> left_out_, on_arrow_;
+  std::vector<char> left_out_;
+  std::vector<Role> roles_;
+  std::vector<double> softness_;                 ///< of damping rows: 2 / c
+  std::vector<Vec> drifts_, free_displacement_;  ///< where there are vakonomic rows
+  std::vector<MovingGround> moving_;
+  std::vector<MovingEntry> moving_entries_;
   double dissipated_ = 0;
   double arrow_residual_ = 0;  ///< of the rows on the arrow that led here
   bool has_arrow_rows_ = false;
+  bool has_vakonomic_ = false;
+  bool has_dampers_ = false;
   int dependent_rows_ = 0;
   bool dependence_ended_ = false;
 };

@@ -43,6 +43,11 @@ Site Scene::ground(const Vec& place) {
   return {int(sites_.size()) - 1};
 }
 
+Site Scene::moving_ground(const Vec& place, const Vec& amplitude, double rate) {
+  sites_.push_back({-1, -1, -1, place, amplitude, rate});
+  return {int(sites_.size()) - 1};
+}
+
 void Scene::damp(const Body& body, double of_motion, double of_turning) {
   if (const int linear = sites_[std::size_t(body.centre.index)].linear; linear >= 0) {
     Linear& l = linear_[std::size_t(linear)];

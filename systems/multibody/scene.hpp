@@ -46,6 +46,8 @@ class Scene {
     int rotation = -1;
     int base = -1;  ///< the site that `place` is measured from
     Vec place = Vec::Zero();
+    Vec amplitude = Vec::Zero();  ///< of the ground, where it moves
+    double rate = 0;
   };
 
   Body point_mass(double mass, const Vec& place, const Vec& velocity);
@@ -60,6 +62,10 @@ class Scene {
   /// The point of a body at `arm` from its centre, in its own frame.
   Site point_of(const Body& body, const Vec& arm);
   Site ground(const Vec& place);
+  /// A point of the ground that is moved: at place + amplitude (1 - cos(rate t)); rate in rad/s.
+  Site moving_ground(const Vec& place, const Vec& amplitude, double rate);
+  /// (x, y, angle) of a planar body.
+  Site planar_place(const Body& body) const { return {sites_[std::size_t(body.centre.index)].base}; }
 
   /// The number of the body's linear motion among those of the scene; -1 for one that has none.
   int linear_of(const Body& body) const { return sites_[std::size_t(body.centre.index)].linear; }
