@@ -51,7 +51,7 @@ std::string read_name(const SceneBodies& bodies, const Section& table) {
   const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), allowed))
     table.fail("name", fmt::format("\"{}\": use letters, digits, - and _", name));
-  for (const char* taken : {"energy", "time", "t", "constraint_residual", "residual"})
+  for (const char* taken : {"energy", "time", "t", "constraint_residual", "residual", "step_size", "h", "cost"})
     if (name == taken) table.fail("name", fmt::format("\"{}\" is a column of every run; choose another name", name));
   if (name == "ground") table.fail("name", "\"ground\" is what joints tie bodies to; choose another name");
   const auto taken = [&](const NamedBody& body) { return body.name == name || body.name.starts_with(name + "."); };
@@ -129,8 +129,9 @@ void read_planar(SceneBodies& bodies, const Section& table) {
   const auto v = table.has("velocity") ? table.numbers("velocity", 2, "m/s") : std::vector<double>{0, 0};
   b.place = {at[0], at[1], 0};
   b.attitude = SO3::exp(Vec(0, 0, angle));
-  b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], angle},
-                                    {v[0], v[1], table.number_or("angular_velocity", 0)});
+  b.velocity = {v[0], v[1], 0};
+  b.angular_velocity = {0, 0, table.number_or("angular_velocity", 0)};
+  b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], angle}, {v[0], v[1], b.angular_velocity(2)});
   b.mass_centre = b.body.centre;
   keep(bodies, b);
 }
@@ -147,7 +148,7 @@ void read_chain(SceneBodies& bodies, const Section& table) {
   const std::string on = table.has("on") ? table.text("on", "the body it hangs on, or \"ground\"") : "ground";
   const Vec arm = vector_or(table, "at", "where: in the frame of the body it hangs on, of the ground in space");
   const NamedBody* holder = on == "ground" ? nullptr : &bodies.named(table, "on", on);
-  End last = bodies.end_of(table, "at", holder, arm);
+  End last = holder ? bodies.end_of(table, "at", holder, arm) : bodies.ground_of(table, arm);
   if (!holder) bodies.isolated = false;
   const Vec origin = last.place;
   for (long k = 1; k <= links; ++k) {
@@ -211,6 +212,19 @@ End SceneBodies::end_of(const Section& table, std::string_view key, const NamedB
   return end;
 }
 
+End SceneBodies::ground_of(const Section& table, const Vec& place) {
+  End end = end_of(table, "", nullptr, place);
+  if (!table.has("ground_amplitude") && !table.has("ground_rate")) return end;
+  const Vec amplitude = vector_of(table, "ground_amplitude", "of the motion amplitude (1 - cos(rate t)), m");
+  const double rate = table.number("ground_rate");
+  if (amplitude.isZero(0) || rate == 0)
+    table.fail("ground_amplitude", "a ground that moves has an amplitude and a rate; leave both out for one at rest");
+  end.site = scene.moving_ground(place, amplitude, rate);
+  end.moved = true;
+  driven = true;
+  return end;
+}
+
 std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
   const auto names = table.texts_or_none("between", "two names of bodies, or \"ground\"");
   if (names.size() != 2)
@@ -223,8 +237,12 @@ std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
   std::array<End, 2> out;
   for (std::size_t i = 0; i < 2; ++i) {
     const Vec arm(points[i][0], points[i][1], points[i][2]);
-    out[i] = end_of(table, "points", names[i] == "ground" ? nullptr : &named(table, "between", names[i]), arm);
-    if (!out[i].body) isolated = false;
+    if (names[i] != "ground") {
+      out[i] = end_of(table, "points", &named(table, "between", names[i]), arm);
+    } else {
+      out[i] = with_points ? ground_of(table, arm) : end_of(table, "points", nullptr, arm);
+      isolated = false;
+    }
   }
   return out;
 }

@@ -37,6 +37,7 @@ struct End {
   multibody::Vec arm = multibody::Vec::Zero();
   multibody::Vec place = multibody::Vec::Zero();  ///< in space at the start
   multibody::Site site;
+  bool moved = false;  ///< a point of the ground that moves
 
   multibody::Attitude attitude() const { return body ? body->body.attitude : multibody::Attitude{}; }
   /// A direction in space, in the frame of this body.
@@ -61,9 +62,12 @@ struct SceneBodies {
   bool nonholonomic = false;
   bool deflected = false;   ///< by magnetic fields or the frame: momenta are not the canonical ones
   bool dissipates = false;  ///< damping takes energy
-  bool driven = false;      ///< forces that are not derived from a potential
-  bool isolated = true;     ///< nothing acts from outside: momenta are conserved
-  double extent = 0;        ///< size of the scene at the start, m
+  bool driven = false;      ///< forces that are not derived from a potential, motions that are given
+  bool vakonomic = false;
+  bool counts_cost = false;  ///< of the controls: the kinetic terms
+  double damping_rate = 0;   ///< the largest drag over what it slows down, 1/s
+  bool isolated = true;      ///< nothing acts from outside: momenta are conserved
+  double extent = 0;         ///< size of the scene at the start, m
 
   /// The ends of a table: `between`, two names, and `points`, in the bodies' frames (of the ground: in space).
   std::array<End, 2> ends(const Section& table, bool with_points = true);
@@ -75,6 +79,8 @@ struct SceneBodies {
   }
   /// The point of a body (null: the ground) that `key` of the table gives.
   End end_of(const Section& table, std::string_view key, const NamedBody* body, const multibody::Vec& arm);
+  /// A point of the ground, which `ground_amplitude` and `ground_rate` of the table may move.
+  End ground_of(const Section& table, const multibody::Vec& place);
 };
 
 /// Three numbers; `fallback` where the key is missing.

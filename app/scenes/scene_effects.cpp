@@ -3,6 +3,7 @@
 #include "scene_bodies.hpp"
 
 #include <lagroid/systems/multibody/effects.hpp>
+#include <lagroid/systems/multibody/joints.hpp>
 
 #include <fmt/format.h>
 
@@ -102,10 +103,27 @@ void read_drag(SceneBodies& bodies, const Section& table) {
     table.fail("turning", "none of the bodies turns");
   if (motion > 0 && std::none_of(damped.begin(), damped.end(), moves))
     table.fail("motion", "none of the bodies has a centre that moves");
-  for (const NamedBody* body : damped) bodies.scene.damp(body->body, motion, turning);
+  for (const NamedBody* body : damped) {
+    bodies.scene.damp(body->body, motion, turning);
+    const double inertia = body->planar ? body->inertia(2) : body->inertia.minCoeff();
+    if (turns(body)) bodies.damping_rate = std::max(bodies.damping_rate, turning / inertia);
+    if (moves(body)) bodies.damping_rate = std::max(bodies.damping_rate, motion / body->mass);
+  }
   bodies.dissipates = true;
   bodies.isolated = false;
 }
+
+void read_damper(SceneBodies& bodies, const Section& table) {
+  const auto ends = bodies.ends(table);
+  if ((ends[1].place - ends[0].place).norm() == 0)
+    table.fail("points", "the ends of the damper meet at the start: its force has no direction");
+  bodies.scene.add(
+      multibody::Damper<multibody::Length>{{{ends[0].site, ends[1].site}}, table.number("damping", positive)});
+  bodies.lines.push_back({ends[0], ends[1], 0.004});
+  bodies.dissipates = true;
+}
+
+void read_cost(SceneBodies& bodies, const Section&) { bodies.counts_cost = true; }
 
 const NamedBody& require_point(const Section& table, const NamedBody* body, std::string_view effect) {
   if (body->linear < 0 || body->body.attitude.index >= 0 || body->planar)
@@ -178,12 +196,14 @@ void read_motor(SceneBodies& bodies, const Section& table) {
 }
 
 /// The kinds of [[effect]], as they are listed to users.
-constexpr std::array<SceneKind, 12> kinds{{{"gravity", read_gravity},
+constexpr std::array<SceneKind, 14> kinds{{{"gravity", read_gravity},
                                            {"central_gravity", read_central},
                                            {"mutual_gravity", read_mutual},
                                            {"spring", read_spring},
                                            {"torsion_spring", read_torsion},
                                            {"drag", read_drag},
+                                           {"damper", read_damper},
+                                           {"control_cost", read_cost},
                                            {"force", read_force},
                                            {"torque", read_torque},
                                            {"motor", read_motor},

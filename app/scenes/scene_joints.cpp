@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -103,16 +104,39 @@ void read_rod(SceneBodies& bodies, const Section& table) {
   bodies.lines.push_back({ends[0], ends[1], 0.008});
 }
 
+/// Adds the damper that a joint with a key `damping` is, too.
+template <class J> void read_damping(SceneBodies& bodies, const Section& table, const J& measure) {
+  if (!table.has("damping")) return;
+  bodies.scene.add(multibody::Damper<J>{measure, table.number("damping", positive)});
+  bodies.dissipates = true;
+}
+
 void read_ball(SceneBodies& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   require_together(table, ends);
   bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
+  if (table.has("damping")) require_turning(table, ends, "joint that rubs");
+  read_damping(bodies, table, multibody::RelativeTurn{{}, {ends[0].attitude(), ends[1].attitude()}});
 }
 
 void read_hinge(SceneBodies& bodies, const Section& table) {
   const auto ends = joined_ends(bodies, table, "hinge");
   const Mat frame = frame_along(table, "axis", "in space at the start");
   for (int i = 0; i < 2; ++i) keep_right_angle(bodies, ends, frame.col(i), frame.col(2));
+  const Vec axis = frame.col(2);
+  multibody::HingeTurn turn{{}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(axis), ends[1].seen(axis), 0};
+  read_damping(bodies, table, turn);
+  if (!table.has("rate")) return;
+  turn.rate = table.number("rate");
+  const auto turning = [&](const End& end) { return end.body ? axis.dot(end.body->angular_velocity) : 0.0; };
+  const double has = turning(ends[1]) - turning(ends[0]);
+  if (std::abs(has - turn.rate) > 1e-9 * (1 + std::abs(turn.rate)))
+    table.fail("rate", fmt::format("the second body turns against the first at {:.10g} rad/s at the start: give it an "
+                                   "angular_velocity (and a velocity of its centre) that agrees",
+                                   has));
+  bodies.scene.add(turn);
+  bodies.nonholonomic = true;
+  if (turn.rate != 0) bodies.driven = true;
 }
 
 void read_weld(SceneBodies& bodies, const Section& table) { keep_attitude(bodies, joined_ends(bodies, table, "weld")); }
@@ -126,6 +150,7 @@ void read_slider(SceneBodies& bodies, const Section& table) {
     keep_in_plane(bodies, ends, frame.col(i));
   }
   keep_attitude(bodies, ends);
+  read_damping(bodies, table, InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(frame.col(2))});
 }
 
 void read_plane(SceneBodies& bodies, const Section& table) {
@@ -153,6 +178,25 @@ void require_spin(const Section& table, const NamedBody& body, const Vec& wanted
                                  body.name, w(0), w(1), w(2)));
 }
 
+/// A constraint on arrows, under the principle that the table names.
+template <class J> void add_on_arrows(SceneBodies& bodies, const Section& table, const J& joint) {
+  const bool vakonomic = table.choice_or("principle", "nonholonomic", {"nonholonomic", "vakonomic"}) == "vakonomic";
+  bodies.isolated = false;
+  if (!vakonomic) {
+    if (table.has("multipliers")) table.fail("multipliers", "go with principle = \"vakonomic\"");
+    bodies.scene.add(joint);
+    bodies.nonholonomic = true;
+    return;
+  }
+  multibody::Vakonomic<J> optimal{joint, {}};
+  if (table.has("multipliers")) {
+    const auto start = table.numbers("multipliers", std::size_t(J::rows), "of its equations, at the start");
+    std::copy(start.begin(), start.end(), optimal.multipliers.begin());
+  }
+  bodies.scene.add(optimal);
+  bodies.vakonomic = true;
+}
+
 void read_rolling(SceneBodies& bodies, const Section& table) {
   NamedBody& ball = turning_body(bodies, table);
   if (ball.linear < 0) table.fail("body", fmt::format("\"{}\" turns about a fixed point and cannot roll", ball.name));
@@ -163,10 +207,8 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
     table.fail("body", fmt::format("\"{}\" rolls on a level plate: its velocity has no third part", ball.name));
   const Vec slip = v - rate * Vec(Vec::UnitZ()).cross(ball.place);
   require_spin(table, ball, {-slip(1) / radius, slip(0) / radius, ball.angular_velocity(2)});
-  bodies.scene.add(multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
+  add_on_arrows(bodies, table, multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
   bodies.scene.add(InPlane{{bodies.scene.ground(ball.place), ball.body.centre}, {multibody::Attitude{}}, Vec::UnitZ()});
-  bodies.nonholonomic = true;
-  bodies.isolated = false;
   if (rate != 0) bodies.driven = true;
   Shape plate = turning_plate(rate);
   plate.position = {0.0, 0.0, ball.place(2) - radius};
@@ -176,24 +218,49 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
 
 void read_spin(SceneBodies& bodies, const Section& table) {
   const NamedBody& body = turning_body(bodies, table);
-  const Vec axis = frame_along(table, "axis", "in space").col(2);
+  const Vec axis = frame_along(table, "axis", "of unit length or not").col(2);
+  const bool in_body = table.choice_or("fixed_in", "space", {"space", "body"}) == "body";
   const double rate = table.number_or("rate", 0);
-  require_spin(table, body, body.angular_velocity + (rate - axis.dot(body.angular_velocity)) * axis);
-  bodies.scene.add(multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
-  bodies.nonholonomic = true;
-  bodies.isolated = false;
+  const Vec in_space = in_body ? Vec(body.attitude * axis) : axis;
+  require_spin(table, body, body.angular_velocity + (rate - in_space.dot(body.angular_velocity)) * in_space);
+  if (in_body) {
+    add_on_arrows(bodies, table, multibody::HingeTurn{{}, {multibody::Attitude{}, body.body.attitude}, {}, axis, rate});
+  } else {
+    add_on_arrows(bodies, table, multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
+  }
   if (rate != 0) bodies.driven = true;
 }
 
+void read_blade(SceneBodies& bodies, const Section& table) {
+  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  if (!body.planar)
+    table.fail("body", fmt::format("\"{}\" does not move in the plane: a blade needs a body of kind "
+                                   "\"planar\"",
+                                   body.name));
+  multibody::Blade blade{{bodies.scene.planar_place(body.body)},
+                         table.number_or("direction", 0),
+                         table.number_or("ahead", 0),
+                         table.number_or("rate", 0)};
+  const Vec along = body.attitude * Vec(std::cos(blade.direction), std::sin(blade.direction), 0);
+  const double slip = Vec(Vec::UnitZ()).cross(along).dot(body.velocity) + blade.arm * body.angular_velocity(2);
+  if (std::abs(slip - blade.rate) > 1e-9 * (1 + body.velocity.norm() + std::abs(slip)))
+    table.fail("body", fmt::format("\"{}\" moves across the blade at {:.10g} m/s at the start, and may at {:.10g}: "
+                                   "give it another velocity or angular_velocity",
+                                   body.name, slip, blade.rate));
+  add_on_arrows(bodies, table, blade);
+  if (blade.rate != 0) bodies.driven = true;
+}
+
 /// The kinds of [[joint]], as they are listed to users.
-constexpr std::array<SceneKind, 8> kinds{{{"rod", read_rod},
+constexpr std::array<SceneKind, 9> kinds{{{"rod", read_rod},
                                           {"ball", read_ball},
                                           {"hinge", read_hinge},
                                           {"weld", read_weld},
                                           {"slider", read_slider},
                                           {"plane", read_plane},
                                           {"rolling", read_rolling},
-                                          {"spin", read_spin}}};
+                                          {"spin", read_spin},
+                                          {"blade", read_blade}}};
 
 }  // namespace
 

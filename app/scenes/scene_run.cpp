@@ -37,8 +37,9 @@ std::vector<std::string> attitude_of(const std::string& body) { return columns(b
 
 /// The motion at a node, with what is computed of it there once for all who want it.
 struct Node {
-  explicit Node(const Multibody& at)
+  explicit Node(const Multibody& at, double cost_so_far = 0)
       : motion(at),
+        cost(cost_so_far),
         momenta(at.momenta()),
         kinetic(at.kinetic_energy(momenta)),
         potential(at.potential_energy()),
@@ -47,6 +48,7 @@ struct Node {
   double energy() const { return kinetic + potential; }
 
   const Multibody& motion;
+  double cost;
   Multibody::Momenta momenta;
   double kinetic, potential, residual;
 };
@@ -62,17 +64,24 @@ void put(std::vector<double>& row, const Vec& v) { row.insert(row.end(), v.data(
 /// What is recorded of a scene's motion.
 class Record {
  public:
-  Record(const SceneBodies& bodies, const std::set<std::string>& chosen) {
+  Record(const SceneBodies& bodies, const std::set<std::string>& chosen, bool controlled) {
     for (const NamedBody& b : bodies.bodies) {
       if (!chosen.empty() && !chosen.contains(b.name)) continue;
       add_body(b);
     }
     for (std::size_t k = 0; k < bodies.lines.size(); ++k)
       for (const auto& [end, name] : {std::pair{&bodies.lines[k].from, "from"}, {&bodies.lines[k].to, "to"}})
-        if (end->body && !end->arm.isZero(0) && (chosen.empty() || chosen.contains(end->body->name)))
+        if (end->moved || (end->body && !end->arm.isZero(0) && (chosen.empty() || chosen.contains(end->body->name))))
           add_point(end_column(k, name), end->site);
     series_.push_back({{"energy", {"energy"}, "J", "kinetic and potential energy", false, {}},
                        [](const Node& node, std::vector<double>& row) { row.push_back(node.energy()); }});
+    if (controlled)
+      series_.push_back({{"step_size", {"h"}, "s", "step size of the arrow that led here", false, {}},
+                         [](const Node& node, std::vector<double>& row) { row.push_back(node.motion.step()); }});
+    if (bodies.counts_cost)
+      series_.push_back(
+          {{"cost", {"cost"}, "J s", "of the controls so far: the kinetic terms of the arrows", false, {}},
+           [](const Node& node, std::vector<double>& row) { row.push_back(node.cost); }});
     series_.push_back({{"constraint_residual", {"residual"}, "1", "largest |C|, over the size of its terms", false, {}},
                        [](const Node& node, std::vector<double>& row) { row.push_back(node.residual); }});
   }
@@ -181,8 +190,8 @@ std::vector<Shape> shapes(const SceneBodies& bodies, const std::set<std::string>
   for (std::size_t k = 0; k < bodies.lines.size(); ++k) {
     const auto& line = bodies.lines[k];
     const auto end = [&](const End& e, const char* name) -> std::vector<Coordinate> {
-      if (!e.body) return {e.place(0), e.place(1), e.place(2)};
-      return at(e.arm.isZero(0) ? e.body->name : Record::end_column(k, name));
+      if (!e.body && !e.moved) return {e.place(0), e.place(1), e.place(2)};
+      return at(e.body && e.arm.isZero(0) ? e.body->name : Record::end_column(k, name));
     };
     if ((line.from.body && !seen(*line.from.body)) || (line.to.body && !seen(*line.to.body))) continue;
     Shape rod{"rod", {(line.to.place - line.from.place).norm(), line.width * extent}};
@@ -219,7 +228,7 @@ class Promises {
         angular_("angular momentum", Promise::conserved, 3) {}
 
   void observe(const Node& node) {
-    const auto& [motion, m, kinetic, potential, residual] = node;
+    const auto& [motion, cost, m, kinetic, potential, residual] = node;
     residual_ = std::max(residual_, residual);
     if (keeps_energy_) {
       const double energy = kinetic + potential + motion.dissipated();
@@ -260,6 +269,15 @@ class Promises {
   QuantityWatch energy_, momentum_, angular_;
 };
 
+/// Whether steps are controlled.
+bool read_mode(const Section& scene) {
+  const Section time = scene.section("time", "step and steps, or duration and steps");
+  const bool controlled = time.choice_or("mode", "fixed", {"fixed", "controlled"}) == "controlled";
+  if (controlled && time.has("duration"))
+    time.fail("duration", "is not kept by steps that vary: give step, the first one, and steps");
+  return controlled;
+}
+
 /// A scene's motion with all that is told of it.
 class Run final : public SteppedRun {
  public:
@@ -272,7 +290,15 @@ class Run final : public SteppedRun {
     const Section solver = scene.section_or_empty("solver");
     multibody::Options options;
     options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, 100000));
-    options.tolerance = solver.number_or("tolerance", 0, nonnegative);
+    options.tolerance =
+        solver.number_or("tolerance", 0, {"between 0 and 0.001", [](double x) { return x >= 0 && x <= 1e-3; }});
+    options.controlled = controlled_ = read_mode(scene);
+    if (const double damped = step_ * bodies_.damping_rate; !(damped <= 2))
+      scene.section("time", "")
+          .fail("step",
+                fmt::format("drag stops a body within less than half a step (drag over inertia times the step is "
+                            "{:.4g}): use a step below {:.3g}",
+                            damped, 2 / bodies_.damping_rate));
     const Section output = scene.section_or_empty("output");
     pace_ = read_pace(scene, context);
     pace_.steps = std::min(pace_.steps, most_steps);
@@ -281,9 +307,18 @@ class Run final : public SteppedRun {
     const bool project = scene.flag_or("project_velocities", false);
     scene.finish();
 
+    if (bodies_.vakonomic && (bodies_.dissipates || bodies_.deflected || bodies_.nonholonomic))
+      scene.fail("joint",
+                 "principle = \"vakonomic\" is that of an optimal control: no drag, dampers, magnetic fields, "
+                 "turning frames or nonholonomic joints go with it");
     try {
       motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), step_, options);
     } catch (const std::invalid_argument& error) {
+      if (options.controlled)
+        scene.section("time", "")
+            .fail("mode",
+                  "\"controlled\" needs a time scale: a scene with central_gravity or mutual_gravity, and "
+                  "without joints and other effects");
       scene.fail("", fmt::format("{}: a position, a length or a point is too large", error.what()));
     }
     if (project) motion_->make_tangent();
@@ -295,13 +330,14 @@ class Run final : public SteppedRun {
       scene.fail("",
                  "the energy at the start is no finite number: a velocity or a mass is too large, or bodies that act "
                  "on each other meet");
-    result_.method = description({"steps of the discrete Lagrangian", 2, true, is_variational(bodies_), false});
+    result_.method = description({options.controlled ? "controlled steps" : "steps of the discrete Lagrangian", 2, true,
+                                  is_variational(bodies_) && !options.controlled, false});
     if (motion_->dependent_rows() > 0)
       result_.notes.push_back(
           fmt::format("{} of {} equations of the joints depend on the others at the start; they hold because those do, "
                       "and are left out",
                       motion_->dependent_rows(), motion_->rows()));
-    record_.emplace(bodies_, chosen_);
+    record_.emplace(bodies_, chosen_, options.controlled);
     promises_.emplace(bodies_);
     if (context_.record) record_->declare(result_.trajectory);
   }
@@ -315,11 +351,14 @@ class Run final : public SteppedRun {
   RunResult go() {
     drive(*this, pace_, context_, result_);
     if (last_observed_ != motion_->index()) see();
+    if (bodies_.counts_cost) result_.cost = cost_;
     promises_->report(*motion_, result_.ledger);
     result_.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
                                       {"attitude", "A carries body to space"},
                                       {"momenta", "tangent to the joints"}};
     result_.panels = panels(bodies_, chosen_);
+    if (controlled_) result_.panels.push_back({"step size", "t", "h", "t", {"h"}});
+    if (bodies_.counts_cost) result_.panels.push_back({"cost of the controls", "t", "cost", "t", {"cost"}});
     result_.shapes = shapes(bodies_, chosen_);
     return std::move(result_);
   }
@@ -332,7 +371,10 @@ class Run final : public SteppedRun {
         "starts in a singular position (parts in line, a taut loop): start it elsewhere",
         step, motion_->time());
   }
-  bool observe(long step) override { return step % pace_.every != 0 || see(); }
+  bool observe(long step) override {
+    if (bodies_.counts_cost && step > 0) cost_ += motion_->arrow_cost();
+    return step % pace_.every != 0 || see();
+  }
   Trajectory& trajectory() override { return result_.trajectory; }
   void persist(Archive& archive) override {
     auto state = motion_->state();
@@ -348,8 +390,10 @@ class Run final : public SteppedRun {
     archive("attitude", state.attitude);
     for (std::size_t i = 0; i < state.multipliers.size(); ++i)
       archive(fmt::format("multipliers {}", i), state.multipliers[i]);
+    archive("clock", state.clock);
     archive("derived", state.derived);
     if (archive.restoring()) motion_->restore(state);
+    archive("cost", cost_);
     archive("last observed", last_observed_);
     archive("promises", *promises_);
   }
@@ -358,7 +402,7 @@ class Run final : public SteppedRun {
   /// False where the energy is no finite number.
   bool see() {
     last_observed_ = motion_->index();
-    const Node node(*motion_);
+    const Node node(*motion_, cost_);
     promises_->observe(node);
     if (context_.record) record_->observe(node, result_.trajectory);
     return std::isfinite(node.energy());
@@ -367,12 +411,14 @@ class Run final : public SteppedRun {
   SceneBodies bodies_;
   RunContext context_;
   double step_ = 0;
+  bool controlled_ = false;
   Pace pace_;
   std::set<std::string> chosen_;
   std::unique_ptr<Multibody> motion_;
   std::optional<Record> record_;
   std::optional<Promises> promises_;
   long last_observed_ = -1;
+  double cost_ = 0;
   RunResult result_;
 };
 

@@ -729,6 +729,15 @@ double Multibody::kinetic_energy(const Momenta& m) const {
   return 0.5 * twice;
 }
 
+double Multibody::arrow_cost() const {
+  double twice = 0;
+  for (std::size_t f = 0; f < inertia_.size(); ++f)
+    twice += inertia_[f].cwiseProduct(displacement_[f]).dot(displacement_[f]);
+  for (std::size_t r = 0; r < moments_.size(); ++r)
+    twice += moments_[r].cwiseProduct(turned_before_[r]).dot(turned_before_[r]);
+  return 0.5 * twice / h_;
+}
+
 double Multibody::potential_energy() const {
   double sum = 0;
   for (const auto& effect : effects_) sum += effect->energy(now_);

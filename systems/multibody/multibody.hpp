@@ -102,6 +102,8 @@ class Multibody {
   double potential_energy() const;
   /// What drag and dampers have taken since the start, J: the sum of xi.c xi / h over the arrows.
   double dissipated() const { return dissipated_; }
+  /// The kinetic terms of the arrow that led here: its share of the cost of a control, J s.
+  double arrow_cost() const;
   Vec linear_momentum(const Momenta& m) const;
   /// About the origin, in space.
   Vec angular_momentum(const Momenta& m) const;

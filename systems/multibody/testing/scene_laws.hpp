@@ -217,8 +217,6 @@ inline LawReport scene_laws(const SceneSubject& subject) {
           sum += p.dot(rate);
           variation += p.norm() * rate.norm() * 2 * M_PI / points;
         };
-        std::vector<multibody::Multibody::Momenta> momenta;
-        for (const auto& motion : loop) momenta.push_back(motion.momenta());
         const auto weight = [](int d) {
           // Derivative of periodic data at distance d, points even.
           return d == 0 ? 0.0 : 0.5 * (d % 2 == 0 ? 1 : -1) / std::tan(M_PI * d / points);
@@ -229,7 +227,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
             Vec rate = Vec::Zero();
             for (int j = 0; j < points; ++j)
               if (j != k) rate += weight(k - j) * loop[std::size_t(j)].configuration().x[f];
-            add(momenta[std::size_t(k)].linear[f], rate);
+            add(at.momentum[f], rate);
           }
           for (std::size_t r = 0; r < at.spin.size(); ++r) {
             Vector<double, 4> rate = Vector<double, 4>::Zero();
@@ -238,7 +236,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
             // w = 2 conj(q) q'
             const auto& q = at.attitude[r];
             const Vec w = 2 * (q(0) * rate.tail<3>() - rate(0) * q.tail<3>() - q.tail<3>().cross(rate.tail<3>()));
-            add(momenta[std::size_t(k)].spin[r], w);
+            add(at.spin[r], w);
           }
         }
         return sum * 2 * M_PI / points;
