@@ -30,6 +30,32 @@ TEST(JointLaws, HoldOfEveryJoint) {
     EXPECT_TRUE(report.holds()) << report;
 }
 
+TEST(JointLaws, HoldOfEveryJointOnArrows) {
+  const Vec axis(0.6, 0, 0.8);
+  for (const auto& report : {laws::arrow_joint_laws(Rolling{{}, {}, 0.3, 1.7}, "rolling"),
+                             laws::arrow_joint_laws(PrescribedSpin{{}, {}, axis, 0.4}, "prescribed spin"),
+                             laws::arrow_joint_laws(Blade{{}, 0.3, -0.7, 0.2}, "blade"),
+                             laws::arrow_joint_laws(HingeTurn{{}, {}, axis, {0, 1, 0}, 0.4}, "hinge turn"),
+                             laws::arrow_joint_laws(RelativeTurn{}, "relative turn")})
+    EXPECT_TRUE(report.holds()) << report;
+  EXPECT_TRUE(laws::joint_laws(Length{}, "length").holds());
+}
+
+/// A blade whose angle is taken at the start, but not its derivative.
+struct WrongBlade : Blade {
+  void drift(const Motion&, Vec* g) const { g[0] = Vec::Zero(); }
+  void gradient(const Motion& motion, Vec* g) const {
+    Blade::gradient(motion, g);
+    g[0](2) = arm;
+  }
+};
+
+TEST(JointLaws, FailOnWrongGradientsAlongArrows) {
+  const auto report = laws::arrow_joint_laws(WrongBlade{{{}, 0.3, -0.7, 0.2}}, "");
+  EXPECT_FALSE(report.law("gradients are those of the values").holds());
+  EXPECT_FALSE(report.law("drifts are those of the values").holds());
+}
+
 /// Force and energy of other signs.
 struct WrongSpring {
   std::array<Site, 2> sites;
@@ -115,6 +141,62 @@ TEST(SceneLaws, HoldOfADampedMachine) {
   const auto broken = laws::scene_laws({"damped, said to be symplectic", make, 0.005, 0.5, true});
   EXPECT_FALSE(broken.law("symplectic").holds()) << broken;
   EXPECT_FALSE(broken.law("steps go back the way they came").holds()) << broken;
+}
+
+/// Vakonomic steps are symplectic in momenta that hold the multipliers; with another drift they are not.
+template <class B> laws::LawReport of_steering() {
+  const auto make = [] {
+    Scene scene;
+    const Body robot = scene.planar_body(1, 0.8, {0.3, 0.1, 0.2}, {std::cos(0.2), std::sin(0.2), 0.5});
+    B blade;
+    blade.sites = {scene.planar_place(robot)};
+    Vakonomic<B> optimal{blade, {0.7}};
+    scene.add(optimal);
+    return scene;
+  };
+  return laws::scene_laws({"steering", make, 0.02, 0.5});
+}
+
+TEST(SceneLaws, HoldOfVakonomicScenes) {
+  const auto steering = of_steering<Blade>();
+  EXPECT_TRUE(steering.holds()) << steering;
+  const auto plate_and_ball = [] {
+    Scene scene;
+    const Body ball = scene.rigid_body(1, {0.4, 0.4, 0.4}, {0, 0, 1}, {1, 0, 0, 0}, {0.3, 0.2, 0}, {-0.2, 0.3, 0});
+    scene.add(Vakonomic<Rolling>{{{ball.centre}, {ball.attitude}, 1, 0}, {0.3, -0.2}});
+    scene.add(Vakonomic<PrescribedSpin>{{{}, {ball.attitude}, {0, 0, 1}, 0}, {0.1}});
+    return scene;
+  };
+  const auto report = laws::scene_laws({"plate and ball", plate_and_ball, 0.02, 0.5});
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+struct NoDrift : Blade {
+  void drift(const Motion&, Vec* g) const { g[0] = Vec::Zero(); }
+};
+
+TEST(SceneLaws, FailOnAVakonomicJointThatForgetsItsDrift) {
+  const auto report = of_steering<NoDrift>();
+  EXPECT_FALSE(report.law("symplectic").holds()) << report;
+}
+
+/// A sleigh, two dampers and a support that moves.
+TEST(SceneLaws, HoldOfNonholonomicAndDampedScenes) {
+  const auto make = [] {
+    Scene scene;
+    const Body sleigh = scene.planar_body(1, 1, {1, 0, 0}, {0.3, 0.8, 0.8});
+    scene.add(Blade{{scene.planar_place(sleigh)}, 0, -1, 0});
+    const Body a = scene.rigid_body(1, {0.3, 0.4, 0.5}, {0, 0, 2}, {1, 0, 0, 0}, {0, 0, 0}, {0.3, 0.2, 1});
+    const Body b = scene.rigid_body(1, {0.3, 0.4, 0.5}, {1, 0, 2}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0.2, -1});
+    scene.add(Damper<RelativeTurn>{{{}, {a.attitude, b.attitude}}, 0.4});
+    scene.add(Damper<Length>{{{scene.point_of(a, {0.2, 0, 0}), scene.point_of(b, {0, 0.2, 0})}}, 0.9});
+    const Body bob = scene.point_mass(1, {0, 0, -1}, Vec::Zero());
+    scene.add(Rod{{scene.moving_ground(Vec::Zero(), {0.2, 0, 0.1}, 3), bob.centre}, 1});
+    scene.add(ConstantForce{{bob.centre}, {0, 0, -9.81}});
+    return scene;
+  };
+  const auto report = laws::scene_laws({"rubbing", make, 0.01, 0.5, false});
+  EXPECT_TRUE(report.holds()) << report;
 }
 
 /// A wall that pushes with a force that jumps: of order one at best.

@@ -28,6 +28,7 @@ struct NamedBody {
   multibody::Vec angular_velocity = multibody::Vec::Zero();  ///< in space
   multibody::Vec inertia = multibody::Vec::Zero();           ///< principal moments; zero for a point mass
   double radius = 0;                                         ///< of a ball; else of no use
+  std::string principle;                                     ///< of its constraints on arrows, if there are any
   multibody::Vec to_centre = multibody::Vec::Zero();  ///< from its reference point to its centre of mass, in its frame
 };
 

@@ -179,8 +179,13 @@ void require_spin(const Section& table, const NamedBody& body, const Vec& wanted
 }
 
 /// A constraint on arrows, under the principle that the table names.
-template <class J> void add_on_arrows(SceneBodies& bodies, const Section& table, const J& joint) {
-  const bool vakonomic = table.choice_or("principle", "nonholonomic", {"nonholonomic", "vakonomic"}) == "vakonomic";
+template <class J> void add_on_arrows(SceneBodies& bodies, const Section& table, NamedBody& body, const J& joint) {
+  const std::string principle = table.choice_or("principle", "nonholonomic", {"nonholonomic", "vakonomic"});
+  if (!body.principle.empty() && body.principle != principle)
+    table.fail("principle",
+               fmt::format("another joint of \"{}\" is {}: one principle moves a body", body.name, body.principle));
+  body.principle = principle;
+  const bool vakonomic = principle == "vakonomic";
   bodies.isolated = false;
   if (!vakonomic) {
     if (table.has("multipliers")) table.fail("multipliers", "go with principle = \"vakonomic\"");
@@ -207,7 +212,7 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
     table.fail("body", fmt::format("\"{}\" rolls on a level plate: its velocity has no third part", ball.name));
   const Vec slip = v - rate * Vec(Vec::UnitZ()).cross(ball.place);
   require_spin(table, ball, {-slip(1) / radius, slip(0) / radius, ball.angular_velocity(2)});
-  add_on_arrows(bodies, table, multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
+  add_on_arrows(bodies, table, ball, multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
   bodies.scene.add(InPlane{{bodies.scene.ground(ball.place), ball.body.centre}, {multibody::Attitude{}}, Vec::UnitZ()});
   if (rate != 0) bodies.driven = true;
   Shape plate = turning_plate(rate);
@@ -217,22 +222,23 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
 }
 
 void read_spin(SceneBodies& bodies, const Section& table) {
-  const NamedBody& body = turning_body(bodies, table);
+  NamedBody& body = turning_body(bodies, table);
   const Vec axis = frame_along(table, "axis", "of unit length or not").col(2);
   const bool in_body = table.choice_or("fixed_in", "space", {"space", "body"}) == "body";
   const double rate = table.number_or("rate", 0);
   const Vec in_space = in_body ? Vec(body.attitude * axis) : axis;
   require_spin(table, body, body.angular_velocity + (rate - in_space.dot(body.angular_velocity)) * in_space);
   if (in_body) {
-    add_on_arrows(bodies, table, multibody::HingeTurn{{}, {multibody::Attitude{}, body.body.attitude}, {}, axis, rate});
+    add_on_arrows(bodies, table, body,
+                  multibody::HingeTurn{{}, {multibody::Attitude{}, body.body.attitude}, {}, axis, rate});
   } else {
-    add_on_arrows(bodies, table, multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
+    add_on_arrows(bodies, table, body, multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
   }
   if (rate != 0) bodies.driven = true;
 }
 
 void read_blade(SceneBodies& bodies, const Section& table) {
-  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
   if (!body.planar)
     table.fail("body", fmt::format("\"{}\" does not move in the plane: a blade needs a body of kind "
                                    "\"planar\"",
@@ -247,7 +253,7 @@ void read_blade(SceneBodies& bodies, const Section& table) {
     table.fail("body", fmt::format("\"{}\" moves across the blade at {:.10g} m/s at the start, and may at {:.10g}: "
                                    "give it another velocity or angular_velocity",
                                    body.name, slip, blade.rate));
-  add_on_arrows(bodies, table, blade);
+  add_on_arrows(bodies, table, body, blade);
   if (blade.rate != 0) bodies.driven = true;
 }
 

@@ -307,10 +307,11 @@ class Run final : public SteppedRun {
     const bool project = scene.flag_or("project_velocities", false);
     scene.finish();
 
-    if (bodies_.vakonomic && (bodies_.dissipates || bodies_.deflected || bodies_.nonholonomic))
-      scene.fail("joint",
-                 "principle = \"vakonomic\" is that of an optimal control: no drag, dampers, magnetic fields, "
-                 "turning frames or nonholonomic joints go with it");
+    if (bodies_.vakonomic && (bodies_.dissipates || bodies_.deflected))
+      scene.fail(
+          "joint",
+          "principle = \"vakonomic\" is that of an optimal control: no drag, dampers, magnetic fields or turning "
+          "frames go with it");
     try {
       motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), step_, options);
     } catch (const std::invalid_argument& error) {

@@ -114,6 +114,69 @@ template <class J> LawReport joint_laws(const J& joint, const std::string& name)
   return report;
 }
 
+/// "gradients are those of the values", along the displacement and the turn, the source being held, and, where the
+/// joint can be vakonomic, "drifts are those of the values", along the source: of a joint on arrows, at random arrows.
+template <class J> LawReport arrow_joint_laws(const J& joint, const std::string& name) {
+  constexpr int n = multibody::site_count<J>();
+  constexpr int m = multibody::attitude_count<J>();
+  constexpr std::size_t gradients = std::size_t(J::rows) * (n + m);
+  const J own = detail::on_own_places(joint);
+  struct Arrow {
+    multibody::Configuration before = detail::draw_configuration(n, m);
+    std::vector<multibody::Vec> displacements, turns;
+    Arrow() {
+      for (int i = 0; i < n; ++i) displacements.emplace_back(draw_uniform(), draw_uniform(), draw_uniform());
+      for (int i = 0; i < m; ++i) turns.emplace_back(draw_uniform(), draw_uniform(), draw_uniform());
+    }
+    multibody::Motion motion() const { return {before, before, displacements, turns, 0.1}; }
+  };
+  const auto values = [&](const Arrow& arrow) {
+    Vector<double, J::rows> out;
+    own.value(arrow.motion(), out.data());
+    return out;
+  };
+  const auto defect = [&](const auto& g, const auto& rate_along) {
+    double largest = 0;
+    for (int i = 0; i < 3 * (n + m); ++i) {
+      const Vector<double, J::rows> rate = rate_along(i);
+      for (int row = 0; row < J::rows; ++row)
+        largest = worst({largest, std::abs(g[std::size_t(row * (n + m) + i / 3)](i % 3) - rate(row))});
+    }
+    return largest;
+  };
+  LawReport report{name, {}};
+  report.laws.push_back(check_law("gradients are those of the values", 1e-7, [&] {
+    const Arrow arrow;
+    std::array<multibody::Vec, gradients> g;
+    own.gradient(arrow.motion(), g.data());
+    return defect(g, [&](int i) {
+      const auto at = [&](double by) {
+        Arrow moved = arrow;
+        (i / 3 < n ? moved.displacements[std::size_t(i / 3)] : moved.turns[std::size_t(i / 3 - n)])(i % 3) += by;
+        return values(moved);
+      };
+      constexpr double e = 1e-3;
+      return Vector<double, J::rows>((8 * (at(e) - at(-e)) - (at(2 * e) - at(-2 * e))) / (12 * e));
+    });
+  }));
+  if constexpr (requires(const multibody::Motion& motion, multibody::Vec* g) { own.drift(motion, g); })
+    report.laws.push_back(check_law("drifts are those of the values", 1e-7, [&] {
+      const Arrow arrow;
+      std::array<multibody::Vec, gradients> g;
+      own.drift(arrow.motion(), g.data());
+      return defect(g, [&](int i) {
+        return detail::derivative_along(
+            [&](const multibody::Configuration& before) {
+              Arrow moved = arrow;
+              moved.before = before;
+              return values(moved);
+            },
+            arrow.before, n, i);
+      });
+    }));
+  return report;
+}
+
 /// A scene made anew for every question, and its step.
 struct SceneSubject {
   std::string name;
