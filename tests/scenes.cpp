@@ -181,7 +181,7 @@ TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
       {bob + "[time]\nduration = 1\nsteps = 10\nmode = \"controlled\"\n", "time.duration"},
       {bob + "[[effect]]\nkind = \"drag\"\nmotion = 1000\n" + grid, "time.step: drag stops a body"},
       {bob + grid + "[solver]\ntolerance = 0.1\n", "solver.tolerance: must be between 0 and 0.001"},
-      {bob + rod + "ground_rate = 3\n" + grid, "joint.0.ground_amplitude"},
+      {bob + rod + "ground_rate = 3\n" + grid, "missing key \"ground_amplitude\""},
       {bob + rod + "ground_amplitude = [0, 0, 1]\nground_rate = 0\n" + grid, "leave both out"},
       {bob + rod + "damping = 1\n" + grid, "joint.0.damping: unknown key"},
       {bob + "[[joint]]\nkind = \"blade\"\nbody = \"bob\"\n" + grid, "a blade needs a body of kind"},
