@@ -52,6 +52,26 @@ const std::map<std::string, std::function<void(Base&)>>& kinds() {
          b.scene.add(BodyTorque{{}, {b.left.attitude}, {0, 0, 0.1}});
        }},
       {"damping", [](Base& b) { b.scene.damp(b.left, 0.1, 0.1); }},
+      {"a joint that rubs",
+       [](Base& b) {
+         b.scene.add(Damper<RelativeTurn>{{{}, {b.left.attitude, b.right.attitude}}, 0.1});
+       }},
+      {"damper between points",
+       [](Base& b) {
+         b.scene.add(Damper<Length>{{{b.right.centre, b.near.centre}}, 0.1});
+       }},
+      {"nonholonomic spin",
+       [](Base& b) {
+         b.scene.add(PrescribedSpin{{}, {b.left.attitude}, {0, 0, 1}, 0});
+       }},
+      {"vakonomic spin",
+       [](Base& b) {
+         b.scene.add(Vakonomic<PrescribedSpin>{{{}, {b.left.attitude}, {0, 0, 1}, 0}, {0.1}});
+       }},
+      {"rod to a ground that moves",
+       [](Base& b) {
+         b.scene.add(Rod{{b.scene.moving_ground({0.5, 3, 0}, {0.1, 0, 0}, 2), b.far.centre}, 1});
+       }},
       {"another rod",
        [](Base& b) {
          b.scene.add(Rod{{b.right.centre, b.near.centre}, std::sqrt(1.25)});

@@ -328,11 +328,10 @@ void Multibody::assemble(Scene& scene) {
   sizes_.resize(std::size_t(row));
   left_out_.assign(std::size_t(row), 0);
   roles_.assign(std::size_t(row), Role::holonomic);
-  softness_.assign(std::size_t(row), 0.0);
   for (const Batch& batch : batches_) {
     has_arrow_rows_ = has_arrow_rows_ || batch.role == Role::nonholonomic || batch.role == Role::vakonomic;
     has_vakonomic_ = has_vakonomic_ || batch.role == Role::vakonomic;
-    has_dampers_ = has_dampers_ || batch.role == Role::damping;
+    if (batch.role == Role::damping) softness_.resize(std::size_t(row), 0.0);
     const int rows = batch.joints->rows();
     for (int i = 0; i < batch.count * rows; ++i) {
       const auto at = std::size_t(batch.row + i);

@@ -32,7 +32,7 @@ struct Motion {
 };
 
 /// How the rows of a joint act.
-enum class Role {
+enum class Role : char {
   holonomic,     ///< C(q') = 0, with reactions along dC
   nonholonomic,  ///< phi(g) = 0, with reactions along covectors omega(q) of its own
   vakonomic,     ///< phi(g) = 0, L + <lambda, phi> being the Lagrangian

@@ -171,7 +171,7 @@ bool Multibody::factorise(Island& island) {
     const Pair& p = rotation_pairs_[std::size_t(i)];
     matrix.value(p.value) += rotation_gradient_[std::size_t(p.gradient)].dot(rotation_response_[std::size_t(p.entry)]);
   }
-  if (has_dampers_)
+  if (!softness_.empty())
     for (int row = 0; row < island.rows.size(); ++row)
       matrix.value(matrix.index(row, row)) += softness_[std::size_t(island.rows.first + row)];
   return matrix.factorise();
@@ -240,7 +240,7 @@ StepReport Multibody::solve(Island& island) {
       const Batch& batch = batches_[std::size_t(b)];
       batch.joints->values(motion(), batch.first, batch.count, values + batch.row);
     }
-    if (has_dampers_)
+    if (!softness_.empty())
       for (int row = rows.first; row < rows.last; ++row) values[row] += softness_[std::size_t(row)] * lambda[row];
     double residual = moved;
     double sum = moved;  // which no NaN escapes
@@ -490,7 +490,7 @@ void Multibody::accept() {
   std::swap(earlier_[1], earlier_[0]);
   std::swap(earlier_[0], multipliers_);
   for (const Island& island : islands_) react(island);
-  if (has_dampers_) end_damping();
+  if (!softness_.empty()) end_damping();
   kick();
   for (std::size_t f = 0; f < momentum_.size(); ++f) add(momentum_[f], momentum_carry_[f], impulse_[f]);
   for (std::size_t r = 0; r < spin_.size(); ++r) add(spin_[r], spin_carry_[r], spin_impulse_[r]);

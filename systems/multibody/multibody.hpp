@@ -283,7 +283,7 @@ class Multibody {
   std::array<std::vector<double>, 3> earlier_;                    ///< multipliers of the last steps
   std::vector<char> left_out_;
   std::vector<Role> roles_;
-  std::vector<double> softness_;                 ///< of damping rows: 2 / c
+  std::vector<double> softness_;                 ///< of damping rows: 2 / c; empty where there are none
   std::vector<Vec> drifts_, free_displacement_;  ///< where there are vakonomic rows
   std::vector<MovingGround> moving_;
   std::vector<MovingEntry> moving_entries_;
@@ -291,7 +291,6 @@ class Multibody {
   double arrow_residual_ = 0;  ///< of the rows on the arrow that led here
   bool has_arrow_rows_ = false;
   bool has_vakonomic_ = false;
-  bool has_dampers_ = false;
   int dependent_rows_ = 0;
   bool dependence_ended_ = false;
 };
