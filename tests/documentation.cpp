@@ -193,10 +193,11 @@ TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time
 TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
 
 TEST(Mathematics, ItNamesEveryLaw) {
-  const auto named = matches(
-      read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") + read("docs/higher_order.md"),
-      "\"([^\"]+)\"");
-  const auto laws = matches(text_of({"core/testing", "solvers/testing"}, ".hpp"), "law\\( ?\"([^\"]+)\"");
+  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +
+                                 read("docs/higher_order.md") + read("docs/multibody.md"),
+                             "\"([^\"]+)\"");
+  const auto laws = matches(text_of({"core/testing", "solvers/testing", "systems/multibody/testing"}, ".hpp"),
+                            "law\\( ?\"([^\"]+)\"");
   EXPECT_GT(laws.size(), 50U);
   for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;
 }

@@ -208,7 +208,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
     for (const auto& q : state.attitude) all.insert(all.end(), q.data(), q.data() + 4);
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(all.data(), Eigen::Index(all.size())));
   };
-  const auto ask = [&](const char* name, double tolerance, const std::function<double()>& defect) {
+  const auto ask_law = [&](const char* name, double tolerance, const std::function<double()>& defect) {
     Law law;
     law.name = name;
     law.tolerance = tolerance;
@@ -221,7 +221,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
     report.laws.push_back(law);
   };
   if (subject.symplectic)
-    ask("steps go back the way they came", 1e-9, [&] {
+    ask_law("steps go back the way they came", 1e-9, [&] {
       Multibody motion = begun(subject.h);
       const auto start = places(motion);
       march(motion, 20);
@@ -229,7 +229,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
       march(motion, 20);
       return (places(motion) - start).norm() / (1 + start.norm());
     });
-  ask("order two", 0.15, [&] {
+  ask_law("order two", 0.15, [&] {
     const auto end = [&](int steps) {
       Multibody motion = begun(subject.horizon / steps);
       march(motion, steps);
@@ -244,7 +244,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
     return std::abs(std::log2((coarse - middle).norm() / difference) - 2);
   });
   if (subject.symplectic)
-    ask("symplectic", 1e-6, [&] {
+    ask_law("symplectic", 1e-6, [&] {
       static constexpr int points = 64;
       // Places that have moved under one push, momenta that have had another: the loop encloses an area.
       const auto push = [](Multibody& motion, double phase) {
