@@ -402,34 +402,22 @@ void Multibody::assemble(Scene& scene) {
 void Multibody::leave_out_dependent() {
   // Whether rows depend on others is a matter of geometry: neither masses nor units count. Gradients are taken in units
   // of the largest that moves the same factor.
-  std::vector<double> linear_unit(inertia_.size(), 0.0);
-  std::vector<double> rotation_unit(moments_.size(), 0.0);
-  const auto measure = [&](const std::vector<Entry>& entries, std::vector<double>& unit) {
+  const auto weights = [&](const std::vector<Entry>& entries, std::size_t factors) {
+    std::vector<double> unit(factors, 0.0);
     for (const Entry& e : entries) {
       const double size = gradients_[std::size_t(e.gradient)].squaredNorm();
       if (!std::isfinite(size)) throw std::invalid_argument("the gradient of a joint is not finite");
       unit[std::size_t(e.factor)] = std::max(unit[std::size_t(e.factor)], size);
     }
+    std::vector<Vec> out;
+    for (const double size : unit) out.push_back(Vec::Constant(size > 0 ? 1 / size : 0));
+    return out;
   };
-  measure(linear_entries_, linear_unit);
-  measure(rotation_entries_, rotation_unit);
-  const auto couple = [&](Island& island, const Pair& p, int gradient, const Entry& b,
-                          const std::vector<double>& unit) {
-    const double size = unit[std::size_t(b.factor)];
-    if (size > 0)
-      island.matrix.value(p.value) += gradients_[std::size_t(gradient)].dot(gradients_[std::size_t(b.gradient)]) / size;
-  };
+  const auto linear_weights = weights(linear_entries_, inertia_.size());
+  const auto rotation_weights = weights(rotation_entries_, moments_.size());
   for (Island& island : islands_) {
-    island.matrix.clear();
-    for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
-      const Pair& p = linear_pairs_[std::size_t(i)];
-      couple(island, p, p.gradient, linear_entries_[std::size_t(p.entry)], linear_unit);
-    }
-    for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
-      const Pair& p = rotation_pairs_[std::size_t(i)];
-      couple(island, p, rotation_entries_[std::size_t(p.gradient)].gradient, rotation_entries_[std::size_t(p.entry)],
-             rotation_unit);
-    }
+    gather(
+        island, linear_weights, rotation_weights, [](Role) { return true; }, island.matrix);
     for (int row = 0; row < island.rows.size(); ++row)  // dampers add to what they share with others
       if (role(island.rows.first + row) == Role::damping) island.matrix.value(island.matrix.index(row, row)) += 1;
     std::vector<char> moves_something(std::size_t(island.rows.size()));

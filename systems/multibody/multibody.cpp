@@ -672,51 +672,64 @@ std::vector<double> Multibody::imposed_rates() const {
   return rates;
 }
 
+void Multibody::gather(const Island& island, const std::vector<Vec>& linear_weights,
+                       const std::vector<Vec>& rotation_weights, const Counts& counts, Elimination& matrix) const {
+  matrix.clear();
+  const auto product = [&](int gradient, const Entry& b, const std::vector<Vec>& weights) {
+    const Vec& response = gradients_[std::size_t(b.gradient)];
+    return gradients_[std::size_t(gradient)].dot(response.cwiseProduct(weights[std::size_t(b.factor)]));
+  };
+  for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
+    const Pair& p = linear_pairs_[std::size_t(i)];
+    const Entry& b = linear_entries_[std::size_t(p.entry)];
+    if (counts(role(p.row)) && counts(b.role)) matrix.value(p.value) += product(p.gradient, b, linear_weights);
+  }
+  for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
+    const Pair& p = rotation_pairs_[std::size_t(i)];
+    const Entry& a = rotation_entries_[std::size_t(p.gradient)];
+    const Entry& b = rotation_entries_[std::size_t(p.entry)];
+    if (counts(a.role) && counts(b.role)) matrix.value(p.value) += product(a.gradient, b, rotation_weights);
+  }
+  for (int row = 0; row < island.rows.size(); ++row)
+    if (!counts(role(island.rows.first + row))) matrix.value(matrix.index(row, row)) = 1;
+}
+
 Multibody::Momenta Multibody::tangent(bool with_vakonomic) const {
   Momenta m{momentum_, spin_};
-  const auto counts = [&](Role role) { return role == Role::holonomic || (role == Role::vakonomic && with_vakonomic); };
+  const Counts counts = [&](Role role) {
+    return role == Role::holonomic || (role == Role::vakonomic && with_vakonomic);
+  };
+  const auto inverse = [](const std::vector<Vec>& inertia) {
+    std::vector<Vec> out;
+    for (const Vec& i : inertia) out.push_back(i.cwiseInverse());
+    return out;
+  };
+  const auto linear_weights = inverse(inertia_);
+  const auto rotation_weights = inverse(moments_);
   const std::vector<double> rates = imposed_rates();
   std::vector<double> right;
   for (const Island& island : islands_) {
     Elimination matrix = island.matrix;
-    matrix.clear();
-    const auto response = [&](const Entry& e, const std::vector<Vec>& inertia) -> Vec {
-      return gradients_[std::size_t(e.gradient)].cwiseQuotient(inertia[std::size_t(e.factor)]);
-    };
-    for (int i = island.linear_pairs.first; i < island.linear_pairs.last; ++i) {
-      const Pair& p = linear_pairs_[std::size_t(i)];
-      const Entry& b = linear_entries_[std::size_t(p.entry)];
-      if (counts(role(p.row)) && counts(b.role))
-        matrix.value(p.value) += gradients_[std::size_t(p.gradient)].dot(response(b, inertia_));
-    }
-    for (int i = island.rotation_pairs.first; i < island.rotation_pairs.last; ++i) {
-      const Pair& p = rotation_pairs_[std::size_t(i)];
-      const Entry& a = rotation_entries_[std::size_t(p.gradient)];
-      const Entry& b = rotation_entries_[std::size_t(p.entry)];
-      if (counts(a.role) && counts(b.role))
-        matrix.value(p.value) += gradients_[std::size_t(a.gradient)].dot(response(b, moments_));
-    }
-    for (int row = 0; row < island.rows.size(); ++row)
-      if (!counts(role(island.rows.first + row))) matrix.value(matrix.index(row, row)) = 1;
+    gather(island, linear_weights, rotation_weights, counts, matrix);
     if (!matrix.factorise()) continue;
     right.assign(std::size_t(island.rows.size()), 0.0);
     for (int row = island.rows.first; row < island.rows.last; ++row)
       if (counts(role(row))) right[std::size_t(row - island.rows.first)] = -rates[std::size_t(row)];
     const auto each_entry = [&](const auto& visit) {
       for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i)
-        visit(linear_entries_[std::size_t(i)], m.linear, inertia_);
+        if (const Entry& e = linear_entries_[std::size_t(i)]; counts(e.role))
+          visit(e, m.linear[std::size_t(e.factor)], linear_weights[std::size_t(e.factor)]);
       for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i)
-        visit(rotation_entries_[std::size_t(i)], m.spin, moments_);
+        if (const Entry& e = rotation_entries_[std::size_t(i)]; counts(e.role))
+          visit(e, m.spin[std::size_t(e.factor)], rotation_weights[std::size_t(e.factor)]);
     };
-    each_entry([&](const Entry& e, const std::vector<Vec>& momentum, const std::vector<Vec>& inertia) {
-      if (!counts(e.role)) return;
-      right[std::size_t(e.row - island.rows.first)] -= response(e, inertia).dot(momentum[std::size_t(e.factor)]);
+    each_entry([&](const Entry& e, const Vec& momentum, const Vec& weight) {
+      right[std::size_t(e.row - island.rows.first)] -=
+          gradients_[std::size_t(e.gradient)].dot(momentum.cwiseProduct(weight));
     });
     matrix.solve(right.data());
-    each_entry([&](const Entry& e, std::vector<Vec>& momentum, const std::vector<Vec>&) {
-      if (!counts(e.role)) return;
-      momentum[std::size_t(e.factor)] +=
-          right[std::size_t(e.row - island.rows.first)] * gradients_[std::size_t(e.gradient)];
+    each_entry([&](const Entry& e, Vec& momentum, const Vec&) {
+      momentum += right[std::size_t(e.row - island.rows.first)] * gradients_[std::size_t(e.gradient)];
     });
   }
   return m;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -224,6 +225,10 @@ class Multibody {
   double time_scale_rate() const;
   /// Inertia times velocity; without vakonomic rows, the momenta are taken tangent to holonomic ones alone.
   Momenta tangent(bool with_vakonomic) const;
+  using Counts = std::function<bool(Role)>;
+  /// D W D^T of the rows that count, at this node, with weights of the factors; one on the diagonal of the others.
+  void gather(const Island& island, const std::vector<Vec>& linear_weights, const std::vector<Vec>& rotation_weights,
+              const Counts& counts, Elimination& matrix) const;
   /// The rate at which a row changes where nothing moves by itself: of grounds that move, of plates that turn.
   std::vector<double> imposed_rates() const;
   Motion motion() const { return {now_, next_, displacement_, turned_, h_}; }
