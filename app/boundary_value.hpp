@@ -278,7 +278,8 @@ Task<Sys> boundary_value(const Section& scene, const RunContext& context, const 
   run.first = run.along ? read_along(scene, *run.along, 0, read).stage : problem;
   if (const auto why = inadmissible_ends(run.first.problem)) scene.section("continuation", "").fail("from", *why);
   return {problem.problem.system, [=](const Observer<Sys>& observer) {
-            if (!context.folder.empty()) Checkpoint::remove(context.folder);
+            std::optional<Checkpoint> folder;
+            if (!context.folder.empty()) folder.emplace(context.folder, 0).remove();
             return solve_boundary_scene(run, context, read, search, observer);
           }};
 }

@@ -7,10 +7,14 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <optional>
 #include <string_view>
 
 namespace lagroid::app {
@@ -34,18 +38,39 @@ void replace(const fs::path& file, std::string_view bytes) {
   if (error) throw OutputError(fmt::format("{}: could not be written ({})", file.string(), error.message()));
 }
 
+/// What bytes amount to: enough to notice that they are others.
+std::size_t sum_of(std::string_view bytes) { return std::hash<std::string_view>{}(bytes); }
+
+/// CBOR after the sum of its bytes.
 void replace_by_cbor(const fs::path& file, const Json& json) {
-  const std::vector<std::uint8_t> bytes = Json::to_cbor(json);
-  replace(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  const std::vector<std::uint8_t> cbor = Json::to_cbor(json);
+  const std::string_view body(reinterpret_cast<const char*>(cbor.data()), cbor.size());
+  const std::size_t sum = sum_of(body);
+  std::string bytes(sizeof sum, '\0');
+  std::memcpy(bytes.data(), &sum, sizeof sum);
+  replace(file, bytes.append(body));
+}
+
+std::optional<std::string> contents(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return std::nullopt;
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!in) return std::nullopt;
+  return bytes;
 }
 
 Json read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-  Json json = Json::from_cbor(bytes, /*strict=*/true, /*allow_exceptions=*/false);
-  if (!in || json.is_discarded())
-    throw RunError(fmt::format("{}: is missing or damaged; run the scene again", file.string()));
-  return json;
+  const auto bytes = contents(file);
+  std::size_t sum = 0;
+  if (bytes && bytes->size() > sizeof sum) {
+    std::memcpy(&sum, bytes->data(), sizeof sum);
+    const auto body = std::string_view(*bytes).substr(sizeof sum);
+    if (sum_of(body) == sum) {
+      Json json = Json::from_cbor(body, /*strict=*/true, /*allow_exceptions=*/false);
+      if (!json.is_discarded()) return json;
+    }
+  }
+  throw RunError(fmt::format("{}: is missing or damaged; run the scene again", file.string()));
 }
 
 }  // namespace
@@ -67,32 +92,38 @@ Checkpoint::~Checkpoint() { ::close(lock_); }
 
 fs::path Checkpoint::part(long k) const { return folder_ / fmt::format("rows-{:06}.cbor", k); }
 
+void Checkpoint::remove() {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+    const std::string name = entry.path().filename();
+    if (name == "scene.toml" || name.starts_with("state.cbor") || name.starts_with("rows-"))
+      fs::remove(entry.path(), ignored);
+  }
+  fs::remove(folder_, ignored);  // where nothing of a user's is in it
+}
+
 void Checkpoint::begin(const std::string& scene) {
+  remove();
   std::error_code error;
-  fs::remove_all(folder_, error);
   fs::create_directories(folder_, error);
   if (error) throw OutputError(fmt::format("{}: cannot be made ({})", folder_.string(), error.message()));
   replace(folder_ / "scene.toml", scene);
-}
-
-void Checkpoint::remove(const fs::path& run) {
-  std::error_code ignored;
-  fs::remove_all(run / "checkpoint", ignored);
+  scene_ = sum_of(scene);
 }
 
 std::string Checkpoint::scene_of(const fs::path& run) {
-  const fs::path file = run / "checkpoint" / "scene.toml";
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in)
-    throw RunError(fmt::format("{}: holds no run that can be taken up; lagroid run SCENE --out {} makes one",
-                               run.string(), run.string()));
-  return text;
+  if (const auto text = contents(run / "checkpoint" / "scene.toml")) return *text;
+  throw RunError(
+      fmt::format("\"{}\" holds no run that can be taken up; lagroid run SCENE --out DIR makes one", run.string()));
 }
 
 Json Checkpoint::restore(Trajectory& trajectory) {
   const Json json = read(folder_ / "state.cbor");
   try {
+    scene_ = json.at("scene").get<std::size_t>();
+    if (sum_of(contents(folder_ / "scene.toml").value_or("")) != scene_)
+      throw RunError(fmt::format("{}: is not the scene that was run; run it anew, with --out for a folder of its own",
+                                 (folder_ / "scene.toml").string()));
     const long parts = json.at("parts").get<long>();
     for (; parts_ < parts; ++parts_) {
       const Json rows = read(part(parts_));
@@ -115,10 +146,16 @@ Json Checkpoint::restore(Trajectory& trajectory) {
   }
 }
 
-bool Checkpoint::due(long step) const {
+bool Checkpoint::due(long step) {
   if (steps_ > 0) return step % steps_ == 0;
-  // Looking at the clock costs as much as a small step.
-  return step % 64 == 0 && std::chrono::steady_clock::now() - last_ > std::chrono::duration<double>(seconds);
+  // Looking at the clock costs as much as a small step: it is looked at about every millisecond.
+  if (--until_look_ > 0) return false;
+  constexpr std::chrono::milliseconds look(1);
+  const auto now = std::chrono::steady_clock::now();
+  stride_ = now - looked_ > look ? std::max(stride_ / 2, 1L) : std::min(2 * stride_, 1024L);
+  until_look_ = stride_;
+  looked_ = now;
+  return now - last_ > std::chrono::duration<double>(seconds);
 }
 
 void Checkpoint::keep(const Trajectory& trajectory, const Json& state) {
@@ -131,7 +168,7 @@ void Checkpoint::keep(const Trajectory& trajectory, const Json& state) {
     for (std::size_t i = 0; i < values_.size(); ++i) series.push_back(from(trajectory.series[i].values, values_[i]));
     replace_by_cbor(part(parts_++), Json{{"time", from(trajectory.time, rows_)}, {"series", series}});
   }
-  replace_by_cbor(folder_ / "state.cbor", Json{{"parts", parts_}, {"state", state}});
+  replace_by_cbor(folder_ / "state.cbor", Json{{"parts", parts_}, {"scene", scene_}, {"state", state}});
   rows_ = trajectory.time.size();
   for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = trajectory.series[i].values.size();
   last_ = std::chrono::steady_clock::now();

@@ -23,16 +23,16 @@ class Checkpoint {
   Checkpoint& operator=(const Checkpoint&) = delete;
   ~Checkpoint();
 
-  /// Begins anew. Throws OutputError where the folder cannot be written.
+  /// Begins anew, in place of what an earlier run left. Throws OutputError where the folder cannot be written.
   void begin(const std::string& scene);
-  /// Of an earlier run, where the folder is used for one that keeps none.
-  static void remove(const std::filesystem::path& run);
+  /// Takes away what an earlier run left: by one that keeps no checkpoints.
+  void remove();
   /// The scene of a run that is taken up. Throws RunError where there is none.
   static std::string scene_of(const std::filesystem::path& run);
   /// Sets the rows, and returns the state. Throws RunError where there is none, or a damaged one.
   nlohmann::json restore(Trajectory& trajectory);
 
-  bool due(long step) const;
+  bool due(long step);
   /// Adds the rows that are new since the last one.
   void keep(const Trajectory& trajectory, const nlohmann::json& state);
 
@@ -47,7 +47,11 @@ class Checkpoint {
   long parts_ = 0;
   std::size_t rows_ = 0;             ///< of the nodes, kept so far
   std::vector<std::size_t> values_;  ///< of each series, kept so far
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::size_t scene_ = 0;            ///< what the scene's text amounts to
+  long until_look_ = 1;              ///< steps until the clock is looked at
+  long stride_ = 1;
+  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_ = looked_;
 };
 
 }  // namespace lagroid::app

@@ -2,6 +2,7 @@
 
 #include "checkpoint.hpp"
 #include "command.hpp"
+#include "interrupt.hpp"
 #include "listing.hpp"
 #include "output.hpp"
 #include "registry.hpp"
@@ -55,6 +56,7 @@ int run(const RunOptions& options, bool resume) {
   }
   std::string report;
   if (options.out) {
+    const InterruptGuard guard;
     try {
       for (const auto& file : write_outputs(result, *options.out)) report += fmt::format("  wrote {}\n", file.string());
     } catch (const OutputError& error) {

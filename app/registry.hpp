@@ -127,8 +127,6 @@ template <class Visit> void for_each_system(const Visit& visit) {
 template <class Visit> auto with_system_of(const Section& scene, const Visit& visit) {
   std::vector<std::string> names;
   for_each_system([&](const auto& entry) { names.emplace_back(entry.name); });
-  if (!scene.has("system"))
-    scene.fail("", "a scene names a system (system = \"kepler\"; lagroid list shows them) or lists bodies ([[body]])");
   const std::string name = scene.choice("system", names);
   std::optional<decltype(visit(Entry<PlateBall>{}))> result;
   for_each_system([&](const auto& entry) {

@@ -80,6 +80,8 @@ void drive(SteppedRun& run, const Pace& pace, const RunContext& context, RunResu
     }
   };
   run.observe(0);
+  StepReport failed;  // counted, but not kept: taken up, the run comes to it again
+  bool whole = true;
   if (context.resume) {
     restore(*checkpoint, run, result, clock, context);
     if (result.steps > pace.steps)
@@ -93,18 +95,22 @@ void drive(SteppedRun& run, const Pace& pace, const RunContext& context, RunResu
     const InterruptGuard guard;
     for (long k = result.steps + 1; k <= pace.steps; ++k) {
       const StepReport report = run.advance();
-      result.iterations += report.iterations;
-      result.ledger.most_iterations = std::max(result.ledger.most_iterations, report.iterations);
       if (!report.converged()) {
+        failed = report;
+        whole = false;
         result.status = std::string(to_string(report.status));
         result.residual = report.residual;
         result.message = run.failure(report, k);
         break;
       }
+      result.iterations += report.iterations;
+      result.ledger.most_iterations = std::max(result.ledger.most_iterations, report.iterations);
       result.steps = k;
       if (!run.observe(k)) {
+        whole = false;
         result.status = std::string(to_string(SolveStatus::not_finite));
-        result.message = fmt::format("step {}: the energy is no finite number any more; use a smaller step", k);
+        result.message =
+            fmt::format("step {}: energy or constraints are no finite numbers any more; use a smaller step", k);
         break;
       }
       progress.update(k);
@@ -118,7 +124,9 @@ void drive(SteppedRun& run, const Pace& pace, const RunContext& context, RunResu
       if (checkpoint && checkpoint->due(k)) keep();
     }
   }
-  keep();
+  if (whole) keep();
+  result.iterations += failed.iterations;
+  result.ledger.most_iterations = std::max(result.ledger.most_iterations, failed.iterations);
   result.ledger.mean_iterations = result.steps > 0 ? double(result.iterations) / double(result.steps) : 0;
   result.seconds = clock.seconds();
 }

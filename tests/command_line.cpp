@@ -256,7 +256,10 @@ TEST_F(CommandLine, FilesThatCannotBeWrittenDoNotBreakTheSolve) {
   EXPECT_FALSE(json.at("message").get<std::string>().empty());
   EXPECT_EQ(json.at("ledger").at("solver").at("status"), "converged");
   EXPECT_EQ(json.at("ledger").at("solver").at("verdict"), "kept");
-  EXPECT_TRUE(fs::is_empty(out));
+  for (const auto& entry : fs::directory_iterator(out)) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name == "checkpoint" || name == ".lock") << name;
+  }
 }
 
 TEST_F(CommandLine, AFolderThatTakesNoFilesIsRefusedBeforeRunning) {

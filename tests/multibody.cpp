@@ -380,6 +380,113 @@ TEST(Multibody, ADrivenHingeKeepsItsRate) {
   EXPECT_LT((tip - 0.5 * Vec(std::cos(6.0), std::sin(6.0), 0)).norm(), 1e-12);
 }
 
+/// Between two bodies that tumble: the angle is kept, and so are energy's order and the momenta.
+TEST(Multibody, ADrivenHingeOfTumblingBodiesKeepsItsAngle) {
+  for (const auto map : {Retraction::exponential, Retraction::cayley}) {
+    Scene scene;
+    scene.rotation = map;
+    const Body a = scene.rigid_body(1, {0.1, 0.2, 0.25}, {0, 0, 0}, upright, {0, 0, 0}, {0.3, 0.2, 0});
+    const Body b = scene.rigid_body(1, {0.15, 0.2, 0.12}, {1, 0, 0}, upright, {0, 0, 0}, {0.3, 0.2, 2});
+    scene.add(Coincidence{{scene.point_of(a, {0.5, 0, 0}), scene.point_of(b, {-0.5, 0, 0})}});
+    for (const Vec& u : {Vec(Vec::UnitX()), Vec(Vec::UnitY())})
+      scene.add(FixedAngle{{}, {a.attitude, b.attitude}, u, {0, 0, 1}, 0});
+    scene.add(HingeTurn{{}, {a.attitude, b.attitude}, {0, 0, 1}, {0, 0, 1}, 2});
+    Multibody motion(std::move(scene), 0.02);
+    motion.make_tangent();
+    const Vec l = motion.angular_momentum(motion.momenta());
+    advance(motion, 1000);
+    const Mat turn = motion.configuration().attitude[0].transpose() * motion.configuration().attitude[1];
+    EXPECT_LT((turn - SO3::exp(Vec(0, 0, 2 * motion.time()))).norm(), 1e-10);
+    EXPECT_LT((motion.angular_momentum(motion.momenta()) - l).norm(), 1e-12);
+    EXPECT_LT(motion.velocity_defect(), 1e-1);
+  }
+}
+
+/// An island on which nothing acts moves where its ground does.
+TEST(Multibody, AMovedGroundTakesWhatRestsAlong) {
+  Scene scene;
+  const Body bob = scene.point_mass(1, {1, 0, 0}, Vec::Zero());
+  scene.add(Rod{{scene.moving_ground(Vec::Zero(), {0.1, 0, 0}, 1), bob.centre}, 1});
+  const Body pulled = scene.point_mass(1, {1, 1, 0}, Vec::Zero());
+  scene.add(Damper<Length>{{{scene.moving_ground({0, 1, 0}, {0.1, 0, 0}, 1), pulled.centre}}, 3});
+  Multibody motion(std::move(scene), 0.01);
+  advance(motion, 200);
+  EXPECT_NEAR(motion.configuration()(motion(bob.centre))(0), 1 + 0.1 * (1 - std::cos(2.0)), 1e-12);
+  EXPECT_GT(motion.configuration()(motion(pulled.centre))(0), 1.05);
+  EXPECT_LT(motion.constraint_residual(), 1e-14);
+}
+
+/// What a step that fails has tried is forgotten: the state, and what is told of it.
+TEST(Multibody, AStepThatFailsIsForgottenUnderTheVakonomicPrinciple) {
+  const auto make = [] {
+    Scene scene;
+    const Body body = scene.planar_body(1, 1, {0, 0, 0}, {1, 0, 0.6});
+    scene.add(Vakonomic<Blade>{{{scene.planar_place(body)}, 0, 0, 0}, {40}});
+    scene.add(Vakonomic<Blade>{{{scene.planar_place(body)}, -M_PI / 2, 0, 1}, {80}});
+    return scene;
+  };
+  Multibody motion(make(), 0.3);
+  int taken = 0;
+  Multibody::Momenta before = motion.momenta();
+  while (taken < 1000 && motion.advance().converged()) {
+    before = motion.momenta();
+    ++taken;
+  }
+  ASSERT_LT(taken, 1000);
+  EXPECT_EQ(motion.momenta().linear[0], before.linear[0]);
+  EXPECT_FALSE(motion.advance().converged());
+  EXPECT_EQ(motion.momenta().linear[0], before.linear[0]);
+}
+
+/// Large angles and far places are solved to their round-off.
+TEST(Multibody, VakonomicBladesFarAwayAndTurnedOftenAreSolved) {
+  Scene scene;
+  const Body a = scene.planar_body(1, 0.3, {1e4, 0, 1000}, {std::cos(1000), std::sin(1000), 0});
+  const Vec ahead(std::cos(1000), std::sin(1000), 0);
+  const Vec behind = Vec(1e4, 0, 0) - 1.5 * ahead;
+  const Body b = scene.planar_body(0.8, 0.2, {behind(0), behind(1), 1000}, {std::cos(1000), std::sin(1000), 0});
+  scene.add(Coincidence{{scene.point_of(a, {-0.5, 0, 0}), scene.point_of(b, {1, 0, 0})}});
+  scene.add(Vakonomic<Blade>{{{scene.planar_place(a)}, 0, 0, 0}, {0.3}});
+  scene.add(Vakonomic<Blade>{{{scene.planar_place(b)}, 0, 0, 0}, {0.1}});
+  Multibody motion(std::move(scene), 0.01);
+  EXPECT_LT(motion.velocity_defect(), 1e-8) << "multipliers are no velocities";
+  advance(motion, 3000);
+}
+
+/// What is told of nonholonomic momenta is of order two: of a sleigh, and of a hinge that is driven.
+TEST(Multibody, NonholonomicMomentaAreOfOrderTwo) {
+  ChaplyginSleigh system;
+  const auto end = system.closed_form(system.sliding(0.8, 0.3), 3);
+  const auto error = [&](int steps) {
+    Scene scene;
+    const Body body = scene.planar_body(1, 1, {1, 0, 0}, {0.3, 0.8, 0.8});
+    scene.add(Blade{{scene.planar_place(body)}, 0, -1, 0});
+    Multibody motion(std::move(scene), 3.0 / steps);
+    advance(motion, steps);
+    return std::abs(motion.momenta().linear[0](2) - end(0));
+  };
+  EXPECT_NEAR(std::log2(error(300) / error(600)), 2, 0.1);
+}
+
+/// One island, one principle.
+TEST(Multibody, PrinciplesAreNotMixed) {
+  const auto mixed = [](bool drag) {
+    Scene scene;
+    const Body a = scene.planar_body(1, 1, {0, 0, 0}, {1, 0, 0});
+    const Body b = scene.planar_body(1, 1, {1, 0, 0}, {1, 0, 0});
+    scene.add(Vakonomic<Blade>{{{scene.planar_place(a)}, 0, 0, 0}, {0.3}});
+    if (drag) {
+      scene.damp(a, 1, 0);
+    } else {
+      scene.add(Blade{{scene.planar_place(b)}, 0, 0, 0});
+      scene.add(Rod{{a.centre, b.centre}, 1});
+    }
+    return Multibody(std::move(scene), 0.01);
+  };
+  EXPECT_THROW(mixed(false), std::domain_error);
+  EXPECT_THROW(mixed(true), std::domain_error);
+}
+
 /// Two bodies that circle each other closely and far: steps shrink with their distance, the way back is the way there,
 /// and the error is a fraction of that of as many equal steps.
 TEST(Multibody, ControlledStepsFollowTheAttraction) {
@@ -446,7 +553,7 @@ TEST(Multibody, ASleighMovesInClosedForm) {
     return std::abs(p(2) - end(0)) + std::abs(std::cos(angle) * p(0) + std::sin(angle) * p(1) - end(1));
   };
   EXPECT_LT(error(300), 1e-3);
-  EXPECT_GT(std::log2(error(300) / error(600)), 0.9);
+  EXPECT_NEAR(std::log2(error(300) / error(600)), 2, 0.1);
 }
 
 /// Two blades under the vakonomic principle: a unicycle that pays for turning, on an elastica. |p| and the energy of

@@ -35,7 +35,7 @@ TEST(JointLaws, HoldOfEveryJointOnArrows) {
   for (const auto& report : {laws::arrow_joint_laws(Rolling{{}, {}, 0.3, 1.7}, "rolling"),
                              laws::arrow_joint_laws(PrescribedSpin{{}, {}, axis, 0.4}, "prescribed spin"),
                              laws::arrow_joint_laws(Blade{{}, 0.3, -0.7, 0.2}, "blade"),
-                             laws::arrow_joint_laws(HingeTurn{{}, {}, axis, {0, 1, 0}, 0.4}, "hinge turn"),
+                             laws::arrow_joint_laws(BodySpin{{}, {}, axis, 0.4}, "body spin"),
                              laws::arrow_joint_laws(RelativeTurn{}, "relative turn")})
     EXPECT_TRUE(report.holds()) << report;
   EXPECT_TRUE(laws::joint_laws(Length{}, "length").holds());

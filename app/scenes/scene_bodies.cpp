@@ -242,6 +242,10 @@ std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
     } else {
       out[i] = with_points ? ground_of(table, arm) : end_of(table, "points", nullptr, arm);
       isolated = false;
+      const std::string& other = names[1 - i];
+      if (out[i].moved && other != "ground" && named(table, "between", other).planar &&
+          vector_of(table, "ground_amplitude", "")(2) != 0)
+        table.fail("ground_amplitude", fmt::format("\"{}\" moves in the plane: give a third part of 0", other));
     }
   }
   return out;

@@ -84,6 +84,9 @@ struct SceneBodies {
   End ground_of(const Section& table, const multibody::Vec& place);
 };
 
+/// Of dampers.
+inline constexpr NumberRule damping_rule{"positive, and below 1e100", [](double x) { return x > 1e-100 && x < 1e100; }};
+
 /// Three numbers; `fallback` where the key is missing.
 multibody::Vec vector_or(const Section& table, std::string_view key, std::string_view meaning,
                          const multibody::Vec& fallback = multibody::Vec::Zero());

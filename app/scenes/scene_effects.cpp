@@ -118,7 +118,7 @@ void read_damper(SceneBodies& bodies, const Section& table) {
   if ((ends[1].place - ends[0].place).norm() == 0)
     table.fail("points", "the ends of the damper meet at the start: its force has no direction");
   bodies.scene.add(
-      multibody::Damper<multibody::Length>{{{ends[0].site, ends[1].site}}, table.number("damping", positive)});
+      multibody::Damper<multibody::Length>{{{ends[0].site, ends[1].site}}, table.number("damping", damping_rule)});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
   bodies.dissipates = true;
 }

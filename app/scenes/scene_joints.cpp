@@ -107,7 +107,7 @@ void read_rod(SceneBodies& bodies, const Section& table) {
 /// Adds the damper that a joint with a key `damping` is, too.
 template <class J> void read_damping(SceneBodies& bodies, const Section& table, const J& measure) {
   if (!table.has("damping")) return;
-  bodies.scene.add(multibody::Damper<J>{measure, table.number("damping", positive)});
+  bodies.scene.add(multibody::Damper<J>{measure, table.number("damping", damping_rule)});
   bodies.dissipates = true;
 }
 
@@ -229,8 +229,7 @@ void read_spin(SceneBodies& bodies, const Section& table) {
   const Vec in_space = in_body ? Vec(body.attitude * axis) : axis;
   require_spin(table, body, body.angular_velocity + (rate - in_space.dot(body.angular_velocity)) * in_space);
   if (in_body) {
-    add_on_arrows(bodies, table, body,
-                  multibody::HingeTurn{{}, {multibody::Attitude{}, body.body.attitude}, {}, axis, rate});
+    add_on_arrows(bodies, table, body, multibody::BodySpin{{}, {body.body.attitude}, axis, rate});
   } else {
     add_on_arrows(bodies, table, body, multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
   }

@@ -229,7 +229,7 @@ class Promises {
 
   void observe(const Node& node) {
     const auto& [motion, cost, m, kinetic, potential, residual] = node;
-    residual_ = std::max(residual_, residual);
+    residual_ = std::isnan(residual) ? residual : std::max(residual_, residual);
     if (keeps_energy_) {
       const double energy = kinetic + potential + motion.dissipated();
       energy_.observe(&energy, kinetic + std::abs(potential));
@@ -307,13 +307,10 @@ class Run final : public SteppedRun {
     const bool project = scene.flag_or("project_velocities", false);
     scene.finish();
 
-    if (bodies_.vakonomic && (bodies_.dissipates || bodies_.deflected))
-      scene.fail(
-          "joint",
-          "principle = \"vakonomic\" is that of an optimal control: no drag, dampers, magnetic fields or turning "
-          "frames go with it");
     try {
       motion_ = std::make_unique<Multibody>(std::move(bodies_.scene), step_, options);
+    } catch (const std::domain_error& error) {
+      scene.fail("joint", fmt::format("{}, on bodies that joints tie together", error.what()));
     } catch (const std::invalid_argument& error) {
       if (options.controlled)
         scene.section("time", "")
@@ -338,6 +335,11 @@ class Run final : public SteppedRun {
           fmt::format("{} of {} equations of the joints depend on the others at the start; they hold because those do, "
                       "and are left out",
                       motion_->dependent_rows(), motion_->rows()));
+    if (const double hardest = motion_->hardest_damper(); hardest > 1)
+      result_.notes.push_back(fmt::format(
+          "a damper is harder than the step resolves (damping times step over twice the inertia is {:.3g}): "
+          "places follow the motion, momenta and energies alternate; use a step below {:.3g}",
+          hardest, step_ / hardest));
     record_.emplace(bodies_, chosen_, options.controlled);
     promises_.emplace(bodies_);
     if (context_.record) record_->declare(result_.trajectory);
@@ -350,6 +352,7 @@ class Run final : public SteppedRun {
   }
 
   RunResult go() {
+    result_.initial = endpoint();
     drive(*this, pace_, context_, result_);
     if (last_observed_ != motion_->index()) see();
     if (bodies_.counts_cost) result_.cost = cost_;
@@ -357,6 +360,7 @@ class Run final : public SteppedRun {
     result_.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
                                       {"attitude", "A carries body to space"},
                                       {"momenta", "tangent to the joints"}};
+    result_.final = endpoint();
     result_.panels = panels(bodies_, chosen_);
     if (controlled_) result_.panels.push_back({"step size", "t", "h", "t", {"h"}});
     if (bodies_.counts_cost) result_.panels.push_back({"cost of the controls", "t", "cost", "t", {"cost"}});
@@ -366,7 +370,8 @@ class Run final : public SteppedRun {
 
   StepReport advance() override { return motion_->advance(); }
   std::string failure(const StepReport& report, long step) const override {
-    if (!motion_->dependence_ended()) return step_failure(report, step, motion_->time(), TimeMode::fixed);
+    if (!motion_->dependence_ended())
+      return step_failure(report, step, motion_->time(), controlled_ ? TimeMode::controlled : TimeMode::fixed);
     return fmt::format(
         "step {} (from t = {:.6g}): equations of joints that depended on others at the start no longer do; the scene "
         "starts in a singular position (parts in line, a taut loop): start it elsewhere",
@@ -400,13 +405,27 @@ class Run final : public SteppedRun {
   }
 
  private:
-  /// False where the energy is no finite number.
+  /// Places of the bodies, and inertia times velocity of those that move, one after another.
+  Endpoint endpoint() const {
+    Endpoint end;
+    end.time = motion_->time();
+    const auto momenta = motion_->momenta();
+    for (const NamedBody& b : bodies_.bodies) {
+      if (!chosen_.empty() && !chosen_.contains(b.name)) continue;
+      put(end.position, motion_->configuration()((*motion_)(b.body.centre)));
+      if (b.linear >= 0) put(end.momentum, momenta.linear[std::size_t(motion_->linear_place(b.linear))]);
+      if (b.body.attitude.index >= 0) put(end.momentum, momenta.spin[std::size_t((*motion_)(b.body.attitude).index)]);
+    }
+    return end;
+  }
+
+  /// False where energy or constraints are no finite numbers.
   bool see() {
     last_observed_ = motion_->index();
     const Node node(*motion_, cost_);
     promises_->observe(node);
     if (context_.record) record_->observe(node, result_.trajectory);
-    return std::isfinite(node.energy());
+    return std::isfinite(node.energy()) && std::isfinite(node.residual);
   }
 
   SceneBodies bodies_;

@@ -57,16 +57,12 @@ Multibody::Multibody(Scene scene, double h, const Options& options) : h_(h), opt
   assemble(scene);
   begin();
   leave_out_dependent();
-  const auto add_multiplier = [&](const Entry& e, std::vector<Vec>& momentum) {
-    if (e.role == Role::vakonomic)
-      momentum[std::size_t(e.factor)] -= earlier_[0][std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
-  };
-  for (const Entry& e : linear_entries_) add_multiplier(e, momentum_);
-  for (const Entry& e : rotation_entries_) add_multiplier(e, spin_);
+  add_multipliers(momentum_, spin_, -1);
   if (options.controlled) {
     const auto attracts = [](const auto& effect) { return effect->attracts(); };
     const bool all = std::all_of(effects_.begin(), effects_.end(), attracts);
-    if (effects_.empty() || !all || !islands_.empty())
+    const bool alone = all && islands_.empty() && dragged_.empty() && damped_turns_.empty();
+    if (!alone || !std::isfinite(time_scale_rate()))
       throw std::invalid_argument("steps are controlled by attractions alone: no joints, no other effects");
     control_.emplace(h, time_scale_rate());
   }
@@ -295,7 +291,10 @@ void Multibody::assemble(Scene& scene) {
               linear_entries_.push_back({planar ? further++ : at, body, r, batch.role, along_arrows});
             }
             for (int m = 0; m < int(moving_.size()); ++m)
-              if (moving_[std::size_t(m)].site == places_(s).index) moving_entries_.push_back({at, r, m});
+              if (moving_[std::size_t(m)].site == places_(s).index) {
+                moving_entries_.push_back({at, r, m});
+                island.moved = true;
+              }
             ++at;
           }
           for (const Attitude a : touch.attitudes) {
@@ -342,6 +341,8 @@ void Multibody::assemble(Scene& scene) {
     }
   }
   earlier_ = {multipliers_, multipliers_, multipliers_};
+  accepted_precision_ = precision_;
+  for (const Island& island : islands_) require_one_principle(island);
   if (has_vakonomic_) {
     drifts_ = gradients_;
     free_displacement_ = displacement_;
@@ -397,6 +398,19 @@ void Multibody::assemble(Scene& scene) {
     if (pushed[std::size_t(a.site)]) pushed_arms_.push_back(a);
   for (const Arm& a : planar_arms_)
     if (pushed[std::size_t(a.site)]) pushed_planar_arms_.push_back(a);
+}
+
+void Multibody::require_one_principle(const Island& island) const {
+  if (!island.vakonomic) return;
+  for (int row = island.rows.first; row < island.rows.last; ++row)
+    if (role(row) == Role::nonholonomic || role(row) == Role::damping)
+      throw std::domain_error("nonholonomic joints and dampers do not go together with vakonomic joints");
+  for (int f = island.linear.first; f < island.linear.last; ++f)
+    for (const Dragged& d : dragged_)
+      if (d.factor == f) throw std::domain_error("drag and deflection do not go together with vakonomic joints");
+  for (int r = island.rotations.first; r < island.rotations.last; ++r)
+    if (!turn_damping_[std::size_t(r)].isZero(0))
+      throw std::domain_error("drag does not go together with vakonomic joints");
 }
 
 void Multibody::leave_out_dependent() {

@@ -77,7 +77,8 @@ class Joints {
 ///     void value(const Motion& motion, double* c) const;
 ///     void gradient(const Motion& motion, Vec* g) const;
 ///     void reaction(const Configuration& at, Vec* g, RowSize* size) const;
-/// and, to be `Vakonomic` too,
+/// (the gradient along the displacement and xi, or, with a member `along_target`, along turns at the target) and, to be
+/// `Vakonomic` too,
 ///     void drift(const Motion& motion, Vec* g) const;
 /// With a member `damping` it is no constraint but a damper, of the rate of C or of phi.
 template <class J> class JointsOf final : public Joints {
@@ -92,7 +93,9 @@ template <class J> class JointsOf final : public Joints {
   Role role() const override {
     return damps ? Role::damping : optimal ? Role::vakonomic : arrows ? Role::nonholonomic : Role::holonomic;
   }
-  bool along_arrows() const override { return arrows; }
+  bool along_arrows() const override {
+    return arrows && !requires { J::along_target; };
+  }
   int count() const override { return int(all_.size()); }
   std::vector<Site> sites(int joint) const override {
     const auto& s = all_[std::size_t(joint)].sites;

@@ -182,7 +182,7 @@ struct Blade {
   void reaction(const Configuration& at, Vec* g, RowSize* size) const {
     g[0] = across(at(sites[0])(2));
     g[0](2) = arm;
-    size[0] = {0, 1 + std::abs(arm)};
+    size[0] = {0, (1 + std::abs(arm)) * (1 + std::abs(at(sites[0])(2)))};
   }
 
  private:
@@ -193,10 +193,28 @@ struct Blade {
 /// that minimises the kinetic terms obeys.
 template <class J> struct Vakonomic : J { std::array<double, std::size_t(J::rows)> multipliers{}; };
 
-/// Two bodies that turn against each other about an axis fixed in both, u in the first and v in the second, at a given
-/// rate: v.xi1 - u.xi0 = h rate.
+/// A body that does not turn about an axis of its own, or turns about it at a given rate: n.xi = h rate.
+struct BodySpin {
+  static constexpr int rows = 1;
+  std::array<Site, 0> sites;
+  std::array<Attitude, 1> attitudes;
+  Vec axis{0, 0, 1};  ///< n, of unit length, in the body
+  double rate = 0;    ///< rad/s
+
+  void value(const Motion& motion, double* c) const { c[0] = axis.dot(motion.turn(attitudes[0])) - motion.h * rate; }
+  void gradient(const Motion&, Vec* g) const { g[0] = axis; }
+  void drift(const Motion&, Vec* g) const { g[0] = Vec::Zero(); }
+  void reaction(const Configuration&, Vec* g, RowSize* size) const {
+    g[0] = axis;
+    size[0] = {0, 1};
+  }
+};
+
+/// Two hinged bodies that turn against each other, about the axis that is u in the first and v in the second, at a
+/// given rate: the angle of R^T R' about v is h rate, R = A0^T A1.
 struct HingeTurn {
   static constexpr int rows = 1;
+  static constexpr bool along_target = true;
   std::array<Site, 0> sites;
   std::array<Attitude, 2> attitudes;
   Vec u{0, 0, 1};
@@ -204,17 +222,21 @@ struct HingeTurn {
   double rate = 0;  ///< rad/s
 
   void value(const Motion& motion, double* c) const {
-    c[0] = v.dot(motion.turn(attitudes[1])) - u.dot(motion.turn(attitudes[0])) - motion.h * rate;
+    const auto relative = [&](const Configuration& at) -> Mat {
+      return at(attitudes[0]).transpose() * at(attitudes[1]);
+    };
+    const Mat turn = relative(motion.before).transpose() * relative(motion.after);
+    const double sine = 0.5 * v.dot(Vec(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)));
+    c[0] = std::atan2(sine, 0.5 * (turn.trace() - 1)) - motion.h * rate;
   }
   void gradient(const Motion&, Vec* g) const {
     g[0] = -u;
     g[1] = v;
   }
-  void drift(const Motion&, Vec* g) const { g[0] = g[1] = Vec::Zero(); }
   void reaction(const Configuration&, Vec* g, RowSize* size) const {
     g[0] = -u;
     g[1] = v;
-    size[0] = {0, 2};
+    size[0] = {2, 2};
   }
 };
 

@@ -120,9 +120,12 @@ double Multibody::follow(const Island& island) {
   }
   double moved = 0;
   double size = std::numeric_limits<double>::min();
+  for (int row = island.rows.first; row < island.rows.last; ++row)  // through the multipliers
+    size = std::max(size, sizes_[std::size_t(row)].terms);
   for (int f = island.linear.first; f < island.linear.last; ++f) {
     const auto i = std::size_t(f);
     Vec displacement = free_displacement_[i];
+    const double turned = planar_[i] ? std::abs(now_.x[i](2)) : 0;  // whose round-off is that of directions
     for (int k = factor_entries_[i]; k < factor_entries_[i + 1]; ++k) {
       const Entry& e = linear_entries_[std::size_t(k)];
       if (e.role == Role::vakonomic) {
@@ -132,7 +135,7 @@ double Multibody::follow(const Island& island) {
       }
       const Vec part = multipliers_[std::size_t(e.row)] * linear_response_[std::size_t(k)];
       displacement += part;
-      size = std::max(size, part.lpNorm<Eigen::Infinity>());
+      size = std::max(size, (1 + turned) * part.lpNorm<Eigen::Infinity>());
     }
     size = std::max(size, displacement.lpNorm<Eigen::Infinity>());
     moved = std::max(moved, (displacement - displacement_[i]).lpNorm<Eigen::Infinity>());
@@ -181,7 +184,7 @@ StepReport Multibody::solve(Island& island) {
   StepReport report;
   const Range rows = island.rows;
   double* const lambda = multipliers_.data();
-  bool rests = true;
+  bool rests = !island.moved;
   for (int row = rows.first; row < rows.last; ++row) {
     const auto i = std::size_t(row);
     lambda[i] = left_out_[i] ? 0 : 3 * (earlier_[0][i] - earlier_[1][i]) + earlier_[2][i];
@@ -195,6 +198,7 @@ StepReport Multibody::solve(Island& island) {
     rests = rests && (spin_kicked_[i].array() == 0).all() && (turned_[i].array() == 0).all();
   }
   if (rests) {
+    std::fill(precision_.begin() + rows.first, precision_.begin() + rows.last, 0.0);
     try_place(island);
     report.status = SolveStatus::converged;
     return report;
@@ -374,6 +378,19 @@ StepReport Multibody::turn_freely(int rotation) {
 }
 
 StepReport Multibody::advance() {
+  const double step_before = h_;
+  if (has_vakonomic_) reactions_ = gradients_;
+  const StepReport report = solve_all();
+  if (report.converged()) {
+    accept();
+    return report;
+  }
+  if (has_vakonomic_) gradients_ = reactions_;
+  if (control_) set_step(step_before);
+  return report;
+}
+
+StepReport Multibody::solve_all() {
   dependence_ended_ = false;
   std::fill(impulse_.begin(), impulse_.end(), Vec::Zero());
   std::fill(spin_impulse_.begin(), spin_impulse_.end(), Vec::Zero());
@@ -433,9 +450,7 @@ StepReport Multibody::advance() {
   if (!next_is_finite()) {
     act(now_);
     worst.status = SolveStatus::not_finite;
-    return worst;
   }
-  accept();
   return worst;
 }
 
@@ -451,11 +466,12 @@ bool Multibody::next_is_finite() const {
 void Multibody::accept() {
   ++index_;
   if (control_) time_carry_ += h_ - (next_.time - now_.time);
+  std::swap(precision_, accepted_precision_);
   if (has_arrow_rows_) {
     arrow_residual_ = 0;
     for (std::size_t row = 0; row < values_.size(); ++row)
       if (roles_[row] == Role::nonholonomic || roles_[row] == Role::vakonomic)
-        arrow_residual_ = std::max(arrow_residual_, std::abs(values_[row]) * precision_[row]);
+        arrow_residual_ = std::max(arrow_residual_, std::abs(values_[row]) * accepted_precision_[row]);
   }
   for (const Dragged& d : dragged_) {
     const Vec& xi = displacement_[std::size_t(d.factor)];
@@ -560,8 +576,8 @@ std::size_t Multibody::memory() const {
         arms_, planar_arms_, pushed_arms_, pushed_planar_arms_, islands_, batches_, linear_entries_, rotation_entries_,
         linear_pairs_, rotation_pairs_, levers_, planar_levers_, gradients_, next_gradients_, linear_response_,
         rotation_response_, rotation_gradient_, factor_entries_, sizes_, multipliers_, values_, right_, precision_,
-        earlier_[0], earlier_[1], earlier_[2], left_out_, roles_, softness_, drifts_, free_displacement_, moving_,
-        moving_entries_);
+        accepted_precision_, earlier_[0], earlier_[1], earlier_[2], left_out_, roles_, softness_, drifts_,
+        free_displacement_, reactions_, moving_, moving_entries_);
   for (const Island& island : islands_) bytes += island.matrix.entries() * sizeof(double);
   return bytes;
 }
@@ -587,7 +603,8 @@ Multibody::State Multibody::state() const {
   clock(time, carry, step);
   if (control) clock(*control);
   s.clock = clock.numbers();
-  s.derived = {now_.x, loads_.on, loads_.torque, gradients_, now_.attitude, {}, {}};
+  s.derived = {now_.x, loads_.on, loads_.torque,       gradients_,     now_.attitude,
+               {},     {},        accepted_precision_, arrow_residual_};
   for (const RowSize& size : sizes_) {
     s.derived.terms.push_back(size.terms);
     s.derived.slopes.push_back(size.slope);
@@ -604,7 +621,7 @@ void Multibody::restore(const State& state) {
                     as_long_as(spin_, state.spin, state.spin_carry, state.turned, state.attitude) &&
                     as_long_as(earlier_[0], state.multipliers[0], state.multipliers[1], state.multipliers[2]);
   const bool derived_fits = as_long_as(now_.x, d.x, d.forces) && as_long_as(now_.attitude, d.attitude, d.torques) &&
-                            as_long_as(gradients_, d.gradients) && as_long_as(sizes_, d.terms, d.slopes);
+                            as_long_as(gradients_, d.gradients) && as_long_as(sizes_, d.terms, d.slopes, d.precision);
   if (!fits || (!d.x.empty() && !derived_fits)) throw std::invalid_argument("a state of another scene");
   index_ = state.index;
   dissipated_ = state.dissipated;
@@ -631,6 +648,8 @@ void Multibody::restore(const State& state) {
   next_ = now_;
   loads_ = {d.forces, d.torques};
   gradients_ = d.gradients;
+  accepted_precision_ = d.precision;
+  arrow_residual_ = d.arrow_residual;
   for (std::size_t row = 0; row < sizes_.size(); ++row) sizes_[row] = {d.terms[row], d.slopes[row]};
 }
 
@@ -641,7 +660,7 @@ void Multibody::reverse() {
 }
 
 void Multibody::make_tangent() {
-  const Momenta m = tangent(/*with_vakonomic=*/false);
+  const Momenta m = tangent([](Role role) { return role == Role::holonomic || role == Role::nonholonomic; });
   momentum_ = m.linear;
   spin_ = m.spin;
 }
@@ -655,7 +674,9 @@ void Multibody::begin() {
   act(now_);
 }
 
-Multibody::Momenta Multibody::momenta() const { return tangent(/*with_vakonomic=*/true); }
+Multibody::Momenta Multibody::momenta() const {
+  return tangent([](Role role) { return role != Role::damping; });
+}
 
 std::vector<double> Multibody::imposed_rates() const {
   std::vector<double> rates(roles_.size(), 0.0);
@@ -664,7 +685,7 @@ std::vector<double> Multibody::imposed_rates() const {
         gradients_[std::size_t(e.gradient)].dot(moving_[std::size_t(e.ground)].velocity(now_.time));
   const std::vector<Vec> at_rest(std::max(momentum_.size(), spin_.size()), Vec::Zero());
   for (const Batch& batch : batches_) {
-    if (batch.role != Role::vakonomic) continue;
+    if (batch.role == Role::holonomic || batch.role == Role::damping) continue;
     double* const rate = rates.data() + batch.row;
     batch.joints->values({now_, now_, at_rest, at_rest, h_}, batch.first, batch.count, rate);
     for (int i = 0; i < batch.count * batch.joints->rows(); ++i) rate[i] /= h_;
@@ -694,11 +715,8 @@ void Multibody::gather(const Island& island, const std::vector<Vec>& linear_weig
     if (!counts(role(island.rows.first + row))) matrix.value(matrix.index(row, row)) = 1;
 }
 
-Multibody::Momenta Multibody::tangent(bool with_vakonomic) const {
+Multibody::Momenta Multibody::tangent(const Counts& counts) const {
   Momenta m{momentum_, spin_};
-  const Counts counts = [&](Role role) {
-    return role == Role::holonomic || (role == Role::vakonomic && with_vakonomic);
-  };
   const auto inverse = [](const std::vector<Vec>& inertia) {
     std::vector<Vec> out;
     for (const Vec& i : inertia) out.push_back(i.cwiseInverse());
@@ -783,7 +801,8 @@ double Multibody::constraint_residual() const {
     batch.joints->values({now_, now_, displacement_, turned_, h_}, batch.first, batch.count, values.data() + batch.row);
     for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
       const double value = std::abs(values[std::size_t(row)]);
-      const double moved = precision_[std::size_t(row)] > 0 ? 1 / precision_[std::size_t(row)] : 0;
+      const double precision = accepted_precision_[std::size_t(row)];
+      const double moved = precision > 0 ? 1 / precision : 0;
       const double relative = value == 0 ? 0 : value / std::max(sizes_[std::size_t(row)].terms, moved);
       largest = std::isnan(relative) ? relative : std::max(largest, relative);
     }
@@ -795,20 +814,47 @@ double Multibody::velocity_defect() const {
   std::vector<double> rate = imposed_rates();
   std::vector<double> size(rate.size(), 0.0);
   for (std::size_t row = 0; row < rate.size(); ++row) size[row] = std::abs(rate[row]);
+  // Inertia times velocity: what was given, without the multipliers.
+  std::vector<Vec> linear = momentum_;
+  std::vector<Vec> spin = spin_;
+  add_multipliers(linear, spin, 1);
   const auto look = [&](const Entry& e, const Vec& velocity) {
-    if (e.role != Role::holonomic) return;
     const Vec& g = gradients_[std::size_t(e.gradient)];
     rate[std::size_t(e.row)] += g.dot(velocity);
     size[std::size_t(e.row)] += g.norm() * velocity.norm();
   };
   for (const Entry& e : linear_entries_)
-    look(e, momentum_[std::size_t(e.factor)].cwiseQuotient(inertia_[std::size_t(e.factor)]));
+    look(e, linear[std::size_t(e.factor)].cwiseQuotient(inertia_[std::size_t(e.factor)]));
   for (const Entry& e : rotation_entries_)
-    look(e, spin_[std::size_t(e.factor)].cwiseQuotient(moments_[std::size_t(e.factor)]));
+    look(e, spin[std::size_t(e.factor)].cwiseQuotient(moments_[std::size_t(e.factor)]));
   double largest = 0;
   for (std::size_t row = 0; row < rate.size(); ++row)
-    if (roles_[row] == Role::holonomic && size[row] > 0) largest = std::max(largest, std::abs(rate[row]) / size[row]);
+    if (roles_[row] != Role::damping && size[row] > 0) largest = std::max(largest, std::abs(rate[row]) / size[row]);
   return largest;
+}
+
+void Multibody::add_multipliers(std::vector<Vec>& linear, std::vector<Vec>& spin, double times) const {
+  const auto add = [&](const Entry& e, std::vector<Vec>& momentum) {
+    if (e.role == Role::vakonomic)
+      momentum[std::size_t(e.factor)] += times * earlier_[0][std::size_t(e.row)] * gradients_[std::size_t(e.gradient)];
+  };
+  for (const Entry& e : linear_entries_) add(e, linear);
+  for (const Entry& e : rotation_entries_) add(e, spin);
+}
+
+double Multibody::hardest_damper() const {
+  std::vector<double> response(softness_.size(), 0.0);
+  const auto look = [&](const Entry& e, const std::vector<Vec>& inertia) {
+    const Vec& g = gradients_[std::size_t(e.gradient)];
+    if (e.role == Role::damping)
+      response[std::size_t(e.row)] += h_ * g.dot(g.cwiseQuotient(inertia[std::size_t(e.factor)]));
+  };
+  for (const Entry& e : linear_entries_) look(e, inertia_);
+  for (const Entry& e : rotation_entries_) look(e, moments_);
+  double hardest = 0;
+  for (std::size_t row = 0; row < response.size(); ++row)
+    if (roles_[row] == Role::damping) hardest = std::max(hardest, response[row] / softness_[row]);
+  return hardest;
 }
 
 }  // namespace lagroid::multibody

@@ -37,7 +37,8 @@ class Multibody {
  public:
   /// The scene at its first node. Rows of joints that depend on others there are left out (`dependent_rows`), and
   /// joints that touch nothing that moves. Throws std::invalid_argument where a gradient is not finite, and where steps
-  /// are to be controlled and the scene has no such time scale.
+  /// are to be controlled and the scene has no such time scale; std::domain_error where one island obeys two
+  /// principles.
   Multibody(Scene scene, double h, const Options& options = {});
 
   /// One step. Where it does not converge nothing changes, and the report says why.
@@ -56,7 +57,8 @@ class Multibody {
     struct Derived {
       std::vector<Vec> x, forces, torques, gradients;
       std::vector<Mat> attitude;
-      std::vector<double> terms, slopes;
+      std::vector<double> terms, slopes, precision;
+      double arrow_residual = 0;
 
       /// Visits the fields.
       template <class Archive> void persist(Archive& archive) {
@@ -67,6 +69,8 @@ class Multibody {
         archive("attitude", attitude);
         archive("terms", terms);
         archive("slopes", slopes);
+        archive("precision", precision);
+        archive("arrow residual", arrow_residual);
       }
     } derived;
   };
@@ -75,7 +79,7 @@ class Multibody {
   void restore(const State& state);
   /// Back along the same trajectory: momenta change their signs.
   void reverse();
-  /// Takes from the momenta what the holonomic joints do not allow.
+  /// Takes from the momenta what holonomic and nonholonomic joints do not allow.
   void make_tangent();
 
   long index() const { return index_; }
@@ -91,7 +95,7 @@ class Multibody {
   int linear_place(int linear) const { return linear_places_[std::size_t(linear)]; }
   const Quaternion& quaternion(Attitude a) const { return quaternions_[std::size_t(places_(a).index)]; }
 
-  /// Inertia times velocity at this node, tangent to holonomic and vakonomic joints (as it is reported); in the order
+  /// Inertia times velocity at this node, tangent to the joints (as it is reported); in the order
   /// of `configuration()`: of places (kg m/s) and of attitudes (body angular momentum, kg m^2/s).
   struct Momenta {
     std::vector<Vec> linear;
@@ -110,9 +114,13 @@ class Multibody {
   Vec angular_momentum(const Momenta& m) const;
   /// The largest |C| at this node, and |phi| on the arrow that led here, over the sizes of their terms.
   double constraint_residual() const;
-  /// The largest rate at which a row of a joint is violated by the given velocities, over the size of its gradient
-  /// times them; zero for consistent ones.
+  /// At the start, the largest rate at which a row of a joint is violated by the given velocities, over the size of its
+  /// gradient times them; zero for consistent ones.
   double velocity_defect() const;
+
+  /// The largest c h / (2 m) of a damper, m the inertia that it alone would move. Above one momenta and energies
+  /// alternate about those of the motion, which places follow all the same.
+  double hardest_damper() const;
 
   int islands() const { return int(islands_.size()); }
   int rows() const { return int(values_.size()); }
@@ -198,11 +206,14 @@ class Multibody {
     Range linear, dragged, rotations, arms, planar_arms, rows, batches, linear_entries, rotation_entries, linear_pairs,
         rotation_pairs, levers, planar_levers;
     bool vakonomic = false;
+    bool moved = false;  ///< by the ground
     Elimination matrix;
   };
 
   void assemble(Scene& scene);
   void leave_out_dependent();
+  /// Throws std::domain_error where what joints tie together obeys two principles.
+  void require_one_principle(const Island& island) const;
   /// What follows from places and attitudes at this node.
   void begin();
 
@@ -223,12 +234,14 @@ class Multibody {
   void set_step(double h);
   /// Of the time scale |U|^(-3/2): d log / dt.
   double time_scale_rate() const;
-  /// Inertia times velocity; without vakonomic rows, the momenta are taken tangent to holonomic ones alone.
-  Momenta tangent(bool with_vakonomic) const;
   using Counts = std::function<bool(Role)>;
   /// D W D^T of the rows that count, at this node, with weights of the factors; one on the diagonal of the others.
   void gather(const Island& island, const std::vector<Vec>& linear_weights, const std::vector<Vec>& rotation_weights,
               const Counts& counts, Elimination& matrix) const;
+  /// Inertia times velocity that the rows which count allow.
+  Momenta tangent(const Counts& counts) const;
+  /// What the first multipliers of vakonomic rows add to momenta.
+  void add_multipliers(std::vector<Vec>& linear, std::vector<Vec>& spin, double times) const;
   /// The rate at which a row changes where nothing moves by itself: of grounds that move, of plates that turn.
   std::vector<double> imposed_rates() const;
   Motion motion() const { return {now_, next_, displacement_, turned_, h_}; }
@@ -236,6 +249,8 @@ class Multibody {
   bool factorise(Island& island);
   StepReport solve(Island& island);
   StepReport turn_freely(int rotation);
+  /// Solves all islands; what a step leaves behind that is not accepted is put right by `advance`.
+  StepReport solve_all();
   void accept();
   /// The momentum that vakonomic rows take away again at the target; the forces of dampers there.
   void end_vakonomic();
@@ -284,12 +299,13 @@ class Multibody {
   std::vector<Vec> gradients_, next_gradients_, linear_response_, rotation_response_, rotation_gradient_;
   std::vector<int> factor_entries_;  ///< of each linear factor, where its entries begin
   std::vector<RowSize> sizes_;
-  std::vector<double> multipliers_, values_, right_, precision_;  ///< precision: one over the size of a row
-  std::array<std::vector<double>, 3> earlier_;                    ///< multipliers of the last steps
+  std::vector<double> multipliers_, values_, right_;
+  std::vector<double> precision_, accepted_precision_;  ///< one over the size of a row: of this step, of the last
+  std::array<std::vector<double>, 3> earlier_;          ///< multipliers of the last steps
   std::vector<char> left_out_;
   std::vector<Role> roles_;
-  std::vector<double> softness_;                 ///< of damping rows: 2 / c; empty where there are none
-  std::vector<Vec> drifts_, free_displacement_;  ///< where there are vakonomic rows
+  std::vector<double> softness_;                             ///< of damping rows: 2 / c; empty where there are none
+  std::vector<Vec> drifts_, free_displacement_, reactions_;  ///< where there are vakonomic rows
   std::vector<MovingGround> moving_;
   std::vector<MovingEntry> moving_entries_;
   double dissipated_ = 0;
