@@ -27,7 +27,7 @@ extern "C" void note_signal(int signal) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
-  signal_seen = 0;
+  if (interrupted()) return;  // by a guard before: the handlers are still in place
   struct sigaction note {};
   note.sa_handler = note_signal;
   note.sa_flags = SA_RESTART;
