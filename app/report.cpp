@@ -107,7 +107,8 @@ std::string text_report(const RunResult& r) {
   if (const std::string message = run_message(r); !message.empty()) line("  " + message);
   if (!r.method.empty()) line("  method    " + r.method);
   if (r.cost) line(fmt::format("  cost      {:.15g}", *r.cost));
-  if (!r.initial.momentum.empty()) {
+  constexpr std::size_t readable = 9;  // numbers; of scenes with more the summary tells
+  if (!r.initial.momentum.empty() && r.initial.momentum.size() <= readable) {
     line("  initial   " + endpoint(r.initial));
     line("  final     " + endpoint(r.final));
   }

@@ -660,9 +660,11 @@ void Multibody::reverse() {
 }
 
 void Multibody::make_tangent() {
-  const Momenta m = tangent([](Role role) { return role == Role::holonomic || role == Role::nonholonomic; });
+  add_multipliers(momentum_, spin_, 1);
+  const Momenta m = momenta();
   momentum_ = m.linear;
   spin_ = m.spin;
+  add_multipliers(momentum_, spin_, -1);
 }
 
 void Multibody::begin() {

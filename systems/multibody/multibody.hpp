@@ -79,7 +79,7 @@ class Multibody {
   void restore(const State& state);
   /// Back along the same trajectory: momenta change their signs.
   void reverse();
-  /// Takes from the momenta what holonomic and nonholonomic joints do not allow.
+  /// Takes from the momenta what the joints do not allow; vakonomic ones keep their last multipliers.
   void make_tangent();
 
   long index() const { return index_; }
