@@ -209,10 +209,15 @@ StepReport Multibody::solve(Island& island) {
     reach = std::max(reach, displacement_[std::size_t(f)].lpNorm<Eigen::Infinity>());
   for (int r = island.rotations.first; r < island.rotations.last; ++r)
     reach = std::max(reach, turned_[std::size_t(r)].lpNorm<Eigen::Infinity>());
+  // The round-off of places comes to rows on arrows through the multipliers.
+  double places = reach;
+  for (int row = rows.first; has_arrow_rows_ && row < rows.last; ++row)
+    places = std::max(places, sizes_[std::size_t(row)].terms);
   double* const precision = precision_.data();
   for (int row = rows.first; row < rows.last; ++row) {
     const RowSize& size = sizes_[std::size_t(row)];
-    precision[row] = 1 / (size.terms + size.slope * reach + std::numeric_limits<double>::min());
+    const double moves = role(row) == Role::holonomic ? reach : places;
+    precision[row] = 1 / (size.terms + size.slope * moves + std::numeric_limits<double>::min());
   }
   for (int i = island.linear_entries.first; i < island.linear_entries.last; ++i) {
     const Entry& e = linear_entries_[std::size_t(i)];
