@@ -196,7 +196,7 @@ TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
            "[[joint]]\nkind = \"blade\"\nbody = \"card\"\nprinciple = \"vakonomic\"\n[[effect]]\nkind = \"drag\"\n"
            "motion = 1\n" +
            grid,
-       "no drag"},
+       "drag and deflection do not go together with vakonomic joints"},
       {brick +
            "[[joint]]\nkind = \"hinge\"\naxis = [1, 0, 0]\nbetween = [\"ground\", \"brick\"]\npoints = [[1, 0, 0], [0, "
            "0, 0]]\nrate = 7\n" +
@@ -282,6 +282,54 @@ TEST_F(Scenes, SystemsGoOnWithTheSameBits) {
   }
 }
 
+/// A finished run that is taken up to do no more, one whose last step is recorded besides, one whose step fails.
+TEST_F(Scenes, WhatIsTakenUpWithNothingToDoStaysAsItIs) {
+  for (const std::string scene : {"rolling_balls --set time.steps=100 --set output.every=7",
+                                  "steering --set time.step=0.7 --set time.steps=100000 --set output.every=9",
+                                  "spring_pendulum --set time.step=5", "pendulum_adaptive --set time.step=1.5"}) {
+    const fs::path out = folder_ / "out";
+    const std::string name = scene.substr(0, scene.find(' '));
+    const int code = run("run " + example(name) + scene.substr(scene.find(' ')) + " --out " + out.string()).code;
+    const std::string rows = contents(out / "trajectory.csv");
+    auto before = nlohmann::json::parse(contents(out / "summary.json"));
+    EXPECT_EQ(run("resume " + out.string()).code, code) << scene;
+    auto after = nlohmann::json::parse(contents(out / "summary.json"));
+    EXPECT_TRUE(rows == contents(out / "trajectory.csv")) << scene;
+    before.erase("seconds");
+    after.erase("seconds");
+    EXPECT_EQ(before, after) << scene;
+  }
+}
+
+/// Any bit that is another in a checkpoint is noticed.
+TEST_F(Scenes, DamagedCheckpointsAreRefused) {
+  const fs::path out = folder_ / "out";
+  ASSERT_EQ(run("run " + example("tops") + " --set time.steps=20 --out " + out.string()).code, 0);
+  std::mt19937 random(7);
+  for (const char* file : {"state.cbor", "rows-000000.cbor", "scene.toml"})
+    for (int k = 0; k < 8; ++k) {
+      const fs::path kept = out / "checkpoint" / file;
+      const std::string good = contents(kept);
+      std::string bad = good;
+      bad[random() % bad.size()] ^= char(1 << random() % 7);
+      std::ofstream(kept, std::ios::binary) << bad;
+      EXPECT_EQ(run("resume " + out.string()).code, 2) << file;
+      std::ofstream(kept, std::ios::binary) << good;
+    }
+  EXPECT_EQ(run("resume " + out.string()).code, 0);
+}
+
+/// A user's own files in a folder of that name are not ours.
+TEST_F(Scenes, AFolderOfThatNameKeepsItsFiles) {
+  const fs::path own = folder_ / "out" / "checkpoint" / "mine.txt";
+  fs::create_directories(own.parent_path());
+  std::ofstream(own) << "mine";
+  const std::string out = " --out " + (folder_ / "out").string();
+  EXPECT_EQ(run("run " + example("tops") + " --set time.steps=20" + out).code, 0);
+  EXPECT_EQ(run("run " + example("kepler_boundary") + out).code, 0);
+  EXPECT_EQ(contents(own), "mine");
+}
+
 TEST_F(Scenes, TwoRunsDoNotShareAFolder) {
   const fs::path out = folder_ / "out";
   const std::string scene = example("tops") + " --set output.every=100000 --out " + out.string();
@@ -340,7 +388,8 @@ class Killed : public Scenes {
         k = -1;  // killed before there was anything to lose
         continue;
       }
-      const auto state = nlohmann::json::from_cbor(contents(out / "checkpoint" / "state.cbor")).at("state");
+      const std::string bytes = contents(out / "checkpoint" / "state.cbor").substr(sizeof(std::size_t));
+      const auto state = nlohmann::json::from_cbor(bytes).at("state");
       const long now = state.at("steps").get<long>();
       EXPECT_GE(now, reached);
       EXPECT_EQ(now % interval, 0);
