@@ -86,6 +86,11 @@ TEST_F(Scenes, BallsRollAndChargesTurn) {
   const Outcome slips = run("run " + file.string() + " --set body.1.angular_velocity=[0,0.9,0]");
   EXPECT_EQ(slips.code, 2);
   EXPECT_NE(slips.err.find("give it angular_velocity = [0, 1, 0]"), std::string::npos) << slips.err;
+  const Outcome brought =
+      run("run " + file.string() + " --set body.1.angular_velocity=[0,0.9,0] --set project_velocities=true --json");
+  EXPECT_EQ(brought.code, 0) << brought.err;
+  const auto momentum = nlohmann::json::parse(brought.out).at("final").at("momentum");
+  EXPECT_NEAR(momentum.at(3).get<double>(), momentum.at(7).get<double>() / 0.4, 1e-12) << "it rolls";
   const Outcome turns = run("run " + file.string() + " --set body.1.angular_velocity=[0,1,1]");
   EXPECT_EQ(turns.code, 2);
   const Outcome body = run("run " + file.string() + " --set effect.0.bodies=[\\\"ball\\\"]");

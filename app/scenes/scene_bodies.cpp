@@ -264,6 +264,7 @@ SceneBodies read_scene_bodies(const Section& scene) {
   SceneBodies out;
   out.scene.rotation =
       scene.choice_or("rotation", "exp", {"exp", "cayley"}) == "exp" ? Retraction::exponential : Retraction::cayley;
+  out.projects = scene.flag_or("project_velocities", false);
   for (const auto& table : scene.tables("body")) read_body(out, table);
   for (const auto& table : scene.tables("joint")) read_joint(out, table);
   for (const auto& table : scene.tables("effect")) read_effect(out, table);

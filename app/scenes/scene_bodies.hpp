@@ -60,6 +60,7 @@ struct SceneBodies {
   };
   std::vector<Line> lines;
   std::vector<Shape> scenery;  ///< what stands around: a plate
+  bool projects = false;       ///< velocities are brought to what the joints allow
   bool nonholonomic = false;
   bool deflected = false;   ///< by magnetic fields or the frame: momenta are not the canonical ones
   bool dissipates = false;  ///< damping takes energy

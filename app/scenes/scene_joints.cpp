@@ -130,7 +130,7 @@ void read_hinge(SceneBodies& bodies, const Section& table) {
   turn.rate = table.number("rate");
   const auto turning = [&](const End& end) { return end.body ? axis.dot(end.body->angular_velocity) : 0.0; };
   const double has = turning(ends[1]) - turning(ends[0]);
-  if (std::abs(has - turn.rate) > 1e-9 * (1 + std::abs(turn.rate)))
+  if (!bodies.projects && std::abs(has - turn.rate) > 1e-9 * (1 + std::abs(turn.rate)))
     table.fail("rate", fmt::format("the second body turns against the first at {:.10g} rad/s at the start: give it an "
                                    "angular_velocity (and a velocity of its centre) that agrees",
                                    has));
@@ -169,9 +169,9 @@ NamedBody& turning_body(SceneBodies& bodies, const Section& table) {
 }
 
 /// The angular velocity in space that the body should have, where it has another.
-void require_spin(const Section& table, const NamedBody& body, const Vec& wanted) {
+void require_spin(const SceneBodies& bodies, const Section& table, const NamedBody& body, const Vec& wanted) {
   const Vec& has = body.angular_velocity;
-  if ((wanted - has).norm() <= 1e-9 * (1 + wanted.norm() + has.norm())) return;
+  if (bodies.projects || (wanted - has).norm() <= 1e-9 * (1 + wanted.norm() + has.norm())) return;
   const Vec w = body.attitude.transpose() * wanted;
   table.fail("body", fmt::format("\"{}\" does not begin as this joint has it; give it angular_velocity = [{:.17g}, "
                                  "{:.17g}, {:.17g}], or another velocity",
@@ -208,10 +208,10 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
   const double radius = table.number("radius", positive);
   const double rate = table.number_or("plate_rate", 0);
   const Vec& v = ball.velocity;
-  if (v(2) != 0)
+  if (v(2) != 0 && !bodies.projects)
     table.fail("body", fmt::format("\"{}\" rolls on a level plate: its velocity has no third part", ball.name));
   const Vec slip = v - rate * Vec(Vec::UnitZ()).cross(ball.place);
-  require_spin(table, ball, {-slip(1) / radius, slip(0) / radius, ball.angular_velocity(2)});
+  require_spin(bodies, table, ball, {-slip(1) / radius, slip(0) / radius, ball.angular_velocity(2)});
   add_on_arrows(bodies, table, ball, multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
   bodies.scene.add(InPlane{{bodies.scene.ground(ball.place), ball.body.centre}, {multibody::Attitude{}}, Vec::UnitZ()});
   if (rate != 0) bodies.driven = true;
@@ -227,7 +227,7 @@ void read_spin(SceneBodies& bodies, const Section& table) {
   const bool in_body = table.choice_or("fixed_in", "space", {"space", "body"}) == "body";
   const double rate = table.number_or("rate", 0);
   const Vec in_space = in_body ? Vec(body.attitude * axis) : axis;
-  require_spin(table, body, body.angular_velocity + (rate - in_space.dot(body.angular_velocity)) * in_space);
+  require_spin(bodies, table, body, body.angular_velocity + (rate - in_space.dot(body.angular_velocity)) * in_space);
   if (in_body) {
     add_on_arrows(bodies, table, body, multibody::BodySpin{{}, {body.body.attitude}, axis, rate});
   } else {
@@ -248,7 +248,7 @@ void read_blade(SceneBodies& bodies, const Section& table) {
                          table.number_or("rate", 0)};
   const Vec along = body.attitude * Vec(std::cos(blade.direction), std::sin(blade.direction), 0);
   const double slip = Vec(Vec::UnitZ()).cross(along).dot(body.velocity) + blade.arm * body.angular_velocity(2);
-  if (std::abs(slip - blade.rate) > 1e-9 * (1 + body.velocity.norm() + std::abs(slip)))
+  if (!bodies.projects && std::abs(slip - blade.rate) > 1e-9 * (1 + body.velocity.norm() + std::abs(slip)))
     table.fail("body", fmt::format("\"{}\" moves across the blade at {:.10g} m/s at the start, and may at {:.10g}: "
                                    "give it another velocity or angular_velocity",
                                    body.name, slip, blade.rate));

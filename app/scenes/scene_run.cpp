@@ -304,7 +304,6 @@ class Run final : public SteppedRun {
     pace_.steps = std::min(pace_.steps, most_steps);
     for (const NamedBody* body : bodies_.chosen(output, "bodies"))
       if (output.has("bodies")) chosen_.insert(body->name);
-    const bool project = scene.flag_or("project_velocities", false);
     scene.finish();
 
     try {
@@ -319,7 +318,7 @@ class Run final : public SteppedRun {
                   "without joints and other effects");
       scene.fail("", fmt::format("{}: a position, a length or a point is too large", error.what()));
     }
-    if (project) motion_->make_tangent();
+    if (bodies_.projects) motion_->make_tangent();
     if (const double defect = motion_->velocity_defect(); !(defect < 1e-8))
       scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
                                  "them, or take what the joints allow of them with project_velocities = true",
