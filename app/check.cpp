@@ -105,8 +105,8 @@ Certificate certify_bodies(const Section& scene, const CheckOptions& options) {
   certificate.states = 1;
   certificate.samples = 1;
   certificate.seed = options.seed;
-  certificate.suites.push_back(
-      laws::scene_laws({bodies.name, bodies.make, bodies.step, 20 * bodies.step, bodies.symplectic}));
+  certificate.suites.push_back(laws::scene_laws(
+      {bodies.name, bodies.make, bodies.step, 20 * bodies.step, bodies.symplectic, bodies.reversible}));
   certificate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return certificate;
 }

@@ -171,6 +171,23 @@ TEST(SceneLaws, HoldOfVakonomicScenes) {
   EXPECT_TRUE(report.holds()) << report;
 }
 
+/// With speeds that are given, too, and on a plate that turns; but there is no way back.
+TEST(SceneLaws, HoldOfVakonomicScenesWithRates) {
+  const auto make = [] {
+    Scene scene;
+    const Body robot = scene.planar_body(1, 0.8, {0.3, 0.1, 0.2}, {std::cos(0.2), std::sin(0.2), 0.5});
+    const Site place = scene.planar_place(robot);
+    scene.add(Vakonomic<Blade>{{{place}, 0, 0, 0}, {0.7}});
+    scene.add(Vakonomic<Blade>{{{place}, -M_PI / 2, 0, 1}, {0.4}});
+    const Body ball = scene.rigid_body(1, {0.4, 0.4, 0.4}, {0.5, 0, 1}, {1, 0, 0, 0}, {0, 0.4, 0}, {0, 0, 0});
+    scene.add(Vakonomic<Rolling>{{{ball.centre}, {ball.attitude}, 1, 0.8}, {0.3, -0.2}});
+    return scene;
+  };
+  const auto report = laws::scene_laws({"rates", make, 0.02, 0.5, true, false});
+  EXPECT_TRUE(report.holds()) << report;
+  EXPECT_FALSE(laws::scene_laws({"rates", make, 0.02, 0.5, true, true}).law("steps go back the way they came").holds());
+}
+
 struct NoDrift : Blade {
   void drift(const Motion&, Vec* g) const { g[0] = Vec::Zero(); }
 };

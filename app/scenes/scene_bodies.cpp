@@ -221,7 +221,7 @@ End SceneBodies::ground_of(const Section& table, const Vec& place) {
     table.fail("ground_amplitude", "a ground that moves has an amplitude and a rate; leave both out for one at rest");
   end.site = scene.moving_ground(place, amplitude, rate);
   end.moved = true;
-  driven = true;
+  timed = true;
   return end;
 }
 

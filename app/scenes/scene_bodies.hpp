@@ -64,7 +64,8 @@ struct SceneBodies {
   bool nonholonomic = false;
   bool deflected = false;   ///< by magnetic fields or the frame: momenta are not the canonical ones
   bool dissipates = false;  ///< damping takes energy
-  bool driven = false;      ///< forces that are not derived from a potential, motions that are given
+  bool driven = false;      ///< forces that are not derived from a potential
+  bool timed = false;       ///< forces and motions that time gives: energy is not kept
   bool vakonomic = false;
   bool counts_cost = false;  ///< of the controls: the kinetic terms
   double damping_rate = 0;   ///< the largest drag over what it slows down, 1/s
@@ -111,8 +112,10 @@ template <class Kinds> void read_kind(const Kinds& kinds, SceneBodies& bodies, c
 inline bool is_variational(const SceneBodies& bodies) {
   return !bodies.dissipates && !bodies.driven && !bodies.nonholonomic;
 }
-/// Whether it is symplectic in its own momenta, m v, and goes back where they change their signs.
+/// Whether it is symplectic in its own momenta.
 inline bool is_symplectic(const SceneBodies& bodies) { return is_variational(bodies) && !bodies.deflected; }
+/// Whether it goes back where these change their signs.
+inline bool is_reversible(const SceneBodies& bodies) { return is_symplectic(bodies) && !bodies.timed; }
 
 /// Reads [[body]], [[joint]] and [[effect]].
 SceneBodies read_scene_bodies(const Section& scene);

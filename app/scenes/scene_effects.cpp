@@ -166,7 +166,7 @@ void read_force(SceneBodies& bodies, const Section& table) {
     bodies.scene.add(multibody::ConstantForce{{end.site}, force});
   } else {
     bodies.scene.add(multibody::PeriodicForce{{end.site}, force, rate, table.number_or("phase", 0)});
-    bodies.driven = true;
+    bodies.timed = true;
   }
   bodies.isolated = false;
 }

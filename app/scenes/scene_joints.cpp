@@ -136,7 +136,7 @@ void read_hinge(SceneBodies& bodies, const Section& table) {
                                    has));
   bodies.scene.add(turn);
   bodies.nonholonomic = true;
-  if (turn.rate != 0) bodies.driven = true;
+  if (turn.rate != 0) bodies.timed = true;
 }
 
 void read_weld(SceneBodies& bodies, const Section& table) { keep_attitude(bodies, joined_ends(bodies, table, "weld")); }
@@ -214,7 +214,7 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
   require_spin(bodies, table, ball, {-slip(1) / radius, slip(0) / radius, ball.angular_velocity(2)});
   add_on_arrows(bodies, table, ball, multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
   bodies.scene.add(InPlane{{bodies.scene.ground(ball.place), ball.body.centre}, {multibody::Attitude{}}, Vec::UnitZ()});
-  if (rate != 0) bodies.driven = true;
+  if (rate != 0) bodies.timed = true;
   Shape plate = turning_plate(rate);
   plate.position = {0.0, 0.0, ball.place(2) - radius};
   if (bodies.scenery.empty()) bodies.scenery.push_back(plate);
@@ -233,7 +233,7 @@ void read_spin(SceneBodies& bodies, const Section& table) {
   } else {
     add_on_arrows(bodies, table, body, multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
   }
-  if (rate != 0) bodies.driven = true;
+  if (rate != 0) bodies.timed = true;
 }
 
 void read_blade(SceneBodies& bodies, const Section& table) {
@@ -253,7 +253,7 @@ void read_blade(SceneBodies& bodies, const Section& table) {
                                    "give it another velocity or angular_velocity",
                                    body.name, slip, blade.rate));
   add_on_arrows(bodies, table, body, blade);
-  if (blade.rate != 0) bodies.driven = true;
+  if (blade.rate != 0) bodies.timed = true;
 }
 
 /// The kinds of [[joint]], as they are listed to users.

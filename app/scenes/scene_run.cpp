@@ -221,7 +221,7 @@ std::vector<Panel> panels(const SceneBodies& bodies, const std::set<std::string>
 class Promises {
  public:
   explicit Promises(const SceneBodies& bodies)
-      : keeps_energy_(!bodies.driven),
+      : keeps_energy_(!bodies.driven && !bodies.timed),
         isolated_(bodies.isolated),
         energy_(bodies.dissipates ? "energy and what drag took" : "energy", Promise::bounded, 1),
         momentum_("momentum", Promise::conserved, 3),
@@ -347,7 +347,7 @@ class Run final : public SteppedRun {
   /// What is asked instead of running it; `scene` is the one that was read.
   BodiesToCheck to_check(const Section& scene) const {
     return {result_.system, [scene] { return std::move(read_scene_bodies(scene).scene); }, step_,
-            is_symplectic(bodies_)};
+            is_symplectic(bodies_), is_reversible(bodies_)};
   }
 
   RunResult go() {

@@ -24,6 +24,7 @@ struct BodiesToCheck {
   std::function<multibody::Scene()> make;
   double step = 0;
   bool symplectic = true;
+  bool reversible = true;
 };
 BodiesToCheck bodies_to_check(const Section& scene);
 

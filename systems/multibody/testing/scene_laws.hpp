@@ -184,6 +184,7 @@ struct SceneSubject {
   double h = 0.01;
   double horizon = 1;      ///< s, over which orders are measured
   bool symplectic = true;  ///< without damping and without forces that have no energy
+  bool reversible = true;  ///< where it is symplectic: not where time gives forces or motions
 };
 
 /// The laws of a scene's step: "steps go back the way they came", "order two", and, where it is to be, "symplectic":
@@ -220,7 +221,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
     }
     report.laws.push_back(law);
   };
-  if (subject.symplectic)
+  if (subject.symplectic && subject.reversible)
     ask_law("steps go back the way they came", 1e-9, [&] {
       Multibody motion = begun(subject.h);
       const auto start = places(motion);
