@@ -269,7 +269,7 @@ Task<Sys> boundary_value(const Section& scene, const RunContext& context, const 
                        {},
                        read_boundary_solver(scene.section_or_empty("solver")),
                        read_continuation(scene),
-                       read_every(scene, context)};
+                       context.record ? read_every(scene) : 0};
   refuse_accuracy(scene);
   scene.finish();
   const auto& problem = run.problem.stage;

@@ -6,19 +6,20 @@ namespace lagroid::app {
 
 namespace {
 
-constexpr long most_steps = 2'000'000'000;
+constexpr long most_apart = 1'000'000'000;  // rows, checkpoints
 
 }  // namespace
 
 TimeGrid read_time(const Section& scene) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
+  constexpr long most = 2'000'000'000;
   TimeGrid grid;
   const bool has_duration = time.has("duration");
   const bool has_step = time.has("step");
   constexpr double first_tried = 0.01;
   if (has_step && time.has("accuracy")) time.fail("accuracy", "finds the first step: leave out step or accuracy");
   if (has_duration && has_step) time.fail("duration", "give step or duration, not both (steps goes with either)");
-  grid.steps = time.integer("steps", 1, most_steps);
+  grid.steps = time.integer("steps", 1, most);
   grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
               : !has_step && time.has("accuracy") ? first_tried
                                                   : time.number("step", positive);
@@ -93,8 +94,7 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
     for (const char* key : {"composition", "method"})
       if (time.has(key)) time.fail(key, "goes with mode = \"fixed\"");
     if (time.integer_or("order", 2, 2, 8) != 2) time.fail("order", "above 2 goes with mode = \"fixed\"");
-    if (time.has("duration"))
-      time.fail("duration", "is not kept by steps that vary: give step, the first one, and steps");
+    refuse_duration(time);
   }
   if (mode != "adaptive" && time.has("without_root")) time.fail("without_root", "goes with mode = \"adaptive\"");
   if (time.has("accuracy")) {
@@ -107,9 +107,11 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
   return choice;
 }
 
-long read_every(const Section& scene, const RunContext& context) {
-  const long every = scene.section_or_empty("output").integer_or("every", 1, 1, most_steps);
-  return context.record ? every : 0;
+long read_every(const Section& scene) { return scene.section_or_empty("output").integer_or("every", 1, 1, most_apart); }
+
+void refuse_duration(const Section& time) {
+  if (time.has("duration"))
+    time.fail("duration", "is not kept by steps that vary: give step, the first one, and steps");
 }
 
 namespace {
@@ -125,9 +127,8 @@ std::string kept_scene(const Section& scene) {
 Pace read_pace(const Section& scene, const RunContext& context) {
   Pace pace;
   pace.steps = read_time(scene).steps;
-  const Section output = scene.section_or_empty("output");
-  pace.every = output.integer_or("every", 1, 1, most_steps);
-  pace.checkpoint = output.integer_or("checkpoint", 0, 1, most_steps);
+  pace.every = read_every(scene);
+  pace.checkpoint = scene.section_or_empty("output").integer_or("checkpoint", 0, 1, most_apart);
   if (!context.folder.empty() && !context.resume) pace.scene = kept_scene(scene);
   return pace;
 }

@@ -45,8 +45,10 @@ inline constexpr Abilities abilities_of{Variational<Sys>, Timed<Sys>, Timed<Sys>
 /// Refuses what the system does not have.
 MarchChoice read_march(const Section& scene, const Abilities& able);
 
-/// [output]: every n-th node is recorded (and the last); 0 when nothing is.
-long read_every(const Section& scene, const RunContext& context);
+/// [output]: every n-th node is recorded (and the last).
+long read_every(const Section& scene);
+/// Where the sizes of steps vary.
+void refuse_duration(const Section& time);
 
 /// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint.
 Pace read_pace(const Section& scene, const RunContext& context);
@@ -106,9 +108,10 @@ template <DiscreteSystem Sys> class SystemRun final : public SteppedRun {
   std::string failure(const StepReport& report, long step) const override {
     return step_failure(report, step, march_->point().time, mode_);
   }
-  bool observe(long) override {
-    march_->for_each_inner_stage(
-        [&](const Step<Sys>& step, double from, double size) { recorder_.watch_constraint(step, from, size); });
+  bool observe(long step) override {
+    if (step > 0)
+      march_->for_each_inner_stage(
+          [&](const Step<Sys>& inner, double from, double size) { recorder_.watch_constraint(inner, from, size); });
     recorder_.observe(reported(system_, march_->point()));
     return true;
   }

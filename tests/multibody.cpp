@@ -532,6 +532,21 @@ TEST(Multibody, ControlledStepsFollowTheAttraction) {
   EXPECT_THROW(Multibody(std::move(other), 0.01, {.controlled = true}), std::invalid_argument);
 }
 
+/// The torques of attractions change their energy, too: h follows |U|^(-3/2) of a body that turns about a point.
+TEST(Multibody, ControlledStepsFollowWhatTurns) {
+  Scene scene;
+  const Body body = scene.pivoted_body({1.2, 1.2, 1.1}, Vec::Zero(), upright, {0, 0, 0.5});
+  scene.add(CentralGravity{{scene.point_of(body, {1, 0, 0})}, {1.5, 0.3, 0}, 1});
+  Multibody motion(std::move(scene), 0.002, {.controlled = true});
+  const auto ratio = [&] { return motion.step() * std::pow(-motion.potential_energy(), 1.5); };
+  advance(motion, 1);
+  const double first = ratio();
+  const double step = motion.step();
+  advance(motion, 1500);
+  EXPECT_GT(std::abs(motion.step() / step - 1), 0.05);
+  EXPECT_NEAR(ratio() / first, 1, 0.01);
+}
+
 /// A sleigh on a blade ahead of its centre, in closed form.
 TEST(Multibody, ASleighMovesInClosedForm) {
   ChaplyginSleigh system;

@@ -287,6 +287,15 @@ TEST_F(Scenes, SystemsGoOnWithTheSameBits) {
   }
 }
 
+/// The arrows inside a composed step are looked at once there is one: the unit arrow keeps no prescribed spin.
+TEST_F(Scenes, ComposedStepsKeepConstraintsFromTheStart) {
+  const Outcome r = run("run " + example("plate_ball_initial_value") + " --set time.order=4 --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto entry = nlohmann::json::parse(r.out).at("ledger").at("entries").at(0);
+  EXPECT_EQ(entry.at("name"), "constraint residual");
+  EXPECT_EQ(entry.at("verdict"), "kept");
+}
+
 /// A finished run that is taken up to do no more, one whose last step is recorded besides, one whose step fails.
 TEST_F(Scenes, WhatIsTakenUpWithNothingToDoStaysAsItIs) {
   for (const std::string scene : {"rolling_balls --set time.steps=100 --set output.every=7",

@@ -75,12 +75,18 @@ void read_spring(SceneBodies& bodies, const Section& table) {
   bodies.lines.push_back({ends[0], ends[1], 0.004});
 }
 
-void read_torsion(SceneBodies& bodies, const Section& table) {
+/// The ends of what acts on two attitudes.
+std::array<End, 2> turning_ends(SceneBodies& bodies, const Section& table, std::string_view effect) {
   const auto ends = bodies.ends(table, /*with_points=*/false);
   for (const End& end : ends)
     if (!end.turns_in_space())
       table.fail("between",
-                 fmt::format("\"{}\" does not turn in space: a torsion spring acts on bodies that do", end.name()));
+                 fmt::format("\"{}\" does not turn in space: {} acts on bodies that do", end.name(), effect));
+  return ends;
+}
+
+void read_torsion(SceneBodies& bodies, const Section& table) {
+  const auto ends = turning_ends(bodies, table, "a torsion spring");
   const Vec axis = vector_of(table, "direction", "in space at the start, fixed in both bodies");
   if (!(axis.norm() > 0)) table.fail("direction", "must not vanish");
   const Vec unit = axis.stableNormalized();
@@ -182,10 +188,7 @@ void read_torque(SceneBodies& bodies, const Section& table) {
 }
 
 void read_motor(SceneBodies& bodies, const Section& table) {
-  const auto ends = bodies.ends(table, /*with_points=*/false);
-  for (const End& end : ends)
-    if (!end.turns_in_space())
-      table.fail("between", fmt::format("\"{}\" does not turn in space: a motor acts on bodies that do", end.name()));
+  const auto ends = turning_ends(bodies, table, "a motor");
   const Vec torque = vector_of(table, "torque", "on the second, in space at the start, fixed in the first, N m");
   bodies.scene.add(multibody::Motor{{},
                                     {ends[0].attitude(), ends[1].attitude()},

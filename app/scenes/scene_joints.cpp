@@ -223,7 +223,7 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
 
 void read_spin(SceneBodies& bodies, const Section& table) {
   NamedBody& body = turning_body(bodies, table);
-  const Vec axis = frame_along(table, "axis", "of unit length or not").col(2);
+  const Vec axis = frame_along(table, "axis", "in space, or in the body").col(2);
   const bool in_body = table.choice_or("fixed_in", "space", {"space", "body"}) == "body";
   const double rate = table.number_or("rate", 0);
   const Vec in_space = in_body ? Vec(body.attitude * axis) : axis;

@@ -273,8 +273,7 @@ class Promises {
 bool read_mode(const Section& scene) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
   const bool controlled = time.choice_or("mode", "fixed", {"fixed", "controlled"}) == "controlled";
-  if (controlled && time.has("duration"))
-    time.fail("duration", "is not kept by steps that vary: give step, the first one, and steps");
+  if (controlled) refuse_duration(time);
   return controlled;
 }
 

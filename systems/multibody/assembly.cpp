@@ -405,9 +405,8 @@ void Multibody::require_one_principle(const Island& island) const {
   for (int row = island.rows.first; row < island.rows.last; ++row)
     if (role(row) == Role::nonholonomic || role(row) == Role::damping)
       throw std::domain_error("nonholonomic joints and dampers do not go together with vakonomic joints");
-  for (int f = island.linear.first; f < island.linear.last; ++f)
-    for (const Dragged& d : dragged_)
-      if (d.factor == f) throw std::domain_error("drag and deflection do not go together with vakonomic joints");
+  if (island.dragged.size() > 0)
+    throw std::domain_error("drag and deflection do not go together with vakonomic joints");
   for (int r = island.rotations.first; r < island.rotations.last; ++r)
     if (!turn_damping_[std::size_t(r)].isZero(0))
       throw std::domain_error("drag does not go together with vakonomic joints");

@@ -558,6 +558,7 @@ void Multibody::set_step(double h) {
 double Multibody::time_scale_rate() const {
   double power = 0;  // of the attractions: -dU/dt
   for (std::size_t f = 0; f < momentum_.size(); ++f) power += loads_.on[f].dot(momentum_[f].cwiseQuotient(inertia_[f]));
+  for (std::size_t r = 0; r < spin_.size(); ++r) power += loads_.torque[r].dot(spin_[r].cwiseQuotient(moments_[r]));
   return 1.5 * power / potential_energy();
 }
 
