@@ -31,7 +31,7 @@ template <class Sys> constexpr bool has_flows() {
 
 }  // namespace detail
 
-/// A system without constraints or forces whose energy is H = H_0 + ... + H_{parts - 1}. It writes
+/// A system without forces or constraints on arrows whose energy is H = H_0 + ... + H_{parts - 1}. It writes
 ///
 ///     static constexpr int parts
 ///     template <int I, class S> FlowOf<G, S> flow(double t, const Object<S>& q, const Vector<S, n>& mu) const
@@ -39,9 +39,19 @@ template <class Sys> constexpr bool has_flows() {
 /// Invariants (checked by tests, not by the compiler): flow<I>(t, z) follows the Hamiltonian vector field of H_I on A*G
 /// for the time t, of either sign, exactly: q' = rho(dH_I/dmu), mu' = -rho^* dH_I/dq + ad^*_{dH_I/dmu} mu; its arrow is
 /// that from q which the section dH_I/dmu leads along, g' = X<-(g). Hence flow<I> is a Poisson map, a flow in t, keeps
-/// H_I, and any composition of flows is Poisson and keeps the momenta of the symmetries that all parts share.
+/// H_I, and any composition of flows is Poisson and keeps the momenta of the symmetries that all parts share. With
+/// object constraints all of this is meant of T*C^{-1}(0), where the flows stay.
+///
+/// It may also write `bool two_flows() const`, whether flows 1, 2, ... commute, so that they are one exact flow however
+/// they are composed (they do if there is but one), and `static constexpr bool nystrom = true` where H_0 does not
+/// depend on momenta and the others are quadratic in them.
 template <class Sys>
-concept SplitSystem = DiscreteSystem<Sys> && Variational<Sys> && Sys::constraints == 0 &&
+concept SplitSystem = DiscreteSystem<Sys> && Variational<Sys> && Sys::arrow_constraints == 0 &&
                       HasTimeStep<Sys>&& Sys::parts >= 1 && detail::has_flows<Sys>();
+
+template <class Sys>
+concept NystromSystem = SplitSystem<Sys> && requires {
+  requires Sys::nystrom;
+};
 
 }  // namespace lagroid

@@ -14,12 +14,20 @@ namespace lagroid {
 /// Lubich, Wanner, *Geometric Numerical Integration*, 2006, V.3.2). Above order two some of them are negative: Phi must
 /// bear steps back. Whatever Phi preserves (momenta, the Poisson structure, reversibility), Psi does.
 ///
-/// `coefficients` refers to numbers that must outlive it.
+/// With `kicks` it is of two exact flows instead, those of H_0 and of H_1 (SplitSystem):
+///
+///     Psi_h = phi0_{b_{s+1} h} o phi1_{gamma_s h} o phi0_{b_s h} o ... o phi1_{gamma_1 h} o phi0_{b_1 h},
+///
+/// symmetric as well; it can do with fewer flows, for a Strang step spends half of them on its own symmetry.
+///
+/// `coefficients` and `kicks` refer to numbers that must outlive it.
 struct Composition {
   std::string_view name;
   int order;
   std::span<const double> coefficients;  ///< gamma_1 ... gamma_s
   std::string_view source;
+  std::span<const double> kicks = {};  ///< b_1 ... b_{s+1}
+  bool nystrom = false;                ///< the order is had only where [H_0, [H_0, [H_0, H_1]]] = 0
 
   constexpr int stages() const { return int(coefficients.size()); }
 };
@@ -52,6 +60,42 @@ inline constexpr std::array<double, 17> kahan_li_8{
     -0.39590389413323757733623154, 0.15884190655515560089621075,  -0.38947496264484728640807860,
     0.56116298177510838456196441,  0.13020248308889008087881763};
 
+/// Of a symmetric sequence, its first half (and the middle) given: the last of the half is what is missing to one.
+template <std::size_t Half, std::size_t Size>
+constexpr std::array<double, Size> symmetric_to_one(const std::array<double, Half>& half) {
+  std::array<double, Size> all{};
+  double sum = 0;
+  for (std::size_t i = 0; i < Half; ++i) {
+    all[i] = all[Size - 1 - i] = half[i];
+    sum += half[i];
+  }
+  if (Size == 2 * Half + 1) all[Half] = 1 - 2 * sum;
+  if (Size == 2 * Half + 2) all[Half] = all[Half + 1] = 0.5 - sum;
+  return all;
+}
+
+// Blanes and Moan 2002: tables 2 (S6, S10) and 3 (SRKN 6b, 11b, 14a). What begins with phi1 has kicks of zero length at
+// its ends.
+inline constexpr auto s6_flows = symmetric_to_one<3, 7>({0.0792036964311957, 0.353172906049774, -0.0420650803577195});
+inline constexpr auto s6_kicks = symmetric_to_one<3, 8>({0, 0.209515106613362, -0.143851773179818});
+inline constexpr auto s10_flows = symmetric_to_one<5, 11>(
+    {0.0502627644003922, 0.413514300428344, 0.0450798897943977, -0.188054853819569, 0.541960678450780});
+inline constexpr auto s10_kicks =
+    symmetric_to_one<5, 12>({0, 0.148816447901042, -0.132385865767784, 0.067307604692185, 0.432666402578175});
+inline constexpr auto srkn6_flows = symmetric_to_one<2, 6>({0.245298957184271, 0.604872665711080});
+inline constexpr auto srkn6_kicks =
+    symmetric_to_one<3, 7>({0.0829844064174052, 0.396309801498368, -0.0390563049223486});
+inline constexpr auto srkn11_flows = symmetric_to_one<5, 11>(
+    {0.123229775946271, 0.290553797799558, -0.127049212625417, -0.246331761062075, 0.357208872795928});
+inline constexpr auto srkn11_kicks = symmetric_to_one<5, 12>(
+    {0.0414649985182624, 0.198128671918067, -0.0400061921041533, 0.0752539843015807, -0.0115113874206879});
+inline constexpr auto srkn14_flows =
+    symmetric_to_one<7, 15>({0.0378593198406116, 0.102635633102435, -0.0258678882665587, 0.314241403071447,
+                             -0.130144459517415, 0.106417700369543, -0.00879424312851058});
+inline constexpr auto srkn14_kicks =
+    symmetric_to_one<7, 16>({0, 0.09171915262446165, 0.183983170005006, -0.05653436583288827, 0.004914688774712854,
+                             0.143761127168358, 0.328567693746804});
+
 }  // namespace detail
 
 /// The compositions by name; "single" is the step itself.
@@ -72,5 +116,20 @@ inline constexpr Composition kahan_li_8{"kahan-li-8", 8, detail::kahan_li_8,
 inline constexpr std::array<Composition, 6> all{single, triple_jump, suzuki, kahan_li_6, suzuki_umeno_8, kahan_li_8};
 
 }  // namespace compositions
+
+/// The compositions of two flows by name (Blanes and Moan, J. Comput. Appl. Math. 142 (2002) 313). The last three are
+/// for a kinetic energy that is quadratic in the momenta and a potential (Runge-Kutta-Nystrom).
+namespace splittings {
+
+inline constexpr std::string_view blanes_moan = "Blanes and Moan 2002, J. Comput. Appl. Math. 142";
+inline constexpr Composition s6{"blanes-moan-4", 4, detail::s6_flows, blanes_moan, detail::s6_kicks};
+inline constexpr Composition s10{"blanes-moan-6", 6, detail::s10_flows, blanes_moan, detail::s10_kicks};
+inline constexpr Composition srkn6{"nystrom-4", 4, detail::srkn6_flows, blanes_moan, detail::srkn6_kicks, true};
+inline constexpr Composition srkn11{"nystrom-6", 6, detail::srkn11_flows, blanes_moan, detail::srkn11_kicks, true};
+inline constexpr Composition srkn14{"nystrom-6-14", 6, detail::srkn14_flows, blanes_moan, detail::srkn14_kicks, true};
+
+inline constexpr std::array<Composition, 5> all{s6, s10, srkn6, srkn11, srkn14};
+
+}  // namespace splittings
 
 }  // namespace lagroid

@@ -27,9 +27,16 @@ enum class WithoutRoot {
   controlled,  ///< that step has the size a StepController gives; for systems with a time scale
 };
 
+/// How a fixed step is made.
+enum class StepKind {
+  variational,  ///< implicitly, from the discrete Lagrangian
+  splitting,    ///< explicitly, of the flows of a SplitSystem
+  runge_kutta,  ///< explicitly, of the rates of a system, by the classical method: to compare with, it keeps nothing
+};
+
 struct MarchOptions {
   TimeMode mode = TimeMode::fixed;
-  bool splitting = false;                          ///< fixed steps: explicit, of a SplitSystem
+  StepKind fixed = StepKind::variational;
   Composition composition = compositions::single;  ///< of fixed steps
   WithoutRoot without_root = WithoutRoot::stop;    ///< of adaptive ones
   StepMethod method = StepMethod::newton;
@@ -55,7 +62,8 @@ template <DiscreteSystem Sys> class March {
 };
 
 /// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one
-/// with a time scale for controlled steps, a SplitSystem for splitting and a variational one for orders above two
+/// with a time scale for controlled steps, a SplitSystem for splitting, one that HasRates for Runge-Kutta steps and a
+/// variational one for orders above two
 /// (throws std::invalid_argument). Include `march_methods.hpp` for a system of your own; those of `systems/` are
 /// compiled.
 template <DiscreteSystem Sys>

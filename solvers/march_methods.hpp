@@ -5,6 +5,7 @@
 #include <lagroid/solvers/composition.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march.hpp>
+#include <lagroid/solvers/runge_kutta.hpp>
 #include <lagroid/solvers/splitting.hpp>
 #include <lagroid/solvers/step_control.hpp>
 #include <lagroid/solvers/step_methods.hpp>
@@ -69,10 +70,15 @@ std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename S
                                     ? "adaptive steps need a system with lagrangian(g, step)"
                                     : "controlled steps need a system with time_scale_rate");
   if constexpr (SplitSystem<Sys>)
-    if (options.splitting)
+    if (options.fixed == StepKind::splitting)
       return std::make_unique<detail::MarchOf<Sys, SplittingIntegrator<Sys>>>(system, initial, configuration,
                                                                               options.composition);
-  if (options.splitting) throw std::invalid_argument("splitting needs a system with flows");
+  if constexpr (HasRates<Sys>)
+    if (options.fixed == StepKind::runge_kutta)
+      return std::make_unique<detail::MarchOf<Sys, RungeKuttaIntegrator<Sys>>>(system, initial, configuration);
+  if (options.fixed != StepKind::variational)
+    throw std::invalid_argument(options.fixed == StepKind::splitting ? "splitting needs a system with flows"
+                                                                     : "Runge-Kutta steps need a system with rates");
   if (options.composition.stages() > 1 && !Variational<Sys>)
     throw std::invalid_argument("orders above two are for variational systems");
   if constexpr (HasTimeStep<Sys> && Variational<Sys>)

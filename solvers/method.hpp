@@ -12,6 +12,7 @@ struct MethodTraits {
   bool symmetric;   ///< Phi_{-h} o Phi_h is the identity
   bool symplectic;  ///< Phi_h is a Poisson map of A*G; symplectic where that is a cotangent bundle
   bool explicit_;   ///< explicit: no equations are solved
+  int stages = 0;  ///< evaluations of a step in closed form (Strang steps, rates); 0 where the solver counts iterations
 };
 
 }  // namespace lagroid

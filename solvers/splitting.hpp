@@ -8,10 +8,23 @@
 #include <lagroid/solvers/step_solver.hpp>
 #include <lagroid/solvers/walk.hpp>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace lagroid {
+
+/// Whether the composition has its order for the system: one of two flows where flows 1, 2, ... are one exact flow, a
+/// Nystrom scheme where the system says that [H_0, [H_0, [H_0, H_1 + ...]]] = 0.
+template <SplitSystem Sys> bool splits_by(const Sys& system, const Composition& composition) {
+  if (composition.kicks.empty()) return true;
+  if (composition.nystrom && !NystromSystem<Sys>) return false;
+  if constexpr (requires { system.two_flows(); }) {
+    return system.two_flows();
+  } else {
+    return Sys::parts == 2;
+  }
+}
 
 /// A point of A*G on its way along the flows of a system, over any scalar: the arrow it has gone since its
 /// start, and by how much the momentum has changed.
@@ -25,9 +38,15 @@ template <SplitSystem Sys, class S> class SplitMotion {
   SplitMotion(const Sys& system, const Object& object, const Momentum& momentum)
       : system_(system), object_(object), start_(momentum), arrow_(system.groupoid.unit(object)) {}
 
-  /// For every coefficient gamma of the composition a Strang step of length t = gamma h: half of flow 0, of flow 1,
+  /// The composition's step of length h: of two flows, flow 0 and the Strang step of the others, where it has kicks.
+  /// Else for every coefficient gamma of the composition a Strang step of length t = gamma h: half of flow 0, of flow
+  /// 1,
   /// ..., all of the last one, and the halves in reverse (Strang 1968). Where two steps meet the halves of flow 0 join.
   void step(const Composition& composition, double h) {
+    if (!composition.kicks.empty()) {
+      alternate(composition, h);
+      return;
+    }
     double begun = 0;
     for (const double gamma : composition.coefficients) {
       const double t = gamma * h;
@@ -55,6 +74,17 @@ template <SplitSystem Sys, class S> class SplitMotion {
  private:
   static Momentum zero() { return Momentum::Constant(S(0.0)); }
 
+  void alternate(const Composition& composition, double h) {
+    const auto kick = [&](std::size_t i) {
+      if (composition.kicks[i] != 0) follow<0>(composition.kicks[i] * h);
+    };
+    kick(0);
+    for (std::size_t i = 0; i < composition.coefficients.size(); ++i) {
+      inner<1>(composition.coefficients[i] * h);
+      kick(i + 1);
+    }
+  }
+
   template <int I> void inner(double t) {
     if constexpr (I + 1 < Sys::parts) {
       follow<I>(0.5 * t);
@@ -79,18 +109,22 @@ template <SplitSystem Sys> class SplittingIntegrator {
  public:
   using G = typename Sys::GroupoidType;
 
-  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint).
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint). Throws
+  /// std::invalid_argument where the composition is not for this system (`splits_by`).
   SplittingIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
                       const Composition& composition = compositions::single)
       : system_(std::move(system)),
         composition_(composition),
         start_(start_time(system_)),
-        walk_(system_.groupoid, initial, configuration, start_) {}
+        walk_(system_.groupoid, initial, configuration, start_) {
+    if (!splits_by(system_, composition)) throw std::invalid_argument("the splitting is for other systems");
+  }
 
   const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
   const Sys& system() const { return system_; }
   MethodTraits traits() const {
-    return {"Strang splitting, composition " + std::string(composition_.name), composition_.order, true, true, true};
+    const std::string kind = composition_.kicks.empty() ? "Strang splitting, composition " : "splitting ";
+    return {kind + std::string(composition_.name), composition_.order, true, true, true, composition_.stages()};
   }
 
   /// `converged`, or `not_finite` (at a singularity of a flow), which leaves everything as it was.
@@ -114,7 +148,7 @@ template <SplitSystem Sys> StepReport SplittingIntegrator<Sys>::advance() {
   if (!motion.momentum().allFinite() || !groupoid.coordinates_of_arrow(motion.arrow()).allFinite()) return report;
   report.status = SolveStatus::converged;
   StepSolution<Sys> solution;
-  solution.step = {motion.arrow(), {}};
+  solution.step = {motion.arrow(), Sys::Multipliers::Zero()};
   solution.momentum_change = motion.momentum_change();
   solution.remainder = motion.remainder();
   walk_.join(groupoid, solution);

@@ -17,6 +17,13 @@ struct DampedPendulum : Pendulum {
   }
   template <class S> Forces<S, 1> forces(const PairArrow<S, 1>& g) const { return forces(g, h); }
 
+  /// q' = p / (m l^2), p' = -dU/dq - c q'.
+  Rates<Pair<1>> rates(const State<Pair<1>>& s) const {
+    Rates<Pair<1>> free = Pendulum::rates(s);
+    free.momentum -= damping * free.velocity;
+    return free;
+  }
+
   /// The continuous solution after time t.
   State<Pair<1>> reference(const State<Pair<1>>& start, double t) const;
 

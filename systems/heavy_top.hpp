@@ -2,6 +2,7 @@
 /// A rigid body with a fixed point, under gravity.
 
 #include <lagroid/core/noether.hpp>
+#include <lagroid/core/rates.hpp>
 #include <lagroid/groupoids/rotated.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/rotation_map.hpp>
@@ -29,6 +30,9 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   /// The energy split into w.v, which kicks, and the kinetic energies of a symmetric body and a rest (SplitSystem,
   /// RotationSplitting).
   static constexpr int parts = 3;
+  static constexpr bool nystrom = true;
+  /// A body with two equal moments turns by the last flow alone.
+  bool two_flows() const { return RotationSplitting(inertia).is_symmetric(); }
   template <int Part, class S>
   FlowOf<GroupoidType, S> flow(double t, const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
     if constexpr (Part == 0) {
@@ -39,6 +43,12 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
       const FlowOf<SO3, S> turn = Part == 1 ? kinetic.rest(t, mu) : kinetic.symmetric(t, mu);
       return {{turn.arrow, v}, turn.momentum_change};
     }
+  }
+
+  /// I^{-1} M, M' = M x I^{-1} M + v x w.
+  Rates<GroupoidType> rates(const State<GroupoidType>& s) const {
+    const Vector<double, 3> velocity = s.momentum.cwiseQuotient(inertia);
+    return {velocity, s.momentum.cross(velocity) + s.object.cross(weight)};
   }
 
   /// M.I^{-1} M / 2 + w.v.

@@ -19,6 +19,12 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
     return S(-strength) / sqrt(q.squaredNorm());
   }
 
+  template <class S> Vector<S, 2> gradient(const Vector<S, 2>& q) const {
+    using std::sqrt;
+    const S square = q.squaredNorm();
+    return q * (S(strength) / (square * sqrt(square)));
+  }
+
   /// Of sigma = |q|^(3/2), Kepler's third law.
   double time_scale_rate(const State<Pair<2>>& s) const {
     return 1.5 * s.object.dot(s.momentum) / s.object.squaredNorm();

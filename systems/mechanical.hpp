@@ -2,6 +2,7 @@
 /// Point-mass mechanics on R^n: what pendulum, Kepler and spherical pendulum have in common.
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/rates.hpp>
 #include <lagroid/core/split_system.hpp>
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/pair.hpp>
@@ -16,7 +17,8 @@ enum class Quadrature { midpoint, trapezoid };
 /// L(q0, q1) = m |q1 - q0|^2 / (2 h) - h U, with U the potential by the chosen quadrature. Discretises
 /// L = m |q'|^2 / 2 - U(q).
 ///
-/// The derived class writes `double mass() const` and `S potential(const Vector<S, N>& q) const`.
+/// The derived class writes `double mass() const` and `S potential(const Vector<S, N>& q) const`, and may write, for
+/// speed, `Vector<S, N> gradient(const Vector<S, N>& q) const`, dU/dq.
 template <class Derived, int N, int ObjectConstraints = 0>
 struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   double h = 0.01;
@@ -41,6 +43,7 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
 
   /// H = U(q) + |p|^2 / (2 m): kick and drift (SplitSystem), whose Strang step is the trapezoid's, Stormer-Verlet.
   static constexpr int parts = 2;
+  static constexpr bool nystrom = true;
   template <int Part, class S>
   FlowOf<Pair<N>, S> flow(double t, const Vector<S, N>& q, const Vector<S, N>& p) const
       requires(ObjectConstraints == 0) {
@@ -53,22 +56,31 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
     }
   }
 
+  /// q' = p / m, p' = -dU/dq.
+  Rates<Pair<N>> rates(const State<Pair<N>>& s) const requires(ObjectConstraints == 0) {
+    return {s.momentum / self().mass(), force(s.object)};
+  }
+
   /// H = |p|^2 / (2 m) + U(q).
   double energy(const State<Pair<N>>& s) const {
     return s.momentum.squaredNorm() / (2 * self().mass()) + self().potential(s.object);
   }
 
  protected:
-  /// -dU/dq.
+  /// -dU/dq: of the derived class' `gradient(q)`, if it has one, else by automatic differentiation.
   template <class S> Vector<S, N> force(const Vector<S, N>& q) const {
-    Vector<S, N> f;
-    Vector<Dual<S>, N> x = q.template cast<Dual<S>>();
-    for (int i = 0; i < N; ++i) {
-      x(i).derivative = S(1.0);
-      f(i) = -self().potential(x).derivative;
-      x(i).derivative = S(0.0);
+    if constexpr (requires { self().gradient(q); }) {
+      return -self().gradient(q);
+    } else {
+      Vector<S, N> f;
+      Vector<Dual<S>, N> x = q.template cast<Dual<S>>();
+      for (int i = 0; i < N; ++i) {
+        x(i).derivative = S(1.0);
+        f(i) = -self().potential(x).derivative;
+        x(i).derivative = S(0.0);
+      }
+      return f;
     }
-    return f;
   }
 
   Quantity<Derived> energy_quantity() const {

@@ -133,7 +133,7 @@ MoserVeselov MoserVeselov::preprocessed(const Vector<double, 3>& inertia, const 
   return system;
 }
 
-std::optional<Vector<double, 3>> MoserVeselov::rodrigues(const Vector<double, 3>& momentum) const {
+std::optional<Vector<double, 3>> MoserVeselov::rodrigues(const Vector<double, 3>& momentum, double& k) const {
   const Vector<double, 3> u = 0.5 * h * momentum;
   const double square = u.squaredNorm();
   const double determinant = modified.prod();
@@ -142,7 +142,6 @@ std::optional<Vector<double, 3>> MoserVeselov::rodrigues(const Vector<double, 3>
   const double constant = determinant * u.cwiseQuotient(modified).dot(u);
   // Newton's iteration from the left, where f falls and is convex: up to `inflection` at most.
   const double inflection = 0.5 * (trace - std::sqrt(std::max(0.0, (weights().squaredNorm() - 4 * square) / 3)));
-  double k = 0;
   for (;;) {
     const double b = square - k * trace + k * k;
     const double f = b * b + (e * k - determinant) * k + constant;
@@ -173,8 +172,17 @@ Step<MoserVeselov> MoserVeselov::first_guess(const State<SO3>& s) const {
 
 StepReport MoserVeselovStep::solve(const MoserVeselov& system, const State<SO3>& state,
                                    StepSolution<MoserVeselov>& solution) {
-  const auto r = system.rodrigues(state.momentum);
+  // The root is a constant of the motion: the search begins a little below the last one.
+  constexpr double below = 1 - 1e-6;
+  const double start = below * root_;
+  double k = start;
+  auto r = system.rodrigues(state.momentum, k);
+  if (start > 0 && (!r || k == start)) {  // of another trajectory: not from below
+    k = 0;
+    r = system.rodrigues(state.momentum, k);
+  }
   if (!r) return {};
+  root_ = k;
   const Vector<double, 3> moved = system.modified.cwiseProduct(*r);
   solution.step.arrow = SO3::cayley(Vector<double, 3>(2 * *r));
   solution.momentum_change = (4 / (system.h * (1 + r->squaredNorm()))) * moved.cross(*r);
@@ -190,7 +198,7 @@ State<SO3> MoserVeselov::reference(const State<SO3>& start, Matrix<double, 3, 3>
 }
 
 MethodTraits MoserVeselov::traits() const {
-  return {fmt::format("discrete Moser-Veselov, preprocessed to order {}", order), order, true, true, false};
+  return {fmt::format("discrete Moser-Veselov, preprocessed to order {}", order), order, true, true, false, 1};
 }
 
 std::vector<Quantity<MoserVeselov>> MoserVeselov::quantities() const {

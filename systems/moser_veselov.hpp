@@ -60,7 +60,12 @@ struct MoserVeselov : System<MoserVeselov, SO3> {
 
   /// The Rodrigues vector r = tan(angle / 2) axis of the step from M, in closed form; none where there is no step. Of
   /// all solutions of the step equations it is the one that is continuous in h.
-  std::optional<Vector<double, 3>> rodrigues(const Vector<double, 3>& momentum) const;
+  std::optional<Vector<double, 3>> rodrigues(const Vector<double, 3>& momentum) const {
+    double k = 0;
+    return rodrigues(momentum, k);
+  }
+  /// The same, searching for the root k from a number below it, which is replaced by the root.
+  std::optional<Vector<double, 3>> rodrigues(const Vector<double, 3>& momentum, double& k) const;
 
   /// Whether g is that solution: k is the least root of f where f' < 0 < f''.
   bool admissible(const Matrix<double, 3, 3>& g) const;
@@ -87,6 +92,10 @@ class MoserVeselovStep final : public StepSolver<MoserVeselov> {
  public:
   /// Disregards the guess. `not_converged` where there is no step.
   StepReport solve(const MoserVeselov& system, const State<SO3>& state, StepSolution<MoserVeselov>& solution) override;
+  void persist(Tape& tape) override { tape(root_); }
+
+ private:
+  double root_ = 0;  ///< k of the last step
 };
 
 LAGROID_STEPS(extern template, MoserVeselov);

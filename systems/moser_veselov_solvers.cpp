@@ -7,7 +7,7 @@ template <>
 std::unique_ptr<March<MoserVeselov>> make_march(const MoserVeselov& system, const State<SO3>& initial,
                                                 const Matrix<double, 3, 3>& configuration,
                                                 const MarchOptions& options) {
-  if (options.mode != TimeMode::fixed || options.splitting || options.composition.stages() > 1)
+  if (options.mode != TimeMode::fixed || options.fixed != StepKind::variational || options.composition.stages() > 1)
     throw std::invalid_argument("discrete Moser-Veselov steps are of the length and order they were preprocessed for");
   return std::make_unique<detail::MarchOf<MoserVeselov, Integrator<MoserVeselov>>>(
       system, initial, configuration, std::make_unique<MoserVeselovStep>());

@@ -22,6 +22,11 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
     return cos(q(0)) * (-bob_mass * gravity * length);
   }
 
+  template <class S> Vector<S, 1> gradient(const Vector<S, 1>& q) const {
+    using std::sin;
+    return Vector<S, 1>(sin(q(0)) * (bob_mass * gravity * length));
+  }
+
   /// Of sigma = (w0^2 + w^2)^(-1/2), w = q', w0^2 = |g| / l.
   double time_scale_rate(const State<Pair<1>>& s) const {
     using std::sin;

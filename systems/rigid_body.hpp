@@ -2,6 +2,7 @@
 /// The free rigid body.
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/rates.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/rotation_map.hpp>
 #include <lagroid/systems/rotation_splitting.hpp>
@@ -35,6 +36,12 @@ struct RigidBody : System<RigidBody, SO3> {
 
   /// M.I^{-1} M / 2.
   double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
+
+  /// w = I^{-1} M, M' = M x w.
+  Rates<SO3> rates(const State<SO3>& s) const {
+    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
+    return {w, s.momentum.cross(w)};
+  }
 
   /// The continuous solution after time t: M' = M x I^{-1} M, A' = A hat(I^{-1} M). Returns M and updates `attitude`.
   State<SO3> reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const;

@@ -6,10 +6,7 @@ LAGROID_STEPS(template, SphericalPendulum);
 
 State<Pair<3>> SphericalPendulum::reference(const State<Pair<3>>& start, double t) const {
   using V = Vector<double, 3>;
-  const auto force = [&](const V& q, const V& velocity, double) {
-    const double tension = bob_mass * (gravity * q(2) - velocity.squaredNorm()) / q.squaredNorm();
-    return V(tension * q - V(0, 0, bob_mass * gravity));
-  };
+  const auto force = [&](const V& q, const V& velocity, double) { return rates({q, velocity * bob_mass}).momentum; };
   return reference_motion(bob_mass, force, start, t);
 }
 

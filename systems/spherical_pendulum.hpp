@@ -2,6 +2,7 @@
 /// The spherical pendulum, as R^3 with an object constraint.
 
 #include <lagroid/core/noether.hpp>
+#include <lagroid/core/special_functions.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
@@ -22,7 +23,41 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
     return Vector<S, 1>((q.squaredNorm() - length * length) * 0.5);
   }
 
-  /// The continuous solution after time t: p' = -m g e3 + s q with s such that the rod keeps its length.
+  /// The energy split, on T*S^2, into the potential, whose tangent part kicks, and the kinetic energy, whose flow goes
+  /// along great circles (SplitSystem):
+  ///     q(t) = q cos a + p t / m sin a / a,   p(t) = p cos a - q m a^2 / t sin a / a,   a = |p| t / (m l).
+  /// Rounding is kept from the sphere and its tangent planes.
+  static constexpr int parts = 2;
+  static constexpr bool nystrom = true;
+  template <int Part, class S> FlowOf<Pair<3>, S> flow(double t, const Vector<S, 3>& q, const Vector<S, 3>& p) const {
+    const double square = length * length;
+    if constexpr (Part == 0) {
+      const S along = q(2) * (bob_mass * gravity * t / square);
+      Vector<S, 3> kick = q * along;
+      kick(2) -= S(bob_mass * gravity * t);
+      return {{q, q}, kick};
+    } else {
+      using std::sqrt;
+      const S angle_square = p.squaredNorm() * (t * t / (bob_mass * bob_mass * square));
+      const S versine = stumpff<2>(angle_square) * angle_square;
+      const S ratio = stumpff<1>(angle_square);
+      Vector<S, 3> to = q - q * versine + p * (ratio * (t / bob_mass));
+      to *= length / sqrt(to.squaredNorm());
+      Vector<S, 3> change = -(p * versine) - q * (ratio * p.squaredNorm() * (t / (bob_mass * square)));
+      const S off = (p + change).dot(to) / square;
+      change -= to * off;
+      return {{q, to}, change};
+    }
+  }
+
+  /// q' = p / m, p' = -m g e3 + s q with s such that the rod keeps its length.
+  Rates<Pair<3>> rates(const State<Pair<3>>& s) const {
+    const Vector<double, 3> velocity = s.momentum / bob_mass;
+    const double tension = bob_mass * (gravity * s.object(2) - velocity.squaredNorm()) / s.object.squaredNorm();
+    return {velocity, tension * s.object - Vector<double, 3>(0, 0, bob_mass * gravity)};
+  }
+
+  /// The continuous solution after time t.
   State<Pair<3>> reference(const State<Pair<3>>& start, double t) const;
 
   /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = p / (m l) the angular velocity, w0^2 = |g| / l.

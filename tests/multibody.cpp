@@ -3,6 +3,7 @@
 #include "allocation_counter.hpp"
 #include "marching.hpp"
 
+#include <lagroid/solvers/testing/order_laws.hpp>
 #include <lagroid/systems/chaplygin_sleigh.hpp>
 #include <lagroid/systems/heavy_top.hpp>
 #include <lagroid/systems/kepler.hpp>
@@ -17,6 +18,7 @@
 
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 namespace lagroid {
 namespace {
@@ -261,6 +263,106 @@ TEST(Multibody, IsOfOrderTwo) {
     const double finer_error = (end(100, damping) - fine).norm();
     EXPECT_NEAR(std::log2(coarse_error / finer_error), 2.0, 0.1) << damping;
   }
+}
+
+multibody::Options composed(const Composition& composition) {
+  multibody::Options options;
+  options.composition = composition;
+  return options;
+}
+
+TEST(Multibody, ComposedStepsHaveTheirOrders) {
+  for (const auto& composition : compositions::all) {
+    const auto end = [&](int steps) {
+      Machine machine;
+      Multibody motion(std::move(machine.scene), 0.5 / steps, composed(composition));
+      advance(motion, steps);
+      EXPECT_DOUBLE_EQ(motion.time(), 0.5);
+      EXPECT_EQ(motion.index(), steps);
+      Eigen::VectorXd out(12);
+      const auto m = motion.momenta();
+      out << motion.configuration()(motion(machine.bob.centre)), m.linear[1], m.spin[0], m.spin[1];
+      return out;
+    };
+    static const Eigen::VectorXd exact = [] {
+      Machine machine;
+      Multibody motion(std::move(machine.scene), 0.5 / 400, composed(compositions::kahan_li_8));
+      advance(motion, 400);
+      Eigen::VectorXd out(12);
+      const auto m = motion.momenta();
+      out << motion.configuration()(motion(machine.bob.centre)), m.linear[1], m.spin[0], m.spin[1];
+      return out;
+    }();
+    const int coarse = composition.stages() < 4 ? 50 : 12;
+    EXPECT_NEAR(laws::measured_order({end, exact, coarse, 1e-11}), composition.order, 0.25) << composition.name;
+  }
+}
+
+TEST(Multibody, ComposedStepsFollowAMovedSupport) {
+  const auto end = [](int steps, const Composition& composition) {
+    Scene scene;
+    const Body bob = scene.point_mass(1, {0.3, 0, -std::sqrt(0.91)}, Vec::Zero());
+    scene.add(Rod{{scene.moving_ground(Vec::Zero(), {0, 0, 0.05}, 4), bob.centre}, 1});
+    scene.add(ConstantForce{{bob.centre}, {0, 0, -9.81}});
+    Multibody motion(std::move(scene), 2.0 / steps, composed(composition));
+    advance(motion, steps);
+    return Eigen::VectorXd(motion.configuration()(motion(bob.centre)));
+  };
+  const Eigen::VectorXd exact = end(2000, compositions::kahan_li_8);
+  const auto with = [&](int steps) { return end(steps, compositions::suzuki); };
+  EXPECT_NEAR(laws::measured_order({with, exact, 40, 1e-11}), 4, 0.2);
+}
+
+TEST(Multibody, ComposedStepsGoBackAndGoOnFromAState) {
+  const auto options = composed(compositions::kahan_li_6);
+  Machine machine, one, other;
+  Multibody motion(std::move(machine.scene), 0.02, options);
+  const auto start = motion.state();
+  advance(motion, 100);
+  motion.reverse();
+  advance(motion, 100);
+  for (std::size_t f = 0; f < start.place.size(); ++f)
+    EXPECT_LT((start.place[f] - motion.state().place[f]).norm(), 1e-9);
+
+  Multibody unbroken(std::move(one.scene), 0.02, options);
+  Multibody resumed(std::move(other.scene), 0.02, options);
+  advance(unbroken, 37);
+  resumed.restore(unbroken.state());
+  advance(unbroken, 50);
+  advance(resumed, 50);
+  EXPECT_EQ(unbroken.state().place, resumed.state().place);
+  EXPECT_EQ(unbroken.state().spin, resumed.state().spin);
+  EXPECT_EQ(unbroken.state().clock, resumed.state().clock);
+}
+
+TEST(Multibody, AComposedStepThatFailsChangesNothingAndAllocatesNothing) {
+  Scene scene;
+  const Body a = scene.point_mass(1, {1, 0, 0}, {0, 6, 0});
+  scene.add(Rod{{scene.ground(Vec::Zero()), a.centre}, 1});
+  Multibody motion(std::move(scene), 0.2, composed(compositions::triple_jump));
+  const auto before = motion.state();
+  EXPECT_FALSE(motion.advance().converged());
+  EXPECT_EQ(motion.index(), 0);
+  EXPECT_EQ(motion.time(), 0);
+  EXPECT_EQ(motion.state().place[0], before.place[0]);
+  EXPECT_EQ(motion.state().momentum[0], before.momentum[0]);
+
+  Machine machine;
+  Multibody runs(std::move(machine.scene), 0.01, composed(compositions::suzuki));
+  advance(runs, 1);
+  const long count = allocation_count();
+  if (count < 0) GTEST_SKIP() << "allocations cannot be counted here";
+  advance(runs, 20);
+  EXPECT_EQ(allocation_count(), count);
+}
+
+TEST(Multibody, WhatCannotBeTakenBackIsNotComposed) {
+  Machine damped(0.1);
+  EXPECT_THROW(Multibody(std::move(damped.scene), 0.01, composed(compositions::suzuki)), std::invalid_argument);
+  Scene rolling;
+  const Body ball = rolling.rigid_body(1, Vec::Constant(0.4), {0, 0, 1}, upright, Vec::Zero(), Vec::Zero());
+  rolling.add(BodySpin{{}, {ball.attitude}, {0, 0, 1}, 0});
+  EXPECT_THROW(Multibody(std::move(rolling), 0.01, composed(compositions::suzuki)), std::invalid_argument);
 }
 
 TEST(Multibody, DampingTakesEnergy) {

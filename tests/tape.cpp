@@ -73,7 +73,7 @@ TEST(Marches, OfEqualStepsGoOnWithTheSameBits) {
 
 TEST(Marches, ComposedOrSplitGoOnWithTheSameBits) {
   goes_on(kepler(), ellipse, {.composition = compositions::suzuki});
-  goes_on(kepler(), ellipse, {.splitting = true, .composition = compositions::kahan_li_8});
+  goes_on(kepler(), ellipse, {.fixed = StepKind::splitting, .composition = compositions::kahan_li_8});
 }
 
 TEST(Marches, WhoseStepsVaryGoOnWithTheSameBits) {

@@ -45,7 +45,7 @@ struct Method {
 Method fixed(std::string name, const Composition& composition, bool splitting) {
   Method method{std::move(name), {}, Quadrature::trapezoid};
   method.options.composition = composition;
-  method.options.splitting = splitting;
+  if (splitting) method.options.fixed = StepKind::splitting;
   return method;
 }
 Method varying(std::string name, TimeMode mode, Quadrature quadrature) {
@@ -78,6 +78,7 @@ template <class Sys> TimeRun run(const Problem<Sys>& problem, const Method& meth
   constexpr double long_run = 0.3;  // s: timed once
   for (int repetition = 0; repetition < 3 && (repetition == 0 || seconds.front() < long_run); ++repetition) {
     const auto march = make_march(system, problem.start, system.groupoid.unit(problem.start.object), method.options);
+    const int stages = march->traits().stages;
     out.evaluations = 0;
     out.energy_error = 0;
     const auto start = std::chrono::steady_clock::now();
@@ -87,7 +88,7 @@ template <class Sys> TimeRun run(const Problem<Sys>& problem, const Method& meth
         out.status = report.converged() ? "too many steps" : std::string(to_string(report.status));
         break;
       }
-      out.evaluations += method.options.splitting ? method.options.composition.stages() : report.iterations;
+      out.evaluations += stages > 0 ? stages : report.iterations;
       out.energy_error = std::max(out.energy_error, std::abs(system.energy(march->point().state) - energy));
     }
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

@@ -53,18 +53,35 @@ template <class T> std::vector<T> in_order(const std::vector<T>& all, const std:
 
 }  // namespace
 
-Multibody::Multibody(Scene scene, double h, const Options& options) : h_(h), options_(options) {
+Multibody::Multibody(Scene scene, double h, const Options& options) : h_(h), options_(options), whole_step_(h) {
   assemble(scene);
   begin();
   leave_out_dependent();
   add_multipliers(momentum_, spin_, -1);
   if (options.controlled) {
-    const auto attracts = [](const auto& effect) { return effect->attracts(); };
-    const bool all = std::all_of(effects_.begin(), effects_.end(), attracts);
-    const bool alone = all && islands_.empty() && dragged_.empty() && damped_turns_.empty();
-    if (!alone || !std::isfinite(time_scale_rate()))
+    if (!has_time_scale())
       throw std::invalid_argument("steps are controlled by attractions alone: no joints, no other effects");
     control_.emplace(h, time_scale_rate());
+  }
+  if (options.composition.stages() > 1) compose(options.composition);
+}
+
+bool Multibody::has_time_scale() const {
+  const auto attracts = [](const auto& effect) { return effect->attracts(); };
+  return std::all_of(effects_.begin(), effects_.end(), attracts) && islands_.empty() && dragged_.empty() &&
+         damped_turns_.empty() && std::isfinite(time_scale_rate());
+}
+
+void Multibody::compose(const Composition& composition) {
+  const bool holonomic = std::all_of(roles_.begin(), roles_.end(), [](Role role) { return role == Role::holonomic; });
+  if (control_ || !holonomic || !dragged_.empty() || !damped_turns_.empty())
+    throw std::invalid_argument("a step is composed where it can be taken back");
+  for (const double share : composition.coefficients) {
+    Stage stage{share * whole_step_, earlier_, turned_before_};
+    for (auto& multipliers : stage.earlier)
+      for (double& lambda : multipliers) lambda *= share;
+    for (Vec& turn : stage.turned) turn *= share;
+    stages_.push_back(std::move(stage));
   }
 }
 

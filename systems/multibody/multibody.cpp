@@ -383,7 +383,42 @@ StepReport Multibody::turn_freely(int rotation) {
 }
 
 StepReport Multibody::advance() {
+  return stages_.empty() ? advance_by(whole_step_ * double(index_ + 1)) : advance_by_stages();
+}
+
+StepReport Multibody::advance_by_stages() {
+  save(before_);
+  StepReport worst;
+  worst.status = SolveStatus::converged;
+  double share_gone = 0;
+  int iterations = 0;
+  for (Stage& stage : stages_) {
+    std::swap(earlier_, stage.earlier);
+    std::swap(turned_before_, stage.turned);
+    set_step(stage.step);
+    share_gone += stage.step;
+    const bool last = &stage == &stages_.back();
+    const StepReport report =
+        advance_by(last ? whole_step_ * double(index_ + 1) : whole_step_ * double(index_) + share_gone);
+    std::swap(earlier_, stage.earlier);
+    std::swap(turned_before_, stage.turned);
+    iterations += report.iterations;
+    worst.residual = std::max(worst.residual, report.residual);
+    worst.excess = std::max(worst.excess, report.excess);
+    if (!report.converged()) {
+      worst.status = report.status;
+      restore(before_);
+      break;
+    }
+    if (!last) --index_;
+  }
+  worst.iterations = iterations;
+  return worst;
+}
+
+StepReport Multibody::advance_by(double end) {
   const double step_before = h_;
+  next_.time = end;
   if (has_vakonomic_) reactions_ = gradients_;
   const StepReport report = solve_all();
   if (report.converged()) {
@@ -416,8 +451,6 @@ StepReport Multibody::solve_all() {
     }
     set_step(size);
     next_.time = now_.time + (time_carry_ + h_);
-  } else {
-    next_.time = h_ * double(index_ + 1);
   }
   for (const MovingGround& m : moving_) next_.x[std::size_t(m.site)] = m.at(next_.time);
   kick();
@@ -590,6 +623,11 @@ std::size_t Multibody::memory() const {
 
 Multibody::State Multibody::state() const {
   State s;
+  save(s);
+  return s;
+}
+
+void Multibody::save(State& s) const {
   s.index = index_;
   s.dissipated = dissipated_;
   s.place.assign(now_.x.begin(), now_.x.begin() + std::ptrdiff_t(momentum_.size()));
@@ -601,21 +639,40 @@ Multibody::State Multibody::state() const {
   s.turned = turned_before_;
   s.attitude = quaternions_;
   s.multipliers = earlier_;
-  Tape clock;
-  auto control = control_;
-  double time = now_.time;
-  double carry = time_carry_;
-  double step = h_;
-  clock(time, carry, step);
-  if (control) clock(*control);
-  s.clock = clock.numbers();
-  s.derived = {now_.x, loads_.on, loads_.torque,       gradients_,     now_.attitude,
-               {},     {},        accepted_precision_, arrow_residual_};
-  for (const RowSize& size : sizes_) {
-    s.derived.terms.push_back(size.terms);
-    s.derived.slopes.push_back(size.slope);
+  s.stages.resize(stages_.size());
+  for (std::size_t i = 0; i < stages_.size(); ++i) {
+    s.stages[i].clear();
+    for (const auto& multipliers : stages_[i].earlier)
+      s.stages[i].insert(s.stages[i].end(), multipliers.begin(), multipliers.end());
+    for (const Vec& turn : stages_[i].turned) s.stages[i].insert(s.stages[i].end(), turn.data(), turn.data() + 3);
   }
-  return s;
+  s.clock.assign({now_.time, time_carry_, h_});
+  if (control_) {
+    auto control = *control_;
+    Tape tape;
+    tape(control);
+    s.clock.insert(s.clock.end(), tape.numbers().begin(), tape.numbers().end());
+  }
+  auto& d = s.derived;
+  d.x = now_.x;
+  d.forces = loads_.on;
+  d.torques = loads_.torque;
+  d.gradients = gradients_;
+  d.attitude = now_.attitude;
+  d.precision = accepted_precision_;
+  d.arrow_residual = arrow_residual_;
+  d.terms.clear();
+  d.slopes.clear();
+  for (const RowSize& size : sizes_) {
+    d.terms.push_back(size.terms);
+    d.slopes.push_back(size.slope);
+  }
+}
+
+bool Multibody::stages_fit(const State& state) const {
+  const std::size_t numbers = 3 * (earlier_[0].size() + turned_before_.size());
+  return state.stages.size() == stages_.size() &&
+         std::all_of(state.stages.begin(), state.stages.end(), [&](const auto& s) { return s.size() == numbers; });
 }
 
 void Multibody::restore(const State& state) {
@@ -625,7 +682,8 @@ void Multibody::restore(const State& state) {
   const auto& d = state.derived;
   const bool fits = as_long_as(momentum_, state.place, state.place_carry, state.momentum, state.momentum_carry) &&
                     as_long_as(spin_, state.spin, state.spin_carry, state.turned, state.attitude) &&
-                    as_long_as(earlier_[0], state.multipliers[0], state.multipliers[1], state.multipliers[2]);
+                    as_long_as(earlier_[0], state.multipliers[0], state.multipliers[1], state.multipliers[2]) &&
+                    (state.stages.empty() || stages_fit(state));
   const bool derived_fits = as_long_as(now_.x, d.x, d.forces) && as_long_as(now_.attitude, d.attitude, d.torques) &&
                             as_long_as(gradients_, d.gradients) && as_long_as(sizes_, d.terms, d.slopes, d.precision);
   if (!fits || (!d.x.empty() && !derived_fits)) throw std::invalid_argument("a state of another scene");
@@ -640,6 +698,13 @@ void Multibody::restore(const State& state) {
   turned_before_ = state.turned;
   quaternions_ = state.attitude;
   earlier_ = state.multipliers;
+  for (std::size_t i = 0; i < state.stages.size(); ++i) {
+    auto at = state.stages[i].begin();
+    for (auto& multipliers : stages_[i].earlier)
+      for (double& lambda : multipliers) lambda = *at++;
+    for (Vec& turn : stages_[i].turned)
+      for (double& x : turn) x = *at++;
+  }
   Tape clock(state.clock);
   double step = h_;
   clock(now_.time, time_carry_, step);
@@ -663,6 +728,8 @@ void Multibody::reverse() {
   if (control_) control_->pass(-time_scale_rate(), control_->step());
   for (auto* list : {&momentum_, &momentum_carry_, &spin_, &spin_carry_, &turned_before_})
     for (Vec& v : *list) v = -v;
+  for (Stage& stage : stages_)
+    for (Vec& v : stage.turned) v = -v;
 }
 
 void Multibody::make_tangent() {

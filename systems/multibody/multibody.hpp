@@ -1,6 +1,7 @@
 #pragma once
 /// The motion of a scene.
 
+#include <lagroid/solvers/compositions.hpp>
 #include <lagroid/solvers/elimination.hpp>
 #include <lagroid/solvers/step_control.hpp>
 #include <lagroid/solvers/step_solver.hpp>
@@ -21,6 +22,9 @@ struct Options {
   /// Steps in proportion to |U|^(-3/2), U the energy of attractions by inverse squares; h is then the first of them
   /// (StepController). Of a scene with such effects alone, and no joints.
   bool controlled = false;
+  /// Of a step, from steps of order 2 of its shares of h: of a scene whose step can be taken back (no damping, no
+  /// constraints of velocities).
+  Composition composition = compositions::single;
 };
 
 /// Marches the discrete Lagrangian of a scene,
@@ -37,7 +41,7 @@ class Multibody {
  public:
   /// The scene at its first node. Rows of joints that depend on others there are left out (`dependent_rows`), and
   /// joints that touch nothing that moves. Throws std::invalid_argument where a gradient is not finite, and where steps
-  /// are to be controlled and the scene has no such time scale; std::domain_error where one island obeys two
+  /// are to be controlled or composed and the scene does not allow that; std::domain_error where one island obeys two
   /// principles.
   Multibody(Scene scene, double h, const Options& options = {});
 
@@ -51,6 +55,7 @@ class Multibody {
     std::vector<Vec> place, place_carry, momentum, momentum_carry, spin, spin_carry, turned;
     std::vector<Quaternion> attitude;
     std::array<std::vector<double>, 3> multipliers;  ///< of the last three steps, from which the next are guessed
+    std::vector<std::vector<double>> stages;         ///< the same of each stage of a composed step, and its turns
     std::vector<double> clock;                       ///< time, and what controls the step
     /// What follows from places and attitudes. Computed anew at another place of the program it could differ in its
     /// last bits; where it is empty, it is.
@@ -84,8 +89,8 @@ class Multibody {
 
   long index() const { return index_; }
   double time() const { return now_.time; }
-  /// Of the arrow that led here (at the start, of the first).
-  double step() const { return h_; }
+  /// Of the step that led here (at the start, of the first).
+  double step() const { return control_ ? h_ : whole_step_; }
   const Configuration& configuration() const { return now_; }
 
   /// Where a site and an attitude of the written scene are found in `configuration()`.
@@ -122,6 +127,8 @@ class Multibody {
   /// alternate about those of the motion, which places follow all the same.
   double hardest_damper() const;
 
+  /// Whether its steps can be controlled: attractions act in it, and nothing else.
+  bool has_time_scale() const;
   int islands() const { return int(islands_.size()); }
   int rows() const { return int(values_.size()); }
   int dependent_rows() const { return dependent_rows_; }
@@ -133,6 +140,12 @@ class Multibody {
   std::size_t memory() const;
 
  private:
+  /// A part of a composed step, with what its next guess is made of.
+  struct Stage {
+    double step;
+    std::array<std::vector<double>, 3> earlier;
+    std::vector<Vec> turned;
+  };
   struct Range {
     int first = 0;
     int last = 0;
@@ -250,6 +263,12 @@ class Multibody {
   StepReport solve(Island& island);
   StepReport turn_freely(int rotation);
   /// Solves all islands; what a step leaves behind that is not accepted is put right by `advance`.
+  void compose(const Composition& composition);
+  /// One step of the size h_, which ends then.
+  StepReport advance_by(double end);
+  StepReport advance_by_stages();
+  void save(State& state) const;
+  bool stages_fit(const State& state) const;
   StepReport solve_all();
   void accept();
   /// The momentum that vakonomic rows take away again at the target; the forces of dampers there.
@@ -258,6 +277,9 @@ class Multibody {
 
   double h_;
   Options options_;
+  double whole_step_;
+  std::vector<Stage> stages_;  ///< of a composed step
+  State before_;               ///< of it, to which a step that fails in between returns
   std::optional<StepController> control_;
   double time_carry_ = 0;
   long index_ = 0;

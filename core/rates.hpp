@@ -1,0 +1,25 @@
+#pragma once
+/// Systems that also know the continuous motion which they discretise.
+
+#include <lagroid/core/system.hpp>
+
+#include <concepts>
+
+namespace lagroid {
+
+/// Of a motion at (q, mu) in A*G: the velocity X in A_qG, along which objects and arrows move, q' = rho(X) and
+/// g' = X<-(g), and mu'.
+template <class G> struct Rates {
+  AlgebroidVector<G> velocity;
+  AlgebroidVector<G> momentum;
+};
+
+/// A system that writes `Rates<G> rates(const State<G>& z) const`, the vector field on A*G of which its step is an
+/// approximation: X = dH/dmu, mu' = -rho^* dH/dq + ad^*_X mu, and forces or reactions if there are any.
+template <class Sys>
+concept HasRates = DiscreteSystem<Sys> && HasTimeStep<Sys> &&
+    requires(const Sys& system, const State<typename Sys::GroupoidType>& z) {
+  { system.rates(z) } -> std::same_as<Rates<typename Sys::GroupoidType>>;
+};
+
+}  // namespace lagroid
