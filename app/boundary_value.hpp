@@ -277,11 +277,13 @@ Task<Sys> boundary_value(const Section& scene, const RunContext& context, const 
   if (problem.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
   run.first = run.along ? read_along(scene, *run.along, 0, read).stage : problem;
   if (const auto why = inadmissible_ends(run.first.problem)) scene.section("continuation", "").fail("from", *why);
-  return {problem.problem.system, [=](const Observer<Sys>& observer) {
+  return {problem.problem.system,
+          [=](const Observer<Sys>& observer) {
             std::optional<Checkpoint> folder;
             if (!context.folder.empty()) folder.emplace(context.folder, 0).remove();
             return solve_boundary_scene(run, context, read, search, observer);
-          }};
+          },
+          nullptr};
 }
 
 /// The same with the multistart that serves any system.

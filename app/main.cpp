@@ -8,6 +8,7 @@
 #include "registry.hpp"
 #include "report.hpp"
 #include "reproduce.hpp"
+#include "study/study.hpp"
 #include "view.hpp"
 
 #include <fmt/format.h>
@@ -126,6 +127,10 @@ int main(int argc, char** argv) {
   check_command->prefix_command();
   CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
   list_command->add_flag("--json", options.json, "print one JSON array and nothing else on standard output");
+  StudyOptions study_options;
+  CLI::App* study_command = app.add_subcommand(
+      "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
+  add_study_options(*study_command, study_options);
   ReproduceOptions papers;
   CLI::App* reproduce_command = app.add_subcommand("reproduce", "carry out the experiments of a paper, and more");
   add_reproductions(*reproduce_command, papers, options.json);
@@ -140,8 +145,12 @@ int main(int argc, char** argv) {
     if (resume_command->parsed()) return run(options, true);
     if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });
     if (plot_command->parsed()) return from_run([&] { return draw_plots(run_to_plot); });
+    if (study_command->parsed()) {
+      static_cast<SceneOptions&>(options) = study_options;
+      return study(study_options);
+    }
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
     return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  "name a command: run, resume, view, plot, check, list or reproduce; see lagroid --help");
+                  "name a command: run, resume, view, plot, study, check, list or reproduce; see lagroid --help");
   });
 }

@@ -4,6 +4,7 @@
 #include "progress.hpp"
 #include "reproductions/newton_report.hpp"
 #include "reproductions/time_steps.hpp"
+#include "shell.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,15 +18,6 @@ namespace {
 
 constexpr const char* newton_name = "newton-on-lie-groups";
 constexpr const char* time_name = "time-steps";
-
-/// As a word of the shell.
-std::string quoted(const std::string& text) {
-  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:=@%";
-  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
 
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {

@@ -383,6 +383,10 @@ std::string Section::whole() const {
   return out.str();
 }
 
+Section Section::set(const std::vector<std::string>& overrides) const {
+  return parse_scene(whole(), source_->file, overrides);
+}
+
 Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))

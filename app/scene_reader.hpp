@@ -82,6 +82,8 @@ class Section {
   /// The whole scene with its overrides, as TOML.
   std::string whole() const;
   bool interpolated() const { return source_->interpolated; }
+  /// A copy of a whole scene with overrides "key.subkey=value".
+  Section set(const std::vector<std::string>& overrides) const;
 
   /// A copy of a whole scene without the key at such a path.
   Section without(std::string_view path) const;

@@ -32,19 +32,16 @@ void refuse_accuracy(const Section& scene) {
     time.fail("accuracy", "finds the first of variational steps from [initial]; give step or duration here");
 }
 
-namespace {
-
-/// `order`, `composition`: of a fixed step.
-Composition read_composition(const Section& time) {
+Composition read_composition(const Section& time, std::span<const Composition> offered) {
   const long order = time.integer_or("order", 2, 2, 8);
   if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6 or 8, got {}", order));
   constexpr std::array defaults{compositions::single, compositions::suzuki, compositions::kahan_li_6,
                                 compositions::kahan_li_8};
   const Composition& usual = defaults[std::size_t(order / 2 - 1)];
   std::vector<std::string> names;
-  for (const auto& composition : compositions::all) names.emplace_back(composition.name);
+  for (const auto& composition : offered) names.emplace_back(composition.name);
   const std::string name = time.choice_or("composition", std::string(usual.name), names);
-  for (const auto& composition : compositions::all) {
+  for (const auto& composition : offered) {
     if (composition.name != name) continue;
     if (time.has("order") && composition.order != order)
       time.fail("composition", fmt::format("\"{}\" is of order {}, not {}; leave out order or composition", name,
@@ -53,6 +50,8 @@ Composition read_composition(const Section& time) {
   }
   return usual;
 }
+
+namespace {
 
 void read_stepper(const Section& solver, MarchOptions& options) {
   if (solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres") options.method = StepMethod::ceres;
@@ -72,10 +71,20 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
   const std::string_view timed = able.variational ? "Lagrangian for every step size" : "action principle";
   const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled"});
   if (mode == "fixed") {
-    options.splitting = time.choice_or("method", "variational", {"variational", "splitting"}) == "splitting";
-    if (options.splitting) need(able.split, "method", "explicit splitting");
-    options.composition = read_composition(time);
-    if (options.composition.stages() > 1)
+    const std::string method = time.choice_or("method", "variational", {"variational", "splitting", "runge-kutta"});
+    if (method == "runge-kutta") {
+      options.fixed = StepKind::runge_kutta;
+      need(able.rates, "method", "vector field written for it");
+      if (time.integer_or("order", 4, 2, 8) != 4) time.fail("order", "of Runge-Kutta steps is 4");
+      if (time.has("composition")) time.fail("composition", "is of symmetric steps; leave it out");
+    } else if (method == "splitting") {
+      options.fixed = StepKind::splitting;
+      need(!able.splittings.empty(), "method", "explicit splitting");
+      options.composition = read_composition(time, able.splittings);
+    } else {
+      options.composition = read_composition(time, compositions::all);
+    }
+    if (options.fixed == StepKind::variational && options.composition.stages() > 1)
       need(able.variational, time.has("order") ? "order" : "composition", "action principle, and no order above 2");
   } else if (mode == "adaptive") {
     need(able.timed, "mode", timed);
@@ -100,11 +109,31 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
   if (time.has("accuracy")) {
     choice.accuracy = time.number("accuracy", positive);
     if (time.has("duration")) time.fail("accuracy", "chooses the step: leave out duration");
-    if (options.splitting || options.composition.stages() > 1)
+    if (options.fixed != StepKind::variational || options.composition.stages() > 1)
       time.fail("accuracy", "chooses steps of order 2; give step, or leave out order, method and composition");
   }
   read_stepper(scene.section_or_empty("solver"), options);
   return choice;
+}
+
+std::vector<Method> composed_methods(const std::string& step, std::span<const Composition> composed_by) {
+  std::vector<Method> all;
+  for (const auto& composition : composed_by)
+    all.push_back({composition.stages() > 1 ? fmt::format("{}/{}", step, composition.name) : step,
+                   composition.order,
+                   composition.stages(),
+                   true,
+                   {"time.method=" + step, fmt::format("time.composition={}", composition.name)}});
+  return all;
+}
+
+std::vector<Method> march_methods(const Abilities& able) {
+  std::vector<Method> all = composed_methods("variational", steps_composed(able.variational));
+  for (Method& method : composed_methods("splitting", able.splittings)) all.push_back(std::move(method));
+  if (able.rates) all.push_back({"runge-kutta", 4, 4, true, {"time.method=runge-kutta"}, true});
+  if (able.timed) all.push_back({"adaptive", 2, 1, false, {"time.mode=adaptive"}});
+  if (able.time_scale) all.push_back({"controlled", 2, 1, false, {"time.mode=controlled"}});
+  return all;
 }
 
 long read_every(const Section& scene) { return scene.section_or_empty("output").integer_or("every", 1, 1, most_apart); }

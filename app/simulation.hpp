@@ -4,18 +4,22 @@
 #include "recorder.hpp"
 #include "scene_reader.hpp"
 #include "stepped_run.hpp"
+#include "study/system_trial.hpp"
 #include "task.hpp"
 
 #include <lagroid/core/discrete_energy.hpp>
+#include <lagroid/core/rates.hpp>
 #include <lagroid/core/split_system.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march.hpp>
+#include <lagroid/solvers/splitting.hpp>
 #include <lagroid/solvers/step_control.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <memory>
+#include <span>
 
 namespace lagroid::app {
 
@@ -38,12 +42,30 @@ struct Abilities {
   bool variational = false;
   bool timed = false;
   bool time_scale = false;
-  bool split = false;
+  bool rates = false;
+  std::vector<Composition> splittings;  ///< of its flows; empty where it has none
 };
-template <class Sys>
-inline constexpr Abilities abilities_of{Variational<Sys>, Timed<Sys>, Timed<Sys>&& HasTimeScale<Sys>, SplitSystem<Sys>};
+template <class Sys> Abilities abilities_of(const Sys& system) {
+  Abilities able{Variational<Sys>, Timed<Sys>, Timed<Sys> && HasTimeScale<Sys>, HasRates<Sys>, {}};
+  if constexpr (SplitSystem<Sys>) {
+    able.splittings.assign(compositions::all.begin(), compositions::all.end());
+    for (const auto& of_two_flows : splittings::all)
+      if (splits_by(system, of_two_flows)) able.splittings.push_back(of_two_flows);
+  }
+  return able;
+}
 /// Refuses what the system does not have.
 MarchChoice read_march(const Section& scene, const Abilities& able);
+/// `order`, `composition`: of a fixed step.
+Composition read_composition(const Section& time, std::span<const Composition> offered);
+/// The compositions of a step of order 2; the step alone where it cannot be taken back.
+inline std::span<const Composition> steps_composed(bool composable) {
+  return std::span(compositions::all).first(composable ? compositions::all.size() : 1);
+}
+/// The fixed steps of a kind, by each of the compositions.
+std::vector<Method> composed_methods(const std::string& step, std::span<const Composition> composed_by);
+/// All that it would accept.
+std::vector<Method> march_methods(const Abilities& able);
 
 /// [output]: every n-th node is recorded (and the last).
 long read_every(const Section& scene);
@@ -165,12 +187,18 @@ template <DiscreteSystem Sys>
 Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys& system,
                      const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                      const ArrowOf<typename Sys::GroupoidType>& configuration) {
-  const MarchChoice choice = read_march(scene, abilities_of<Sys>);
+  const Abilities able = abilities_of(system);
+  const MarchChoice choice = read_march(scene, able);
   const Pace pace = read_pace(scene, context);
   scene.finish();
-  return {system, [=](const Observer<Sys>& observer) {
+  return {system,
+          [=](const Observer<Sys>& observer) {
             return simulate(system, presentation, initial, configuration, choice, pace, context, observer);
-          }};
+          },
+          [=]() -> std::unique_ptr<Trial> {
+            return std::make_unique<SystemTrial<Sys>>(system, initial, configuration, choice.options);
+          },
+          march_methods(able)};
 }
 
 }  // namespace lagroid::app

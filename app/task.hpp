@@ -2,12 +2,15 @@
 /// A scene, read and checked, before anything is computed.
 
 #include "run_result.hpp"
+#include "study/trial.hpp"
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/system.hpp>
 
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -25,6 +28,8 @@ template <class Sys> using Observer = std::function<void(const TrajectoryPoint<S
 template <DiscreteSystem Sys> struct Task {
   Sys system;
   std::function<RunResult(const Observer<Sys>&)> run;
+  std::function<std::unique_ptr<Trial>()> begin;  ///< the same motion alone; null for boundary values
+  std::vector<Method> methods = {};               ///< by which the scene could march
 };
 
 }  // namespace lagroid::app

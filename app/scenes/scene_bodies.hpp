@@ -117,6 +117,11 @@ inline bool is_symplectic(const SceneBodies& bodies) { return is_variational(bod
 /// Whether it goes back where these change their signs.
 inline bool is_reversible(const SceneBodies& bodies) { return is_symplectic(bodies) && !bodies.timed; }
 
+/// Whether steps of it can be composed to higher orders.
+inline bool is_composable(const SceneBodies& bodies) {
+  return !bodies.dissipates && !bodies.nonholonomic && !bodies.vakonomic;
+}
+
 /// Reads [[body]], [[joint]] and [[effect]].
 SceneBodies read_scene_bodies(const Section& scene);
 void read_body(SceneBodies& bodies, const Section& table);

@@ -46,6 +46,19 @@ struct Node {
         residual(at.constraint_residual()) {}
 
   double energy() const { return kinetic + potential; }
+  /// Sizes of the terms of the momenta.
+  double momentum_size() const {
+    double size = 0;
+    for (const Vec& p : momenta.linear) size += p.norm();
+    return size;
+  }
+  double angular_size() const {
+    double size = 0;
+    for (std::size_t f = 0; f < momenta.linear.size(); ++f)
+      size += momenta.linear[f].norm() * motion.configuration().x[f].norm();
+    for (const Vec& spin : momenta.spin) size += spin.norm();
+    return size;
+  }
 
   const Multibody& motion;
   double cost;
@@ -235,15 +248,8 @@ class Promises {
       energy_.observe(&energy, kinetic + std::abs(potential));
     }
     if (!isolated_) return;
-    double size = 0;
-    double turning = 0;
-    for (std::size_t f = 0; f < m.linear.size(); ++f) {
-      size += m.linear[f].norm();
-      turning += m.linear[f].norm() * motion.configuration().x[f].norm();
-    }
-    for (const Vec& spin : m.spin) turning += spin.norm();
-    momentum_.observe(motion.linear_momentum(m).data(), size);
-    angular_.observe(motion.angular_momentum(m).data(), turning);
+    momentum_.observe(motion.linear_momentum(m).data(), node.momentum_size());
+    angular_.observe(motion.angular_momentum(m).data(), node.angular_size());
   }
 
   void persist(Archive& archive) {
@@ -292,6 +298,12 @@ class Run final : public SteppedRun {
     options.tolerance =
         solver.number_or("tolerance", 0, {"between 0 and 0.001", [](double x) { return x >= 0 && x <= 1e-3; }});
     options.controlled = controlled_ = read_mode(scene);
+    const Section time = scene.section("time", "step and steps, or duration and steps");
+    time.choice_or("method", "variational", {"variational"});
+    options.composition = read_composition(time, compositions::all);
+    if (options.composition.stages() > 1 && (controlled_ || !is_composable(bodies_)))
+      time.fail(time.has("order") ? "order" : "composition",
+                "above 2 goes with equal steps of scenes without damping and without joints that hold velocities");
     if (const double damped = step_ * bodies_.damping_rate; !(damped <= 2))
       scene.section("time", "")
           .fail("step",
@@ -326,8 +338,12 @@ class Run final : public SteppedRun {
       scene.fail("",
                  "the energy at the start is no finite number: a velocity or a mass is too large, or bodies that act "
                  "on each other meet");
-    result_.method = description({options.controlled ? "controlled steps" : "steps of the discrete Lagrangian", 2, true,
-                                  is_variational(bodies_) && !options.controlled, false});
+    const Composition& composition = options.composition;
+    traits_ = {options.controlled         ? "controlled steps"
+               : composition.stages() > 1 ? std::string(composition.name)
+                                          : "steps of the discrete Lagrangian",
+               composition.order, true, is_variational(bodies_) && !options.controlled, false};
+    result_.method = description(traits_);
     if (motion_->dependent_rows() > 0)
       result_.notes.push_back(
           fmt::format("{} of {} equations of the joints depend on the others at the start; they hold because those do, "
@@ -347,6 +363,27 @@ class Run final : public SteppedRun {
   BodiesToCheck to_check(const Section& scene) const {
     return {result_.system, [scene] { return std::move(read_scene_bodies(scene).scene); }, step_,
             is_symplectic(bodies_), is_reversible(bodies_)};
+  }
+
+  const std::string& name() const { return result_.system; }
+  MethodTraits traits() const { return traits_; }
+  Multibody& motion() { return *motion_; }
+  double step() const { return step_; }
+  /// What is kept: energy where nothing drives the bodies, momenta where nothing holds them.
+  std::vector<Block> invariants(const Node& node) const {
+    std::vector<Block> out;
+    if (!bodies_.driven && !bodies_.timed)
+      out.push_back({"energy", {node.energy() + node.motion.dissipated()}, node.kinetic + std::abs(node.potential)});
+    if (!bodies_.isolated) return out;
+    const auto list = [](const Vec& v) { return std::vector<double>(v.data(), v.data() + 3); };
+    out.push_back({"momentum", list(node.motion.linear_momentum(node.momenta)), node.momentum_size()});
+    out.push_back({"angular momentum", list(node.motion.angular_momentum(node.momenta)), node.angular_size()});
+    return out;
+  }
+  std::vector<Method> methods() const {
+    std::vector<Method> all = composed_methods("variational", steps_composed(is_composable(bodies_)));
+    if (motion_->has_time_scale()) all.push_back({"controlled", 2, 1, false, {"time.mode=controlled"}});
+    return all;
   }
 
   RunResult go() {
@@ -394,6 +431,7 @@ class Run final : public SteppedRun {
     archive("attitude", state.attitude);
     for (std::size_t i = 0; i < state.multipliers.size(); ++i)
       archive(fmt::format("multipliers {}", i), state.multipliers[i]);
+    for (std::size_t i = 0; i < state.stages.size(); ++i) archive(fmt::format("stage {}", i), state.stages[i]);
     archive("clock", state.clock);
     archive("derived", state.derived);
     if (archive.restoring()) motion_->restore(state);
@@ -427,6 +465,7 @@ class Run final : public SteppedRun {
   }
 
   SceneBodies bodies_;
+  MethodTraits traits_;
   RunContext context_;
   double step_ = 0;
   bool controlled_ = false;
@@ -440,7 +479,55 @@ class Run final : public SteppedRun {
   RunResult result_;
 };
 
+/// Such a motion alone.
+class MotionTrial final : public Trial {
+ public:
+  explicit MotionTrial(std::unique_ptr<Run> run) : run_(std::move(run)), motion_(run_->motion()) {}
+
+  StepReport advance(Work& work) override {
+    const StepReport report = motion_.advance();
+    if (report.converged()) count(work, report, 0);
+    return report;
+  }
+  StepReport run(double end, Work& work) override {
+    StepReport report;
+    report.status = SolveStatus::converged;
+    while (report.converged() && end - motion_.time() > 0.5 * motion_.step()) report = advance(work);
+    return report;
+  }
+  double time() const override { return motion_.time(); }
+  MethodTraits traits() const override { return run_->traits(); }
+
+  Sight see() override {
+    const Node node(motion_);
+    Sight sight;
+    Block places{"places", {}}, attitudes{"attitudes", {}}, momenta{"momenta", {}}, spins{"spins", {}};
+    for (std::size_t f = 0; f < node.momenta.linear.size(); ++f) put(places.values, motion_.configuration().x[f]);
+    for (const auto& a : motion_.configuration().attitude)
+      attitudes.values.insert(attitudes.values.end(), a.data(), a.data() + 9);
+    for (const Vec& p : node.momenta.linear) put(momenta.values, p);
+    for (const Vec& m : node.momenta.spin) put(spins.values, m);
+    for (Block* block : {&places, &attitudes, &momenta, &spins})
+      if (!block->values.empty()) sight.state.push_back(std::move(*block));
+    sight.invariants = run_->invariants(node);
+    sight.constrained = motion_.rows() > 0;
+    sight.constraint = node.residual;
+    return sight;
+  }
+
+ private:
+  std::unique_ptr<Run> run_;
+  Multibody& motion_;
+};
+
 }  // namespace
+
+BodiesTrial begin_bodies(const Section& scene) {
+  auto run = std::make_unique<Run>(scene, RunContext{}, std::numeric_limits<long>::max());
+  const std::string name = run->name();
+  auto methods = run->methods();
+  return {name, std::make_unique<MotionTrial>(std::move(run)), std::move(methods)};
+}
 
 RunResult run_bodies(const Section& scene, const RunContext& context, long most_steps) {
   return Run(scene, context, most_steps).go();

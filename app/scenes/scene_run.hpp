@@ -8,7 +8,9 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -17,6 +19,14 @@ class Section;
 /// Reads a scene of [[body]], [[joint]] and [[effect]] and runs it, over `most_steps` at most.
 RunResult run_bodies(const Section& scene, const RunContext& context,
                      long most_steps = std::numeric_limits<long>::max());
+
+/// The motion of a scene alone, and the methods by which it could be marched.
+struct BodiesTrial {
+  std::string name;
+  std::unique_ptr<Trial> trial;
+  std::vector<Method> methods;
+};
+BodiesTrial begin_bodies(const Section& scene);
 
 /// A scene of bodies whose step is to be asked its laws.
 struct BodiesToCheck {

@@ -52,13 +52,26 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
   } catch (const std::domain_error& error) {
     time.fail(time.has("step") ? "step" : "duration", error.what());
   }
-  return {body, [=](const Observer<RigidBody>& observer) {
+  return {body,
+          [=](const Observer<RigidBody>& observer) {
             const Observer<MoserVeselov> as_body = [&](const TrajectoryPoint<MoserVeselov>& p) {
               observer({p.index, p.time, p.step_size, p.state, p.configuration, {p.step.arrow, {}}});
             };
             return simulate(system, presentation(system), state, attitude, {}, pace, context,
                             observer ? as_body : nullptr);
+          },
+          [=]() -> std::unique_ptr<Trial> {
+            return std::make_unique<SystemTrial<MoserVeselov>>(system, state, attitude, MarchOptions{});
           }};
+}
+
+void add_moser_veselov(std::vector<Method>& methods) {
+  for (int order = 2; order <= 10; order += 2)
+    methods.push_back({fmt::format("moser-veselov/{}", order),
+                       order,
+                       1,
+                       true,
+                       {"time.method=moser-veselov", fmt::format("time.order={}", order)}});
 }
 
 }  // namespace
@@ -74,7 +87,9 @@ Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context)
   const Section time = scene.section_or_empty("time");
   if (time.has("method") && time.text("method", "variational, splitting or moser-veselov") == "moser-veselov")
     return moser_veselov(scene, context, system, state, attitude);
-  return simulation(scene, context, system, p, state, attitude);
+  Task<RigidBody> task = simulation(scene, context, system, p, state, attitude);
+  add_moser_veselov(task.methods);
+  return task;
 }
 
 }  // namespace lagroid::app

@@ -1,0 +1,35 @@
+#pragma once
+/// From measurements to what an error costs.
+
+#include "measure.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// What is wrong with a run.
+enum class Axis { trajectory, invariants, constraint };
+inline constexpr Axis axes[] = {Axis::trajectory, Axis::invariants, Axis::constraint};
+const char* name_of(Axis axis);
+double error_of(const Measurement& m, Axis axis);
+
+/// What it takes to come below an error.
+struct Cost {
+  std::string method;
+  double step = 0;
+  double seconds = 0;
+  double evaluations = 0;
+};
+
+/// With that method: on the line (in logarithms) between the first run below the error and the one before it. None
+/// where no run came below it; the first run itself where there is none before.
+std::optional<Cost> cost_of(const std::vector<Measurement>& all, const std::string& method, Axis axis, double error);
+/// With the method that takes least time.
+std::optional<Cost> least_cost(const std::vector<Measurement>& all, Axis axis, double error);
+
+/// The methods measured, in order.
+std::vector<std::string> methods_of(const std::vector<Measurement>& all);
+
+}  // namespace lagroid::app

@@ -1,0 +1,436 @@
+#include "measure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double norm(const std::vector<double>& v) {
+  double square = 0;
+  for (const double x : v) square += x * x;
+  return std::sqrt(square);
+}
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double square = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) square += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(square);
+}
+
+/// The largest of two, NaN if either is.
+double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b); }
+
+/// The sizes that the motion gives to the blocks of its state: the largest norms along a run.
+std::vector<double> sizes_along(const Experiment& experiment, const Method& method, double h) {
+  const auto trial = experiment.begin(method, h);
+  Work work;
+  std::vector<double> sizes;
+  const auto look = [&] { raise_sizes(sizes, trial->see().state); };
+  look();
+  while (trial->time() < experiment.end - 0.5 * h && trial->advance(work).converged()) look();
+  return sizes;
+}
+
+/// The state at `end` after the least number of steps no longer than h, none where the method fails.
+std::optional<std::vector<Block>> state_at(const Experiment& experiment, const Method& method, double h, double end) {
+  Experiment until = experiment;
+  until.end = end;
+  try {
+    const auto trial = until.begin(method, end / std::ceil(end / h - 1e-9));
+    Work work;
+    if (!trial->run(end, work).converged()) return std::nullopt;
+    return trial->see().state;
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+const Method& of_highest_order(const Experiment& experiment) {
+  const Method* best = nullptr;
+  for (const Method& method : experiment.methods)
+    if (method.equal_steps && !method.to_compare && (best == nullptr || method.order >= best->order)) best = &method;
+  return *best;
+}
+
+/// Romberg's table of states after steps h, h/2, h/4, ..., of which `rows` are computed.
+class Extrapolated final : public Reference {
+ public:
+  Extrapolated(const Experiment& experiment, double budget)
+      : experiment_(experiment), method_(of_highest_order(experiment)) {
+    const auto start = std::chrono::steady_clock::now();
+    first_step_ = experiment.step * std::sqrt(double(method_.stages));
+    sizes_ = sizes_along(experiment, method_, experiment.step);
+    std::vector<std::vector<Block>> table;
+    double least = std::numeric_limits<double>::infinity();
+    int since_least = 0;
+    double last_took = 0;
+    for (int row = 0; row < 22; ++row) {
+      if (row >= 3 && seconds_since(start) + 2 * last_took > budget) break;
+      const auto began = std::chrono::steady_clock::now();
+      const auto before = table.empty() ? std::vector<Block>() : table.back();
+      if (!add_row(table, row, experiment.end)) continue;
+      last_took = seconds_since(began);
+      if (before.empty()) continue;
+      auto difference = table.back();
+      set_sizes(difference, sizes_);
+      const double changed = distance(difference, before);
+      if (changed < least) {
+        least = changed;
+        rows_ = row + 1;
+        best_ = difference;
+        since_least = 0;
+      } else if (++since_least >= 2 && least < 1e-6) {
+        break;
+      }
+    }
+    if (best_.empty())
+      throw std::domain_error("no reference: the method of highest order did not reach the end with any step");
+    uncertainty = least;
+    description = fmt::format("{} with {} halved steps from {:.4g}, extrapolated", method_.name, rows_, first_step_);
+  }
+
+  std::vector<Block> at(double time) override {
+    if (time == experiment_.end) return best_;
+    std::vector<std::vector<Block>> table;
+    for (int row = std::max(0, rows_ - 3); row < rows_; ++row) add_row(table, row, time);
+    if (table.empty()) return {};
+    set_sizes(table.back(), sizes_);
+    return table.back();
+  }
+
+ private:
+  /// Replaces the last row of the table by the next. The table holds one row: extrapolations of growing order.
+  bool add_row(std::vector<std::vector<Block>>& row, int level, double end) {
+    const auto state = state_at(experiment_, method_, first_step_ * std::pow(0.5, level), end);
+    if (!state) return false;
+    std::vector<std::vector<Block>> next{*state};
+    constexpr std::size_t most = 3;  // extrapolating further multiplies round-off
+    for (std::size_t k = 0; k < row.size() && k < most; ++k) {
+      const double factor = std::pow(2.0, method_.order + 2 * int(k)) - 1;
+      auto better = next[k];
+      for (std::size_t b = 0; b < better.size(); ++b)
+        for (std::size_t i = 0; i < better[b].values.size(); ++i)
+          better[b].values[i] += (next[k][b].values[i] - row[k][b].values[i]) / factor;
+      next.push_back(std::move(better));
+    }
+    row = std::move(next);
+    return true;
+  }
+
+  const Experiment& experiment_;
+  Method method_;
+  double first_step_ = 0;
+  int rows_ = 0;
+  std::vector<double> sizes_;
+  std::vector<Block> best_;
+};
+
+class ByMethod final : public Reference {
+ public:
+  ByMethod(const Experiment& experiment, const Method& method, double h)
+      : experiment_(experiment), method_(method), h_(h), sizes_(sizes_along(experiment, method, experiment.step)) {
+    const auto half = state_at(experiment, method, 0.5 * h, experiment.end);
+    end_ = at(experiment.end);
+    if (!half || end_.empty())
+      throw std::domain_error(fmt::format("no reference: {} with step {:g} does not reach the end", method.name, h));
+    uncertainty = distance(end_, *half);
+    description = fmt::format("{} with steps of {:.6g}", method.name, h);
+  }
+
+  std::vector<Block> at(double time) override {
+    if (time == experiment_.end && !end_.empty()) return end_;
+    auto state = state_at(experiment_, method_, h_, time);
+    if (!state) return {};
+    set_sizes(*state, sizes_);
+    return *state;
+  }
+
+ private:
+  const Experiment& experiment_;
+  Method method_;
+  double h_;
+  std::vector<double> sizes_;
+  std::vector<Block> end_;
+};
+
+class Known final : public Reference {
+ public:
+  Known(const Experiment& experiment, std::vector<Block> state) : end_(experiment.end), state_(std::move(state)) {}
+  std::vector<Block> at(double time) override { return time == end_ ? state_ : std::vector<Block>(); }
+
+ private:
+  double end_;
+  std::vector<Block> state_;
+};
+
+/// The slope of what is watched along a run, through the means of its parts.
+class Trend {
+ public:
+  Trend(double end, double first) : end_(end), first_(first) {}
+  void see(double time, double value) {
+    const auto part = std::size_t(std::clamp(time / end_ * parts, 0.0, parts - 1.0));
+    sums_[part] += value - first_;
+    ++counts_[part];
+  }
+  /// Times `end`, and its standard error.
+  std::pair<double, double> slope() const {
+    double mean = 0;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      if (counts_[i] == 0) return {unknown, unknown};
+      mean += at(i) / parts;
+    }
+    double xy = 0;
+    double xx = 0;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      xy += place(i) * (at(i) - mean);
+      xx += place(i) * place(i);
+    }
+    const double slope = xy / xx;
+    double rest = 0;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const double off = at(i) - mean - slope * place(i);
+      rest += off * off;
+    }
+    return {slope, std::sqrt(rest / (parts - 2) / xx)};
+  }
+
+ private:
+  static constexpr double parts = 20;
+  double at(std::size_t i) const { return sums_[i] / double(counts_[i]); }
+  static double place(std::size_t i) { return (double(i) + 0.5) / parts - 0.5; }
+
+  double end_;
+  double first_;
+  std::array<double, 20> sums_{};
+  std::array<long, 20> counts_{};
+};
+
+/// Watches a run's invariants and constraints.
+class Watch {
+ public:
+  Watch(double end, Measurement& out) : end_(end), out_(out) {}
+
+  void see(const Sight& now, double time) {
+    if (looked_++ == 0) {
+      if (now.constrained) out_.constraint = 0;
+      if (!now.invariants.empty()) out_.invariants = 0;
+    }
+    if (now.constrained) out_.constraint = larger(out_.constraint, now.constraint);
+    for (const Block& block : now.invariants) {
+      auto [found, is_new] = first_.try_emplace(block.name, block);
+      const Block& first = found->second;
+      const double of_its_own = std::max(norm(first.values), norm(block.values));
+      const double size = std::max(block.size, of_its_own);
+      out_.invariants = larger(out_.invariants, difference(block.values, first.values) / (size > 0 ? size : 1));
+      if (block.name.starts_with("energy") && block.values.size() == 1) {
+        if (is_new) trend_.emplace(end_, block.values[0]);
+        energy_size_ = std::max(energy_size_, size);
+        trend_->see(time, block.values[0]);
+      }
+    }
+  }
+  void finish() {
+    if (!trend_) return;
+    const auto [slope, error] = trend_->slope();
+    out_.drift = slope / energy_size_;
+    out_.drift_error = error / energy_size_;
+  }
+
+ private:
+  double end_;
+  Measurement& out_;
+  long looked_ = 0;
+  std::map<std::string, Block> first_;
+  std::optional<Trend> trend_;
+  double energy_size_ = 0;
+};
+
+/// One run alone; its seconds, or less than zero where it fails.
+double time_once(const Experiment& experiment, const Method& method, double h) {
+  // Clocks tick in tens of nanoseconds; a run of microseconds is repeated until their sum is long against that.
+  constexpr double long_enough = 1e-3;
+  double total = 0;
+  long runs = 0;
+  do {
+    const auto trial = experiment.begin(method, h);
+    Work work;
+    const auto start = std::chrono::steady_clock::now();
+    if (!trial->run(experiment.end, work).converged()) return -1;
+    total += seconds_since(start);
+    ++runs;
+  } while (total < long_enough && runs < 20);
+  return total / double(runs);
+}
+
+/// First steps from a large one down, until errors are round-off's or runs take too long.
+void refine(const Experiment& experiment, const Method& method, double longest, Reference& reference,
+            std::vector<Measurement>& out) {
+  const double coarse = std::min(16 * experiment.step * std::sqrt(double(method.stages)), experiment.end / 4);
+  double least = std::numeric_limits<double>::infinity();
+  int not_better = 0;
+  for (int k = 0; k < 20; ++k) {
+    const double h = experiment.end / std::ceil(experiment.end / (coarse * std::pow(0.5, k)) - 1e-9);
+    out.push_back(measure_once(experiment, method, h, &reference, longest));
+    const Measurement& last = out.back();
+    if (last.status == "too slow") {
+      out.pop_back();
+      return;
+    }
+    if (!last.converged()) continue;
+    const double floor = std::max(reference.uncertainty, 1e-15);
+    if (last.trajectory < 2 * floor) return;
+    not_better = last.trajectory > 0.7 * least ? not_better + 1 : 0;
+    if (not_better >= 2 && least < 1e-8) return;
+    least = std::min(least, last.trajectory);
+    if (last.seconds.front() > longest / 2) return;
+  }
+}
+
+}  // namespace
+
+void raise_sizes(std::vector<double>& sizes, const std::vector<Block>& state) {
+  sizes.resize(state.size());
+  for (std::size_t i = 0; i < state.size(); ++i) sizes[i] = std::max(sizes[i], norm(state[i].values));
+}
+
+void set_sizes(std::vector<Block>& state, const std::vector<double>& sizes) {
+  for (std::size_t i = 0; i < state.size() && i < sizes.size(); ++i) state[i].size = sizes[i];
+}
+
+double distance(const std::vector<Block>& state, const std::vector<Block>& truth) {
+  if (state.size() != truth.size() || state.empty()) return unknown;
+  double most = 0;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    if (state[i].values.size() != truth[i].values.size()) return unknown;
+    const double size = std::max(state[i].size, truth[i].size);
+    const double scale = size > 0 ? size : norm(truth[i].values);
+    most = larger(most, difference(state[i].values, truth[i].values) / (scale > 0 ? scale : 1));
+  }
+  return most;
+}
+
+double Measurement::median() const {
+  if (seconds.empty()) return unknown;
+  auto sorted = seconds;
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t middle = sorted.size() / 2;
+  return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+}
+
+double Measurement::spread() const {
+  if (seconds.size() < 4) return unknown;
+  auto sorted = seconds;
+  std::sort(sorted.begin(), sorted.end());
+  return (sorted[3 * sorted.size() / 4] - sorted[sorted.size() / 4]) / median();
+}
+
+std::unique_ptr<Reference> extrapolated_reference(const Experiment& experiment, double budget) {
+  return std::make_unique<Extrapolated>(experiment, budget);
+}
+
+std::unique_ptr<Reference> method_reference(const Experiment& experiment, const Method& method, double h) {
+  return std::make_unique<ByMethod>(experiment, method, h);
+}
+
+std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::vector<Block> state, double uncertainty,
+                                           std::string description) {
+  auto known = std::make_unique<Known>(experiment, std::move(state));
+  known->uncertainty = uncertainty;
+  known->description = std::move(description);
+  return known;
+}
+
+Measurement measure_once(const Experiment& experiment, const Method& method, double h, Reference* reference,
+                         double longest) {
+  Measurement out;
+  out.method = method.name;
+  out.order = method.order;
+  out.step = h;
+  try {
+    const auto trial = experiment.begin(method, h);
+    Watch watch(experiment.end, out);
+    watch.see(trial->see(), 0);
+    StepReport report;
+    report.status = SolveStatus::converged;
+    const auto start = std::chrono::steady_clock::now();
+    // Varying steps are first ones: the last node may lie anywhere within half a step of the end.
+    double last_step = h;
+    while (experiment.end - trial->time() > 0.5 * last_step) {
+      const double before = trial->time();
+      report = trial->advance(out.work);
+      if (!report.converged()) break;
+      last_step = trial->time() - before;
+      watch.see(trial->see(), trial->time());
+      if (out.work.steps % 64 == 0 && seconds_since(start) > 8 * longest) {
+        out.status = "too slow";
+        return out;
+      }
+    }
+    out.seconds = {seconds_since(start)};
+    out.reached = trial->time();
+    watch.finish();
+    if (!report.converged()) {
+      out.status = std::string(to_string(report.status));
+      out.message = fmt::format("step {} of {}", out.work.steps + 1, std::lround(experiment.end / h));
+      return out;
+    }
+    if (reference != nullptr)
+      out.trajectory = distance(trial->see().state, reference->at(method.equal_steps ? experiment.end : out.reached));
+    if (reference != nullptr && method.equal_steps && !std::isfinite(out.trajectory)) {
+      out.status = std::string(to_string(SolveStatus::not_finite));
+      out.message = "the state at the end is not finite";
+    }
+  } catch (const SceneError& error) {
+    out.status = "refused";
+    out.message = error.problem();
+  }
+  return out;
+}
+
+std::vector<Measurement> measure(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
+                                 Reference& reference, int repetitions,
+                                 const std::function<bool(double done)>& report) {
+  std::vector<Measurement> out;
+  const auto method_of = [&](const Measurement& m) -> const Method& {
+    return *std::find_if(methods.begin(), methods.end(), [&](const Method& each) { return each.name == m.method; });
+  };
+  constexpr double share_of_looking = 0.4;
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    if (steps.sizes.empty()) {
+      refine(experiment, methods[i], steps.longest, reference, out);
+    } else {
+      for (const double h : steps.sizes)
+        out.push_back(measure_once(experiment, methods[i],
+                                   experiment.end / std::max(1.0, std::round(experiment.end / h)), &reference,
+                                   std::numeric_limits<double>::infinity()));
+    }
+    if (!report(share_of_looking * double(i + 1) / double(methods.size()))) return out;
+  }
+  for (Measurement& m : out)
+    if (m.converged()) m.seconds.clear();
+  for (int r = 0; r < repetitions; ++r) {
+    for (Measurement& m : out) {
+      if (!m.converged()) continue;
+      const double took = time_once(experiment, method_of(m), m.step);
+      if (took >= 0) m.seconds.push_back(took);
+    }
+    if (!report(share_of_looking + (1 - share_of_looking) * double(r + 1) / double(repetitions))) break;
+  }
+  return out;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,81 @@
+#pragma once
+/// What methods cost, and how far their numbers are from the truth.
+
+#include "experiment.hpp"
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// States of a scene's motion that runs are compared with.
+class Reference {
+ public:
+  virtual ~Reference() = default;
+  /// At that time.
+  virtual std::vector<Block> at(double time) = 0;
+  /// Of the state at the end, in the measure of `distance`: errors below a few times this are not told apart.
+  double uncertainty = 0;
+  std::string description;
+};
+
+/// The largest norms of the blocks that were seen so far, and giving them to a state.
+void raise_sizes(std::vector<double>& sizes, const std::vector<Block>& state);
+void set_sizes(std::vector<Block>& state, const std::vector<double>& sizes);
+/// The largest distance of two blocks, each relative to the size that the motion gave it.
+double distance(const std::vector<Block>& state, const std::vector<Block>& truth);
+
+/// The method of highest order among those with equal steps, extrapolated: its error has an expansion in even powers of
+/// the step. Steps are halved until two extrapolations differ no less than before, or `budget` seconds are over.
+std::unique_ptr<Reference> extrapolated_reference(const Experiment& experiment, double budget);
+/// The numbers of one method with one step, and as uncertainty what half the step changes.
+std::unique_ptr<Reference> method_reference(const Experiment& experiment, const Method& method, double h);
+/// A state at the end that was computed elsewhere.
+std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::vector<Block> state, double uncertainty,
+                                           std::string description);
+
+/// One method with one step.
+struct Measurement {
+  std::string method;
+  int order = 2;
+  double step = 0;  ///< the first, where they vary
+  std::string status = "converged";
+  std::string message;
+  double reached = 0;  ///< the time
+  Work work;
+  std::vector<double> seconds;  ///< of every repetition, not counting the reading of the scene
+  double trajectory = std::numeric_limits<double>::quiet_NaN();  ///< error at the end
+  double invariants = std::numeric_limits<double>::quiet_NaN();  ///< the largest deviation at any node, relative
+  double constraint = std::numeric_limits<double>::quiet_NaN();  ///< the largest residual at any node
+  /// The slope of the energy by least squares through the means of twenty parts of the run, times the time, relative to
+  /// the energy's size; and its standard error. NaN where the energy is not watched or the run is too short.
+  double drift = std::numeric_limits<double>::quiet_NaN();
+  double drift_error = std::numeric_limits<double>::quiet_NaN();
+
+  bool converged() const { return status == "converged"; }
+  double median() const;
+  double spread() const;  ///< distance of the quartiles over the median
+};
+
+struct Steps {
+  /// Given ones; empty: halved from a large one on until errors are those of round-off or a run lasts `longest`
+  /// seconds.
+  std::vector<double> sizes;
+  double longest = 0.25;
+};
+
+/// Runs the methods, first with a look at every node, then, interleaved, `repetitions` times with none. `report` hears
+/// what part is done, and says whether to go on.
+std::vector<Measurement> measure(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
+                                 Reference& reference, int repetitions, const std::function<bool(double done)>& report);
+
+/// One run with a look at every node.
+Measurement measure_once(const Experiment& experiment, const Method& method, double h, Reference* reference,
+                         double longest);
+
+}  // namespace lagroid::app

@@ -1,0 +1,21 @@
+#pragma once
+/// Methods by the patterns of their names.
+
+#include "trial.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// A pattern that no method of the scene has; says which there are.
+class UnknownMethod : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Those whose names match one of the patterns, separated by commas ("splitting*,runge-kutta"), in the patterns' order;
+/// all where there is none.
+std::vector<Method> matching(const std::string& patterns, const std::vector<Method>& all);
+
+}  // namespace lagroid::app

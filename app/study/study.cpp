@@ -1,0 +1,213 @@
+#include "study.hpp"
+
+#include "../interrupt.hpp"
+#include "../machine.hpp"
+#include "../output_folder.hpp"
+#include "../progress.hpp"
+#include "../scene_reader.hpp"
+#include "../shell.hpp"
+#include "methods.hpp"
+#include "study_files.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace {
+
+/// A mistake on the command line.
+class BadOption : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+std::vector<std::string> parts(const std::string& text, char separator) {
+  std::vector<std::string> out;
+  std::size_t from = 0;
+  while (from <= text.size()) {
+    const std::size_t to = std::min(text.find(separator, from), text.size());
+    out.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  return out;
+}
+
+double positive_number(const std::string& text, const char* option) {
+  char* end = nullptr;
+  const double x = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(x) || !(x > 0))
+    throw BadOption(fmt::format("{}: \"{}\" is no positive number", option, text));
+  return x;
+}
+
+std::vector<Method> chosen_methods(const std::string& patterns, const std::vector<Method>& all) {
+  try {
+    return matching(patterns, all);
+  } catch (const UnknownMethod& error) {
+    throw BadOption(fmt::format("--methods: {}", error.what()));
+  }
+}
+
+std::vector<double> read_steps(const std::string& text, double end) {
+  std::vector<double> out;
+  if (text.empty()) return out;
+  if (const auto range = parts(text, ':'); range.size() == 3) {
+    const double first = positive_number(range[0], "--steps");
+    const double last = positive_number(range[1], "--steps");
+    const double count = positive_number(range[2], "--steps");
+    if (count != std::floor(count) || count < 2 || count > 100)
+      throw BadOption("--steps first:last:count: the count is a whole number from 2 to 100");
+    for (int k = 0; k < int(count); ++k) out.push_back(first * std::pow(last / first, k / (count - 1)));
+  } else {
+    for (const std::string& part : parts(text, ',')) out.push_back(positive_number(part, "--steps"));
+  }
+  for (const double h : out)
+    if (h > end || end / h > 1e9)
+      throw BadOption(fmt::format("--steps: {:g} does not go with a scene that lasts {:g}", h, end));
+  std::sort(out.rbegin(), out.rend());
+  return out;
+}
+
+/// The reference state of an earlier study of the same scene.
+std::unique_ptr<Reference> reference_from(const std::string& file, const Experiment& experiment) {
+  const auto refuse = [&](const std::string& why) { return BadOption(fmt::format("--reference {}: {}", file, why)); };
+  std::ifstream in(file);
+  if (!in) throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
+  try {
+    const auto json = nlohmann::json::parse(in);
+    if (std::abs(json.at("time").get<double>() - experiment.end) > 1e-12 * experiment.end)
+      throw refuse(
+          fmt::format("is for t = {:g}, this scene lasts {:g}", json.at("time").get<double>(), experiment.end));
+    std::vector<Block> state;
+    for (const auto& b : json.at("reference").at("state"))
+      state.push_back({b.at("name"), b.at("values").get<std::vector<double>>(), b.at("size")});
+    const auto own = experiment.begin(experiment.methods.front(), experiment.step)->see().state;
+    if (std::isnan(distance(own, state))) throw refuse("is of another system");
+    return known_reference(experiment, state, json.at("reference").at("uncertainty").get<double>(),
+                           json.at("reference").at("method").get<std::string>() + ", from " + file);
+  } catch (const nlohmann::json::exception&) {
+    throw refuse("is no study.json");
+  }
+}
+
+std::unique_ptr<Reference> make_reference(const StudyOptions& options, const Experiment& experiment) {
+  const std::string& text = options.reference;
+  if (text.empty()) return extrapolated_reference(experiment, options.reference_time);
+  const auto at = text.rfind('@');
+  if (at == std::string::npos) return reference_from(text, experiment);
+  const auto method = chosen_methods(text.substr(0, at), experiment.methods);
+  const double h = positive_number(text.substr(at + 1), "--reference");
+  if (h > experiment.end)
+    throw BadOption(fmt::format("--reference: a step of {:g} is longer than the scene, {:g}", h, experiment.end));
+  return method_reference(experiment, method.front(), h);
+}
+
+std::string command_of(const StudyOptions& options) {
+  std::string out = "./lagroid study " + quoted(options.scene);
+  for (const auto& given : options.overrides) out += " --set " + quoted(given);
+  if (!options.methods.empty()) out += " --methods " + quoted(options.methods);
+  if (!options.steps.empty()) out += " --steps " + quoted(options.steps);
+  if (!options.reference.empty()) out += " --reference " + quoted(options.reference);
+  const StudyOptions usual;
+  if (options.target != usual.target) out += fmt::format(" --target {:g}", options.target);
+  if (options.longest != usual.longest) out += fmt::format(" --longest {:g}", options.longest);
+  if (options.repetitions != usual.repetitions) out += fmt::format(" --repetitions {}", options.repetitions);
+  if (!options.out.empty()) out += " --out " + quoted(options.out);
+  return out;
+}
+
+std::string listing(const Experiment& experiment) {
+  std::string out = fmt::format("{}: methods\n", experiment.name);
+  for (const Method& m : experiment.methods) {
+    out += fmt::format("  {:<28} order {:<3}", m.name, m.order);
+    for (const auto& s : m.settings) out += " --set " + s;
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_study_options(CLI::App& command, StudyOptions& options) {
+  add_scene_options(command, options);
+  command.add_option("--methods", options.methods,
+                     "those whose names match, as in 'splitting*,runge-kutta'; all by default (see --list)");
+  command.add_option("--steps", options.steps, "sizes, as 0.1,0.05 or first:last:count; found by default");
+  command.add_option("--reference", options.reference,
+                     "METHOD@STEP, or the study.json of an earlier study; by default the method of highest order, "
+                     "extrapolated");
+  command.add_option("--target", options.target, "the error for which a method is recommended")
+      ->check(CLI::Range(1e-15, 1.0))
+      ->capture_default_str();
+  command.add_option("--longest", options.longest, "seconds that a run may take, where steps are found")
+      ->check(CLI::Range(1e-3, 1e5))
+      ->capture_default_str();
+  command.add_option("--repetitions", options.repetitions, "of every run, interleaved, to be timed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--out", options.out, "write study.html, figures, CSV and JSON into this folder");
+  command.add_flag("--list", options.list, "say which methods apply to the scene, and run nothing");
+}
+
+int study(const StudyOptions& options) {
+  Findings findings;
+  std::string note;
+  bool interrupted = false;
+  try {
+    const Experiment experiment = read_experiment(read_scene(options.scene, options.overrides));
+    if (options.list) {
+      print(listing(experiment));
+      return 0;
+    }
+    findings.methods = chosen_methods(options.methods, experiment.methods);
+    Steps steps{read_steps(options.steps, experiment.end), options.longest};
+    if (!options.out.empty()) require_writable(options.out, study_files);
+    Progress progress("study", 1000, !options.json);
+    const InterruptGuard guard;
+    const auto reference = make_reference(options, experiment);
+    findings.scene = options.scene;
+    findings.name = experiment.name;
+    findings.command = command_of(options);
+    findings.machine = machine();
+    findings.end = experiment.end;
+    findings.target = options.target;
+    findings.reference = reference->description;
+    findings.uncertainty = reference->uncertainty;
+    findings.reference_state = reference->at(experiment.end);
+    findings.runs = measure(experiment, findings.methods, steps, *reference, options.repetitions, [&](double done) {
+      progress.update(long(1000 * done));
+      interrupted = guard.interrupted();
+      return !interrupted;
+    });
+  } catch (const BadOption& error) {
+    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  } catch (const OutputError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  } catch (const std::domain_error& error) {
+    return refuse(options.json, exit_failed, "no_reference", error.what());
+  }
+  std::string report = options.json ? study_json(findings) + "\n" : study_text(findings);
+  if (!options.out.empty()) {
+    const auto files = write_study(findings, options.out, note);
+    if (!options.json) {
+      if (!note.empty()) report += fmt::format("  note: no pictures: {}\n", note);
+      for (const auto& file : files) report += fmt::format("  wrote {}\n", file.string());
+    }
+  } else if (!options.json) {
+    report += "  (no files written; --out DIR writes page, figures, CSV and JSON)\n";
+  }
+  print(report);
+  if (!interrupted) return 0;
+  fmt::print(stderr, "lagroid: {}: interrupted; what was measured so far is told\n", options.scene);
+  return exit_interrupted;
+}
+
+}  // namespace lagroid::app

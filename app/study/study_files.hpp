@@ -1,0 +1,39 @@
+#pragma once
+/// The files of a study.
+
+#include "measure.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// All that a study found.
+struct Findings {
+  std::string scene;    ///< the file
+  std::string name;     ///< of the system or scene
+  std::string command;  ///< that repeats it
+  std::string machine;
+  double end = 0;
+  double target = 1e-6;
+  std::string reference;
+  double uncertainty = 0;
+  std::vector<Block> reference_state;
+  std::vector<Measurement> runs;
+  std::vector<Method> methods;
+};
+
+extern const std::vector<const char*> study_files;
+
+/// What is recommended, a line each.
+std::vector<std::string> recommendation(const Findings& findings);
+/// For the terminal.
+std::string study_text(const Findings& findings);
+std::string study_json(const Findings& findings);
+/// study.csv, study.json, study.md, study.gp and, where gnuplot runs, study.svg and study.png; study.html holds all of
+/// it. `note` says why there are no pictures, if there are none.
+std::vector<std::filesystem::path> write_study(const Findings& findings, const std::filesystem::path& folder,
+                                               std::string& note);
+
+}  // namespace lagroid::app

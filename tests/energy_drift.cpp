@@ -1,0 +1,61 @@
+// Over a million steps the energy of symplectic methods has no slope, and that of Runge-Kutta has.
+
+#include <study/experiment.hpp>
+#include <study/measure.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+using namespace lagroid::app;
+
+namespace {
+
+struct LongRun {
+  const char* scene;
+  double step;
+};
+
+class EnergyDrift : public ::testing::TestWithParam<LongRun> {};
+
+/// The slope, over the whole run, is nothing beside the oscillation of the energy, or is what rounding gives to sums of
+/// so many terms, each of the size of the energy: a random walk of a few units per step.
+TEST_P(EnergyDrift, HasNoSlopeOverAMillionSteps) {
+  constexpr double steps = 1e6;
+  Experiment experiment =
+      read_experiment(read_scene(std::string(LAGROID_EXAMPLES) + "/" + GetParam().scene + ".toml", {"time.steps=10"}));
+  const double walk = 20 * std::numeric_limits<double>::epsilon() * std::sqrt(steps);
+  int drifting = 0;
+  int judged = 0;
+  for (const Method& method : experiment.methods) {
+    if (!method.equal_steps) continue;
+    // A step of s stages has s times the length: as many evaluations of each, and a long motion.
+    const double h = GetParam().step * std::sqrt(double(method.stages));
+    experiment.end = steps / method.stages * h;
+    const Measurement m = measure_once(experiment, method, h, nullptr, 1e9);
+    ASSERT_TRUE(m.converged()) << method.name << ' ' << m.status << ' ' << m.message;
+    const double slope = std::abs(m.drift);
+    const bool flat = slope < 4 * m.drift_error + walk && slope < 0.05 * m.invariants + walk;
+    RecordProperty(method.name, std::to_string(m.drift));
+    if (method.to_compare) {
+      drifting += flat ? 0 : 1;
+      EXPECT_GT(slope, 10 * m.drift_error) << method.name;
+    } else {
+      ++judged;
+      EXPECT_TRUE(flat) << method.name << ": slope times time " << m.drift << " +- " << m.drift_error << ", amplitude "
+                        << m.invariants << ", rounding " << walk;
+    }
+  }
+  EXPECT_EQ(drifting, 1) << "the test sees a drift where there is one";
+  EXPECT_GE(judged, 6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Systems, EnergyDrift,
+                         ::testing::Values(LongRun{"kepler", 0.05}, LongRun{"pendulum", 0.1},
+                                           LongRun{"rigid_body", 0.1}, LongRun{"heavy_top", 0.05},
+                                           LongRun{"spherical_pendulum", 0.1}),
+                         [](const auto& info) { return std::string(info.param.scene); });
+
+}  // namespace
