@@ -23,7 +23,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   static constexpr int basis(int i, int r, int c) { return (r - c) * (c - i) * (r - i) / 2; }
   /// The axial vector of the antisymmetric part.
   template <class S> static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
-    return {(x(2, 1) - x(1, 2)) * 0.5, (x(0, 2) - x(2, 0)) * 0.5, (x(1, 0) - x(0, 1)) * 0.5};
+    return Vector<S, 3>((x(2, 1) - x(1, 2)) * 0.5, (x(0, 2) - x(2, 0)) * 0.5, (x(1, 0) - x(0, 1)) * 0.5);
   }
   template <class S> static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) { return g.transpose(); }
   /// Rodrigues: I + c_1(|w|^2) hat(w) + c_2(|w|^2) hat(w)^2.
