@@ -1,12 +1,11 @@
 // The hard cases as tests, and as the page that states what is supported.
-//     hard [gtest options]        one test a case; LAGROID_HARD_NIGHTLY in the environment: the long cases instead
+//     hard [gtest options]        one test a case; compiled with LAGROID_HARD_NIGHTLY, the long cases instead
 //     hard --page FILE            measures all but the long cases and writes docs/supported_envelope.md
 #include "hard_case.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -50,7 +49,7 @@ class HardTest : public ::testing::Test {
   HardCase hard_;
 };
 
-/// Two digits, rounded up in size; zero and what is not finite in words.
+/// Two digits; what is not finite in words.
 std::string number(double x) {
   if (std::isnan(x)) return "NaN";
   if (std::isinf(x)) return "infinite";
@@ -106,7 +105,11 @@ int main(int argc, char** argv) {
   using namespace lagroid::hard;
   if (argc == 3 && std::string_view(argv[1]) == "--page") return write_page(argv[2]) ? 0 : 1;
   ::testing::InitGoogleTest(&argc, argv);
-  const bool nightly = std::getenv("LAGROID_HARD_NIGHTLY") != nullptr;
+#ifdef LAGROID_HARD_NIGHTLY
+  constexpr bool nightly = true;
+#else
+  constexpr bool nightly = false;
+#endif
   for (const Topic& topic : topics())
     for (const HardCase& hard : topic.cases())
       if (hard.nightly == nightly)
