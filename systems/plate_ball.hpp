@@ -68,9 +68,11 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   Matrix<double, 3, 3> rotation_of(const Vector<double, 3>& w) const;
 
   /// In the trace form the rotation angle of a step stays below pi/2: tr g = 1 + 2 cos(angle) > 1. Of the form's four
-  /// roots this leaves the one that is continuous in h.
+  /// roots this leaves the one that is continuous in h. In the Cayley form 1 + tr g = 4 / (1 + |w|^2 / 4) keeps half
+  /// its digits: nearer to a half turn w would be round-off, and any equation of it seem solved.
   bool admissible(const ArrowOf<GroupoidType>& g) const {
-    return rotation != RotationForm::trace || std::get<1>(g).trace() > 1;
+    const double trace = std::get<1>(g).trace();
+    return rotation == RotationForm::exponential || trace > (rotation == RotationForm::trace ? 1 : -1 + 1e-8);
   }
 
   /// lambda = (M1/r, -M2/r, -M3), u = px - l2 - h Omega l1/2, v = py - l1 + h Omega l2/2: exact as h -> 0.
