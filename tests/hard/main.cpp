@@ -56,6 +56,13 @@ std::string number(double x) {
   return x == 0 ? "0" : fmt::format("{:.1e}", x);
 }
 
+/// A text as a cell of a table, where | would end it.
+std::string cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? "\\|" : std::string(1, c);
+  return out;
+}
+
 /// The page: the template with its tables in place of the line @TABLES@. Whether all bounds were kept.
 bool write_page(const std::string& file) {
   std::ifstream input(LAGROID_HARD_TEMPLATE);
@@ -69,8 +76,8 @@ bool write_page(const std::string& file) {
            << "|---|---|---|---|---|---|---|\n";
     for (const HardCase& hard : topic.cases()) {
       if (hard.nightly) {
-        tables << fmt::format("| {} | {} | {} | nightly | {} | nightly | `Hard_{}.{}` |\n", hard.regime, hard.promise,
-                              number(hard.bound), hard.naive, topic.name, hard.name);
+        tables << fmt::format("| {} | {} | {} | nightly | {} | nightly | `Hard_{}.{}` |\n", cell(hard.regime),
+                              cell(hard.promise), number(hard.bound), cell(hard.naive), topic.name, hard.name);
         ++count;
         continue;
       }
@@ -81,8 +88,9 @@ bool write_page(const std::string& file) {
                   << hard.bound << '\n';
         good = false;
       }
-      tables << fmt::format("| {} | {} | {} | {} | {} | {} | `Hard_{}.{}` |\n", hard.regime, hard.promise,
-                            number(hard.bound), number(defect), hard.naive, number(broken), topic.name, hard.name);
+      tables << fmt::format("| {} | {} | {} | {} | {} | {} | `Hard_{}.{}` |\n", cell(hard.regime), cell(hard.promise),
+                            number(hard.bound), number(defect), cell(hard.naive), number(broken), topic.name,
+                            hard.name);
       ++count;
     }
     tables << '\n';
