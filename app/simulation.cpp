@@ -53,6 +53,14 @@ Composition read_composition(const Section& time, std::span<const Composition> o
 
 namespace {
 
+/// The kinetic part of a logarithmic Hamiltonian is not quadratic in momenta.
+std::vector<Composition> transformed_compositions() {
+  std::vector<Composition> all(compositions::all.begin(), compositions::all.end());
+  for (const auto& of_two_flows : splittings::all)
+    if (!of_two_flows.nystrom) all.push_back(of_two_flows);
+  return all;
+}
+
 void read_stepper(const Section& solver, MarchOptions& options) {
   if (solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres") options.method = StepMethod::ceres;
   if (solver.has("max_iterations")) options.step.max_iterations = int(solver.integer("max_iterations", 1, 100000));
@@ -69,7 +77,7 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
     if (!has) time.fail(key, fmt::format("this system has no {}; see docs/time.md for those that do", what));
   };
   const std::string_view timed = able.variational ? "Lagrangian for every step size" : "action principle";
-  const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled"});
+  const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled", "transformed"});
   if (mode == "fixed") {
     const std::string method = time.choice_or("method", "variational", {"variational", "splitting", "runge-kutta"});
     if (method == "runge-kutta") {
@@ -95,14 +103,21 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
       need(able.time_scale, "without_root", "time scale to control steps by");
       options.without_root = WithoutRoot::controlled;
     }
+  } else if (mode == "transformed") {
+    need(able.attractive, "mode", "attraction whose energy is negative everywhere");
+    options.mode = TimeMode::transformed;
+    options.composition = read_composition(time, transformed_compositions());
   } else {
     need(able.time_scale, "mode", able.variational ? "time scale to control steps by" : timed);
     options.mode = TimeMode::controlled;
   }
   if (mode != "fixed") {
-    for (const char* key : {"composition", "method"})
-      if (time.has(key)) time.fail(key, "goes with mode = \"fixed\"");
-    if (time.integer_or("order", 2, 2, 8) != 2) time.fail("order", "above 2 goes with mode = \"fixed\"");
+    if (time.has("method")) time.fail("method", "goes with mode = \"fixed\"");
+    if (mode != "transformed") {
+      if (time.has("composition")) time.fail("composition", "goes with mode = \"fixed\" or \"transformed\"");
+      if (time.integer_or("order", 2, 2, 8) != 2)
+        time.fail("order", "above 2 goes with mode = \"fixed\" or \"transformed\"");
+    }
     refuse_duration(time);
   }
   if (mode != "adaptive" && time.has("without_root")) time.fail("without_root", "goes with mode = \"adaptive\"");
@@ -133,6 +148,13 @@ std::vector<Method> march_methods(const Abilities& able) {
   if (able.rates) all.push_back({"runge-kutta", 4, 4, true, {"time.method=runge-kutta"}, true});
   if (able.timed) all.push_back({"adaptive", 2, 1, false, {"time.mode=adaptive"}});
   if (able.time_scale) all.push_back({"controlled", 2, 1, false, {"time.mode=controlled"}});
+  if (able.attractive)
+    for (const auto& composition : transformed_compositions())
+      all.push_back({composition.stages() > 1 ? fmt::format("transformed/{}", composition.name) : "transformed",
+                     composition.order,
+                     composition.stages(),
+                     false,
+                     {"time.mode=transformed", fmt::format("time.composition={}", composition.name)}});
   return all;
 }
 

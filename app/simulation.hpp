@@ -14,6 +14,7 @@
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/splitting.hpp>
 #include <lagroid/solvers/step_control.hpp>
+#include <lagroid/solvers/transformed.hpp>
 
 #include <fmt/format.h>
 
@@ -43,10 +44,12 @@ struct Abilities {
   bool timed = false;
   bool time_scale = false;
   bool rates = false;
+  bool attractive = false;
   std::vector<Composition> splittings;  ///< of its flows; empty where it has none
 };
 template <class Sys> Abilities abilities_of(const Sys& system) {
-  Abilities able{Variational<Sys>, Timed<Sys>, Timed<Sys> && HasTimeScale<Sys>, HasRates<Sys>, {}};
+  Abilities able{Variational<Sys>,      Timed<Sys>, Timed<Sys> && HasTimeScale<Sys>, HasRates<Sys>,
+                 AttractiveSystem<Sys>, {}};
   if constexpr (SplitSystem<Sys>) {
     able.splittings.assign(compositions::all.begin(), compositions::all.end());
     for (const auto& of_two_flows : splittings::all)

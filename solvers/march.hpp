@@ -15,9 +15,10 @@ namespace lagroid {
 
 /// How time goes on.
 enum class TimeMode {
-  fixed,       ///< by equal steps, each perhaps composed of several (CompositionIntegrator)
-  adaptive,    ///< by steps that keep the discrete energy (AdaptiveIntegrator)
-  controlled,  ///< by steps in proportion to the system's time scale, reversibly (ControlledIntegrator)
+  fixed,        ///< by equal steps, each perhaps composed of several (CompositionIntegrator)
+  adaptive,     ///< by steps that keep the discrete energy (AdaptiveIntegrator)
+  controlled,   ///< by steps in proportion to the system's time scale, reversibly (ControlledIntegrator)
+  transformed,  ///< by explicit steps that are equal in another time, composed (TransformedIntegrator)
 };
 
 /// What becomes of an adaptive step whose energy equation has no root.
@@ -62,10 +63,9 @@ template <DiscreteSystem Sys> class March {
 };
 
 /// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one
-/// with a time scale for controlled steps, a SplitSystem for splitting, one that HasRates for Runge-Kutta steps and a
-/// variational one for orders above two
-/// (throws std::invalid_argument). Include `march_methods.hpp` for a system of your own; those of `systems/` are
-/// compiled.
+/// with a time scale for controlled steps, a SplitSystem for splitting, an AttractiveSystem for a transformed time, one
+/// that HasRates for Runge-Kutta steps and a variational one for orders above two (throws std::invalid_argument).
+/// Include `march_methods.hpp` for a system of your own; those of `systems/` are compiled.
 template <DiscreteSystem Sys>
 std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,
                                        const ArrowOf<typename Sys::GroupoidType>& configuration,

@@ -9,6 +9,7 @@
 #include <lagroid/solvers/splitting.hpp>
 #include <lagroid/solvers/step_control.hpp>
 #include <lagroid/solvers/step_methods.hpp>
+#include <lagroid/solvers/transformed.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -65,10 +66,16 @@ std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename S
         return std::make_unique<detail::MarchOf<Sys, ControlledIntegrator<Sys>>>(system, initial, configuration,
                                                                                  solver());
   }
-  if (options.mode != TimeMode::fixed)
-    throw std::invalid_argument(options.mode == TimeMode::adaptive
-                                    ? "adaptive steps need a system with lagrangian(g, step)"
-                                    : "controlled steps need a system with time_scale_rate");
+  if constexpr (AttractiveSystem<Sys>)
+    if (options.mode == TimeMode::transformed)
+      return std::make_unique<detail::MarchOf<Sys, TransformedIntegrator<Sys>>>(system, initial, configuration,
+                                                                                options.composition);
+  if (options.mode == TimeMode::adaptive)
+    throw std::invalid_argument("adaptive steps need a system with lagrangian(g, step)");
+  if (options.mode == TimeMode::controlled)
+    throw std::invalid_argument("controlled steps need a system with time_scale_rate");
+  if (options.mode == TimeMode::transformed)
+    throw std::invalid_argument("steps of a transformed time need an attractive system");
   if constexpr (SplitSystem<Sys>)
     if (options.fixed == StepKind::splitting)
       return std::make_unique<detail::MarchOf<Sys, SplittingIntegrator<Sys>>>(system, initial, configuration,

@@ -14,16 +14,20 @@
 
 namespace lagroid {
 
-/// Whether the composition has its order for the system: one of two flows where flows 1, 2, ... are one exact flow, a
-/// Nystrom scheme where the system says that [H_0, [H_0, [H_0, H_1 + ...]]] = 0.
-template <SplitSystem Sys> bool splits_by(const Sys& system, const Composition& composition) {
-  if (composition.kicks.empty()) return true;
-  if (composition.nystrom && !NystromSystem<Sys>) return false;
+/// Whether the energy splits into flow 0 and the last one alone.
+template <SplitSystem Sys> bool is_of_two_flows(const Sys& system) {
   if constexpr (requires { system.two_flows(); }) {
     return system.two_flows();
   } else {
     return Sys::parts == 2;
   }
+}
+
+/// Whether the composition has its order for the system: one of two flows where there are two, a Nystrom scheme where
+/// the system says that [H_0, [H_0, [H_0, H_1]]] = 0.
+template <SplitSystem Sys> bool splits_by(const Sys& system, const Composition& composition) {
+  if (composition.kicks.empty()) return true;
+  return is_of_two_flows(system) && (!composition.nystrom || NystromSystem<Sys>);
 }
 
 /// A point of A*G on its way along the flows of a system, over any scalar: the arrow it has gone since its
@@ -36,7 +40,11 @@ template <SplitSystem Sys, class S> class SplitMotion {
 
   /// Refers to the system.
   SplitMotion(const Sys& system, const Object& object, const Momentum& momentum)
-      : system_(system), object_(object), start_(momentum), arrow_(system.groupoid.unit(object)) {}
+      : system_(system),
+        two_flows_(is_of_two_flows(system)),
+        object_(object),
+        start_(momentum),
+        arrow_(system.groupoid.unit(object)) {}
 
   /// The composition's step of length h: of two flows, flow 0 and the Strang step of the others, where it has kicks.
   /// Else for every coefficient gamma of the composition a Strang step of length t = gamma h: half of flow 0, of flow
@@ -51,7 +59,7 @@ template <SplitSystem Sys, class S> class SplitMotion {
     for (const double gamma : composition.coefficients) {
       const double t = gamma * h;
       follow<0>(begun + 0.5 * t);
-      inner<1>(t);
+      follow_others(t);
       begun = 0.5 * t;
     }
     follow<0>(begun);
@@ -80,11 +88,19 @@ template <SplitSystem Sys, class S> class SplitMotion {
     };
     kick(0);
     for (std::size_t i = 0; i < composition.coefficients.size(); ++i) {
-      inner<1>(composition.coefficients[i] * h);
+      follow_others(composition.coefficients[i] * h);
       kick(i + 1);
     }
   }
 
+  /// All flows but flow 0.
+  void follow_others(double t) {
+    if (Sys::parts > 1 && two_flows_) {
+      follow<Sys::parts - 1>(t);
+    } else {
+      inner<1>(t);
+    }
+  }
   template <int I> void inner(double t) {
     if constexpr (I + 1 < Sys::parts) {
       follow<I>(0.5 * t);
@@ -96,6 +112,7 @@ template <SplitSystem Sys, class S> class SplitMotion {
   }
 
   const Sys& system_;
+  bool two_flows_;
   Object object_;
   Momentum start_;
   Momentum momentum_change_ = zero();

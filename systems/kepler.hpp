@@ -14,6 +14,7 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   double strength = 1;  ///< k, m^3/s^2
 
   static double mass() { return 1; }
+  static constexpr bool attractive = true;
   template <class S> S potential(const Vector<S, 2>& q) const {
     using std::sqrt;
     return S(-strength) / sqrt(q.squaredNorm());

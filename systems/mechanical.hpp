@@ -62,9 +62,9 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   }
 
   /// H = |p|^2 / (2 m) + U(q).
-  double energy(const State<Pair<N>>& s) const {
-    return s.momentum.squaredNorm() / (2 * self().mass()) + self().potential(s.object);
-  }
+  double energy(const State<Pair<N>>& s) const { return kinetic_energy(s.momentum) + potential_energy(s.object); }
+  double kinetic_energy(const Vector<double, N>& p) const { return p.squaredNorm() / (2 * self().mass()); }
+  double potential_energy(const Vector<double, N>& q) const { return self().potential(q); }
 
  protected:
   /// -dU/dq: of the derived class' `gradient(q)`, if it has one, else by automatic differentiation.

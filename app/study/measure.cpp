@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +15,13 @@ namespace lagroid::app {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Of this thread, s: the wall time of a machine that does nothing else.
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -261,16 +269,16 @@ class Watch {
 
 /// One run alone; its seconds, or less than zero where it fails.
 double time_once(const Experiment& experiment, const Method& method, double h) {
-  // Clocks tick in tens of nanoseconds; a run of microseconds is repeated until their sum is long against that.
+  // A clock takes about a microsecond to read; short runs are repeated until their sum is long against that.
   constexpr double long_enough = 1e-3;
   double total = 0;
   long runs = 0;
   do {
     const auto trial = experiment.begin(method, h);
     Work work;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_time();
     if (!trial->run(experiment.end, work).converged()) return -1;
-    total += seconds_since(start);
+    total += processor_time() - start;
     ++runs;
   } while (total < long_enough && runs < 20);
   return total / double(runs);
@@ -282,7 +290,8 @@ void refine(const Experiment& experiment, const Method& method, double longest, 
   const double coarse = std::min(16 * experiment.step * std::sqrt(double(method.stages)), experiment.end / 4);
   double least = std::numeric_limits<double>::infinity();
   int not_better = 0;
-  for (int k = 0; k < 20; ++k) {
+  int failed = 0;
+  for (int k = 0; k < 20 && failed < 6; ++k) {
     const double h = experiment.end / std::ceil(experiment.end / (coarse * std::pow(0.5, k)) - 1e-9);
     out.push_back(measure_once(experiment, method, h, &reference, longest));
     const Measurement& last = out.back();
@@ -290,7 +299,11 @@ void refine(const Experiment& experiment, const Method& method, double longest, 
       out.pop_back();
       return;
     }
-    if (!last.converged()) continue;
+    if (!last.converged()) {
+      ++failed;
+      continue;
+    }
+    failed = 0;
     const double floor = std::max(reference.uncertainty, 1e-15);
     if (last.trajectory < 2 * floor) return;
     not_better = last.trajectory > 0.7 * least ? not_better + 1 : 0;

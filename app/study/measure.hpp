@@ -48,7 +48,7 @@ struct Measurement {
   std::string message;
   double reached = 0;  ///< the time
   Work work;
-  std::vector<double> seconds;  ///< of every repetition, not counting the reading of the scene
+  std::vector<double> seconds;  ///< of every repetition: processor time of the march
   double trajectory = std::numeric_limits<double>::quiet_NaN();  ///< error at the end
   double invariants = std::numeric_limits<double>::quiet_NaN();  ///< the largest deviation at any node, relative
   double constraint = std::numeric_limits<double>::quiet_NaN();  ///< the largest residual at any node

@@ -170,7 +170,7 @@ std::string html(const Findings& findings, const std::string& picture) {
       "their terms; <i>constraint</i>, the largest residual of constraints and of the groupoid's own equations. "
       "<i>Energy drift</i> is the slope of the energy times the time, with its standard error. Evaluations: gradients "
       "of the discrete Lagrangian (Newton's iterations), flows or vector fields of explicit steps. Times are medians "
-      "of interleaved repetitions, the march alone, without records.</p>\n",
+      "of interleaved repetitions, the march alone, without records, in processor time of its thread.</p>\n",
       escaped(findings.command), findings.end, escaped(findings.reference), findings.uncertainty,
       escaped(findings.machine));
   out += picture;

@@ -1,0 +1,126 @@
+#pragma once
+/// Explicit steps of high order that follow an attraction: equal ones of another time.
+
+#include <lagroid/core/split_system.hpp>
+#include <lagroid/solvers/splitting.hpp>
+
+#include <string>
+#include <utility>
+
+namespace lagroid {
+
+/// A system of two flows, of a potential and of a kinetic energy, that writes
+///
+///     double kinetic_energy(const AlgebroidVector<G>& mu) const
+///     double potential_energy(const Object<double>& q) const        negative wherever the motion goes
+///
+/// and declares `static constexpr bool attractive = true`.
+template <class Sys>
+concept AttractiveSystem = NystromSystem<Sys> && Sys::parts == 2 &&
+                           requires(const Sys& system, const State<typename Sys::GroupoidType>& z) {
+  requires Sys::attractive;
+  { system.kinetic_energy(z.momentum) } -> std::convertible_to<double>;
+  { system.potential_energy(z.object) } -> std::convertible_to<double>;
+};
+
+/// Marches H = T + U, U < 0, by splitting the logarithmic Hamiltonian log(T - E) - log(-U), E the energy at the start
+/// (Mikkola and Tanikawa, Celest. Mech. Dyn. Astron. 74 (1999) 287; Preto and Tremaine, Astron. J. 118 (1999) 2532).
+/// Where H = E its motion is that of H in the time s with dt = ds / (T - E) = ds / (-U), so that equal steps of s are
+/// short where the attraction is strong. Both flows are those of T and of U, over the times ds / (T - E) and ds / (-U),
+/// which do not change along them. On Kepler's problem the orbit is exact, and only the time on it errs.
+///
+/// Symmetric; symplectic on the phase space extended by time and E; explicit; no allocation. The first step takes about
+/// the time system.h.
+template <AttractiveSystem Sys> class TransformedIntegrator {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint). Throws
+  /// std::invalid_argument for a Nystrom composition, which log(T - E) is none for.
+  TransformedIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
+                        const Composition& composition = compositions::single)
+      : system_(std::move(system)),
+        composition_(composition),
+        energy_(system_.kinetic_energy(initial.momentum) + system_.potential_energy(initial.object)),
+        step_(-system_.h * system_.potential_energy(initial.object)),
+        walk_(system_.groupoid, initial, configuration) {
+    if (composition.nystrom) throw std::invalid_argument("the splitting is for kinetic energies quadratic in momenta");
+  }
+
+  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  MethodTraits traits() const {
+    return {"splitting in transformed time, composition " + std::string(composition_.name),
+            composition_.order,
+            true,
+            false,
+            true,
+            composition_.stages()};
+  }
+
+  /// `converged`; `left_domain` where U is not negative or T - E not positive, `not_finite`: both leave everything as
+  /// it was.
+  StepReport advance();
+  /// Visits all that the next step goes on from.
+  void persist(Tape& tape) {
+    tape(energy_, step_);
+    walk_.persist(system_.groupoid, tape);
+  }
+
+ private:
+  Sys system_;
+  Composition composition_;
+  double energy_;
+  double step_;  ///< of s
+  Walk<Sys> walk_;
+};
+
+template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance() {
+  const auto& groupoid = system_.groupoid;
+  SplitMotion<Sys, double> motion(system_, point().state.object, point().state.momentum);
+  double time = 0;
+  bool inside = true;
+  const auto kick = [&](double share) {
+    const double depth = -system_.potential_energy(motion.object());
+    inside = inside && depth > 0;
+    motion.template follow<0>(share * step_ / depth);
+  };
+  const auto drift = [&](double share) {
+    const double depth = system_.kinetic_energy(motion.momentum()) - energy_;
+    inside = inside && depth > 0;
+    const double t = share * step_ / depth;
+    motion.template follow<1>(t);
+    time += t;
+  };
+  if (composition_.kicks.empty()) {
+    double begun = 0;
+    for (const double gamma : composition_.coefficients) {
+      kick(begun + 0.5 * gamma);
+      drift(gamma);
+      begun = 0.5 * gamma;
+    }
+    kick(begun);
+  } else {
+    for (std::size_t i = 0; i < composition_.coefficients.size(); ++i) {
+      if (composition_.kicks[i] != 0) kick(composition_.kicks[i]);
+      drift(composition_.coefficients[i]);
+    }
+    if (composition_.kicks.back() != 0) kick(composition_.kicks.back());
+  }
+  StepReport report;
+  report.status = SolveStatus::not_finite;
+  const bool finite =
+      std::isfinite(time) && motion.momentum().allFinite() && groupoid.coordinates_of_arrow(motion.arrow()).allFinite();
+  if (!finite) return report;
+  report.status = SolveStatus::left_domain;
+  if (!inside) return report;
+  report.status = SolveStatus::converged;
+  StepSolution<Sys> solution;
+  solution.step = {motion.arrow(), Sys::Multipliers::Zero()};
+  solution.momentum_change = motion.momentum_change();
+  solution.remainder = motion.remainder();
+  walk_.join(groupoid, solution);
+  walk_.arrive(time);
+  return report;
+}
+
+}  // namespace lagroid
