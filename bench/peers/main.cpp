@@ -15,13 +15,16 @@ int main(int argc, char** argv) try {
   FLAGS_minloglevel = google::GLOG_FATAL;
   std::string only;
   bool write_page = false;
+  bool brief = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--page") == 0) {
       write_page = true;
+    } else if (std::strcmp(argv[i], "--brief") == 0) {
+      brief = true;
     } else if (argv[i][0] != '-' && only.empty()) {
       only = argv[i];
     } else {
-      fmt::print(stderr, "lagroid_peers: \"{}\" is neither --page nor the name of one problem\n", argv[i]);
+      fmt::print(stderr, "lagroid_peers: \"{}\" is neither --page, --brief nor the name of one problem\n", argv[i]);
       return 2;
     }
   }
@@ -39,7 +42,7 @@ int main(int argc, char** argv) try {
     peers::Findings found{std::move(problem), {}};
     for (const double end : found.problem.ends) {
       fmt::print(stderr, "{}, T = {:g} ", found.problem.name, end);
-      found.studies.push_back(peers::study(found.problem, end, {}));
+      found.studies.push_back(peers::study(found.problem, end, peers::effort_for(end, brief)));
     }
     fmt::print("{}\n", peers::section(found));
     findings.push_back(std::move(found));

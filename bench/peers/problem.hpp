@@ -16,7 +16,9 @@
 
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -80,6 +82,15 @@ S distance_over(const std::array<S, N>& a, const std::array<S, N>& b, int first,
 /// The ratio of steps by which a method of this order gains a digit, at least one and a third and at most two.
 inline double ladder(double order) { return std::fmin(2, std::fmax(4.0 / 3, std::pow(10, 1 / order))); }
 
+/// Of this thread, s.
+inline double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+inline constexpr double longest_run = 5;  ///< s; one that takes longer is given up
+
 /// Follows the invariants along a run.
 template <class P> class Watch {
  public:
@@ -87,9 +98,11 @@ template <class P> class Watch {
 
   explicit Watch(const P& problem) : problem_(problem), first_(problem.kept(problem.coordinates(problem.start()))) {}
 
-  /// After a step; `coordinates` tells where it led.
+  /// After a step; `coordinates` tells where it led. Throws std::runtime_error where the run takes too long.
   template <class F> void step(const F& coordinates) {
-    if ((++steps_ & 63) == 0) look(coordinates());
+    if ((++steps_ & 63) != 0) return;
+    look(coordinates());
+    if ((steps_ & 4095) == 0 && processor_time() - begun_ > longest_run) throw std::runtime_error("took too long");
   }
   Outcome finish(const Coordinates& end) {
     look(end);
@@ -113,6 +126,7 @@ template <class P> class Watch {
   P problem_;
   std::array<double, P::invariants> first_;
   double drift_ = 0;
+  double begun_ = processor_time();
   long steps_ = 0;
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -14,12 +13,6 @@ namespace peers {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double processor_time() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
 
 /// Runs once more, short ones until they add up to something that the clock can tell.
 double timed(const Method& method, double end, double setting, Outcome& outcome) {
@@ -58,7 +51,8 @@ Run first_run(const Problem& problem, std::size_t method, double end, double set
 
 Study study(const Problem& problem, double end, const Effort& effort) {
   constexpr int most_settings = 40;
-  constexpr double long_run = 0.3;  // s
+  constexpr double long_run = 0.3;    // s
+  constexpr double tightest = 1e-15;  // tolerance
   Study out;
   out.end = end;
   out.reference = problem.reference(end);
@@ -72,7 +66,7 @@ Study study(const Problem& problem, double end, const Effort& effort) {
     double growth = 1;
     for (int k = 0; k < most_settings; ++k, setting /= method.ratio) {
       if (last_seconds * growth > effort.longest) break;
-      if (method.tolerance && setting < 1e-16) break;
+      if (method.tolerance && setting < tightest) break;
       std::vector<double> taken;
       out.runs.push_back(first_run(problem, m, end, setting, out.reference, taken));
       seconds.push_back(taken);
@@ -83,7 +77,7 @@ Study study(const Problem& problem, double end, const Effort& effort) {
       constexpr double underway = 1e-5;
       without_gain = best < underway && run.error > 0.7 * best ? without_gain + 1 : 0;
       best = std::min(best, run.error);
-      if (without_gain == 2) break;
+      if (without_gain == 2 || (!run.failure.empty() && std::isfinite(best))) break;
     }
     fmt::print(stderr, ".");
   }

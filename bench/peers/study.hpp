@@ -29,9 +29,14 @@ struct Study {
 
 /// How long a run and how many of them.
 struct Effort {
-  double longest = 2.5;  ///< s: no run is begun that would take longer
-  int repetitions = 3;   ///< of runs below 0.3 s
+  double longest;   ///< s: no run is begun that would take longer
+  int repetitions;  ///< of runs below 0.3 s
 };
+/// `brief`: to see the shape of things.
+inline Effort effort_for(double end, bool brief) {
+  if (brief) return {end < 1e3 ? 0.02 : 0.2, 1};
+  return {end < 1e3 ? 0.5 : 2.5, 3};
+}
 
 /// Every method with ever finer settings until its error falls no more or its runs get too long; then the repetitions,
 /// in an order drawn at random.
