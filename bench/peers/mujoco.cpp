@@ -35,6 +35,9 @@ std::string with_options(const char* integrator, double step, double gravity, co
       step, -gravity, integrator, bodies);
 }
 
+/// MuJoCo starts a diverging run anew, and goes on: that is seen in the errors, and need not be printed.
+void disregard(const char*) {}
+
 /// `set` gives the data their first velocities, `coordinates` reads them.
 template <class P, class Set, class Coordinates>
 Method stepped(const P& problem, const char* integrator, double order, double gravity, const std::string& bodies,
@@ -43,6 +46,7 @@ Method stepped(const P& problem, const char* integrator, double order, double gr
             const long steps = std::lround(end / setting);
             const Model model = load(with_options(integrator, end / double(steps), gravity, bodies));
             const Data data(mj_makeData(model.get()), mj_deleteData);
+            mju_user_warning = disregard;
             set(*data);
             mj_forward(model.get(), data.get());
             return [=] {

@@ -72,7 +72,7 @@ template <class P> Reference reference_solution(const P& problem, double end) {
     std::array<Real, P::unknowns> start;
     const auto rounded = problem.start();
     for (std::size_t i = 0; i < start.size(); ++i) start[i] = Real(rounded[i]);
-    const double step = 0.5 * problem.unit();
+    const double step = 0.25 * problem.unit();
     const auto coarse = problem.coordinates(extrapolated(problem, start, end, step));
     state = problem.coordinates(extrapolated(problem, start, end, 0.5 * step));
     out.uncertainty = double(problem.distance(state, coarse));

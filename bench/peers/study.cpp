@@ -71,8 +71,11 @@ Study study(const Problem& problem, double end, const Effort& effort) {
       out.runs.push_back(first_run(problem, m, end, setting, out.reference, taken));
       seconds.push_back(taken);
       const Run& run = out.runs.back();
-      if (last_seconds > 0) growth = std::max(1.0, run.seconds / last_seconds);
-      last_seconds = run.seconds;
+      // A coarse run that failed tells nothing of how long finer ones take.
+      if (run.failure.empty()) {
+        if (last_seconds > 0) growth = std::max(1.0, run.seconds / last_seconds);
+        last_seconds = run.seconds;
+      }
       // Below this a method is on its way, and what no longer falls is round-off.
       constexpr double underway = 1e-5;
       without_gain = best < underway && run.error > 0.7 * best ? without_gain + 1 : 0;
