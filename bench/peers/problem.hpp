@@ -90,6 +90,7 @@ inline double processor_time() {
 }
 
 inline constexpr double longest_run = 5;  ///< s; one that takes longer is given up
+inline constexpr const char* took_too_long = "took too long";
 
 /// Follows the invariants along a run.
 template <class P> class Watch {
@@ -102,7 +103,7 @@ template <class P> class Watch {
   template <class F> void step(const F& coordinates) {
     if ((++steps_ & 63) != 0) return;
     look(coordinates());
-    if ((steps_ & 4095) == 0 && processor_time() - begun_ > longest_run) throw std::runtime_error("took too long");
+    if ((steps_ & 4095) == 0 && processor_time() - begun_ > longest_run) throw std::runtime_error(took_too_long);
   }
   Outcome finish(const Coordinates& end) {
     look(end);

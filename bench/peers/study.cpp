@@ -59,18 +59,26 @@ Study study(const Problem& problem, double end, const Effort& effort) {
   std::vector<std::vector<double>> seconds;
   for (std::size_t m = 0; m < problem.methods.size(); ++m) {
     const Method& method = problem.methods[m];
+    // Under error control errors fall in stairs.
+    const int patience = method.tolerance ? 4 : 2;
     double setting = std::min(method.coarsest, method.tolerance ? 1 : end);
     double best = infinity;
     int without_gain = 0;
     double last_seconds = 0;
     double growth = 1;
+    int too_long = 0;
     for (int k = 0; k < most_settings; ++k, setting /= method.ratio) {
-      if (last_seconds * growth > effort.longest) break;
+      // Under error control a motion gone astray can take longer than the true one.
+      constexpr double astray = 0.1;
+      const bool predictable = !method.tolerance || best < astray;
+      if (predictable && last_seconds * growth > effort.longest) break;
+      if (too_long == 3) break;
       if (method.tolerance && setting < tightest) break;
       std::vector<double> taken;
       out.runs.push_back(first_run(problem, m, end, setting, out.reference, taken));
       seconds.push_back(taken);
       const Run& run = out.runs.back();
+      if (run.seconds > effort.longest || run.failure == took_too_long) ++too_long;
       // A coarse run that failed tells nothing of how long finer ones take.
       if (run.failure.empty()) {
         if (last_seconds > 0) growth = std::max(1.0, run.seconds / last_seconds);
@@ -80,7 +88,7 @@ Study study(const Problem& problem, double end, const Effort& effort) {
       constexpr double underway = 1e-5;
       without_gain = best < underway && run.error > 0.7 * best ? without_gain + 1 : 0;
       best = std::min(best, run.error);
-      if (without_gain == 2 || (!run.failure.empty() && std::isfinite(best))) break;
+      if (without_gain == patience || (!run.failure.empty() && std::isfinite(best))) break;
     }
     fmt::print(stderr, ".");
   }
