@@ -32,10 +32,10 @@ void hang(Scene& scene, Site from, const std::vector<Vec>& places) {
   }
 }
 
-std::shared_ptr<Multibody> hanging_chain(int links, double h) {
+std::shared_ptr<Multibody> hanging_chain(int links, double h, const Options& options) {
   Scene scene;
   hang(scene, scene.ground(Vec::Zero()), wound_chain(links));
-  return std::make_shared<Multibody>(std::move(scene), h);
+  return std::make_shared<Multibody>(std::move(scene), h, options);
 }
 
 kernels::SphericalChain chain_kernel(int links, double h) {

@@ -16,7 +16,8 @@ std::vector<lagroid::multibody::Vec> wound_chain(int links);
 /// Adds bobs at these places on rods, the first from `from`.
 void hang(lagroid::multibody::Scene& scene, lagroid::multibody::Site from,
           const std::vector<lagroid::multibody::Vec>& places);
-std::shared_ptr<lagroid::multibody::Multibody> hanging_chain(int links, double h);
+std::shared_ptr<lagroid::multibody::Multibody> hanging_chain(int links, double h,
+                                                             const lagroid::multibody::Options& options = {});
 kernels::SphericalChain chain_kernel(int links, double h);
 
 }  // namespace bench

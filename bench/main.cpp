@@ -1,63 +1,15 @@
 // lagroid bench: framework, hand-written kernels, Ceres and IPOPT in one run; the table, and the page made from it.
 #include "comparison.hpp"
+#include "pages.hpp"
 
 #include <fmt/format.h>
 #include <glog/logging.h>
 
 #include <cstring>
-#include <ctime>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
-
-namespace {
-
-std::string file_contents(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error("cannot read " + path);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
-
-void put(std::string& page, const std::string& mark, const std::string& text) {
-  const auto at = page.find(mark);
-  if (at == std::string::npos) throw std::runtime_error("the page's template lacks " + mark);
-  page.replace(at, mark.size(), text);
-}
-
-std::string machine() {
-  std::ifstream cpu("/proc/cpuinfo");
-  std::string line;
-  while (std::getline(cpu, line))
-    if (line.starts_with("model name")) break;
-  const auto colon = line.find(": ");
-  char date[32] = "";
-  const std::time_t now = std::time(nullptr);
-  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
-  return fmt::format("{}, {}, -march={}, {}", colon == std::string::npos ? "unknown processor" : line.substr(colon + 2),
-                     LAGROID_COMPILER, LAGROID_ARCH, date);
-}
-
-/// Replaces the file by the text, or leaves it as it is and throws.
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::path partial = file;
-  partial += ".partial";
-  std::ofstream out(partial);
-  out << text;
-  out.close();
-  if (!out) {
-    std::filesystem::remove(partial);
-    throw std::runtime_error(file.string() + " could not be written; is the disk full?");
-  }
-  std::filesystem::rename(partial, file);
-}
-
-}  // namespace
 
 int main(int argc, char** argv) try {
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres says of boundary values that it fails is in the table
@@ -104,17 +56,17 @@ int main(int argc, char** argv) try {
   fmt::print("{}{}{}{}\n{}\n{}\n{}", step_tables, scene_tables, boundary_tables, group_tables, accuracy, effects,
              goals_reached);
   if (write_page) {
-    std::string page = file_contents(LAGROID_SOURCE "/bench/performance.md.in");
-    put(page, "@MACHINE@", machine());
-    put(page, "@GOALS@", goals_reached);
-    put(page, "@STEPS@", step_tables);
-    put(page, "@SCENES@", scene_tables);
-    put(page, "@EFFECTS@", effects);
-    put(page, "@CHAIN@", accuracy);
-    put(page, "@BOUNDARY@", boundary_tables);
-    put(page, "@LIE_NEWTON@", group_tables);
-    put(page, "@COMPILE@", bench::compile_times());
-    write_whole(LAGROID_SOURCE "/docs/performance.md", page);
+    std::string page = bench::file_contents(LAGROID_SOURCE "/bench/performance.md.in");
+    bench::put(page, "@MACHINE@", bench::machine());
+    bench::put(page, "@GOALS@", goals_reached);
+    bench::put(page, "@STEPS@", step_tables);
+    bench::put(page, "@SCENES@", scene_tables);
+    bench::put(page, "@EFFECTS@", effects);
+    bench::put(page, "@CHAIN@", accuracy);
+    bench::put(page, "@BOUNDARY@", boundary_tables);
+    bench::put(page, "@LIE_NEWTON@", group_tables);
+    bench::put(page, "@COMPILE@", bench::compile_times());
+    bench::write_whole(LAGROID_SOURCE "/docs/performance.md", page);
     fmt::print("\nwritten: docs/performance.md\n");
   }
   return 0;
