@@ -53,14 +53,6 @@ Composition read_composition(const Section& time, std::span<const Composition> o
 
 namespace {
 
-/// The kinetic part of a logarithmic Hamiltonian is not quadratic in momenta.
-std::vector<Composition> transformed_compositions() {
-  std::vector<Composition> all(compositions::all.begin(), compositions::all.end());
-  for (const auto& of_two_flows : splittings::all)
-    if (!of_two_flows.nystrom) all.push_back(of_two_flows);
-  return all;
-}
-
 void read_stepper(const Section& solver, MarchOptions& options) {
   if (solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres") options.method = StepMethod::ceres;
   if (solver.has("max_iterations")) options.step.max_iterations = int(solver.integer("max_iterations", 1, 100000));
@@ -106,7 +98,7 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
   } else if (mode == "transformed") {
     need(able.attractive, "mode", "attraction whose energy is negative everywhere");
     options.mode = TimeMode::transformed;
-    options.composition = read_composition(time, transformed_compositions());
+    options.composition = read_composition(time, compositions::all);
   } else {
     need(able.time_scale, "mode", able.variational ? "time scale to control steps by" : timed);
     options.mode = TimeMode::controlled;
@@ -149,7 +141,7 @@ std::vector<Method> march_methods(const Abilities& able) {
   if (able.timed) all.push_back({"adaptive", 2, 1, false, {"time.mode=adaptive"}});
   if (able.time_scale) all.push_back({"controlled", 2, 1, false, {"time.mode=controlled"}});
   if (able.attractive)
-    for (const auto& composition : transformed_compositions())
+    for (const auto& composition : compositions::all)
       all.push_back({composition.stages() > 1 ? fmt::format("transformed/{}", composition.name) : "transformed",
                      composition.order,
                      composition.stages(),

@@ -27,7 +27,8 @@ concept AttractiveSystem = NystromSystem<Sys> && Sys::parts == 2 &&
 /// (Mikkola and Tanikawa, Celest. Mech. Dyn. Astron. 74 (1999) 287; Preto and Tremaine, Astron. J. 118 (1999) 2532).
 /// Where H = E its motion is that of H in the time s with dt = ds / (T - E) = ds / (-U), so that equal steps of s are
 /// short where the attraction is strong. Both flows are those of T and of U, over the times ds / (T - E) and ds / (-U),
-/// which do not change along them. On Kepler's problem the orbit is exact, and only the time on it errs.
+/// which do not change along them. A step is half of the flow of T, the flow of U and the other half, composed. On
+/// Kepler's problem its orbit is exact, and only the time on it errs; begun with half of U it is not.
 ///
 /// Symmetric; symplectic on the phase space extended by time and E; explicit; no allocation. The first step takes about
 /// the time system.h.
@@ -36,7 +37,7 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
   using G = typename Sys::GroupoidType;
 
   /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint). Throws
-  /// std::invalid_argument for a Nystrom composition, which log(T - E) is none for.
+  /// std::invalid_argument for a composition of two flows.
   TransformedIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
                         const Composition& composition = compositions::single)
       : system_(std::move(system)),
@@ -44,7 +45,7 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
         energy_(system_.kinetic_energy(initial.momentum) + system_.potential_energy(initial.object)),
         step_(-system_.h * system_.potential_energy(initial.object)),
         walk_(system_.groupoid, initial, configuration) {
-    if (composition.nystrom) throw std::invalid_argument("the splitting is for kinetic energies quadratic in momenta");
+    if (!composition.kicks.empty()) throw std::invalid_argument("transformed time takes compositions of steps");
   }
 
   const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
@@ -91,21 +92,13 @@ template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance()
     motion.template follow<1>(t);
     time += t;
   };
-  if (composition_.kicks.empty()) {
-    double begun = 0;
-    for (const double gamma : composition_.coefficients) {
-      kick(begun + 0.5 * gamma);
-      drift(gamma);
-      begun = 0.5 * gamma;
-    }
-    kick(begun);
-  } else {
-    for (std::size_t i = 0; i < composition_.coefficients.size(); ++i) {
-      if (composition_.kicks[i] != 0) kick(composition_.kicks[i]);
-      drift(composition_.coefficients[i]);
-    }
-    if (composition_.kicks.back() != 0) kick(composition_.kicks.back());
+  double begun = 0;
+  for (const double gamma : composition_.coefficients) {
+    drift(begun + 0.5 * gamma);
+    kick(gamma);
+    begun = 0.5 * gamma;
   }
+  drift(begun);
   StepReport report;
   report.status = SolveStatus::not_finite;
   const bool finite =

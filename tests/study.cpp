@@ -54,6 +54,7 @@ TEST(Methods, DeclareThemselves) {
   EXPECT_FALSE(body.contains("splitting/nystrom-6")) << "its kinetic energy is no potential's partner";
   const auto orbits = names(read_experiment(example("kepler")).methods);
   EXPECT_TRUE(orbits.contains("splitting/nystrom-6"));
+  EXPECT_TRUE(orbits.contains("transformed/kahan-li-8"));
   EXPECT_FALSE(orbits.contains("moser-veselov/10"));
   EXPECT_EQ(names(read_experiment(example("rolling_disk")).methods), std::set<std::string>{"variational"});
   const auto chain = names(read_experiment(example("chain_drop")).methods);

@@ -54,7 +54,7 @@ int main(int argc, char** argv) try {
   fmt::print("{}\n", peers::summary(findings));
   if (write_page) {
     peers::write_page(findings);
-    fmt::print("\nwritten: docs/peers.md and docs/peers/\n");
+    fmt::print("\nwritten: docs/peers.md, docs/audit.md and docs/peers/\n");
   }
   return 0;
 } catch (const std::exception& error) {

@@ -44,7 +44,7 @@ template <class Sys> std::vector<Way> ways(const Sys& system) {
   if constexpr (lagroid::SplitSystem<Sys>) {
     const auto add_splitting = [&](const lagroid::Composition& composition) {
       if (lagroid::splits_by(system, composition)) add("splitting", StepKind::splitting, TimeMode::fixed, composition);
-      if (lagroid::AttractiveSystem<Sys> && !composition.nystrom)
+      if (lagroid::AttractiveSystem<Sys> && composition.kicks.empty())
         add("transformed", StepKind::splitting, TimeMode::transformed, composition);
     };
     for (const lagroid::Composition& composition : lagroid::compositions::all) add_splitting(composition);

@@ -237,6 +237,19 @@ std::string summary(const std::vector<Findings>& all) {
   return out + "\nAgainst MuJoCo's RK4, at the errors that it reaches:\n\n" + marked;
 }
 
+namespace {
+
+/// The rows of the page of performance that say so.
+std::string missed_goals(const std::string& page) {
+  std::string out = "| | ratio | wanted | |\n|---|---|---|---|\n";
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("|") && line.find("**missed**") != std::string::npos) out += line + "\n";
+  return out;
+}
+
+}  // namespace
+
 void write_page(const std::vector<Findings>& all) {
   const std::filesystem::path docs = LAGROID_SOURCE "/docs";
   std::vector<std::string> pictures;
@@ -262,6 +275,12 @@ void write_page(const std::vector<Findings>& all) {
   bench::put(page, "@SUMMARY@", summary(all));
   bench::put(page, "@PROBLEMS@", sections);
   bench::write_whole(docs / "peers.md", page);
+
+  std::string audit = bench::file_contents(LAGROID_SOURCE "/bench/peers/audit.md.in");
+  bench::put(audit, "@MACHINE@", bench::machine() + versions());
+  bench::put(audit, "@SUMMARY@", summary(all));
+  bench::put(audit, "@MISSED@", missed_goals(bench::file_contents(docs / "performance.md")));
+  bench::write_whole(docs / "audit.md", audit);
 }
 
 }  // namespace peers

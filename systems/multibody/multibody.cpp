@@ -265,7 +265,7 @@ StepReport Multibody::solve(Island& island) {
         const auto i = std::size_t(r);
         spin_total_[i] = spin_kicked_[i];
         spin_size_[i] = spin_[i].norm() + spin_impulse_[i].norm() +
-                        turns_[i].inertia_over_h.maxCoeff() * (turned_[i].norm() + round_off);
+                        turns_[i].inertia_over_h.cwiseAbs().maxCoeff() * (turned_[i].norm() + round_off);
       }
       for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
         const Entry& e = rotation_entries_[std::size_t(i)];
