@@ -130,7 +130,7 @@ std::vector<Method> composed_methods(const std::string& step, std::span<const Co
                    composition.order,
                    composition.stages(),
                    true,
-                   {"time.method=" + step, fmt::format("time.composition={}", composition.name)}});
+                   {"time.mode=fixed", "time.method=" + step, fmt::format("time.composition={}", composition.name)}});
   return all;
 }
 
@@ -180,6 +180,8 @@ std::string step_failure(const StepReport& report, long step, double time, TimeM
   const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
   switch (report.status) {
     case SolveStatus::left_domain:
+      if (mode == TimeMode::transformed)
+        return fmt::format("{}: the energy of the attraction is not negative here; use mode = \"fixed\"", where);
       return fmt::format(
           "{}: the only solution found is on another branch of the discretisation; use a smaller step or "
           "another form of the rotation",

@@ -20,8 +20,8 @@ struct LongRun {
 
 class EnergyDrift : public ::testing::TestWithParam<LongRun> {};
 
-/// The slope, over the whole run, is nothing beside the oscillation of the energy, or is what rounding gives to sums of
-/// so many terms, each of the size of the energy: a random walk of a few units per step.
+/// The slope, over the whole run, is a ten-thousandth of the oscillation of the energy, or its standard error, or what
+/// rounding gives to sums of so many terms, each of the size of the energy: a random walk of a few units per step.
 TEST_P(EnergyDrift, HasNoSlopeOverAMillionSteps) {
   constexpr double steps = 1e6;
   Experiment experiment =
@@ -31,12 +31,13 @@ TEST_P(EnergyDrift, HasNoSlopeOverAMillionSteps) {
   int judged = 0;
   for (const Method& method : experiment.methods) {
     if (!method.equal_steps) continue;
-    const double h = GetParam().step * std::sqrt(double(method.stages));
+    // The drift of Runge-Kutta steps is a slope as long as it is small.
+    const double h = GetParam().step * (method.to_compare ? 0.25 : std::sqrt(double(method.stages)));
     experiment.end = steps * h;
     const Measurement m = measure_once(experiment, method, h, nullptr, 1e9);
     ASSERT_TRUE(m.converged()) << method.name << ' ' << m.status << ' ' << m.message;
     const double slope = std::abs(m.drift);
-    const bool flat = slope < 4 * m.drift_error + walk && slope < 0.05 * m.invariants + walk;
+    const bool flat = slope < 4 * m.drift_error + 1e-4 * m.invariants + walk && slope < 0.05 * m.invariants + walk;
     RecordProperty(method.name, std::to_string(m.drift));
     if (method.to_compare) {
       drifting += flat ? 0 : 1;
@@ -55,6 +56,6 @@ INSTANTIATE_TEST_SUITE_P(Systems, EnergyDrift,
                          ::testing::Values(LongRun{"kepler", 0.05}, LongRun{"pendulum", 0.1},
                                            LongRun{"rigid_body", 0.1}, LongRun{"heavy_top", 0.05},
                                            LongRun{"spherical_pendulum", 0.1}),
-                         [](const auto& info) { return std::string(info.param.scene); });
+                         [](const auto& run) { return std::string(run.param.scene); });
 
 }  // namespace

@@ -324,6 +324,8 @@ TEST(Multibody, ComposedStepsGoBackAndGoOnFromAState) {
   for (std::size_t f = 0; f < start.place.size(); ++f)
     EXPECT_LT((start.place[f] - motion.state().place[f]).norm(), 1e-9);
 
+  EXPECT_NE(motion.multipliers(), std::vector<double>(motion.multipliers().size())) << "those of the last stage";
+
   Multibody unbroken(std::move(one.scene), 0.02, options);
   Multibody resumed(std::move(other.scene), 0.02, options);
   advance(unbroken, 37);

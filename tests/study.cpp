@@ -67,7 +67,7 @@ TEST(Methods, DeclareThemselves) {
 TEST(Methods, AreAcceptedByTheirScenes) {
   for (const char* name :
        {"kepler", "rigid_body", "heavy_top", "pendulum", "spherical_pendulum", "damped_pendulum", "driven_pendulum",
-        "driven_body", "rolling_ball", "chaplygin_sleigh", "unicycle", "chain_drop", "figure_eight", "tops"}) {
+        "driven_body", "rolling_ball", "chaplygin_sleigh", "chain_drop", "figure_eight", "tops"}) {
     const Experiment experiment = read_experiment(example(name));
     for (const Method& method : experiment.methods) {
       const auto trial = experiment.begin(method, experiment.step);
@@ -90,6 +90,10 @@ TEST(Methods, AreFoundByPatterns) {
   EXPECT_THROW(matching("split", all), UnknownMethod);
 }
 
+TEST(Experiments, AreOfScenesThatChooseTheirMethodThemselves) {
+  for (const char* name : {"pendulum_adaptive", "kepler_controlled", "kepler_order_8", "rigid_body_moser_veselov"})
+    EXPECT_FALSE(read_experiment(example(name)).methods.empty()) << name;
+}
 TEST(Experiments, AreOfInitialValues) { EXPECT_THROW(read_experiment(example("kepler_boundary")), SceneError); }
 
 TEST(References, AreTheSolution) {
@@ -126,7 +130,7 @@ TEST(Measurements, ShowOrdersInvariantsAndDrift) {
     const auto coarse = at(name, h);
     const auto fine = at(name, h / 2);
     ASSERT_TRUE(coarse.converged() && fine.converged());
-    EXPECT_EQ(fine.work.steps, 2 * coarse.work.steps);
+    EXPECT_NEAR(double(fine.work.steps), 2.0 * double(coarse.work.steps), 1);
     if (method.order == 2) {
       EXPECT_NEAR(std::log2(coarse.invariants / fine.invariants), 2, 0.2) << name;
     } else {
@@ -150,13 +154,13 @@ TEST(Measurements, SeeConstraintsAndTheGroup) {
 }
 
 TEST(Measurements, MarkWhatFails) {
-  const Experiment experiment = read_experiment(orbit());
+  const Experiment experiment = read_experiment(example("rigid_body"));
   const auto reference = extrapolated_reference(experiment, 2);
-  const auto runs = measure(experiment, matching("variational,splitting", experiment.methods), {{5.0, 0.01}, 1},
+  const auto runs = measure(experiment, matching("moser-veselov/10,splitting", experiment.methods), {{5.0, 0.01}, 1},
                             *reference, 2, [](double) { return true; });
   ASSERT_EQ(runs.size(), 4u);
-  EXPECT_FALSE(runs[0].converged());
-  EXPECT_FALSE(runs[0].message.empty());
+  EXPECT_EQ(runs[0].status, "refused");
+  EXPECT_NE(runs[0].message.find("too long"), std::string::npos) << runs[0].message;
   EXPECT_TRUE(runs[1].converged());
   EXPECT_EQ(runs[1].seconds.size(), 2u);
   EXPECT_TRUE(std::isfinite(runs[1].trajectory));
@@ -186,6 +190,9 @@ TEST(Costs, AreInterpolatedAndLeast) {
   // What is below the error by chance, with a large step, is not trusted.
   all.push_back(made_up("a", 0.2, 1e-7, 0.5));
   EXPECT_NEAR(cost_of(all, "a", Axis::trajectory, 1e-3)->seconds, std::sqrt(2.0), 1e-12);
+  // What drowned in round-off hides no run that did not.
+  all.push_back(made_up("b", 0.01, 1e-7, 30));
+  EXPECT_EQ(least_cost(all, Axis::trajectory, 1e-8)->step, cost_of(all, "b", Axis::trajectory, 1e-8)->step);
   // Runs that failed cost nothing and give nothing.
   all.push_back(made_up("c", 0.1, 1e-9, 0.1));
   all.back().status = "not_finite";
@@ -214,7 +221,10 @@ TEST(Accuracy, IsReached) {
     EXPECT_LT(error_reached(example("rigid_body", goal)), target) << "rigid body " << target;
     EXPECT_LT(error_reached(example("spherical_pendulum", goal)), target) << "spherical pendulum " << target;
   }
-  EXPECT_LT(error_reached(example("spring_pendulum", {"accuracy.target=1e-5", "time.steps=200"})), 1e-5);
+  // Long ones, whose coarse runs go far astray: errors are relative to the true motion all the same.
+  EXPECT_LT(error_reached(example("kepler", {"accuracy.target=1e-4"})), 1e-4);
+  EXPECT_LT(error_reached(example("spring_pendulum", {"accuracy.target=1e-5"})), 1e-5);
+  EXPECT_LT(error_reached(example("driven_pendulum", {"accuracy.target=1e-5"})), 1e-5);
 }
 
 TEST(Accuracy, IsPredictedForLongMotions) {
@@ -230,6 +240,8 @@ TEST(Accuracy, RefusesWhatItCannotMean) {
   EXPECT_THROW(choose_by_accuracy(orbit({"accuracy.target=1e-6", "accuracy.metods=x"})), SceneError);
   EXPECT_THROW(choose_by_accuracy(orbit({"accuracy.target=1e-6", "accuracy.methods=nystrom"})), SceneError);
   EXPECT_THROW(choose_by_accuracy(orbit({"accuracy.target=1e-6", "accuracy.methods=runge-kutta"})), SceneError);
+  // A chain that has long been chaotic.
+  EXPECT_THROW(choose_by_accuracy(example("chain_drop", {"accuracy.target=1e-6", "accuracy.pilot=1"})), SceneError);
 }
 
 class Study : public CommandLine {
@@ -273,13 +285,14 @@ TEST_F(Study, ListsMethods) {
   const Outcome r = run("study " + scene() + " --list");
   EXPECT_EQ(r.code, 0);
   EXPECT_NE(r.out.find("splitting/nystrom-6"), std::string::npos);
-  EXPECT_NE(r.out.find("--set time.composition=nystrom-6"), std::string::npos);
+  EXPECT_NE(r.out.find("composition = \"nystrom-6\""), std::string::npos);
 }
 
 TEST_F(Study, RefusesMistakesInOneLine) {
-  for (const char* bad : {"--methods nystrom", "--steps 0", "--steps 0.1,x", "--steps 1:0.1:1", "--steps 100",
-                          "--reference nowhere.json", "--reference splitting@0", "--reference euler@0.1", "--target 2",
-                          "--out /proc/no/where", "--set time.stps=3"}) {
+  for (const char* bad :
+       {"--methods nystrom", "--steps 0", "--steps 0.1,x", "--steps 1:0.1:1", "--steps 100", "--reference nowhere.json",
+        "--reference splitting@0", "--reference euler@0.1", "--reference @0.1", "--reference controlled@0.1",
+        "--reference /tmp", "--target 2", "--target nan", "--out /proc/no/where", "--set time.stps=3"}) {
     const Outcome r = run("study " + scene() + " " + bad);
     EXPECT_EQ(r.code, 2) << bad;
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << bad << ": " << r.err;

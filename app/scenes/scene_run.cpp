@@ -486,7 +486,7 @@ class MotionTrial final : public Trial {
 
   StepReport advance(Work& work) override {
     const StepReport report = motion_.advance();
-    if (report.converged()) count(work, report, 0);
+    if (report.converged()) count(work, report, report.iterations > 0 ? 0 : 1);  // free flight: forces alone
     return report;
   }
   StepReport run(double end, Work& work) override {
@@ -503,8 +503,10 @@ class MotionTrial final : public Trial {
     Sight sight;
     Block places{"places", {}}, attitudes{"attitudes", {}}, momenta{"momenta", {}}, spins{"spins", {}};
     for (std::size_t f = 0; f < node.momenta.linear.size(); ++f) put(places.values, motion_.configuration().x[f]);
-    for (const auto& a : motion_.configuration().attitude)
+    for (std::size_t r = 0; r < node.momenta.spin.size(); ++r) {
+      const auto& a = motion_.configuration().attitude[r];
       attitudes.values.insert(attitudes.values.end(), a.data(), a.data() + 9);
+    }
     for (const Vec& p : node.momenta.linear) put(momenta.values, p);
     for (const Vec& m : node.momenta.spin) put(spins.values, m);
     for (Block* block : {&places, &attitudes, &momenta, &spins})

@@ -20,8 +20,8 @@ struct AccuracyChoice {
 ///
 /// Every method with equal steps runs with halved steps until the difference of two runs says that the error of the
 /// first is below the target: e(h) = |y_h - y_{h/2}| 2^p / (2^p - 1). The cheapest that gets there is taken, its step
-/// by e ~ h^p between. Where none does within the time, they try a tenth of the duration, and so on, and the error is
-/// taken to grow as it did over the second half of that.
+/// by e ~ h^p between. Where none does within the time, they try a tenth of the duration, and so on; the error is taken
+/// to grow as it did over the second half of that, and tried over the whole where there is time.
 ///
 /// Throws SceneError where the scene is no initial value, and where no method reaches the target.
 AccuracyChoice choose_by_accuracy(const Section& scene);

@@ -41,11 +41,11 @@ std::optional<Cost> cost_of(const std::vector<Measurement>& all, const std::stri
       runs.push_back(&m);
   std::sort(runs.begin(), runs.end(), [](const auto* a, const auto* b) { return a->step > b->step; });
   const auto below = [&](const Measurement* m) { return error_of(*m, axis) <= error; };
-  // From the fine end: a coarse run may be below it by chance.
+  // From the fine end, past what drowned in round-off: a coarse run may be below the error by chance.
   auto first = runs.end();
+  while (first != runs.begin() && !below(*(first - 1))) --first;
+  if (first == runs.begin()) return std::nullopt;
   while (first != runs.begin() && below(*(first - 1))) --first;
-  if (first == runs.end()) first = std::find_if(runs.begin(), runs.end(), below);  // finer ones drown in round-off
-  if (first == runs.end()) return std::nullopt;
   const Measurement& to = **first;
   if (first == runs.begin()) return Cost{method, to.step, to.median(), double(to.work.evaluations)};
   const Measurement& from = **(first - 1);

@@ -13,8 +13,8 @@ namespace lagroid::app {
 
 namespace {
 
-constexpr std::array choosing{"time.mode",        "time.method",   "time.order",
-                              "time.composition", "time.accuracy", "accuracy"};
+constexpr std::array choosing{"time.mode",         "time.method",   "time.order", "time.composition",
+                              "time.without_root", "time.accuracy", "accuracy"};
 
 Section without_choice(Section scene) {
   for (const char* key : choosing) scene = scene.without(key);
@@ -46,7 +46,7 @@ Section with_method(const Section& scene, const Method& method, double h, double
   std::vector<std::string> settings = method.settings;
   settings.push_back(fmt::format("time.step={:.17e}", h));
   settings.push_back(fmt::format("time.steps={}", std::max(1L, std::lround(end / h))));
-  return scene.without("time.duration").set(settings);
+  return scene.set(settings);
 }
 
 std::unique_ptr<Trial> Experiment::begin(const Method& method, double h) const {
@@ -58,7 +58,9 @@ Experiment read_experiment(const Section& scene) {
   const TimeGrid grid = read_time(scene);
   out.step = grid.step;
   out.end = grid.step * double(grid.steps);
-  out.scene = without_choice(scene);
+  out.scene = without_choice(scene)
+                  .without("time.duration")
+                  .set({fmt::format("time.step={:.17e}", grid.step), fmt::format("time.steps={}", grid.steps)});
   Begun begun = begin_scene(out.scene);
   out.name = begun.name;
   out.methods = std::move(begun.methods);

@@ -12,11 +12,14 @@
 namespace lagroid::app {
 
 struct Experiment {
-  std::string name;             ///< of the system or the scene
-  double end = 0;               ///< the time that the scene lasts, s
-  double step = 0;              ///< its own step
-  std::vector<Method> methods;  ///< all that apply
-  Section scene;                ///< without what chooses the method
+  std::string name;                             ///< of the system or the scene
+  double end = 0;                               ///< the time that the scene lasts, s
+  double step = 0;                              ///< its own step
+  std::vector<Method> methods;                  ///< all that apply
+  Section scene;                                ///< without what chooses the method
+  std::function<bool()> interrupted = nullptr;  ///< asked now and then, where there is somebody to ask
+
+  bool stopped() const { return interrupted && interrupted(); }
 
   /// From the scene's start. Throws SceneError where the method refuses this step.
   std::unique_ptr<Trial> begin(const Method& method, double h) const;

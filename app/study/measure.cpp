@@ -42,30 +42,8 @@ double difference(const std::vector<double>& a, const std::vector<double>& b) {
 /// The largest of two, NaN if either is.
 double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b); }
 
-/// The sizes that the motion gives to the blocks of its state: the largest norms along a run.
-std::vector<double> sizes_along(const Experiment& experiment, const Method& method, double h) {
-  const auto trial = experiment.begin(method, h);
-  Work work;
-  std::vector<double> sizes;
-  const auto look = [&] { raise_sizes(sizes, trial->see().state); };
-  look();
-  while (trial->time() < experiment.end - 0.5 * h && trial->advance(work).converged()) look();
-  return sizes;
-}
-
-/// The state at `end` after the least number of steps no longer than h, none where the method fails.
-std::optional<std::vector<Block>> state_at(const Experiment& experiment, const Method& method, double h, double end) {
-  Experiment until = experiment;
-  until.end = end;
-  try {
-    const auto trial = until.begin(method, end / std::ceil(end / h - 1e-9));
-    Work work;
-    if (!trial->run(end, work).converged()) return std::nullopt;
-    return trial->see().state;
-  } catch (const SceneError&) {
-    return std::nullopt;
-  }
-}
+/// The least number of equal steps no longer than h.
+long steps_within(double end, double h) { return std::max(1L, long(std::ceil(end / h - 1e-9))); }
 
 const Method& of_highest_order(const Experiment& experiment) {
   const Method* best = nullptr;
@@ -81,33 +59,35 @@ class Extrapolated final : public Reference {
       : experiment_(experiment), method_(of_highest_order(experiment)) {
     const auto start = std::chrono::steady_clock::now();
     first_step_ = experiment.step * std::sqrt(double(method_.stages));
-    sizes_ = sizes_along(experiment, method_, experiment.step);
     std::vector<std::vector<Block>> table;
     double least = std::numeric_limits<double>::infinity();
+    double most_after = 0;  // what rows beyond the best one changed
     int since_least = 0;
     double last_took = 0;
     for (int row = 0; row < 22; ++row) {
       if (row >= 3 && seconds_since(start) + 2 * last_took > budget) break;
       const auto began = std::chrono::steady_clock::now();
       const auto before = table.empty() ? std::vector<Block>() : table.back();
+      if (experiment.stopped()) break;
       if (!add_row(table, row, experiment.end)) continue;
       last_took = seconds_since(began);
       if (before.empty()) continue;
-      auto difference = table.back();
-      set_sizes(difference, sizes_);
-      const double changed = distance(difference, before);
+      const double changed = distance(table.back(), before);
       if (changed < least) {
         least = changed;
+        most_after = 0;
         rows_ = row + 1;
-        best_ = difference;
+        best_ = table.back();
         since_least = 0;
-      } else if (++since_least >= 2 && least < 1e-6) {
-        break;
+      } else {
+        most_after = std::max(most_after, changed);
+        if (++since_least >= 2 && least < 1e-6) break;
       }
     }
     if (best_.empty())
       throw std::domain_error("no reference: the method of highest order did not reach the end with any step");
-    uncertainty = least;
+    // The least of several changes is small by chance; one that no later row confirms is doubled.
+    uncertainty = std::max(since_least > 0 ? most_after : 2 * least, 1e-15);
     description = fmt::format("{} with {} halved steps from {:.4g}, extrapolated", method_.name, rows_, first_step_);
   }
 
@@ -115,17 +95,15 @@ class Extrapolated final : public Reference {
     if (time == experiment_.end) return best_;
     std::vector<std::vector<Block>> table;
     for (int row = std::max(0, rows_ - 3); row < rows_; ++row) add_row(table, row, time);
-    if (table.empty()) return {};
-    set_sizes(table.back(), sizes_);
-    return table.back();
+    return table.empty() ? std::vector<Block>() : table.back();
   }
 
  private:
   /// Replaces the last row of the table by the next. The table holds one row: extrapolations of growing order.
   bool add_row(std::vector<std::vector<Block>>& row, int level, double end) {
-    const auto state = state_at(experiment_, method_, first_step_ * std::pow(0.5, level), end);
-    if (!state) return false;
-    std::vector<std::vector<Block>> next{*state};
+    const auto reached = reach(experiment_, method_, end, steps_within(end, first_step_ * std::pow(0.5, level)));
+    if (!reached) return false;
+    std::vector<std::vector<Block>> next{reached->state};
     constexpr std::size_t most = 3;  // extrapolating further multiplies round-off
     for (std::size_t k = 0; k < row.size() && k < most; ++k) {
       const double factor = std::pow(2.0, method_.order + 2 * int(k)) - 1;
@@ -143,35 +121,31 @@ class Extrapolated final : public Reference {
   Method method_;
   double first_step_ = 0;
   int rows_ = 0;
-  std::vector<double> sizes_;
   std::vector<Block> best_;
 };
 
 class ByMethod final : public Reference {
  public:
   ByMethod(const Experiment& experiment, const Method& method, double h)
-      : experiment_(experiment), method_(method), h_(h), sizes_(sizes_along(experiment, method, experiment.step)) {
-    const auto half = state_at(experiment, method, 0.5 * h, experiment.end);
+      : experiment_(experiment), method_(method), h_(h) {
     end_ = at(experiment.end);
+    const auto half = reach(experiment, method, experiment.end, 2 * steps_within(experiment.end, h));
     if (!half || end_.empty())
       throw std::domain_error(fmt::format("no reference: {} with step {:g} does not reach the end", method.name, h));
-    uncertainty = distance(end_, *half);
+    uncertainty = distance(end_, half->state);
     description = fmt::format("{} with steps of {:.6g}", method.name, h);
   }
 
   std::vector<Block> at(double time) override {
     if (time == experiment_.end && !end_.empty()) return end_;
-    auto state = state_at(experiment_, method_, h_, time);
-    if (!state) return {};
-    set_sizes(*state, sizes_);
-    return *state;
+    auto reached = reach(experiment_, method_, time, steps_within(time, h_));
+    return reached ? std::move(reached->state) : std::vector<Block>();
   }
 
  private:
   const Experiment& experiment_;
   Method method_;
   double h_;
-  std::vector<double> sizes_;
   std::vector<Block> end_;
 };
 
@@ -295,7 +269,7 @@ void refine(const Experiment& experiment, const Method& method, double longest, 
     const double h = experiment.end / std::ceil(experiment.end / (coarse * std::pow(0.5, k)) - 1e-9);
     out.push_back(measure_once(experiment, method, h, &reference, longest));
     const Measurement& last = out.back();
-    if (last.status == "too slow") {
+    if (last.status == "too slow" || experiment.stopped()) {
       out.pop_back();
       return;
     }
@@ -315,13 +289,33 @@ void refine(const Experiment& experiment, const Method& method, double longest, 
 
 }  // namespace
 
-void raise_sizes(std::vector<double>& sizes, const std::vector<Block>& state) {
-  sizes.resize(state.size());
-  for (std::size_t i = 0; i < state.size(); ++i) sizes[i] = std::max(sizes[i], norm(state[i].values));
-}
-
-void set_sizes(std::vector<Block>& state, const std::vector<double>& sizes) {
-  for (std::size_t i = 0; i < state.size() && i < sizes.size(); ++i) state[i].size = sizes[i];
+std::optional<Reached> reach(const Experiment& experiment, const Method& method, double end, long steps) {
+  Experiment until = experiment;
+  until.end = end;
+  Reached out;
+  try {
+    const auto trial = until.begin(method, end / double(steps));
+    std::vector<double> sizes;
+    const auto look = [&](const std::vector<Block>& state) {
+      sizes.resize(state.size());
+      for (std::size_t i = 0; i < state.size(); ++i) sizes[i] = std::max(sizes[i], norm(state[i].values));
+    };
+    look(trial->see().state);
+    Work work;
+    const long looks = std::min(steps, 64L);
+    for (long k = 1; k <= looks; ++k) {
+      const double start = processor_time();
+      const StepReport report = trial->run(end * double(k) / double(looks), work);
+      out.seconds += processor_time() - start;
+      if (!report.converged() || experiment.stopped()) return std::nullopt;
+      out.state = trial->see().state;
+      look(out.state);
+    }
+    for (std::size_t i = 0; i < sizes.size(); ++i) out.state[i].size = sizes[i];
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+  return out;
 }
 
 double distance(const std::vector<Block>& state, const std::vector<Block>& truth) {
@@ -329,8 +323,7 @@ double distance(const std::vector<Block>& state, const std::vector<Block>& truth
   double most = 0;
   for (std::size_t i = 0; i < state.size(); ++i) {
     if (state[i].values.size() != truth[i].values.size()) return unknown;
-    const double size = std::max(state[i].size, truth[i].size);
-    const double scale = size > 0 ? size : norm(truth[i].values);
+    const double scale = truth[i].size > 0 ? truth[i].size : norm(truth[i].values);
     most = larger(most, difference(state[i].values, truth[i].values) / (scale > 0 ? scale : 1));
   }
   return most;
@@ -388,8 +381,9 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       if (!report.converged()) break;
       last_step = trial->time() - before;
       watch.see(trial->see(), trial->time());
-      if (out.work.steps % 64 == 0 && seconds_since(start) > 8 * longest) {
-        out.status = "too slow";
+      if (out.work.steps % 64 != 0) continue;
+      if (seconds_since(start) > 8 * longest || experiment.stopped()) {
+        out.status = experiment.stopped() ? "interrupted" : "too slow";
         return out;
       }
     }
@@ -426,10 +420,12 @@ std::vector<Measurement> measure(const Experiment& experiment, const std::vector
     if (steps.sizes.empty()) {
       refine(experiment, methods[i], steps.longest, reference, out);
     } else {
-      for (const double h : steps.sizes)
-        out.push_back(measure_once(experiment, methods[i],
-                                   experiment.end / std::max(1.0, std::round(experiment.end / h)), &reference,
-                                   std::numeric_limits<double>::infinity()));
+      for (const double h : steps.sizes) {
+        if (experiment.stopped()) break;
+        const double divides = experiment.end / std::max(1.0, std::round(experiment.end / h));
+        out.push_back(
+            measure_once(experiment, methods[i], divides, &reference, std::numeric_limits<double>::infinity()));
+      }
     }
     if (!report(share_of_looking * double(i + 1) / double(methods.size()))) return out;
   }

@@ -24,10 +24,15 @@ class Reference {
   std::string description;
 };
 
-/// The largest norms of the blocks that were seen so far, and giving them to a state.
-void raise_sizes(std::vector<double>& sizes, const std::vector<Block>& state);
-void set_sizes(std::vector<Block>& state, const std::vector<double>& sizes);
-/// The largest distance of two blocks, each relative to the size that the motion gave it.
+/// Where a method ends after equal steps: the state, its blocks with the sizes that they had along the run, and the
+/// processor time of the march. None where it fails on the way.
+struct Reached {
+  std::vector<Block> state;
+  double seconds = 0;
+};
+std::optional<Reached> reach(const Experiment& experiment, const Method& method, double end, long steps);
+
+/// The largest distance of two blocks, each relative to the size that the true motion gave it.
 double distance(const std::vector<Block>& state, const std::vector<Block>& truth);
 
 /// The method of highest order among those with equal steps, extrapolated: its error has an expansion in even powers of
@@ -48,7 +53,7 @@ struct Measurement {
   std::string message;
   double reached = 0;  ///< the time
   Work work;
-  std::vector<double> seconds;  ///< of every repetition: processor time of the march
+  std::vector<double> seconds;                                   ///< of every repetition: processor time of the march
   double trajectory = std::numeric_limits<double>::quiet_NaN();  ///< error at the end
   double invariants = std::numeric_limits<double>::quiet_NaN();  ///< the largest deviation at any node, relative
   double constraint = std::numeric_limits<double>::quiet_NaN();  ///< the largest residual at any node

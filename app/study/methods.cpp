@@ -8,6 +8,18 @@
 
 namespace lagroid::app {
 
+std::string time_keys(const Method& method, const std::string& grid) {
+  std::string out = grid;
+  for (const std::string& setting : method.settings) {
+    const auto equals = setting.find('=');
+    const std::string key = setting.substr(setting.find('.') + 1, equals - setting.find('.') - 1);
+    const std::string value = setting.substr(equals + 1);
+    const bool number = value.find_first_not_of("0123456789.") == std::string::npos;
+    out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", key, number ? value : '"' + value + '"');
+  }
+  return out;
+}
+
 std::vector<Method> matching(const std::string& patterns, const std::vector<Method>& all) {
   if (patterns.empty()) return all;
   std::vector<Method> out;

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -48,11 +49,11 @@ double positive_number(const std::string& text, const char* option) {
   return x;
 }
 
-std::vector<Method> chosen_methods(const std::string& patterns, const std::vector<Method>& all) {
+std::vector<Method> chosen_methods(const char* option, const std::string& patterns, const std::vector<Method>& all) {
   try {
     return matching(patterns, all);
   } catch (const UnknownMethod& error) {
-    throw BadOption(fmt::format("--methods: {}", error.what()));
+    throw BadOption(fmt::format("{}: {}", option, error.what()));
   }
 }
 
@@ -79,8 +80,10 @@ std::vector<double> read_steps(const std::string& text, double end) {
 /// The reference state of an earlier study of the same scene.
 std::unique_ptr<Reference> reference_from(const std::string& file, const Experiment& experiment) {
   const auto refuse = [&](const std::string& why) { return BadOption(fmt::format("--reference {}: {}", file, why)); };
+  std::error_code error;
   std::ifstream in(file);
-  if (!in) throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
+  if (!std::filesystem::is_regular_file(file, error) || !in)
+    throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
   try {
     const auto json = nlohmann::json::parse(in);
     if (std::abs(json.at("time").get<double>() - experiment.end) > 1e-12 * experiment.end)
@@ -103,7 +106,11 @@ std::unique_ptr<Reference> make_reference(const StudyOptions& options, const Exp
   if (text.empty()) return extrapolated_reference(experiment, options.reference_time);
   const auto at = text.rfind('@');
   if (at == std::string::npos) return reference_from(text, experiment);
-  const auto method = chosen_methods(text.substr(0, at), experiment.methods);
+  if (at == 0) throw BadOption("--reference: name a method before the @, as in splitting@0.001");
+  const auto method = chosen_methods("--reference", text.substr(0, at), experiment.methods);
+  if (!method.front().equal_steps)
+    throw BadOption(fmt::format("--reference: steps of {} vary, and do not end where the scene does; name another",
+                                method.front().name));
   const double h = positive_number(text.substr(at + 1), "--reference");
   if (h > experiment.end)
     throw BadOption(fmt::format("--reference: a step of {:g} is longer than the scene, {:g}", h, experiment.end));
@@ -124,13 +131,16 @@ std::string command_of(const StudyOptions& options) {
   return out;
 }
 
-std::string listing(const Experiment& experiment) {
-  std::string out = fmt::format("{}: methods\n", experiment.name);
-  for (const Method& m : experiment.methods) {
-    out += fmt::format("  {:<28} order {:<3}", m.name, m.order);
-    for (const auto& s : m.settings) out += " --set " + s;
-    out += "\n";
+std::string listing(const Experiment& experiment, bool json) {
+  if (json) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const Method& m : experiment.methods)
+      out.push_back({{"name", m.name}, {"order", m.order}, {"time", time_keys(m, "")}});
+    return out.dump(2) + "\n";
   }
+  std::string out = fmt::format("{}: methods, and what [time] holds for them\n", experiment.name);
+  for (const Method& m : experiment.methods)
+    out += fmt::format("  {:<28} order {:<3} {}\n", m.name, m.order, time_keys(m, ""));
   return out;
 }
 
@@ -160,18 +170,19 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
 int study(const StudyOptions& options) {
   Findings findings;
   std::string note;
-  bool interrupted = false;
   try {
-    const Experiment experiment = read_experiment(read_scene(options.scene, options.overrides));
+    if (!std::isfinite(options.target)) throw BadOption("--target: give a number between 1e-15 and 1");
+    Experiment experiment = read_experiment(read_scene(options.scene, options.overrides));
     if (options.list) {
-      print(listing(experiment));
+      print(listing(experiment, options.json));
       return 0;
     }
-    findings.methods = chosen_methods(options.methods, experiment.methods);
+    findings.methods = chosen_methods("--methods", options.methods, experiment.methods);
     Steps steps{read_steps(options.steps, experiment.end), options.longest};
     if (!options.out.empty()) require_writable(options.out, study_files);
     Progress progress("study", 1000, !options.json);
     const InterruptGuard guard;
+    experiment.interrupted = [&guard] { return guard.interrupted(); };
     const auto reference = make_reference(options, experiment);
     findings.scene = options.scene;
     findings.name = experiment.name;
@@ -184,9 +195,9 @@ int study(const StudyOptions& options) {
     findings.reference_state = reference->at(experiment.end);
     findings.runs = measure(experiment, findings.methods, steps, *reference, options.repetitions, [&](double done) {
       progress.update(long(1000 * done));
-      interrupted = guard.interrupted();
-      return !interrupted;
+      return !guard.interrupted();
     });
+    findings.interrupted = guard.interrupted();
   } catch (const BadOption& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const OutputError& error) {
@@ -205,7 +216,7 @@ int study(const StudyOptions& options) {
     report += "  (no files written; --out DIR writes page, figures, CSV and JSON)\n";
   }
   print(report);
-  if (!interrupted) return 0;
+  if (!findings.interrupted) return 0;
   fmt::print(stderr, "lagroid: {}: interrupted; what was measured so far is told\n", options.scene);
   return exit_interrupted;
 }

@@ -2,6 +2,7 @@
 
 #include "../output_folder.hpp"
 #include "costs.hpp"
+#include "methods.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -49,11 +50,11 @@ std::vector<double> levels(const Findings& findings) {
   return out;
 }
 
-/// What to set in the scene for that method.
+/// What [time] of the scene holds for that method.
 std::string settings(const Findings& findings, const Cost& cost) {
-  std::string out;
-  for (const std::string& s : method_of(findings, cost.method).settings) out += " --set " + s;
-  return out + fmt::format(" --set time.step={:.6g}", cost.step);
+  const long steps = std::max(1L, long(std::ceil(findings.end / cost.step)));
+  return time_keys(method_of(findings, cost.method),
+                   fmt::format("step = {:.9g}, steps = {}", findings.end / double(steps), steps));
 }
 
 std::string csv(const Findings& findings) {
@@ -65,6 +66,13 @@ std::string csv(const Findings& findings) {
                        m.work.steps, m.work.evaluations, cell(m.median(), "{:.4g}"), cell(m.spread()), m.seconds.size(),
                        cell(m.trajectory, "{:.4g}"), cell(m.invariants, "{:.4g}"), cell(m.constraint, "{:.4g}"),
                        cell(m.drift, "{:.4g}"), cell(m.drift_error, "{:.4g}"), m.status, m.message);
+  return out;
+}
+
+/// As a gnuplot string in single quotes.
+std::string in_quotes(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
   return out;
 }
 
@@ -88,8 +96,9 @@ std::string figure(const Findings& findings) {
         if (const double error = error_of(m, axis); m.converged() && std::isfinite(error)) most = std::max(most, error);
       for (const auto& [column, label] : {std::pair("seconds", "time, s"), std::pair("evaluations", "evaluations")}) {
         out += fmt::format("set xlabel '{}'\nset ylabel 'error: {}'\nset title '{}'\n", label, name_of(axis),
-                           axis == Axis::trajectory ? fmt::format("{}, state at t = {:g}", findings.name, findings.end)
-                                                    : fmt::format("{}, worst at any node", findings.name));
+                           axis == Axis::trajectory
+                               ? fmt::format("{}, state at t = {:g}", in_quotes(findings.name), findings.end)
+                               : fmt::format("{}, worst at any node", in_quotes(findings.name)));
         out += "plot ";
         for (std::size_t i = 0; i < methods.size(); ++i)
           out += fmt::format(
@@ -234,9 +243,9 @@ std::vector<std::string> recommendation(const Findings& findings) {
       continue;
     }
     if (const auto cost = least_cost(findings.runs, Axis::trajectory, level))
-      out.push_back(fmt::format("for an error of {:.1e} at t = {:g} use {} with steps of {:.4g}: it costs {} ({})",
-                                level, findings.end, cost->method, cost->step, duration(cost->seconds),
-                                settings(findings, *cost).substr(1)));
+      out.push_back(
+          fmt::format("for an error of {:.1e} at t = {:g} use {} with steps of {:.4g}: it costs {} ([time] {})", level,
+                      findings.end, cost->method, cost->step, duration(cost->seconds), settings(findings, *cost)));
     else
       out.push_back(
           fmt::format("no run came below an error of {:.1e} at t = {:g}: give smaller --steps or more time "
@@ -268,7 +277,7 @@ std::string study_text(const Findings& findings) {
 
 std::string study_json(const Findings& findings) {
   Json out;
-  out["status"] = "done";
+  out["status"] = findings.interrupted ? "interrupted" : "done";
   out["scene"] = findings.scene;
   out["system"] = findings.name;
   out["command"] = findings.command;

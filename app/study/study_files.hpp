@@ -22,6 +22,7 @@ struct Findings {
   std::vector<Block> reference_state;
   std::vector<Measurement> runs;
   std::vector<Method> methods;
+  bool interrupted = false;  ///< not all was measured
 };
 
 extern const std::vector<const char*> study_files;

@@ -39,7 +39,7 @@ MarchOptions by(StepMethod method) {
 }
 MarchOptions by_splitting() {
   MarchOptions options;
-  options.splitting = true;
+  options.fixed = StepKind::splitting;
   return options;
 }
 

@@ -110,7 +110,7 @@ double kepler(long steps) {
   system.h = 0.01;
   const State<Pair<2>> begin{V2(0.4, 0), V2(0, 2)};
   MarchOptions options;
-  options.splitting = true;
+  options.fixed = StepKind::splitting;
   const auto march = make_march(system, begin, system.groupoid.unit(begin.object), options);
   return walks(
       steps, [&] { return march->advance().converged(); },
@@ -150,7 +150,7 @@ double splitting(long steps, Seen seen) {
   RigidBody system;
   system.h = step;
   MarchOptions options;
-  options.splitting = true;
+  options.fixed = StepKind::splitting;
   const auto march = make_march(system, start(), M3::Identity(), options);
   return walks(
       steps, [&] { return march->advance().converged(); },

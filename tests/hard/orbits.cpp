@@ -69,7 +69,7 @@ Round equally(double e, const Round& other) {
   Kepler system;
   system.h = period / other.steps;
   MarchOptions options;
-  options.splitting = true;
+  options.fixed = StepKind::splitting;
   const auto march = make_march(system, start, system.groupoid.unit(start.object), options);
   Round out{0, 0, 0, 0, 0, 0};
   double first = not_a_number;
@@ -102,7 +102,7 @@ double fall(TimeMode mode) {
 double fall_through() {
   Kepler system;
   MarchOptions options;
-  options.splitting = true;
+  options.fixed = StepKind::splitting;
   const State<Pair<2>> start{V2(1, 0), V2(0, 0)};
   const auto march = make_march(system, start, system.groupoid.unit(start.object), options);
   for (int k = 0; k < 200; ++k) march->advance();
@@ -113,7 +113,7 @@ double fall_through() {
 double from_the_centre(bool splitting) {
   Kepler system;
   MarchOptions options;
-  options.splitting = splitting;
+  options.fixed = splitting ? StepKind::splitting : StepKind::variational;
   system.quadrature = Quadrature::trapezoid;
   const State<Pair<2>> start{V2(0, 0), V2(1, 0)};
   return refusal(*make_march(system, start, system.groupoid.unit(start.object), options));

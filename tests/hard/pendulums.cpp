@@ -169,7 +169,7 @@ double passing_in_angles(double miss, bool upper) {
 MarchOptions composed(const Composition& composition, bool splitting) {
   MarchOptions options;
   options.composition = composition;
-  options.splitting = splitting;
+  options.fixed = splitting ? StepKind::splitting : StepKind::variational;
   return options;
 }
 

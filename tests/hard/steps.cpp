@@ -134,7 +134,7 @@ Tiny tiny_defects(double time, const V2& q, const V2& p) {
 }
 Tiny by_march(bool splitting) {
   MarchOptions options;
-  options.splitting = splitting;
+  options.fixed = splitting ? StepKind::splitting : StepKind::variational;
   const auto march = march_from(Kepler{}, tiny, apse, options);
   for (int k = 0; k < tiny_steps; ++k)
     if (!march->advance().converged()) return {not_a_number, not_a_number, not_a_number};
@@ -210,7 +210,7 @@ double refused_or_at_rest(const Sys& system, double h, const State<typename Sys:
 }
 double strange(double h) {
   MarchOptions splitting;
-  splitting.splitting = true;
+  splitting.fixed = StepKind::splitting;
   MarchOptions controlled;
   controlled.mode = TimeMode::controlled;
   MarchOptions adaptive;
@@ -306,7 +306,7 @@ std::vector<HardCase> steps() {
        [] { return by_march(false).place / std::sqrt(double(tiny_steps)); },
        [] {
          MarchOptions options;
-         options.splitting = true;
+         options.fixed = StepKind::splitting;
          const auto march = march_from(Kepler{}, tiny, apse, options);
          V2 before = apse.object;
          double worst = 0;
