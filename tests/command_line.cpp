@@ -396,16 +396,27 @@ TEST_F(CommandLine, AdaptiveStepsKeepTheDiscreteEnergyOrSayThatNoneDoes) {
 }
 
 TEST_F(CommandLine, RefusesTimesThatTheSystemDoesNotHave) {
-  for (const char* wrong :
-       {"kepler --set time.order=5", "kepler --set time.order=4 --set time.composition=kahan-li-8",
-        "kepler_adaptive --set time.order=4", "rolling_ball --set time.mode=adaptive",
-        "damped_pendulum --set time.order=4", "rigid_body_moser_veselov --set time.step=5",
-        "spherical_pendulum --set time.method=splitting", "damped_pendulum --set time.method=splitting",
-        "driven_body --set time.method=splitting", "kepler --set time.accuracy=1e-3",
-        "rigid_body_moser_veselov --set time.accuracy=1e-3", "kepler_boundary --set time.accuracy=1e-3",
-        "kepler_adaptive --set time.method=splitting", "rigid_body_moser_veselov --set time.mode=adaptive",
-        "driven_pendulum --set time.start=1e17", "kepler_controlled --set time.accuracy=0",
-        "driven_pendulum --set time.mode=controlled"}) {
+  for (const char* wrong : {"kepler --set time.order=5",
+                            "kepler --set time.order=4 --set time.composition=kahan-li-8",
+                            "kepler_adaptive --set time.order=4",
+                            "rolling_ball --set time.mode=adaptive",
+                            "damped_pendulum --set time.order=4",
+                            "rigid_body_moser_veselov --set time.step=5",
+                            "rolling_disk --set time.method=splitting",
+                            "pendulum --set time.mode=transformed",
+                            "rolling_disk --set time.method=runge-kutta",
+                            "rigid_body --set time.method=splitting --set time.composition=nystrom-6",
+                            "kepler --set time.mode=transformed --set time.composition=nystrom-6",
+                            "damped_pendulum --set time.method=splitting",
+                            "driven_body --set time.method=splitting",
+                            "kepler --set time.accuracy=1e-3",
+                            "rigid_body_moser_veselov --set time.accuracy=1e-3",
+                            "kepler_boundary --set time.accuracy=1e-3",
+                            "kepler_adaptive --set time.method=splitting",
+                            "rigid_body_moser_veselov --set time.mode=adaptive",
+                            "driven_pendulum --set time.start=1e17",
+                            "kepler_controlled --set time.accuracy=0",
+                            "driven_pendulum --set time.mode=controlled"}) {
     const std::string words = wrong;
     const auto space = words.find(' ');
     const Outcome r = run("run " + example(words.substr(0, space)) + words.substr(space));

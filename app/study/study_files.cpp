@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -76,21 +77,40 @@ std::string in_quotes(const std::string& text) {
   return out;
 }
 
+/// Methods of a kind (what stands before the stroke in their names) share a colour, and differ in their points.
+std::vector<std::string> line_styles(const std::vector<std::string>& methods) {
+  constexpr std::array points{7, 5, 9, 13, 4, 6, 8, 12, 1, 2, 3, 10, 11};
+  std::vector<std::string> kinds;
+  std::vector<std::size_t> counts;
+  std::vector<std::string> out;
+  for (const std::string& method : methods) {
+    const std::string kind = method.substr(0, method.find('/'));
+    const auto at = std::size_t(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+    if (at == kinds.size()) {
+      kinds.push_back(kind);
+      counts.push_back(0);
+    }
+    out.push_back(fmt::format("linecolor {} pointtype {} pointsize 0.6", at + 1, points[counts[at]++ % points.size()]));
+  }
+  return out;
+}
+
 std::string figure(const Findings& findings) {
-  std::string out =
-      "# Draws study.csv; run by lagroid, or by hand: gnuplot study.gp\nset datafile separator ','\nset grid\n"
-      "set logscale xy\nset format '%.0e'\nset key outside right top samplen 2 font ',9'\n";
+  std::string out = "# Draws study.csv; run by lagroid, or by hand: gnuplot study.gp\nset datafile separator ','\n";
   const auto methods = methods_of(findings.runs);
+  const auto styles = line_styles(methods);
+  const std::string failed = "pointtype 2 pointsize 0.8 linecolor 'black'";
   std::vector<Axis> drawn;
   for (const Axis axis : axes)
     if (has(findings, axis)) drawn.push_back(axis);
   const std::pair<const char*, std::string> terminals[] = {
-      {"study.svg", "svg size 1300,{} background 'white' noenhanced font ',11'"},
-      {"study.png", "pngcairo size 1300,{} noenhanced"}};
+      {"study.svg", "svg size 1400,{} background 'white' noenhanced font ',11'"},
+      {"study.png", "pngcairo size 1400,{} noenhanced"}};
   for (const auto& [file, terminal] : terminals) {
-    out += fmt::format("set terminal {}\nset output '{}'\nset multiplot layout {},2\n",
+    out += fmt::format("set terminal {}\nset output '{}'\nset multiplot layout {},3\n",
                        fmt::format(fmt::runtime(terminal), 420 * drawn.size()), file, drawn.size());
     for (const Axis axis : drawn) {
+      out += "unset key\nset border\nset grid\nset tics\nset logscale xy\nset format '%.0e'\nset autoscale\n";
       double most = 0;
       for (const Measurement& m : findings.runs)
         if (const double error = error_of(m, axis); m.converged() && std::isfinite(error)) most = std::max(most, error);
@@ -102,16 +122,25 @@ std::string figure(const Findings& findings) {
         out += "plot ";
         for (std::size_t i = 0; i < methods.size(); ++i)
           out += fmt::format(
-              "{}'study.csv' using (column('{}')):((strcol('method') eq '{}') && (strcol('status') eq 'converged') && "
-              "(column('{}') > 0) ? column('{}') : NaN) with linespoints linetype {} pointtype 7 pointsize 0.4 title "
-              "'{}'",
-              i > 0 ? ", " : "", column, methods[i], name_of(axis), name_of(axis), i + 1, methods[i]);
+              "'study.csv' using (column('{}')):((strcol('method') eq '{}') && (strcol('status') eq 'converged') && "
+              "(column('{}') > 0) ? column('{}') : NaN) with linespoints {}, ",
+              column, methods[i], name_of(axis), name_of(axis), styles[i]);
         out += fmt::format(
-            ", 'study.csv' using (column('{}')):(strcol('status') ne 'converged' ? {:.3g} : NaN) with points "
-            "pointtype 2 pointsize 0.8 linecolor 'black' title 'failed'",
-            column, 3 * most);
-        out += "\n";
+            "'study.csv' using (column('{}')):(strcol('status') ne 'converged' ? {:.3g} : NaN) with points "
+            "{}\n",
+            column, 3 * most, failed);
       }
+      if (axis != drawn.front()) {
+        out += "set multiplot next\n";
+        continue;
+      }
+      // The legend has a place of its own.
+      out +=
+          "unset logscale\nunset tics\nunset border\nunset grid\nunset xlabel\nunset ylabel\nunset title\n"
+          "set key at graph 0, graph 1 left top Left reverse vertical maxcols 1 samplen 2 font ',9'\nplot [0:1] [0:1] ";
+      for (std::size_t i = 0; i < methods.size(); ++i)
+        out += fmt::format("NaN with linespoints {} title '{}', ", styles[i], methods[i]);
+      out += fmt::format("NaN with points {} title 'failed'\n", failed);
     }
     out += "unset multiplot\n";
   }
