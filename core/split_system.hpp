@@ -43,8 +43,8 @@ template <class Sys> constexpr bool has_flows() {
 /// object constraints all of this is meant of T*C^{-1}(0), where the flows stay.
 ///
 /// It may also write `bool two_flows() const`, whether all flows but the first and the last do nothing (of two flows:
-/// always), and `static constexpr bool nystrom = true` where H_0 does not depend on momenta and the others are quadratic
-/// in them.
+/// always), and `static constexpr bool nystrom = true` where H_0 does not depend on momenta and the others are
+/// quadratic in them.
 template <class Sys>
 concept SplitSystem = DiscreteSystem<Sys> && Variational<Sys> && Sys::arrow_constraints == 0 &&
                       HasTimeStep<Sys>&& Sys::parts >= 1 && detail::has_flows<Sys>();

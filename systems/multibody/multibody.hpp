@@ -135,9 +135,7 @@ class Multibody {
   /// Whether the last step was refused because rows left out as dependent no longer follow from the others.
   bool dependence_ended() const { return dependence_ended_; }
   /// Multipliers lambda of the constraints C, in the order of the islands' joints, of the last step (per h).
-  const std::vector<double>& multipliers() const {
-    return stages_.empty() ? earlier_[0] : stages_.back().earlier[0];
-  }
+  const std::vector<double>& multipliers() const { return stages_.empty() ? earlier_[0] : stages_.back().earlier[0]; }
   /// Of all arrays that the motion needs beyond its effects' and joints' own, B.
   std::size_t memory() const;
 
