@@ -47,9 +47,9 @@ template <SplitSystem Sys, class S> class SplitMotion {
         arrow_(system.groupoid.unit(object)) {}
 
   /// The composition's step of length h: of two flows, flow 0 and the Strang step of the others, where it has kicks.
-  /// Else for every coefficient gamma of the composition a Strang step of length t = gamma h: half of flow 0, of flow
-  /// 1,
-  /// ..., all of the last one, and the halves in reverse (Strang 1968). Where two steps meet the halves of flow 0 join.
+  /// Else for every coefficient gamma of the composition a Strang step of length t = gamma h: half of flow 0, half of
+  /// flow 1, and so on, all of the last one, and the halves in reverse (Strang 1968). Where two steps meet the halves
+  /// of flow 0 join.
   void step(const Composition& composition, double h) {
     if (!composition.kicks.empty()) {
       alternate(composition, h);
@@ -77,7 +77,16 @@ template <SplitSystem Sys, class S> class SplitMotion {
   Momentum momentum() const { return start_ + momentum_change_; }
   const Momentum& momentum_change() const { return momentum_change_; }
   const typename G::template Arrow<S>& arrow() const { return arrow_; }
-  const Momentum& remainder() const { return remainder_; }
+
+  bool finite() const { return momentum().allFinite() && system_.groupoid.coordinates_of_arrow(arrow_).allFinite(); }
+  /// What a walk joins.
+  StepSolution<Sys> solution() const requires std::same_as<S, double> {
+    StepSolution<Sys> solution;
+    solution.step = {arrow_, Sys::Multipliers::Zero()};
+    solution.momentum_change = momentum_change_;
+    solution.remainder = remainder_;
+    return solution;
+  }
 
  private:
   static Momentum zero() { return Momentum::Constant(S(0.0)); }
@@ -157,18 +166,12 @@ template <SplitSystem Sys> class SplittingIntegrator {
 };
 
 template <SplitSystem Sys> StepReport SplittingIntegrator<Sys>::advance() {
-  const auto& groupoid = system_.groupoid;
   SplitMotion<Sys, double> motion(system_, point().state.object, point().state.momentum);
   motion.step(composition_, system_.h);
   StepReport report;
-  report.status = SolveStatus::not_finite;
-  if (!motion.momentum().allFinite() || !groupoid.coordinates_of_arrow(motion.arrow()).allFinite()) return report;
-  report.status = SolveStatus::converged;
-  StepSolution<Sys> solution;
-  solution.step = {motion.arrow(), Sys::Multipliers::Zero()};
-  solution.momentum_change = motion.momentum_change();
-  solution.remainder = motion.remainder();
-  walk_.join(groupoid, solution);
+  report.status = motion.finite() ? SolveStatus::converged : SolveStatus::not_finite;
+  if (!report.converged()) return report;
+  walk_.join(system_.groupoid, motion.solution());
   walk_.arrive_at(start_ + double(point().index + 1) * system_.h, system_.h);
   return report;
 }

@@ -16,7 +16,7 @@ namespace lagroid {
 ///
 /// and declares `static constexpr bool attractive = true`.
 template <class Sys>
-concept AttractiveSystem = NystromSystem<Sys> && Sys::parts == 2 &&
+concept AttractiveSystem = SplitSystem<Sys> && Sys::parts == 2 &&
                            requires(const Sys& system, const State<typename Sys::GroupoidType>& z) {
   requires Sys::attractive;
   { system.kinetic_energy(z.momentum) } -> std::convertible_to<double>;
@@ -76,7 +76,6 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
 };
 
 template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance() {
-  const auto& groupoid = system_.groupoid;
   SplitMotion<Sys, double> motion(system_, point().state.object, point().state.momentum);
   double time = 0;
   bool inside = true;
@@ -100,18 +99,11 @@ template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance()
   }
   drift(begun);
   StepReport report;
-  report.status = SolveStatus::not_finite;
-  const bool finite =
-      std::isfinite(time) && motion.momentum().allFinite() && groupoid.coordinates_of_arrow(motion.arrow()).allFinite();
-  if (!finite) return report;
-  report.status = SolveStatus::left_domain;
-  if (!inside) return report;
-  report.status = SolveStatus::converged;
-  StepSolution<Sys> solution;
-  solution.step = {motion.arrow(), Sys::Multipliers::Zero()};
-  solution.momentum_change = motion.momentum_change();
-  solution.remainder = motion.remainder();
-  walk_.join(groupoid, solution);
+  report.status = !std::isfinite(time) || !motion.finite() ? SolveStatus::not_finite
+                  : inside                                 ? SolveStatus::converged
+                                                           : SolveStatus::left_domain;
+  if (!report.converged()) return report;
+  walk_.join(system_.groupoid, motion.solution());
   walk_.arrive(time);
   return report;
 }

@@ -368,7 +368,6 @@ class Run final : public SteppedRun {
   const std::string& name() const { return result_.system; }
   MethodTraits traits() const { return traits_; }
   Multibody& motion() { return *motion_; }
-  double step() const { return step_; }
   /// What is kept: energy where nothing drives the bodies, momenta where nothing holds them.
   std::vector<Block> invariants(const Node& node) const {
     std::vector<Block> out;

@@ -616,7 +616,10 @@ std::size_t Multibody::memory() const {
         linear_pairs_, rotation_pairs_, levers_, planar_levers_, gradients_, next_gradients_, linear_response_,
         rotation_response_, rotation_gradient_, factor_entries_, sizes_, multipliers_, values_, right_, precision_,
         accepted_precision_, earlier_[0], earlier_[1], earlier_[2], left_out_, roles_, softness_, drifts_,
-        free_displacement_, reactions_, moving_, moving_entries_);
+        free_displacement_, reactions_, moving_, moving_entries_, stages_);
+  for (const Stage& stage : stages_) count(stage.earlier[0], stage.earlier[1], stage.earlier[2], stage.turned);
+  count(before_.place, before_.place_carry, before_.momentum, before_.momentum_carry, before_.spin, before_.spin_carry,
+        before_.turned, before_.attitude, before_.multipliers[0], before_.multipliers[1], before_.multipliers[2]);
   for (const Island& island : islands_) bytes += island.matrix.entries() * sizeof(double);
   return bytes;
 }

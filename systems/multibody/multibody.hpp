@@ -262,13 +262,13 @@ class Multibody {
   bool factorise(Island& island);
   StepReport solve(Island& island);
   StepReport turn_freely(int rotation);
-  /// Solves all islands; what a step leaves behind that is not accepted is put right by `advance`.
   void compose(const Composition& composition);
   /// One step of the size h_, which ends then.
   StepReport advance_by(double end);
   StepReport advance_by_stages();
   void save(State& state) const;
   bool stages_fit(const State& state) const;
+  /// Solves all islands; what a step leaves behind that is not accepted is put right by `advance`.
   StepReport solve_all();
   void accept();
   /// The momentum that vakonomic rows take away again at the target; the forces of dampers there.
