@@ -1,5 +1,7 @@
 #include "pages.hpp"
 
+#include "../app/machine.hpp"
+
 #include <fmt/format.h>
 
 #include <ctime>
@@ -24,16 +26,10 @@ void put(std::string& page, const std::string& mark, const std::string& text) {
 }
 
 std::string machine() {
-  std::ifstream cpu("/proc/cpuinfo");
-  std::string line;
-  while (std::getline(cpu, line))
-    if (line.starts_with("model name")) break;
-  const auto colon = line.find(": ");
   char date[32] = "";
   const std::time_t now = std::time(nullptr);
   std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
-  return fmt::format("{}, {}, -march={}, {}", colon == std::string::npos ? "unknown processor" : line.substr(colon + 2),
-                     LAGROID_COMPILER, LAGROID_ARCH, date);
+  return fmt::format("{}, {}", lagroid::app::machine(), date);
 }
 
 void write_whole(const std::filesystem::path& file, const std::string& text) {

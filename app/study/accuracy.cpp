@@ -1,5 +1,6 @@
 #include "accuracy.hpp"
 
+#include "../clock.hpp"
 #include "experiment.hpp"
 #include "measure.hpp"
 #include "methods.hpp"
@@ -101,12 +102,6 @@ std::optional<double> growth(const Experiment& experiment, const Found& found, d
   constexpr double most = 6;  // beyond that it is no power
   if (!std::isfinite(power) || power > most) return std::nullopt;
   return std::max(power, 1.0);
-}
-
-std::string duration(double seconds) {
-  return seconds < 1e-3 ? fmt::format("{:.3g} us", 1e6 * seconds)
-         : seconds < 1  ? fmt::format("{:.3g} ms", 1e3 * seconds)
-                        : fmt::format("{:.3g} s", seconds);
 }
 
 const Found& cheapest(const std::vector<Found>& all, double wanted, double end) {

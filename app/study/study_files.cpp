@@ -1,5 +1,6 @@
 #include "study_files.hpp"
 
+#include "../clock.hpp"
 #include "../output_folder.hpp"
 #include "costs.hpp"
 #include "methods.hpp"
@@ -25,12 +26,6 @@ using Json = nlohmann::ordered_json;
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 std::string cell(double x, const char* format = "{:.2g}") {
   return std::isfinite(x) ? fmt::format(fmt::runtime(format), x) : "";
-}
-
-std::string duration(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
-  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
-  return fmt::format("{:.3g} s", seconds);
 }
 
 const Method& method_of(const Findings& findings, const std::string& name) {

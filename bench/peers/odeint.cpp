@@ -93,6 +93,8 @@ template <class P> Methods odeint_methods(const P& problem) {
                  [](double tolerance) {
                    return odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>());
                  }),
+  };
+  Methods beyond{
       controlled(problem, "Fehlberg 78",
                  [](double tolerance) {
                    return odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>());
@@ -108,7 +110,9 @@ template <class P> Methods odeint_methods(const P& problem) {
                  [](double tolerance) { return odeint::bulirsch_stoer<State>(tolerance, tolerance); }),
   };
   if constexpr (requires(std::array<double, P::unknowns / 2> q) { problem.force(q); })
-    out.push_back(symplectic(problem));
+    beyond.push_back(symplectic(problem));
+  for (Method& method : beyond) method.beyond = true;
+  add(out, std::move(beyond));
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "libraries.hpp"
 
+#include "../../app/clock.hpp"
 #include "../../app/output_folder.hpp"
 #include "../pages.hpp"
 
@@ -9,24 +10,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <set>
 
 namespace peers {
 
 namespace {
+
+using lagroid::app::duration;
 
 constexpr double long_time = 1e4;
 
 bool is_ours(const Method& method) { return method.library == ours; }
 std::string full_name(const Method& method) {
   return is_ours(method) ? method.name : method.library + " " + method.name;
-}
-
-std::string time_of(double seconds) {
-  if (!std::isfinite(seconds)) return "-";
-  if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
-  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
-  return fmt::format("{:.3g} s", seconds);
 }
 
 std::string setting_of(const Method& method, double setting) {
@@ -52,32 +50,38 @@ struct Comparison {
   }
 };
 
-/// Another's method that we mean to beat by more than the best.
-struct Mark {
-  const char* problem;
-  const char* library;
-  const char* method;
-  double wanted;
+/// Those whom we mean to beat by so much.
+struct Rivals {
+  std::string title;
+  std::function<bool(const Method&)> are;
+  std::function<double(const Problem&, double end)> wanted;
 };
-constexpr Mark marks[] = {{"rigid-body", "MuJoCo", "RK4", 50}, {"chain", "MuJoCo", "RK4", 500}};
 
-Comparison against_best(const Findings& found, const Study& study, double error) {
-  return {error, cheapest(found.problem, study, error, is_ours),
-          cheapest(found.problem, study, error, [](const Method& m) { return !is_ours(m); }),
-          study.end >= long_time ? 3.0 : 1.0};
+double faster(const Problem&, double end) { return end >= long_time ? 3 : 1; }
+
+const Rivals named{"the methods named", [](const Method& method) { return !is_ours(method) && !method.beyond; },
+                   faster};
+const Rivals all_others{"all methods of theirs", [](const Method& method) { return !is_ours(method); }, faster};
+const Rivals mujoco{"MuJoCo's RK4",
+                    [](const Method& method) { return method.library == "MuJoCo" && method.name == "RK4"; },
+                    [](const Problem& problem, double) { return problem.name == "chain" ? 500.0 : 50.0; }};
+
+const std::vector<const Rivals*> all_rivals{&named, &all_others, &mujoco};
+
+bool are_there(const Rivals& rivals, const Problem& problem) {
+  return std::any_of(problem.methods.begin(), problem.methods.end(), rivals.are);
 }
-Comparison against(const Mark& mark, const Findings& found, const Study& study, double error) {
-  return {error, cheapest(found.problem, study, error, is_ours),
-          cheapest(found.problem, study, error,
-                   [&](const Method& m) { return m.library == mark.library && m.name == mark.method; }),
-          mark.wanted};
+
+Comparison against(const Rivals& rivals, const Findings& found, const Study& study, double error) {
+  return {error, cheapest(found.problem, study, error, is_ours), cheapest(found.problem, study, error, rivals.are),
+          rivals.wanted(found.problem, study.end)};
 }
 
 std::string row(const Findings& found, const Comparison& c) {
   const auto subject = [&](const Cheapest& one) {
     if (!std::isfinite(one.cost.seconds)) return std::string("- | -");
     const Method& method = found.problem.methods[one.method];
-    return fmt::format("{} | {}, {}", time_of(one.cost.seconds), full_name(method),
+    return fmt::format("{} | {}, {}", duration(one.cost.seconds), full_name(method),
                        setting_of(method, one.cost.setting));
   };
   const std::string ratio = c.we_arrive() && c.they_arrive() ? fmt::format("{:.3g}", c.ratio()) : "";
@@ -108,11 +112,16 @@ std::string notes_of(const Study& study, std::size_t method) {
 
 std::string tables(const Findings& found, const Study& study) {
   const auto levels = error_levels(study);
-  std::string out = fmt::format(
-      "\n**T = {:g}.** The reference is uncertain by {:.1e}; the smallest error of any method is {:.1e}.\n\n"
-      "| error | ours | by | best other | by | their time over ours | |\n|---|---|---|---|---|---|---|\n",
-      study.end, study.reference.uncertainty, study.floor);
-  for (const double level : levels) out += "| " + row(found, against_best(found, study, level)) + " |\n";
+  std::string out =
+      fmt::format("\n**T = {:g}.** The reference is uncertain by {:.1e}; the smallest error of any method is {:.1e}.\n",
+                  study.end, study.reference.uncertainty, study.floor);
+  for (const Rivals* rivals : all_rivals) {
+    if (!are_there(*rivals, found.problem)) continue;
+    out += fmt::format(
+        "\n| error | ours | by | best of {} | by | their time over ours | |\n|---|---|---|---|---|---|---|\n",
+        rivals->title);
+    for (const double level : levels) out += "| " + row(found, against(*rivals, found, study, level)) + " |\n";
+  }
   out += "\n| time for an error of |";
   std::string rule = "\n|---|";
   for (const double level : levels) {
@@ -122,10 +131,40 @@ std::string tables(const Findings& found, const Study& study) {
   out += " smallest error | drift there | failed runs |" + rule + "---|---|---|\n";
   for (std::size_t m = 0; m < found.problem.methods.size(); ++m) {
     out += fmt::format("| {} |", full_name(found.problem.methods[m]));
-    for (const double level : levels) out += " " + time_of(cost(study, m, level).seconds) + " |";
+    for (const double level : levels) out += " " + duration(cost(study, m, level).seconds) + " |";
     out += " " + notes_of(study, m) + " |\n";
   }
   return out;
+}
+
+/// How often we are as far ahead of them as we want to be, and where not.
+std::string comparisons(const Rivals& rivals, const std::vector<Findings>& all) {
+  int reached = 0;
+  int count = 0;
+  std::string short_of;
+  for (const Findings& found : all) {
+    if (!are_there(rivals, found.problem)) continue;
+    for (const Study& study : found.studies)
+      for (const double level : error_levels(study)) {
+        const Comparison c = against(rivals, found, study, level);
+        if (!c.they_arrive() && !c.we_arrive()) continue;
+        ++count;
+        if (c.reached()) {
+          ++reached;
+        } else {
+          short_of +=
+              fmt::format("| {} | {:g} | {} | {:g} |\n", found.problem.title, study.end, row(found, c), c.wanted);
+        }
+      }
+  }
+  std::string out =
+      fmt::format("**Against {}**: of {} comparisons {} reach what is wanted.", rivals.title, count, reached);
+  if (!short_of.empty())
+    out +=
+        " These do not:\n\n| | T | error | ours | by | best of theirs | by | their time over ours | | wanted |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n" +
+        short_of;
+  return out + "\n";
 }
 
 std::string runs_csv(const std::vector<Findings>& all) {
@@ -138,6 +177,19 @@ std::string runs_csv(const std::vector<Findings>& all) {
                            study.end, method.library, method.name, method.tolerance ? "tolerance" : "step", run.setting,
                            run.steps, run.error, run.drift, run.seconds, run.spread, run.failure);
       }
+  return out;
+}
+
+/// Of ours those that are the cheapest at some error, and all others.
+std::vector<const Method*> shown(const Findings& found, const Study& study) {
+  std::vector<const Method*> out;
+  for (const Method& method : found.problem.methods)
+    if (!is_ours(method)) out.push_back(&method);
+  std::set<std::size_t> best;
+  for (const double level : error_levels(study))
+    if (const Cheapest one = cheapest(found.problem, study, level, is_ours); std::isfinite(one.cost.seconds))
+      best.insert(one.method);
+  for (const std::size_t m : best) out.push_back(&found.problem.methods[m]);
   return out;
 }
 
@@ -156,13 +208,13 @@ std::string figures(const std::vector<Findings>& all) {
       out += fmt::format("set title '{}, T = {:g}'\nset yrange [{:.1e}:10]\nplot ", found.problem.title, study.end,
                          0.3 * study.floor);
       std::string separator;
-      for (const Method& method : found.problem.methods) {
+      for (const Method* method : shown(found, study)) {
         out += fmt::format(
             "{}'runs.csv' using (column('seconds')):((strcol('problem') eq '{}') && (column('end') == {:g}) && "
             "(strcol('library') eq '{}') && (strcol('method') eq '{}') && (strcol('failure') eq '') ? column('error') "
             ": NaN) with linespoints pointtype 7 pointsize 0.4 {} title '{}'",
-            separator, found.problem.name, study.end, method.library, method.name,
-            is_ours(method) ? "dashtype 1" : "dashtype 2", full_name(method));
+            separator, found.problem.name, study.end, method->library, method->name,
+            is_ours(*method) ? "dashtype 1" : "dashtype 2", full_name(*method));
         separator = ", ";
       }
       out += "\n";
@@ -201,40 +253,9 @@ std::string section(const Findings& found) {
 }
 
 std::string summary(const std::vector<Findings>& all) {
-  int wins = 0;
-  int comparisons = 0;
-  std::string short_of;
-  const auto count = [&](const Findings& found, const Study& study, const Comparison& c) {
-    if (!c.they_arrive() && !c.we_arrive()) return;
-    ++comparisons;
-    if (c.reached()) {
-      ++wins;
-    } else {
-      short_of += fmt::format("| {} | {:g} | {} | {:g} |\n", found.problem.title, study.end, row(found, c), c.wanted);
-    }
-  };
-  std::string marked =
-      "| | T | error | ours | by | theirs | by | their time over ours | | wanted "
-      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Findings& found : all)
-    for (const Study& study : found.studies)
-      for (const double level : error_levels(study)) {
-        count(found, study, against_best(found, study, level));
-        for (const Mark& mark : marks) {
-          if (found.problem.name != mark.problem) continue;
-          const Comparison c = against(mark, found, study, level);
-          if (!c.they_arrive()) continue;
-          marked += fmt::format("| {} | {:g} | {} | {:g} |\n", found.problem.title, study.end, row(found, c), c.wanted);
-        }
-      }
-  std::string out =
-      fmt::format("Of {} comparisons with the best of the others {} reach what is wanted.", comparisons, wins);
-  if (!short_of.empty())
-    out +=
-        " These do not:\n\n| | T | error | ours | by | best other | by | their time over ours | | wanted |\n"
-        "|---|---|---|---|---|---|---|---|---|---|\n" +
-        short_of;
-  return out + "\nAgainst MuJoCo's RK4, at the errors that it reaches:\n\n" + marked;
+  std::string out;
+  for (const Rivals* rivals : all_rivals) out += comparisons(*rivals, all);
+  return out;
 }
 
 namespace {

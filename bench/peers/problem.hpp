@@ -14,9 +14,10 @@
 ///
 /// and, where y is bound to a submanifold, `void project(std::array<S, unknowns>& y) const`.
 
+#include "../../app/clock.hpp"
+
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -43,6 +44,7 @@ struct Method {
   double coarsest;  ///< the first setting to try
   double ratio;     ///< of a setting to the next, finer one
   std::function<Task(double end, double setting)> begin;
+  bool beyond = false;  ///< what a library has besides the methods that our goals name (docs/peers.md)
 };
 
 inline constexpr const char* ours = "Lagroid";
@@ -82,12 +84,7 @@ S distance_over(const std::array<S, N>& a, const std::array<S, N>& b, int first,
 /// The ratio of steps by which a method of this order gains a digit, at least one and a third and at most two.
 inline double ladder(double order) { return std::fmin(2, std::fmax(4.0 / 3, std::pow(10, 1 / order))); }
 
-/// Of this thread, s.
-inline double processor_time() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
+using lagroid::app::processor_time;
 
 inline constexpr double longest_run = 5;  ///< s; one that takes longer is given up
 inline constexpr const char* took_too_long = "took too long";
