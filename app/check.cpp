@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "registry.hpp"
 #include "scenes/scene_run.hpp"
+#include "study/accuracy.hpp"
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/property.hpp>
@@ -115,7 +116,8 @@ int check(const CheckOptions& options) {
   // RapidCheck reads its options from here, and reports each law on std::cerr: the certificate does.
   ::setenv("RC_PARAMS", fmt::format("seed={} max_success={}", options.seed, options.samples).c_str(), 1);
   std::cerr.setstate(std::ios::failbit);
-  const Section scene = read_scene(options.scene, options.overrides);
+  Section scene = read_scene(options.scene, options.overrides);
+  if (scene.has("accuracy")) scene = choose_by_accuracy(scene).scene;
   const Certificate certificate =
       scene.has("body") ? certify_bodies(scene, options) : with_system_of(scene, [&](const auto& entry) {
         return certify(entry.read(scene, {.progress = !options.json}), options);

@@ -67,6 +67,12 @@ TEST_F(CommandLine, WhereTheRunFailsNothingIsAsked) {
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
 }
 
+TEST_F(CommandLine, ASceneWithATargetErrorIsCertified) {
+  const Outcome r =
+      run("check " + example("pendulum") + " --json --samples 20 --set accuracy.target=1e-4 --set accuracy.pilot=0.3");
+  EXPECT_EQ(r.code, 0) << r.out << r.err;
+}
+
 TEST_F(CommandLine, CheckRefusesWhatRunRefuses) {
   const Outcome unknown = run("check " + example("pendulum") + " --set parameters.colour=1 --json");
   EXPECT_EQ(unknown.code, 2);

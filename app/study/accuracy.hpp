@@ -26,4 +26,7 @@ struct AccuracyChoice {
 /// Throws SceneError where the scene is no initial value, and where no method reaches the target.
 AccuracyChoice choose_by_accuracy(const Section& scene);
 
+/// Throws SceneError where [accuracy] is not what `choose_by_accuracy` takes.
+void check_accuracy(const Section& scene);
+
 }  // namespace lagroid::app

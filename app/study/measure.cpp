@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
@@ -235,6 +236,24 @@ class Watch {
   double energy_size_ = 0;
 };
 
+/// Which nodes of a long run are looked at: about `most` of all, at random distances, so that no motion keeps their
+/// pace.
+class Looks {
+ public:
+  explicit Looks(double steps) : distance_(1, std::max(1.0, 2 * steps / most - 1)) {}
+  bool at(long step) {
+    if (step < next_) return false;
+    next_ = step + std::max(1L, std::lround(distance_(draw_)));
+    return true;
+  }
+
+ private:
+  static constexpr double most = 1e5;
+  std::uniform_real_distribution<double> distance_;
+  long next_ = 0;
+  std::minstd_rand draw_{1};
+};
+
 /// One run alone; its seconds, or less than zero where it fails.
 double time_once(const Experiment& experiment, const Method& method, double h) {
   // A clock takes about a microsecond to read; short runs are repeated until their sum is long against that.
@@ -369,12 +388,13 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
     const auto start = std::chrono::steady_clock::now();
     // Varying steps are first ones: the last node may lie anywhere within half a step of the end.
     double last_step = h;
+    Looks looks(experiment.end / h);
     while (experiment.end - trial->time() > 0.5 * last_step) {
       const double before = trial->time();
       report = trial->advance(out.work);
       if (!report.converged()) break;
       last_step = trial->time() - before;
-      watch.see(trial->see(), trial->time());
+      if (looks.at(out.work.steps)) watch.see(trial->see(), trial->time());
       if (out.work.steps % 64 != 0) continue;
       if (seconds_since(start) > 8 * longest || experiment.stopped()) {
         out.status = experiment.stopped() ? "interrupted" : "too slow";

@@ -74,12 +74,12 @@ struct Steps {
   double longest = 0.25;
 };
 
-/// Runs the methods, first with a look at every node, then, interleaved, `repetitions` times with none. `report` hears
-/// what part is done, and says whether to go on.
+/// Runs the methods, first with a look at every node (of long runs, 1e5 of them), then, interleaved, `repetitions`
+/// times with none. `report` hears what part is done, and says whether to go on.
 std::vector<Measurement> measure(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
                                  Reference& reference, int repetitions, const std::function<bool(double done)>& report);
 
-/// One run with a look at every node.
+/// One run with a look at every node, or at 1e5 of them where there are more.
 Measurement measure_once(const Experiment& experiment, const Method& method, double h, Reference* reference,
                          double longest);
 

@@ -6,6 +6,8 @@
 #include "../progress.hpp"
 #include "../scene_reader.hpp"
 #include "../shell.hpp"
+#include "accuracy.hpp"
+#include "experiment.hpp"
 #include "methods.hpp"
 #include "study_files.hpp"
 
@@ -172,7 +174,9 @@ int study(const StudyOptions& options) {
   std::string note;
   try {
     if (!std::isfinite(options.target)) throw BadOption("--target: give a number between 1e-15 and 1");
-    Experiment experiment = read_experiment(read_scene(options.scene, options.overrides));
+    const Section scene = read_scene(options.scene, options.overrides);
+    if (scene.has("accuracy")) check_accuracy(scene);
+    Experiment experiment = read_experiment(scene);
     if (options.list) {
       print(listing(experiment, options.json));
       return 0;

@@ -38,7 +38,7 @@ class Trial {
   /// Steps until `end` is less than half a step away, and looks at nothing. The report is that of the last step.
   virtual StepReport run(double end, Work& work) = 0;
   virtual double time() const = 0;
-  /// The node that was reached. To be asked of every node, or of the last one alone.
+  /// The node that was reached.
   virtual Sight see() = 0;
   virtual MethodTraits traits() const = 0;
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -63,10 +64,15 @@ std::string cell(const std::string& text) {
   return out;
 }
 
-/// The page: the template with its tables in place of the line @TABLES@. Whether all bounds were kept.
+/// The page: the template with its tables in place of the line @TABLES@. Returns whether all bounds were kept; where
+/// one is missed or the file cannot be written, leaves the file as it was and says so.
 bool write_page(const std::string& file) {
   std::ifstream input(LAGROID_HARD_TEMPLATE);
   std::string text{std::istreambuf_iterator<char>(input), {}};
+  if (!input) {
+    std::cerr << "hard: cannot read " << LAGROID_HARD_TEMPLATE << '\n';
+    return false;
+  }
   std::ostringstream tables;
   bool good = true;
   int count = 0;
@@ -102,8 +108,22 @@ bool write_page(const std::string& file) {
   };
   replace("@COUNT@", std::to_string(count));
   replace("@TABLES@", tables.str());
-  std::ofstream(file) << text;
-  return good;
+  if (!good) {
+    std::cerr << "hard: " << file << " is left as it was\n";
+    return false;
+  }
+  const std::string partial = file + ".partial";
+  std::ofstream out(partial);
+  out << text;
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(partial, file, error);
+  if (!out || error) {
+    std::filesystem::remove(partial, error);
+    std::cerr << "hard: " << file << " could not be written\n";
+    return false;
+  }
+  return true;
 }
 
 }  // namespace
