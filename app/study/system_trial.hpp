@@ -35,10 +35,8 @@ template <DiscreteSystem Sys> class SystemTrial final : public Trial {
     StepReport report;
     report.status = SolveStatus::converged;
     const TrajectoryPoint<Sys>& point = march_->point();
-    while (report.converged() && end - point.time > 0.5 * (point.index > 0 ? point.step_size : system_.h)) {
-      report = march_->advance();
-      if (report.converged()) count(work, report, stages_);
-    }
+    while (report.converged() && end - point.time > 0.5 * (point.index > 0 ? point.step_size : system_.h))
+      report = advance(work);
     return report;
   }
   double time() const override { return march_->point().time; }

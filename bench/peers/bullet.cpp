@@ -9,6 +9,7 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
+#include <utility>
 
 namespace peers {
 
@@ -36,21 +37,11 @@ struct World {
 
 template <class P, class Build, class Coordinates>
 Method stepped(const P& problem, std::string name, double order, const Build& build, const Coordinates& coordinates) {
-  return {
-      "Bullet", std::move(name), false, 0.25 * problem.unit(), ladder(order), [=](double end, double setting) -> Task {
-        const long steps = std::lround(end / setting);
-        const auto world = std::make_shared<World>();
-        build(*world);
-        return [=] {
-          const double h = end / double(steps);
-          Watch<P> watch(problem);
-          for (long i = 0; i < steps; ++i) {
-            world->world.stepSimulation(h, /*maxSubSteps=*/0);
-            watch.step([&] { return coordinates(*world); });
-          }
-          return watch.finish(coordinates(*world));
-        };
-      }};
+  return engine_steps(problem, "Bullet", std::move(name), order, 0.25 * problem.unit(), [=](double h) {
+    const auto world = std::make_shared<World>();
+    build(*world);
+    return std::pair([=] { world->world.stepSimulation(h, /*maxSubSteps=*/0); }, [=] { return coordinates(*world); });
+  });
 }
 
 }  // namespace

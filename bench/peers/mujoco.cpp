@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 namespace peers {
 
@@ -42,22 +43,14 @@ void disregard(const char*) {}
 template <class P, class Set, class Coordinates>
 Method stepped(const P& problem, const char* integrator, double order, double gravity, const std::string& bodies,
                const Set& set, const Coordinates& coordinates) {
-  return {"MuJoCo", integrator, false, 0.5 * problem.unit(), ladder(order), [=](double end, double setting) -> Task {
-            const long steps = std::lround(end / setting);
-            const Model model = load(with_options(integrator, end / double(steps), gravity, bodies));
-            const Data data(mj_makeData(model.get()), mj_deleteData);
-            mju_user_warning = disregard;
-            set(*data);
-            mj_forward(model.get(), data.get());
-            return [=] {
-              Watch<P> watch(problem);
-              for (long i = 0; i < steps; ++i) {
-                mj_step(model.get(), data.get());
-                watch.step([&] { return coordinates(*model, *data); });
-              }
-              return watch.finish(coordinates(*model, *data));
-            };
-          }};
+  return engine_steps(problem, "MuJoCo", integrator, order, 0.5 * problem.unit(), [=](double h) {
+    const Model model = load(with_options(integrator, h, gravity, bodies));
+    const Data data(mj_makeData(model.get()), mj_deleteData);
+    mju_user_warning = disregard;
+    set(*data);
+    mj_forward(model.get(), data.get());
+    return std::pair([=] { mj_step(model.get(), data.get()); }, [=] { return coordinates(*model, *data); });
+  });
 }
 
 /// The name, and the order that the errors show.

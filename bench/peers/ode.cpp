@@ -6,6 +6,8 @@
 #include <ode/ode.h>
 
 #include <memory>
+#include <stdexcept>
+#include <utility>
 
 namespace peers {
 
@@ -23,20 +25,14 @@ struct World {
 
 template <class P, class Build, class Coordinates>
 Method stepped(const P& problem, const Build& build, const Coordinates& coordinates) {
-  return {"ODE", "dWorldStep", false, 0.25 * problem.unit(), ladder(1), [=](double end, double setting) -> Task {
-            const long steps = std::lround(end / setting);
-            const auto world = std::make_shared<World>();
-            build(*world);
-            return [=] {
-              const double h = end / double(steps);
-              Watch<P> watch(problem);
-              for (long i = 0; i < steps; ++i) {
-                if (dWorldStep(world->id, h) == 0) return watch.fail(coordinates(*world), "dWorldStep failed");
-                watch.step([&] { return coordinates(*world); });
-              }
-              return watch.finish(coordinates(*world));
-            };
-          }};
+  return engine_steps(problem, "ODE", "dWorldStep", 1, 0.25 * problem.unit(), [=](double h) {
+    const auto world = std::make_shared<World>();
+    build(*world);
+    const auto step = [=] {
+      if (dWorldStep(world->id, h) == 0) throw std::runtime_error("dWorldStep failed");
+    };
+    return std::pair(step, [=] { return coordinates(*world); });
+  });
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace peers {
@@ -127,5 +128,24 @@ template <class P> class Watch {
   double begun_ = processor_time();
   long steps_ = 0;
 };
+
+/// Equal steps of an engine. `begin(h)` prepares a run and returns a pair: what takes a step, and may throw
+/// std::runtime_error, and what tells the coordinates reached.
+template <class P, class Begin>
+Method engine_steps(const P& problem, std::string library, std::string name, double order, double coarsest,
+                    const Begin& begin) {
+  return {std::move(library), std::move(name), false, coarsest, ladder(order), [=](double end, double setting) -> Task {
+            const long steps = std::lround(end / setting);
+            return [=, run = begin(end / double(steps))] {
+              const auto& [step, coordinates] = run;
+              Watch<P> watch(problem);
+              for (long i = 0; i < steps; ++i) {
+                step();
+                watch.step(coordinates);
+              }
+              return watch.finish(coordinates());
+            };
+          }};
+}
 
 }  // namespace peers
