@@ -59,7 +59,7 @@ TEST_P(EnergyDrift, HasNoSlopeOverAMillionSteps) {
 INSTANTIATE_TEST_SUITE_P(Systems, EnergyDrift,
                          ::testing::Values(LongRun{"kepler", 0.05}, LongRun{"pendulum", 0.1},
                                            LongRun{"rigid_body", 0.1}, LongRun{"heavy_top", 0.05},
-                                           LongRun{"spherical_pendulum", 0.1}),
+                                           LongRun{"spherical_pendulum", 0.04}),
                          [](const auto& run) { return std::string(run.param.scene); });
 
 }  // namespace
