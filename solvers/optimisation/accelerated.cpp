@@ -1,0 +1,142 @@
+#include <lagroid/solvers/optimisation/accelerated.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace lagroid::optimisation {
+
+void Accelerated::begin(Problem& problem, const State& state) {
+  for (Vector* v : {&displacement_, &v_, &moved_, &before_}) v->setZero(state.x.size());
+  to_ = state.x;
+  ahead_ = state;
+  shortened_ = restarts_ = 0;
+  start(problem, state);
+}
+
+/// From x along v_ to to_, by moved_.
+bool Accelerated::step(Problem& problem, const Point& x) {
+  const Manifold& manifold = problem.manifold();
+  if (options_.constraint == Constraint::multipliers) return manifold.orthographic(x, v_, to_, moved_);
+  to_ = x + v_;
+  if (!manifold.nearest(to_)) return false;
+  moved_ = to_ - x;
+  return true;
+}
+
+Step Accelerated::advance(Problem& problem, State& state) {
+  const Manifold& manifold = problem.manifold();
+  const Shares shares = next();
+  v_ = shares.momentum * displacement_;
+  manifold.project(state.x, v_);
+  const State* at = &state;
+  if (options_.look_ahead) {
+    if (!step(problem, state.x)) return Step::none;
+    ahead_.x = to_;
+    problem.evaluate(ahead_);
+    at = &ahead_;
+  }
+  before_ = at->gradient;
+  if (options_.look_ahead) manifold.project(state.x, before_);
+  v_ -= shares.gradient * before_;
+  if (options_.restart && v_.dot(state.gradient) > 0) {
+    ++restarts_;
+    forget();
+    displacement_.setZero();
+    v_ = -next().gradient * state.gradient;
+  }
+  bool found = step(problem, state.x);
+  // Half of what the sphere takes is safe for the Stiefel manifold as well.
+  constexpr int most = 40;
+  double longest = 0.5;
+  for (int k = 0; !found && options_.rescale && k < most; ++k, longest /= 2) {
+    if (k == 0) ++shortened_;
+    const double length = v_.norm();
+    if (!std::isfinite(length)) return Step::none;
+    v_ *= longest / length;
+    found = step(problem, state.x);
+  }
+  if (!found) return Step::none;
+  displacement_ = moved_;
+  before_ = state.gradient;
+  state.x = to_;
+  problem.evaluate(state);
+  if (!options_.look_ahead) {
+    manifold.transport(state.x, before_);
+    before_ -= state.gradient;
+    learn(before_.norm(), displacement_.norm());
+  }
+  return Step::taken;
+}
+
+HamiltonianDescent::HamiltonianDescent(HamiltonianOptions hamiltonian, AcceleratedOptions options)
+    : Accelerated(std::move(options)), hamiltonian_(hamiltonian) {
+  check(hamiltonian_.bregman);
+  if (!(hamiltonian_.h > 0) || !(hamiltonian_.start_time > 0) || !(hamiltonian_.cap > 0))
+    throw std::invalid_argument("step, start time and cap are positive");
+}
+
+void HamiltonianDescent::start(Problem&, const State&) {
+  time_ = hamiltonian_.start_time;
+  last_alpha_ = 0;
+}
+
+Accelerated::Shares HamiltonianDescent::next() {
+  const auto [alpha, beta, next_time] = coefficients(hamiltonian_.bregman, time_, hamiltonian_.h);
+  time_ = next_time;
+  const double momentum = last_alpha_ > 0 ? alpha / last_alpha_ : 0;
+  last_alpha_ = alpha;
+  return {momentum, std::min(alpha * beta, hamiltonian_.cap)};
+}
+
+void HamiltonianDescent::forget() {
+  time_ = hamiltonian_.start_time;
+  last_alpha_ = 0;
+}
+
+RobustDescent::RobustDescent(RobustOptions robust, AcceleratedOptions options)
+    : Accelerated(std::move(options)), robust_(robust) {
+  if (!(robust_.c > 0 && robust_.c < 4)) throw std::invalid_argument("c of s = c / L is between 0 and 4, best 2");
+  if (!(robust_.power > 0) || !(robust_.lipschitz >= 0)) throw std::invalid_argument("power and L are positive");
+}
+
+void RobustDescent::start(Problem& problem, const State& state) {
+  constexpr int power_steps = 8;
+  constexpr double safety = 1.1;  // power steps come from below
+  steps_ = 0;
+  const auto declared = problem.objective().lipschitz();
+  known_ = robust_.lipschitz > 0 || declared.has_value();
+  lipschitz_ = robust_.lipschitz > 0 ? robust_.lipschitz
+               : declared            ? *declared
+                                     : safety * largest_curvature(problem, state, power_steps);
+}
+
+Accelerated::Shares RobustDescent::next() {
+  const double j = double(steps_++);
+  return {std::pow(j / (j + 1), robust_.power + 1), robust_.c / lipschitz_};
+}
+
+void RobustDescent::learn(double change, double moved) {
+  // Below this the difference of gradients is one of rounding errors.
+  constexpr double telling = 1e-6;
+  if (!known_ && moved > telling) lipschitz_ = std::max(lipschitz_, change / moved);
+}
+
+double largest_curvature(Problem& problem, const State& state, int steps) {
+  Vector v = state.gradient;
+  Vector h(v.size());
+  double largest = 0;
+  for (int k = 0; k < steps; ++k) {
+    const double length = v.norm();
+    if (!(length > 0) || !std::isfinite(length)) break;
+    v /= length;
+    problem.hessian(state, v, h);
+    largest = std::max(largest, h.norm());
+    v = h;
+  }
+  // A function without curvature along its gradient: its size is the only scale there is.
+  return largest > 0 && std::isfinite(largest) ? largest : std::max(1e-300, state.gradient.norm());
+}
+
+}  // namespace lagroid::optimisation

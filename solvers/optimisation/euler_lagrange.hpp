@@ -1,0 +1,44 @@
+#pragma once
+/// The semi-implicit Euler discretisation of the Bregman Euler-Lagrange equations ([V] Algorithm 2).
+
+#include <lagroid/solvers/optimisation/minimise.hpp>
+
+#include <limits>
+#include <string>
+
+namespace lagroid::optimisation {
+
+struct EulerLagrangeOptions {
+  double p = 6;
+  double c = 1;  ///< C
+  double h = 1e-3;
+  double lambda = 1;  ///< zeta / alpha, at least 1
+  int version = 1;    ///< 2: the gradient is taken where the momentum alone would lead
+  /// Upper bound of C p^2 (k h)^(p - 2), which otherwise grows without end and loses convergence ([V] 5.5).
+  double cap = std::numeric_limits<double>::infinity();
+  Retraction retraction = Retraction::qr;
+};
+
+/// For k = 1, 2, ..., b_k = 1 - (lambda p + 1) / k and c_k = C p^2 (k h)^(p - 2):
+///
+///     a = b_k V - h c_k grad f(X),   X+ = R_X(h a),   V+ = a transported,
+///
+/// version 2 with the gradient at R_X(h b_k V), transported back.
+class EulerLagrange final : public Method {
+ public:
+  /// Throws std::invalid_argument, with the remedy, for options out of range.
+  explicit EulerLagrange(EulerLagrangeOptions options);
+
+  std::string name() const override;
+  void begin(Problem& problem, const State& state) override;
+  Step advance(Problem& problem, State& state) override;
+
+ private:
+  EulerLagrangeOptions options_;
+  long k_ = 0;
+  Vector velocity_, v_;
+  Point to_;
+  State ahead_;
+};
+
+}  // namespace lagroid::optimisation

@@ -1,0 +1,34 @@
+#pragma once
+/// Riemannian gradient descent ([V] Algorithm 3).
+
+#include <lagroid/solvers/optimisation/minimise.hpp>
+
+#include <string>
+
+namespace lagroid::optimisation {
+
+struct GradientDescentOptions {
+  /// X+ = R_X(-step grad f); 0: by a line search, from twice the last step down until f has fallen by `decrease` of
+  /// what the slope promises (Armijo).
+  double step = 0;
+  double decrease = 1e-4;
+  Retraction retraction = Retraction::qr;
+};
+
+class GradientDescent final : public Method {
+ public:
+  /// Throws std::invalid_argument, with the remedy, for options out of range.
+  explicit GradientDescent(GradientDescentOptions options);
+
+  std::string name() const override;
+  void begin(Problem& problem, const State& state) override;
+  Step advance(Problem& problem, State& state) override;
+
+ private:
+  GradientDescentOptions options_;
+  double last_ = 0;
+  Vector v_;
+  Point to_;
+};
+
+}  // namespace lagroid::optimisation

@@ -1,0 +1,15 @@
+#pragma once
+/// How far to go along a direction of descent.
+
+#include <lagroid/solvers/optimisation/minimise.hpp>
+
+namespace lagroid::optimisation {
+
+/// The step t, from `first` down, for which f(R_x(t d)) <= f(x) + decrease t slope, with `to` there; each next one is
+/// where the parabola through f(x), the slope and the last value is lowest, between a tenth and a half of the last.
+/// Near the minimum, where values differ by rounding only, a value that is no greater than f(x) by more than that is
+/// enough. 0 where none is found. `buffer` is overwritten.
+double backtrack(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
+                 double first, double decrease, Point& to, Vector& buffer);
+
+}  // namespace lagroid::optimisation

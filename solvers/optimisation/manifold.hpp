@@ -1,0 +1,77 @@
+#pragma once
+/// Manifolds on which functions are minimised.
+
+#include <Eigen/Core>
+
+#include <string>
+#include <string_view>
+
+namespace lagroid::optimisation {
+
+/// Points, tangent vectors and ambient vectors: matrices by columns, those of products one after another.
+using Point = Eigen::VectorXd;
+using Vector = Eigen::VectorXd;
+
+/// Ways from a tangent vector to a point.
+enum class Retraction {
+  exponential,   ///< along the geodesic
+  qr,            ///< Q of the QR decomposition of X + V, R with a positive diagonal
+  polar,         ///< the nearest point to X + V
+  orthographic,  ///< X + V and a normal vector at X: the step with multipliers of a constrained Hamiltonian map
+  cayley         ///< by a skew matrix of rank 2 m
+};
+std::string_view to_string(Retraction retraction);
+
+/// Q = C^{-1}(0) in a space of matrices E, with the metric <A, B> = Trace(A^T B) of E ([V] 5.3.2). A subclass writes
+/// all that is pure here; sizes are those of run time.
+///
+/// Invariants (checked by `manifold_laws`): `project` is the orthogonal projection onto the tangent space; `retract`
+/// lands on Q, keeps the point for v = 0 and has the derivative of the identity there; `logarithm` inverts the
+/// exponential; `orthographic` differs from x + z by a normal vector at x.
+///
+/// Operations use buffers of the manifold: one object for each thread.
+class Manifold {
+ public:
+  virtual ~Manifold() = default;
+
+  virtual std::string name() const = 0;
+  /// How many numbers a point has, and how many of them are free.
+  virtual Eigen::Index size() const = 0;
+  virtual Eigen::Index dimension() const = 0;
+
+  /// The largest |C_i(x)|.
+  virtual double residual(const Point& x) const = 0;
+  /// |C(x)|^2 / 2, and its gradient dC^T C added to `gradient`, times `weight`: the penalty for leaving Q.
+  virtual double penalty(const Point& x, double weight, Vector& gradient) const = 0;
+  /// The nearest point of Q. False where there is none or more than one.
+  virtual bool nearest(Point& x) const = 0;
+  /// v without its normal part at x.
+  virtual void project(const Point& x, Vector& v) const = 0;
+
+  virtual bool offers(Retraction retraction) const = 0;
+  /// From x along the tangent vector v. False outside the retraction's domain. Throws std::invalid_argument for one
+  /// that is not offered. `to` may not be `x`.
+  virtual bool retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const = 0;
+  /// The step with multipliers, x+ = x + z - dC^T lambda with C(x+) = 0, for any vector z at x ([V] (3.19)): `to`, and
+  /// `moved` = x+ - x without cancellation. False where |tangent part of z| is too long for it.
+  virtual bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const = 0;
+  /// The tangent vector at x whose geodesic reaches y at the time one. False where it is not known in closed form or
+  /// not unique.
+  virtual bool logarithm(const Point& x, const Point& y, Vector& v) const = 0;
+  /// v, tangent at some other point, brought to x: its projection, the vector transport of all methods here.
+  void transport(const Point& x, Vector& v) const { project(x, v); }
+
+  /// The Hessian of the restriction of f to Q along v: in, `h` = D^2 f(x) v of the function on E; out, the tangent
+  /// vector P_x h - (Weingarten map of the normal part of `gradient` = D f(x)) v.
+  virtual void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const = 0;
+
+  /// A lower bound of the sectional curvature and an upper bound of the diameter, for (5.1).
+  virtual double least_curvature() const = 0;
+  virtual double diameter() const = 0;
+};
+
+/// zeta of [V] (5.1): sqrt(-K) D coth(sqrt(-K) D) for K < 0, else 1; K bounds the sectional curvature from below, D the
+/// diameter of the domain from above.
+double zeta(double least_curvature, double diameter);
+
+}  // namespace lagroid::optimisation

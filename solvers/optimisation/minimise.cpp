@@ -1,0 +1,167 @@
+#include <lagroid/solvers/optimisation/minimise.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace lagroid::optimisation {
+
+std::string_view to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged:
+      return "converged";
+    case Outcome::stagnated:
+      return "stagnated";
+    case Outcome::stationary_start:
+      return "stationary_start";
+    case Outcome::iteration_limit:
+      return "iteration_limit";
+    case Outcome::time_limit:
+      return "time_limit";
+    case Outcome::interrupted:
+      return "interrupted";
+    case Outcome::infeasible_start:
+      return "infeasible_start";
+    case Outcome::not_finite:
+      return "not_finite";
+    case Outcome::no_step:
+      return "no_step";
+  }
+  return "unknown";
+}
+
+void Problem::evaluate(State& state) {
+  ++evaluations_.gradients;
+  state.euclidean.resize(state.x.size());
+  state.value = objective_.evaluate(state.x, state.euclidean);
+  state.gradient = state.euclidean;
+  manifold_.project(state.x, state.gradient);
+}
+
+double Problem::value(const Point& x) {
+  ++evaluations_.values;
+  return objective_.value(x);
+}
+
+void Problem::hessian(const State& state, const Vector& v, Vector& h) {
+  ++evaluations_.hessians;
+  objective_.hessian(state.x, v, h);
+  manifold_.hessian(state.x, state.euclidean, v, h);
+}
+
+namespace {
+
+bool finite(const State& state) { return std::isfinite(state.value) && std::isfinite(state.gradient.squaredNorm()); }
+
+/// Whether anything still falls.
+class Progress {
+ public:
+  bool stalled(double value, double gradient, long patience) {
+    if (value < value_ || gradient < gradient_) {
+      value_ = std::min(value_, value);
+      gradient_ = std::min(gradient_, gradient);
+      since_ = 0;
+      return false;
+    }
+    return ++since_ >= patience && patience > 0;
+  }
+
+ private:
+  double value_ = std::numeric_limits<double>::infinity();
+  double gradient_ = std::numeric_limits<double>::infinity();
+  long since_ = 0;
+};
+
+}  // namespace
+
+Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, Method& method,
+                const Stopping& stopping, const Recording& recording) {
+  using Clock = std::chrono::steady_clock;
+  const auto begun = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begun).count(); };
+  Problem problem(manifold, objective);
+  Result out;
+  out.x = start;
+  const auto end = [&](Outcome outcome, std::string message = {}) {
+    out.outcome = outcome;
+    out.message = std::move(message);
+    out.seconds = seconds();
+    out.evaluations = problem.evaluations();
+    out.residual = manifold.residual(out.x);
+    return out;
+  };
+
+  const double off = start.size() == manifold.size() ? manifold.residual(start) : INFINITY;
+  constexpr double on_it = 1e-8;
+  if (start.size() == manifold.size() && !start.allFinite())
+    return end(Outcome::not_finite, "the start is not finite; give numbers");
+  if (start.size() != manifold.size()) {
+    out.outcome = Outcome::infeasible_start;
+    out.message = fmt::format("the start has {} numbers, points of the {} have {}", start.size(), manifold.name(),
+                              manifold.size());
+    return out;
+  }
+  if (!(off <= on_it))
+    return end(Outcome::infeasible_start,
+               fmt::format("the start is off the {} by {:.1e}; begin at its nearest point", manifold.name(), off));
+
+  State state;
+  state.x = start;
+  problem.evaluate(state);
+  if (!finite(state))
+    return end(Outcome::not_finite, "value or gradient at the start are not finite; look at the data");
+  out.value = state.value;
+  out.gradient = state.gradient.norm();
+  // What rounding leaves of a gradient that vanishes.
+  const double rounding = 4e-15 * std::sqrt(double(manifold.size())) * state.euclidean.norm();
+  if (out.gradient <= rounding)
+    return end(out.value <= stopping.value ? Outcome::converged : Outcome::stationary_start,
+               "the gradient vanishes at the start, which need not be a minimum; begin elsewhere");
+
+  Progress progress;
+  const auto record = [&](long iteration) {
+    const Iterate now{iteration, state.value, state.gradient.norm(), seconds(), problem.evaluations()};
+    if (recording.history) out.history.push_back(now);
+    if (state.value <= out.value) {
+      out.x = state.x;
+      out.value = state.value;
+      out.gradient = now.gradient;
+    }
+    out.iterations = iteration;
+    return now;
+  };
+  Iterate now = record(0);
+  method.begin(problem, state);
+  for (long k = 0;; ++k) {
+    if (recording.callback && !recording.callback(now, state.x))
+      return end(Outcome::interrupted, fmt::format("interrupted after {} iterations", k));
+    if (now.gradient <= stopping.gradient || now.value <= stopping.value) {
+      out.x = state.x;
+      out.value = now.value;
+      out.gradient = now.gradient;
+      return end(Outcome::converged);
+    }
+    if (progress.stalled(now.value, now.gradient, stopping.patience))
+      return end(Outcome::stagnated,
+                 fmt::format("neither value nor gradient fell in {} iterations; |grad f| = {:.1e} is "
+                             "what rounding or the method leaves",
+                             stopping.patience, out.gradient));
+    if (k == stopping.iterations)
+      return end(Outcome::iteration_limit,
+                 fmt::format("{} iterations did not suffice; |grad f| = {:.1e}", k, out.gradient));
+    if (seconds() > stopping.seconds)
+      return end(Outcome::time_limit,
+                 fmt::format("{:g} s did not suffice; |grad f| = {:.1e}", stopping.seconds, out.gradient));
+    if (method.advance(problem, state) == Step::none)
+      return end(Outcome::no_step, fmt::format("{} finds no step after {} iterations; take a smaller one or another "
+                                               "method",
+                                               method.name(), k));
+    if (!finite(state))
+      return end(Outcome::not_finite,
+                 fmt::format("{} left all numbers after {} iterations; take a smaller step", method.name(), k + 1));
+    now = record(k + 1);
+  }
+}
+
+}  // namespace lagroid::optimisation

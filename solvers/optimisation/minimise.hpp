@@ -1,0 +1,125 @@
+#pragma once
+/// The loop that all methods of optimisation share: what stops it, what it tells, and how it ends.
+
+#include <lagroid/solvers/optimisation/manifold.hpp>
+#include <lagroid/solvers/optimisation/objective.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::optimisation {
+
+enum class Outcome {
+  converged,         ///< the gradient, or the value, is as small as was asked
+  stagnated,         ///< neither falls any more: what is left is rounding
+  stationary_start,  ///< the gradient vanishes where it starts, which need not be a minimum
+  iteration_limit,   ///< as many iterations as were allowed
+  time_limit,        ///< as long as was allowed
+  interrupted,       ///< the callback said so
+  infeasible_start,  ///< the start is not on the manifold
+  not_finite,        ///< a NaN or an infinity appeared: in the data, or because the method diverged
+  no_step,           ///< the method's step does not exist: the manifold is left, or no step decreases f
+};
+std::string_view to_string(Outcome outcome);
+
+/// How much was evaluated.
+struct Evaluations {
+  long values = 0;  ///< of f alone
+  long gradients = 0;
+  long hessians = 0;  ///< times a vector
+};
+
+/// A point and what is known there.
+struct State {
+  Point x;
+  double value = 0;
+  Vector euclidean;  ///< D f(x)
+  Vector gradient;   ///< its tangent part, the Riemannian gradient
+};
+
+/// A manifold and a function on it, which counts what it is asked. Refers to both.
+class Problem {
+ public:
+  Problem(const Manifold& manifold, const Objective& objective) : manifold_(manifold), objective_(objective) {}
+
+  const Manifold& manifold() const { return manifold_; }
+  const Objective& objective() const { return objective_; }
+  /// Value and gradients at state.x.
+  void evaluate(State& state);
+  double value(const Point& x);
+  /// The Riemannian Hessian at the state along the tangent vector v.
+  void hessian(const State& state, const Vector& v, Vector& h);
+  const Evaluations& evaluations() const { return evaluations_; }
+
+ private:
+  const Manifold& manifold_;
+  const Objective& objective_;
+  Evaluations evaluations_;
+};
+
+/// What a method's step came to.
+enum class Step { taken, none };
+
+/// One way to minimise. It keeps what it needs from step to step, and allocates in `begin` alone.
+class Method {
+ public:
+  virtual ~Method() = default;
+  virtual std::string name() const = 0;
+  /// `state` has been evaluated.
+  virtual void begin(Problem& problem, const State& state) = 0;
+  /// Moves the state and evaluates it. Where it returns `none` the state is as it was.
+  virtual Step advance(Problem& problem, State& state) = 0;
+};
+
+/// After an iteration.
+struct Iterate {
+  long iteration = 0;
+  double value = 0;
+  double gradient = 0;  ///< |grad f|
+  double seconds = 0;
+  Evaluations evaluations;
+};
+
+/// What ends the loop; the first that holds.
+struct Stopping {
+  double gradient = 0;                                      ///< |grad f| at most this
+  double value = -std::numeric_limits<double>::infinity();  ///< f at most this: the minimum, where known, and a gap
+  long iterations = 10000;
+  double seconds = std::numeric_limits<double>::infinity();
+  /// Iterations without a lower value and without a smaller gradient after which rounding is what is left; 0: never.
+  long patience = 1000;
+};
+
+struct Result {
+  Outcome outcome = Outcome::not_finite;
+  Point x;
+  double value = 0;
+  double gradient = 0;
+  double residual = 0;  ///< of the constraints
+  long iterations = 0;
+  double seconds = 0;
+  Evaluations evaluations;
+  std::vector<Iterate> history;
+  std::string message;  ///< one line where it did not converge, with the remedy
+
+  bool converged() const { return outcome == Outcome::converged; }
+};
+
+/// Sees every iteration; false interrupts.
+using Callback = std::function<bool(const Iterate&, const Point&)>;
+
+struct Recording {
+  bool history = false;
+  Callback callback = nullptr;
+};
+
+/// Minimises f from `start`, a point of the manifold. Of methods that do not descend in every step the best point is
+/// what is returned. Never throws for numbers: the outcome tells.
+Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, Method& method,
+                const Stopping& stopping, const Recording& recording = {});
+
+}  // namespace lagroid::optimisation

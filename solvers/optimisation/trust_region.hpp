@@ -1,0 +1,37 @@
+#pragma once
+/// The Riemannian trust region method (Absil, Baker and Gallivan, Found. Comput. Math. 7 (2007) 303), to compare with.
+
+#include <lagroid/solvers/optimisation/minimise.hpp>
+
+#include <string>
+
+namespace lagroid::optimisation {
+
+struct TrustRegionOptions {
+  Retraction retraction = Retraction::qr;
+  double first_radius = 0;    ///< 0: an eighth of the largest
+  double largest_radius = 0;  ///< 0: the square root of the dimension, about the size of the manifold
+  int inner_iterations = 0;   ///< 0: the dimension
+};
+
+/// Minimises m(v) = f + <grad f, v> + <v, Hess f v> / 2 within |v| <= radius by truncated conjugate gradients
+/// (Steihaug and Toint), until the residual is |r_0| min(|r_0|, 0.1); f has to fall by a tenth of what m promises.
+class TrustRegion final : public Method {
+ public:
+  explicit TrustRegion(TrustRegionOptions options = {}) : options_(options) {}
+
+  std::string name() const override { return "trust region"; }
+  void begin(Problem& problem, const State& state) override;
+  Step advance(Problem& problem, State& state) override;
+
+ private:
+  void solve_model(Problem& problem, const State& state);
+
+  TrustRegionOptions options_;
+  double radius_ = 0;
+  double largest_ = 0;
+  Vector step_, curved_step_, residual_, direction_, curved_;
+  Point to_;
+};
+
+}  // namespace lagroid::optimisation

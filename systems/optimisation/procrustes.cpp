@@ -1,0 +1,49 @@
+#include <lagroid/systems/optimisation/procrustes.hpp>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <stdexcept>
+
+namespace lagroid::optimisation {
+
+namespace {
+
+using Map = Eigen::Map<Eigen::MatrixXd>;
+using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
+
+}  // namespace
+
+Procrustes::Procrustes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) : a_(a), b_(b) {
+  if (a.rows() != b.rows()) throw std::invalid_argument("Procrustes: A and B have as many rows");
+  if (b.cols() > a.cols()) throw std::invalid_argument("Procrustes: B has no more columns than A");
+  residual_.resize(b.rows(), b.cols());
+}
+
+double Procrustes::evaluate(const Point& x, Vector& gradient) const {
+  const double f = value(x);
+  Map(gradient.data(), a_.cols(), b_.cols()).noalias() = 2 * a_.transpose() * residual_;
+  return f;
+}
+
+double Procrustes::value(const Point& x) const {
+  residual_ = -b_;
+  residual_.noalias() += a_ * ConstMap(x.data(), a_.cols(), b_.cols());
+  return residual_.squaredNorm();
+}
+
+void Procrustes::hessian(const Point&, const Vector& v, Vector& h) const {
+  h.resize(v.size());
+  residual_.noalias() = a_ * ConstMap(v.data(), a_.cols(), b_.cols());
+  Map(h.data(), a_.cols(), b_.cols()).noalias() = 2 * a_.transpose() * residual_;
+}
+
+Eigen::MatrixXd balanced_procrustes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int component) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a.transpose() * b, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::MatrixXd u = svd.matrixU();
+  const double sign = (u * svd.matrixV().transpose()).determinant();
+  if (component != 0 && sign * component < 0) u.col(u.cols() - 1) *= -1;
+  return u * svd.matrixV().transpose();
+}
+
+}  // namespace lagroid::optimisation

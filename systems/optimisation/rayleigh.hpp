@@ -1,0 +1,46 @@
+#pragma once
+/// Eigenvectors as minima.
+
+#include <lagroid/solvers/optimisation/objective.hpp>
+#include <lagroid/systems/optimisation/operators.hpp>
+
+#include <string>
+
+namespace lagroid::optimisation {
+
+/// f(v) = -v^T A v on the sphere: its minima are the unit eigenvectors of the largest eigenvalue ([V] 5.3.1). The
+/// Riemannian gradient has the Lipschitz constant 2 (w_max - w_min).
+class Rayleigh final : public Objective {
+ public:
+  explicit Rayleigh(SymmetricOperator a);
+
+  std::string name() const override { return "Rayleigh quotient"; }
+  double evaluate(const Point& x, Vector& gradient) const override;
+  void hessian(const Point& x, const Vector& v, Vector& h) const override;
+  std::optional<double> lipschitz() const override { return lipschitz_; }
+
+ private:
+  SymmetricOperator a_;
+  double lipschitz_;
+};
+
+/// f(X) = Trace(X^T A X N) on St(m, n), N = diag(mu), 0 <= mu_1 <= ... <= mu_m: at the global minimum the columns are
+/// eigenvectors of the m smallest eigenvalues, the last of the smallest ([V] (5.7)). Lipschitz constant
+/// 2 (w_max - w_min) mu_m, since A - c I gives the same gradient for every c.
+class Brockett final : public Objective {
+ public:
+  /// Throws std::invalid_argument unless the weights are as above.
+  Brockett(SymmetricOperator a, Eigen::VectorXd weights);
+
+  std::string name() const override { return "Brockett"; }
+  double evaluate(const Point& x, Vector& gradient) const override;
+  void hessian(const Point& x, const Vector& v, Vector& h) const override;
+  std::optional<double> lipschitz() const override { return lipschitz_; }
+
+ private:
+  SymmetricOperator a_;
+  Eigen::VectorXd weights_;
+  double lipschitz_;
+};
+
+}  // namespace lagroid::optimisation

@@ -1,0 +1,470 @@
+// Minimising on manifolds: laws, methods, and how they end.
+
+#include <lagroid/solvers/optimisation/accelerated.hpp>
+#include <lagroid/solvers/optimisation/conjugate_gradient.hpp>
+#include <lagroid/solvers/optimisation/euler_lagrange.hpp>
+#include <lagroid/solvers/optimisation/flat.hpp>
+#include <lagroid/solvers/optimisation/gradient_descent.hpp>
+#include <lagroid/solvers/optimisation/penalised.hpp>
+#include <lagroid/solvers/optimisation/product.hpp>
+#include <lagroid/solvers/optimisation/sphere.hpp>
+#include <lagroid/solvers/optimisation/stiefel.hpp>
+#include <lagroid/solvers/optimisation/testing/manifold_laws.hpp>
+#include <lagroid/solvers/optimisation/trust_region.hpp>
+#include <lagroid/systems/optimisation/procrustes.hpp>
+#include <lagroid/systems/optimisation/rayleigh.hpp>
+
+#include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace lagroid::optimisation;
+namespace laws = lagroid::laws;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+MatrixXd random_matrix(Eigen::Index n, Eigen::Index m, unsigned seed) {
+  std::mt19937 generator(seed);
+  MatrixXd a(n, m);
+  // Sums of twelve uniform numbers: the same on every platform, which normal_distribution is not.
+  for (double& x : a.reshaped()) {
+    x = -6;
+    for (int k = 0; k < 12; ++k) x += double(generator()) / 4294967296.0;
+  }
+  return a;
+}
+MatrixXd random_symmetric(Eigen::Index n, unsigned seed) {
+  const MatrixXd a = random_matrix(n, n, seed);
+  return 0.5 * (a + a.transpose());
+}
+Point random_point(const Manifold& manifold, unsigned seed) {
+  Point x = random_matrix(manifold.size(), 1, seed);
+  EXPECT_TRUE(manifold.nearest(x));
+  return x;
+}
+MatrixXd as_matrix(const Point& x, Eigen::Index n) { return Eigen::Map<const MatrixXd>(x.data(), n, x.size() / n); }
+
+ProductManifold product() {
+  std::vector<std::unique_ptr<Manifold>> factors;
+  factors.push_back(std::make_unique<Sphere>(3));
+  factors.push_back(std::make_unique<Stiefel>(4, 2));
+  return ProductManifold(std::move(factors));
+}
+
+TEST(ManifoldLaws, Hold) {
+  for (const auto& report :
+       {laws::manifold_laws(Sphere(5)), laws::manifold_laws(Stiefel(6, 3)), laws::manifold_laws(Stiefel(4, 4)),
+        laws::manifold_laws(Stiefel(5, 1)), laws::manifold_laws(product())}) {
+    for (const laws::Law& law : report.laws)
+      // No closed form for m < n.
+      EXPECT_TRUE(law.holds() || law.name == "the logarithm inverts the exponential") << report;
+  }
+  EXPECT_TRUE(laws::manifold_laws(Sphere(5)).law("the logarithm inverts the exponential").holds());
+  EXPECT_TRUE(laws::manifold_laws(Stiefel(4, 4)).law("the logarithm inverts the exponential").holds());
+}
+
+/// The sphere with one operation replaced.
+class BrokenSphere : public Manifold {
+ public:
+  std::string name() const override { return "broken"; }
+  Eigen::Index size() const override { return sphere_.size(); }
+  Eigen::Index dimension() const override { return sphere_.dimension(); }
+  double residual(const Point& x) const override { return sphere_.residual(x); }
+  double penalty(const Point& x, double weight, Vector& gradient) const override {
+    return 2 * sphere_.penalty(x, weight, gradient);
+  }
+  bool nearest(Point& x) const override { return sphere_.nearest(x); }
+  void project(const Point& x, Vector& v) const override { v -= 0.9 * x.dot(v) * x; }
+  bool offers(Retraction) const override { return true; }
+  bool retract(Retraction, const Point& x, const Vector& v, Point& to) const override {
+    to = x + 1.1 * v;
+    return true;
+  }
+  bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override {
+    to = (x + z).normalized();
+    moved = to - x;
+    return true;
+  }
+  bool logarithm(const Point& x, const Point& y, Vector& v) const override {
+    v = y - x;
+    return true;
+  }
+  void hessian(const Point& x, const Vector&, const Vector&, Vector& h) const override { sphere_.project(x, h); }
+  double least_curvature() const override { return 1; }
+  double diameter() const override { return 3; }
+
+ private:
+  Sphere sphere_{5};
+};
+
+TEST(ManifoldLaws, FailOnABrokenManifold) {
+  const auto report = laws::manifold_laws(BrokenSphere());
+  for (const laws::Law& law : report.laws)
+    EXPECT_TRUE(law.name == "nearest points lie on it" || !law.holds()) << report;
+}
+
+class Misread final : public Objective {
+ public:
+  double evaluate(const Point& x, Vector& gradient) const override {
+    gradient = 1.01 * x.array().cos();
+    return x.array().sin().sum();
+  }
+  void hessian(const Point& x, const Vector& v, Vector& h) const override { h = x.array().sin() * v.array(); }
+  std::optional<double> lipschitz() const override { return 1e-3; }
+};
+
+TEST(ObjectiveLaws, Hold) {
+  const auto a = SymmetricOperator::of(random_symmetric(6, 1));
+  const Rayleigh rayleigh(a);
+  const Brockett brockett(a, VectorXd::LinSpaced(3, 1, 3));
+  const Procrustes procrustes(random_matrix(7, 6, 2), random_matrix(7, 3, 3));
+  for (const auto& report : {laws::objective_laws(Sphere(6), rayleigh), laws::objective_laws(Stiefel(6, 3), brockett),
+                             laws::objective_laws(Stiefel(6, 3), procrustes)})
+    EXPECT_TRUE(report.holds()) << report;
+  const auto broken = laws::objective_laws(Sphere(6), Misread());
+  for (const laws::Law& law : broken.laws) EXPECT_FALSE(law.holds()) << broken;
+}
+
+TEST(Zeta, IsThatOfTheCurvature) {
+  EXPECT_EQ(zeta(1, 3), 1);
+  EXPECT_EQ(zeta(0, 3), 1);
+  EXPECT_NEAR(zeta(-4, 1.5), 3 / std::tanh(3.0), 1e-15);
+  EXPECT_NEAR(zeta(-1e-12, 1), 1 + 1e-12 / 3, 1e-16);
+  // The bound that the Stiefel manifold declares is attained: K = Trace(U^T U V^T V) - |sym(U^T V)|^2.
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    const Stiefel manifold(5, 2);
+    const Point x = random_point(manifold, seed);
+    Vector u = random_matrix(10, 1, seed + 1000);
+    Vector v = random_matrix(10, 1, seed + 2000);
+    manifold.project(x, u);
+    manifold.project(x, v);
+    u.normalize();
+    v -= u.dot(v) * u;
+    v.normalize();
+    const MatrixXd p = as_matrix(u, 5);
+    const MatrixXd q = as_matrix(v, 5);
+    const MatrixXd s = 0.5 * (p.transpose() * q + q.transpose() * p);
+    EXPECT_GE((p.transpose() * p * q.transpose() * q).trace() - s.squaredNorm(), manifold.least_curvature());
+  }
+}
+
+/// Iterations until the gap of the value falls below 1e-8 and 1e-12; -1: never.
+struct Counts {
+  long to_8 = -1;
+  long to_12 = -1;
+  Result result;
+};
+Counts count(const Manifold& manifold, const Objective& objective, const Point& start, double least, Method& method,
+             long iterations, const std::function<double(const Point&)>& gap = nullptr) {
+  Counts out;
+  Stopping stopping;
+  stopping.iterations = iterations;
+  stopping.patience = 0;
+  const Callback watch = [&](const Iterate& now, const Point& x) {
+    const double left = gap ? gap(x) : now.value - least;
+    if (out.to_8 < 0 && left < 1e-8) out.to_8 = now.iteration;
+    if (out.to_12 < 0 && left < 1e-12) out.to_12 = now.iteration;
+    return out.to_12 < 0;
+  };
+  out.result = minimise(manifold, objective, start, method, stopping, {.callback = watch});
+  return out;
+}
+
+RobustDescent robust(double c = 2) { return RobustDescent({.c = c}, {.name = "robust", .rescale = true}); }
+
+/// Reference counts of shared/cases/newton-and-htvi.json ("sphere"), A = diag(linspace(0, 1 - 1/kappa, n - 1), 1).
+struct SphereRecord {
+  int n;
+  double kappa;
+  double a;
+  double c;
+  long to_8;
+  long to_12;
+  long shortened;
+};
+
+TEST(Accelerated, ReproducesTheReferenceCountsOnTheSphere) {
+  for (const SphereRecord& r : {SphereRecord{100, 100, 1.3, 1, 122, 164, 0},
+                                {100, 100, 1.3, 2, 84, 114, 0},
+                                {100, 100, 1.3, 3, 68, 110, 7},
+                                {100, 1000, 1.3, 1, 385, 416, 0},
+                                {100, 1000, 1.3, 2, 270, 292, 0},
+                                {100, 1000, 1.3, 3, 219, 237, 8},
+                                {300, 100, 2.1, 1, 123, 196, 0},
+                                {300, 100, 2.1, 2, 85, 136, 0},
+                                {300, 100, 2.1, 3, 68, 109, 5}}) {
+    VectorXd w(r.n);
+    w << VectorXd::LinSpaced(r.n - 1, 0, 1 - 1 / r.kappa), 1;
+    const Sphere sphere(r.n);
+    const Rayleigh objective(
+        {r.n, [w](const Eigen::Ref<const MatrixXd>& x, Eigen::Ref<MatrixXd> y) { y = w.asDiagonal() * x; }});
+    Point x(r.n);
+    for (int i = 1; i <= r.n; ++i) x(i - 1) = std::sin(r.a * i) + 0.5 * std::cos(0.37 * i * i);
+    x.normalize();
+    RobustDescent method({.c = r.c, .lipschitz = 2}, {.name = "robust", .rescale = true});
+    const Counts found = count(sphere, objective, x, -1, method, 1000,
+                               [&](const Point& at) { return at.cwiseAbs2().dot((1 - w.array()).matrix()); });
+    EXPECT_NEAR(double(found.to_8), double(r.to_8), 2) << r.n << ' ' << r.kappa << ' ' << r.c;
+    EXPECT_NEAR(double(found.to_12), double(r.to_12), 2) << r.n << ' ' << r.kappa << ' ' << r.c;
+    EXPECT_EQ(method.shortened(), r.shortened) << r.n << ' ' << r.kappa << ' ' << r.c;
+  }
+}
+
+/// The four problems of [V] Figure 1, random, with their minima.
+struct Instance {
+  std::unique_ptr<Manifold> manifold;
+  std::unique_ptr<Objective> objective;
+  Point start;
+  double least = 0;
+
+  double lipschitz() const {
+    if (const auto declared = objective->lipschitz()) return *declared;
+    Problem problem(*manifold, *objective);
+    State state;
+    state.x = start;
+    problem.evaluate(state);
+    return 1.1 * largest_curvature(problem, state, 8);
+  }
+};
+Instance rayleigh(unsigned seed) {
+  Instance out;
+  const MatrixXd a = random_symmetric(100, seed);
+  out.manifold = std::make_unique<Sphere>(100);
+  out.objective = std::make_unique<Rayleigh>(SymmetricOperator::of(a));
+  out.start = random_point(*out.manifold, seed + 100);
+  out.least = -Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvalues()(99);
+  return out;
+}
+Instance brockett(unsigned seed) {
+  Instance out;
+  const MatrixXd a = random_symmetric(100, seed);
+  out.manifold = std::make_unique<Stiefel>(100, 5);
+  out.objective = std::make_unique<Brockett>(SymmetricOperator::of(a), VectorXd::LinSpaced(5, 1, 5));
+  out.start = random_point(*out.manifold, seed + 100);
+  const VectorXd w = Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvalues();
+  for (int j = 0; j < 5; ++j) out.least += (5 - j) * w(j);
+  return out;
+}
+Instance unbalanced(unsigned seed) {
+  Instance out;
+  out.manifold = std::make_unique<Stiefel>(60, 5);
+  out.objective = std::make_unique<Procrustes>(random_matrix(80, 60, seed), random_matrix(80, 5, seed + 1));
+  out.start = random_point(*out.manifold, seed + 100);
+  TrustRegion method;
+  const Result best = minimise(*out.manifold, *out.objective, out.start, method, {.gradient = 1e-9});
+  EXPECT_TRUE(best.converged()) << best.message;
+  out.least = best.value;
+  return out;
+}
+Instance balanced(unsigned seed) {
+  Instance out;
+  const MatrixXd a = random_matrix(30, 30, seed);
+  const MatrixXd b = random_matrix(30, 30, seed + 1);
+  out.manifold = std::make_unique<Stiefel>(30, 30);
+  out.objective = std::make_unique<Procrustes>(a, b);
+  out.start = random_point(*out.manifold, seed + 100);
+  out.least = (a * balanced_procrustes(a, b, component(as_matrix(out.start, 30))) - b).squaredNorm();
+  return out;
+}
+
+HamiltonianDescent hamiltonian(Bregman::Kind kind, double cap) {
+  return HamiltonianDescent({.bregman = {.kind = kind}, .cap = cap}, {.name = "Algorithm 1"});
+}
+
+TEST(Accelerated, AdaptiveBeatsDirectWhichIsNoWorseThanEulerLagrange) {
+  for (const auto make : {rayleigh, brockett, unbalanced, balanced}) {
+    const Instance problem = make(1);
+    const double cap = 1 / problem.lipschitz();
+    HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive, cap);
+    HamiltonianDescent direct = hamiltonian(Bregman::Kind::direct, cap);
+    EulerLagrange euler_lagrange({.cap = cap / 1e-6});
+    const auto to_8 = [&](Method& method) {
+      return count(*problem.manifold, *problem.objective, problem.start, problem.least, method, 30000).to_8;
+    };
+    const long a = to_8(adaptive);
+    const long d = to_8(direct);
+    const long e = to_8(euler_lagrange);
+    SCOPED_TRACE(problem.objective->name() + " on the " + problem.manifold->name());
+    EXPECT_GT(a, 0);
+    EXPECT_LT(2 * a, d);
+    EXPECT_LE(double(d), 1.05 * double(e));
+  }
+}
+
+TEST(EulerLagrange, LosesConvergenceWithoutACap) {
+  const Instance problem = rayleigh(1);
+  EulerLagrange uncapped({});
+  EulerLagrange capped({.cap = 1e6 / problem.lipschitz()});
+  const auto last = [&](Method& method) {
+    return minimise(*problem.manifold, *problem.objective, problem.start, method, {.iterations = 20000, .patience = 0},
+                    {.history = true})
+               .history.back()
+               .value -
+           problem.least;
+  };
+  EXPECT_LT(last(capped), 1e-10);
+  EXPECT_GT(last(uncapped), 1e-3);
+}
+
+TEST(Robust, TakesAThirdOfTheIterationsAndNeverDiverges) {
+  for (const auto make : {rayleigh, brockett, unbalanced, balanced})
+    for (unsigned seed = 1; seed < 60; seed += 10) {
+      const Instance problem = make(seed);
+      RobustDescent ours = robust();
+      const Counts robust_counts =
+          count(*problem.manifold, *problem.objective, problem.start, problem.least, ours, 4000);
+      HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive, 1 / problem.lipschitz());
+      SCOPED_TRACE(problem.objective->name() + " on the " + problem.manifold->name() + ", seed " +
+                   std::to_string(seed));
+      ASSERT_GT(robust_counts.to_12, 0) << robust_counts.result.message;
+      const long allowed = 3 * robust_counts.to_12;
+      const Counts theirs =
+          count(*problem.manifold, *problem.objective, problem.start, problem.least, adaptive, allowed);
+      EXPECT_EQ(theirs.to_12, -1) << robust_counts.to_12;
+    }
+}
+
+TEST(Methods, StayOnTheManifoldToRoundOff) {
+  const Instance problem = brockett(3);
+  RobustDescent ours = robust();
+  HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive, 1 / problem.lipschitz());
+  EulerLagrange euler_lagrange({.cap = 1e6 / problem.lipschitz()});
+  GradientDescent descent({.step = 1 / problem.lipschitz()});
+  ConjugateGradient conjugate;
+  TrustRegion trust;
+  for (Method* method : std::vector<Method*>{&ours, &adaptive, &euler_lagrange, &descent, &conjugate, &trust}) {
+    double worst = 0;
+    minimise(*problem.manifold, *problem.objective, problem.start, *method, {.iterations = 500},
+             {.callback = [&](const Iterate&, const Point& x) {
+               worst = std::max(worst, problem.manifold->residual(x));
+               return true;
+             }});
+    EXPECT_LT(worst, 1e-15 * 100) << method->name();
+    EXPECT_LT(worst, 5e-15) << method->name();
+  }
+}
+
+TEST(Methods, FindTheMinimum) {
+  for (const auto make : {rayleigh, brockett, unbalanced, balanced}) {
+    const Instance problem = make(7);
+    GradientDescent search({});
+    ConjugateGradient conjugate;
+    TrustRegion trust;
+    RobustDescent ours = robust();
+    for (Method* method : std::vector<Method*>{&search, &conjugate, &trust, &ours}) {
+      const Result r = minimise(*problem.manifold, *problem.objective, problem.start, *method,
+                                {.value = problem.least + 1e-7, .iterations = 40000});
+      EXPECT_TRUE(r.converged()) << method->name() << ": " << r.message;
+    }
+  }
+}
+
+TEST(Procrustes, EachComponentOfTheOrthogonalGroupHasItsMinimum) {
+  const MatrixXd a = random_matrix(8, 8, 11);
+  const MatrixXd b = random_matrix(8, 8, 12);
+  const Stiefel group(8, 8);
+  const Procrustes objective(a, b);
+  for (const int sign : {1, -1}) {
+    MatrixXd start = MatrixXd::Identity(8, 8);
+    start(0, 0) = sign;
+    RobustDescent method = robust();
+    const Result r = minimise(group, objective, start.reshaped(), method, {.gradient = 1e-10, .iterations = 5000});
+    ASSERT_TRUE(r.converged()) << r.message;
+    EXPECT_EQ(component(as_matrix(r.x, 8)), sign);
+    EXPECT_NEAR(r.value, (a * balanced_procrustes(a, b, sign) - b).squaredNorm(), 1e-9);
+  }
+}
+
+TEST(Constraints, ProjectionsFindWhatMultipliersDo) {
+  const Instance problem = rayleigh(5);
+  RobustDescent projected({}, {.name = "projected", .constraint = Constraint::projection, .rescale = true});
+  const Counts found = count(*problem.manifold, *problem.objective, problem.start, problem.least, projected, 3000);
+  EXPECT_GT(found.to_12, 0);
+}
+
+TEST(Constraints, PenaltiesComeNear) {
+  const Sphere sphere(20);
+  const MatrixXd a = random_symmetric(20, 2);
+  const Rayleigh objective(SymmetricOperator::of(a));
+  const double largest = Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvalues()(19);
+  for (const double weight : {1e3, 1e4}) {
+    const Penalised penalised(sphere, objective, weight);
+    RobustDescent method = robust();
+    const Result r = minimise(FlatSpace(20), penalised, random_point(sphere, 3), method,
+                              {.gradient = 1e-7, .iterations = 100000});
+    ASSERT_TRUE(r.converged()) << r.message;
+    // 2 A x = weight c x on the axis: c = 2 w / weight.
+    EXPECT_NEAR(sphere.residual(r.x), 2 * largest / weight, 1e-6 * largest);
+    EXPECT_NEAR(objective.value(r.x.normalized()), -largest, 1e-9);
+  }
+}
+
+TEST(Outcomes, AreTyped) {
+  const MatrixXd a = random_symmetric(6, 1);
+  const Sphere sphere(6);
+  const Rayleigh objective(SymmetricOperator::of(a));
+  const Point start = random_point(sphere, 3);
+  RobustDescent method = robust();
+  const auto outcome = [&](const Point& x, const Stopping& stopping, const Callback& callback = nullptr) {
+    return minimise(sphere, objective, x, method, stopping, {.callback = callback}).outcome;
+  };
+  EXPECT_EQ(outcome(start, {.gradient = 1e-9}), Outcome::converged);
+  EXPECT_EQ(outcome(start, {.gradient = 0}), Outcome::stagnated);
+  EXPECT_EQ(outcome(start, {.iterations = 3}), Outcome::iteration_limit);
+  EXPECT_EQ(outcome(start, {.seconds = 0}), Outcome::time_limit);
+  EXPECT_EQ(outcome(start, {}, [](const Iterate& now, const Point&) { return now.iteration < 2; }),
+            Outcome::interrupted);
+  EXPECT_EQ(outcome(1.01 * start, {}), Outcome::infeasible_start);
+  EXPECT_EQ(outcome(Point::Zero(5), {}), Outcome::infeasible_start);
+  EXPECT_EQ(outcome(Point::Constant(6, std::nan("")), {}), Outcome::not_finite);
+  EXPECT_EQ(outcome(Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvectors().col(2), {}), Outcome::stationary_start);
+
+  MatrixXd holed = a;
+  holed(2, 3) = std::nan("");
+  const Rayleigh no_numbers(SymmetricOperator::of(holed));
+  const Result r = minimise(sphere, no_numbers, start, method, {});
+  EXPECT_EQ(r.outcome, Outcome::not_finite);
+  EXPECT_NE(r.message.find("data"), std::string::npos);
+
+  // Without a cap the step of Algorithm 1 leaves the sphere's shadow, and none is invented.
+  HamiltonianDescent uncapped = hamiltonian(Bregman::Kind::adaptive, std::numeric_limits<double>::infinity());
+  const Instance problem = rayleigh(1);
+  const Result lost =
+      minimise(*problem.manifold, *problem.objective, problem.start, uncapped, {.iterations = 100000, .patience = 0});
+  EXPECT_EQ(lost.outcome, Outcome::no_step);
+  EXPECT_NE(lost.message.find("smaller"), std::string::npos);
+
+  EXPECT_THROW(Sphere(1), std::invalid_argument);
+  EXPECT_THROW(Stiefel(2, 3), std::invalid_argument);
+  EXPECT_THROW(robust(4), std::invalid_argument);
+  EXPECT_THROW(EulerLagrange({.version = 3}), std::invalid_argument);
+  EXPECT_THROW(Brockett(SymmetricOperator::of(a), VectorXd::LinSpaced(3, 3, 1)), std::invalid_argument);
+  EXPECT_THROW(Procrustes(a, MatrixXd::Zero(5, 2)), std::invalid_argument);
+  EXPECT_THROW(hamiltonian(Bregman::Kind::direct, -1), std::invalid_argument);
+}
+
+TEST(Outcomes, OfIllConditionedProblemsAreTyped) {
+  // Spectra with a cluster, of condition 1e8, and far from one.
+  for (const double scale : {1e-100, 1.0, 1e100}) {
+    VectorXd w = VectorXd::LinSpaced(40, 0, 1);
+    w(39) = 1 + 1e-8;
+    w *= scale;
+    const Sphere sphere(40);
+    const Rayleigh objective(SymmetricOperator::of(MatrixXd(w.asDiagonal())));
+    RobustDescent method = robust();
+    const Result r = minimise(sphere, objective, random_point(sphere, 4), method, {.iterations = 20000});
+    EXPECT_TRUE(r.outcome == Outcome::stagnated || r.outcome == Outcome::iteration_limit) << to_string(r.outcome);
+    EXPECT_TRUE(std::isfinite(r.value));
+    EXPECT_LT(r.gradient, 1e-6 * scale);
+    EXPECT_LT(-scale * (1 + 1e-8) - r.value, 1e-7 * scale);
+  }
+}
+
+}  // namespace
