@@ -397,8 +397,8 @@ TEST(Constraints, PenaltiesComeNear) {
   for (const double weight : {1e3, 1e4}) {
     const Penalised penalised(sphere, objective, weight);
     RobustDescent method = robust();
-    const Result r = minimise(FlatSpace(20), penalised, random_point(sphere, 3), method,
-                              {.gradient = 1e-7, .iterations = 100000});
+    const Result r =
+        minimise(FlatSpace(20), penalised, random_point(sphere, 3), method, {.gradient = 1e-7, .iterations = 100000});
     ASSERT_TRUE(r.converged()) << r.message;
     // 2 A x = weight c x on the axis: c = 2 w / weight.
     EXPECT_NEAR(sphere.residual(r.x), 2 * largest / weight, 1e-6 * largest);

@@ -4,34 +4,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lagroid::optimisation {
 
 void ConjugateGradient::begin(Problem&, const State& state) {
   direction_ = -state.gradient;
   before_ = v_ = state.gradient;
-  to_ = state.x;
+  to_ = state;
   const double length = state.gradient.norm();
   first_ = length > 0 ? 1 / length : 1;
 }
 
 Step ConjugateGradient::advance(Problem& problem, State& state) {
-  constexpr double decrease = 1e-4;
+  constexpr double flat = 0.3;
   double slope = state.gradient.dot(direction_);
   if (!(slope < 0)) {
     direction_ = -state.gradient;
     slope = -state.gradient.squaredNorm();
   }
-  double t = backtrack(problem, retraction_, state, direction_, slope, first_, decrease, to_, v_);
+  double t = secant_search(problem, retraction_, state, direction_, slope, first_, flat, to_, v_);
   if (!(t > 0)) {
     direction_ = -state.gradient;
     slope = -state.gradient.squaredNorm();
-    t = backtrack(problem, retraction_, state, direction_, slope, 1 / std::sqrt(-slope), decrease, to_, v_);
+    t = secant_search(problem, retraction_, state, direction_, slope, first_, flat, to_, v_);
     if (!(t > 0)) return Step::none;
   }
   before_ = state.gradient;
-  state.x = to_;
-  problem.evaluate(state);
+  std::swap(state, to_);
 
   const Manifold& manifold = problem.manifold();
   manifold.transport(state.x, before_);

@@ -9,7 +9,7 @@
 namespace lagroid::optimisation {
 
 /// Directions d+ = -grad f+ + b T d with the b of Hestenes and Stiefel, not below zero, T the transport by projection;
-/// the steepest descent where d+ does not descend. Steps by backtracking (`backtrack`) from the minimum along the line
+/// the steepest descent where d+ does not descend. Steps by secants (`secant_search`) from the minimum along the line
 /// of the parabola whose curvature the last step told.
 class ConjugateGradient final : public Method {
  public:
@@ -22,7 +22,7 @@ class ConjugateGradient final : public Method {
  private:
   Retraction retraction_;
   Vector direction_, before_, v_;
-  Point to_;
+  State to_;
   double first_ = 0;
 };
 

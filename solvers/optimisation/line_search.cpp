@@ -25,4 +25,39 @@ double backtrack(Problem& problem, Retraction retraction, const State& state, co
   return 0;
 }
 
+double secant_search(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
+                     double first, double flat, State& to, Vector& buffer) {
+  constexpr int most = 30;
+  constexpr double decrease = 1e-4;
+  constexpr double furthest = 8;  // times the last, where the slope still falls
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(state.value);
+  double low = 0;
+  double low_slope = slope;
+  double high = std::numeric_limits<double>::infinity();
+  double t = first;
+  for (int k = 0; k < most && t > 0 && std::isfinite(t); ++k) {
+    buffer = t * direction;
+    bool falls = problem.manifold().retract(retraction, state.x, buffer, to.x);
+    double there = std::numeric_limits<double>::quiet_NaN();
+    if (falls) {
+      problem.evaluate(to);
+      there = to.gradient.dot(direction);
+      falls = to.value <= state.value + decrease * t * slope + rounding;
+    }
+    if (falls && std::abs(there) <= flat * std::abs(slope)) return t;
+    const double secant = low + (t - low) * low_slope / (low_slope - there);
+    if (falls && there < 0) {
+      const double ahead = there > low_slope ? secant : furthest * t;
+      low = t;
+      low_slope = there;
+      t = std::isfinite(high) ? std::clamp(ahead, low + 0.1 * (high - low), low + 0.9 * (high - low))
+                              : std::min(ahead, furthest * t);
+    } else {
+      high = t;
+      t = there > 0 ? std::clamp(secant, low + 0.1 * (high - low), low + 0.9 * (high - low)) : low + 0.3 * (high - low);
+    }
+  }
+  return 0;
+}
+
 }  // namespace lagroid::optimisation

@@ -12,4 +12,10 @@ namespace lagroid::optimisation {
 double backtrack(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
                  double first, double decrease, Point& to, Vector& buffer);
 
+/// The step t for which f(R_x(t d)) <= f(x) + 1e-4 t slope, as above near the minimum, and the slope there, of which d
+/// itself stands for the curve's direction, is at most `flat` times the one at x: by secants from `first`, between
+/// bounds once there are two. `to` is evaluated there. 0 where none is found.
+double secant_search(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
+                     double first, double flat, State& to, Vector& buffer);
+
 }  // namespace lagroid::optimisation

@@ -8,8 +8,8 @@
 
 namespace lagroid::optimisation {
 
-/// f(x) + weight |C(x)|^2 / 2, to be minimised in flat space: its minima are off the manifold by about 1 / weight. Refers
-/// to both.
+/// f(x) + weight |C(x)|^2 / 2, to be minimised in flat space: its minima are off the manifold by about 1 / weight.
+/// Refers to both.
 class Penalised final : public Objective {
  public:
   Penalised(const Manifold& manifold, const Objective& objective, double weight)

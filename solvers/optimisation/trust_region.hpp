@@ -15,7 +15,8 @@ struct TrustRegionOptions {
 };
 
 /// Minimises m(v) = f + <grad f, v> + <v, Hess f v> / 2 within |v| <= radius by truncated conjugate gradients
-/// (Steihaug and Toint), until the residual is |r_0| min(|r_0|, 0.1); f has to fall by a tenth of what m promises.
+/// (Steihaug and Toint), until the residual is |r_0| min(|r_0| / |grad f at the start|, 0.1); f has to fall by a tenth
+/// of what m promises.
 class TrustRegion final : public Method {
  public:
   explicit TrustRegion(TrustRegionOptions options = {}) : options_(options) {}
@@ -30,6 +31,7 @@ class TrustRegion final : public Method {
   TrustRegionOptions options_;
   double radius_ = 0;
   double largest_ = 0;
+  double first_gradient_ = 0;
   Vector step_, curved_step_, residual_, direction_, curved_;
   Point to_;
 };

@@ -29,10 +29,13 @@ std::pair<double, double> spectrum(const SymmetricOperator& a, double digits) {
     const double rest = w.norm();
     const Eigen::Index m = k + 1;
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-    eigen.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), m),
-                                 Eigen::Map<Eigen::VectorXd>(off.data(), m - 1));
-    const double low = eigen.eigenvalues()(0);
-    const double high = eigen.eigenvalues()(m - 1);
+    // Eigen drops what is small beside one.
+    const Eigen::Map<const Eigen::VectorXd> d(diagonal.data(), m);
+    const Eigen::Map<const Eigen::VectorXd> e(off.data(), m - 1);
+    const double size = std::max({1e-300, d.cwiseAbs().maxCoeff(), e.norm()});
+    eigen.computeFromTridiagonal(d / size, e / size);
+    const double low = size * eigen.eigenvalues()(0);
+    const double high = size * eigen.eigenvalues()(m - 1);
     // An eigenvalue lies within the residual of each.
     const double low_error = rest * std::abs(eigen.eigenvectors()(m - 1, 0));
     const double high_error = rest * std::abs(eigen.eigenvectors()(m - 1, m - 1));
