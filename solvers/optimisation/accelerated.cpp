@@ -15,10 +15,11 @@ void Accelerated::begin(Problem& problem, const State& state) {
   start(problem, state);
 }
 
-/// From x along v_ to to_, by moved_.
+/// From x along v_ to to_, by moved_. The multipliers take the normal part of v_ as well.
 bool Accelerated::step(Problem& problem, const Point& x) {
   const Manifold& manifold = problem.manifold();
   if (options_.constraint == Constraint::multipliers) return manifold.orthographic(x, v_, to_, moved_);
+  manifold.project(x, v_);
   to_ = x + v_;
   if (!manifold.nearest(to_)) return false;
   moved_ = to_ - x;
@@ -29,7 +30,6 @@ Step Accelerated::advance(Problem& problem, State& state) {
   const Manifold& manifold = problem.manifold();
   const Shares shares = next();
   v_ = shares.momentum * displacement_;
-  manifold.project(state.x, v_);
   const State* at = &state;
   if (options_.look_ahead) {
     if (!step(problem, state.x)) return Step::none;
@@ -37,9 +37,7 @@ Step Accelerated::advance(Problem& problem, State& state) {
     problem.evaluate(ahead_);
     at = &ahead_;
   }
-  before_ = at->gradient;
-  if (options_.look_ahead) manifold.project(state.x, before_);
-  v_ -= shares.gradient * before_;
+  v_ -= shares.gradient * at->gradient;
   if (options_.restart && v_.dot(state.gradient) > 0) {
     ++restarts_;
     forget();
@@ -51,18 +49,22 @@ Step Accelerated::advance(Problem& problem, State& state) {
   constexpr int most = 40;
   double longest = 0.5;
   for (int k = 0; !found && options_.rescale && k < most; ++k, longest /= 2) {
-    if (k == 0) ++shortened_;
+    if (k == 0) {
+      ++shortened_;
+      manifold.project(state.x, v_);
+    }
     const double length = v_.norm();
     if (!std::isfinite(length)) return Step::none;
     v_ *= longest / length;
     found = step(problem, state.x);
   }
   if (!found) return Step::none;
-  displacement_ = moved_;
-  before_ = state.gradient;
-  state.x = to_;
+  std::swap(displacement_, moved_);
+  const bool learns = learning();
+  if (learns) before_ = state.gradient;
+  std::swap(state.x, to_);
   problem.evaluate(state);
-  if (!options_.look_ahead) {
+  if (learns) {
     manifold.transport(state.x, before_);
     before_ -= state.gradient;
     learn(before_.norm(), displacement_.norm());
@@ -120,7 +122,7 @@ Accelerated::Shares RobustDescent::next() {
 void RobustDescent::learn(double change, double moved) {
   // Below this the difference of gradients is one of rounding errors.
   constexpr double telling = 1e-6;
-  if (!known_ && moved > telling) lipschitz_ = std::max(lipschitz_, change / moved);
+  if (moved > telling) lipschitz_ = std::max(lipschitz_, change / moved);
 }
 
 double largest_curvature(Problem& problem, const State& state, int steps) {

@@ -51,7 +51,8 @@ class Accelerated : public Method {
   virtual Shares next() = 0;
   /// The momentum was forgotten.
   virtual void forget() {}
-  /// The gradient changed by `change` over the displacement `moved`.
+  /// Whether it wants to know that the gradient changed by `change` over the displacement `moved`.
+  virtual bool learning() const { return false; }
   virtual void learn(double, double) {}
 
  private:
@@ -105,6 +106,7 @@ class RobustDescent final : public Accelerated {
   void start(Problem& problem, const State& state) override;
   Shares next() override;
   void forget() override { steps_ = 0; }
+  bool learning() const override { return !known_; }
   void learn(double change, double moved) override;
 
   RobustOptions robust_;

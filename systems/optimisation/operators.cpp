@@ -1,53 +1,91 @@
 #include <lagroid/systems/optimisation/operators.hpp>
 
+#include <Spectra/SymEigsSolver.h>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <limits>
+#include <stdexcept>
 
 namespace lagroid::optimisation {
 
-std::pair<double, double> spectrum(const SymmetricOperator& a, double digits) {
-  const Eigen::Index n = a.size;
-  const Eigen::Index most = std::min<Eigen::Index>(n, 60);
-  Eigen::MatrixXd basis(n, most);
-  std::vector<double> diagonal;
-  std::vector<double> off;
-  Eigen::VectorXd v(n);
-  for (Eigen::Index i = 0; i < n; ++i)
+namespace {
+
+/// (A - shift) / scale as Spectra wants it.
+class Scaled {
+ public:
+  using Scalar = double;
+  Scaled(const SymmetricOperator& a, double shift, double scale) : a_(a), shift_(shift), scale_(scale) {}
+
+  Eigen::Index rows() const { return a_.size; }
+  Eigen::Index cols() const { return a_.size; }
+  void perform_op(const double* in, double* out) const {
+    const Eigen::Map<const Eigen::MatrixXd> x(in, a_.size, 1);
+    Eigen::Map<Eigen::MatrixXd> y(out, a_.size, 1);
+    a_.apply(x, y);
+    y = (y - shift_ * x) / scale_;
+  }
+
+ private:
+  const SymmetricOperator& a_;
+  double shift_;
+  double scale_;
+};
+
+/// Below this Lanczos has nothing to iterate.
+constexpr Eigen::Index small = 24;
+
+Eigen::VectorXd dense_eigenvalues(const SymmetricOperator& a) {
+  Eigen::MatrixXd matrix(a.size, a.size);
+  a.apply(Eigen::MatrixXd::Identity(a.size, a.size), matrix);
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+/// A Rayleigh quotient and the residual that goes with it, of a vector that is orthogonal to nothing in particular.
+std::pair<double, double> shift_and_scale(const SymmetricOperator& a) {
+  Eigen::MatrixXd v(a.size, 1);
+  for (Eigen::Index i = 0; i < a.size; ++i)
     v(i) = std::sin(1.3 * double(i + 1)) + 0.5 * std::cos(0.37 * double(i) * double(i));
   v.normalize();
-  Eigen::VectorXd w(n);
-  std::pair<double, double> out{0, 0};
-  for (Eigen::Index k = 0; k < most; ++k) {
-    basis.col(k) = v;
-    a.apply(v, w);
-    diagonal.push_back(v.dot(w));
-    // Twice is enough (Kahan).
-    for (int again = 0; again < 2; ++again) w -= basis.leftCols(k + 1) * (basis.leftCols(k + 1).transpose() * w);
-    const double rest = w.norm();
-    const Eigen::Index m = k + 1;
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-    // Eigen drops what is small beside one.
-    const Eigen::Map<const Eigen::VectorXd> d(diagonal.data(), m);
-    const Eigen::Map<const Eigen::VectorXd> e(off.data(), m - 1);
-    const double size = std::max({1e-300, d.cwiseAbs().maxCoeff(), e.norm()});
-    eigen.computeFromTridiagonal(d / size, e / size);
-    const double low = size * eigen.eigenvalues()(0);
-    const double high = size * eigen.eigenvalues()(m - 1);
-    // An eigenvalue lies within the residual of each.
-    const double low_error = rest * std::abs(eigen.eigenvectors()(m - 1, 0));
-    const double high_error = rest * std::abs(eigen.eigenvectors()(m - 1, m - 1));
-    out = {low - low_error, high + high_error};
-    const double width = high - low;
-    if (!std::isfinite(rest) || rest <= 1e-14 * std::max(std::abs(low), std::abs(high)) ||
-        std::max(low_error, high_error) <= digits * width)
-      break;
-    off.push_back(rest);
-    v = w / rest;
+  Eigen::MatrixXd w(a.size, 1);
+  a.apply(v, w);
+  const double shift = v.col(0).dot(w.col(0));
+  return {shift, (w - shift * v).stableNorm()};
+}
+
+/// The `count` eigenvalues that `rule` names, of A shifted and scaled back, decreasing.
+Eigen::VectorXd extreme(const SymmetricOperator& a, Spectra::SortRule rule, Eigen::Index count, Eigen::Index basis,
+                        double tolerance) {
+  constexpr Eigen::Index restarts = 3000;
+  const auto [shift, scale] = shift_and_scale(a);
+  if (!std::isfinite(scale)) return Eigen::VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
+  if (scale <= 1e-14 * std::abs(shift)) return Eigen::VectorXd::Constant(count, shift);
+  Scaled op(a, shift, scale);
+  Spectra::SymEigsSolver<Scaled> solver(op, count, std::min(a.size, basis));
+  solver.init();
+  if (solver.compute(rule, restarts, tolerance, Spectra::SortRule::LargestAlge) < count)
+    throw std::runtime_error("the ends of the spectrum were not found; is the matrix symmetric?");
+  return (scale * solver.eigenvalues()).array() + shift;
+}
+
+}  // namespace
+
+std::pair<double, double> spectrum(const SymmetricOperator& a) {
+  if (a.size <= small) {
+    const Eigen::VectorXd all = dense_eigenvalues(a);
+    return {all(0), all(a.size - 1)};
   }
-  return out;
+  constexpr double tolerance = 1e-4;
+  const Eigen::VectorXd ends = extreme(a, Spectra::SortRule::BothEnds, 2, small, tolerance);
+  const double margin = tolerance * (ends(0) - ends(1));
+  return {ends(1) - margin, ends(0) + margin};
+}
+
+Eigen::VectorXd smallest_eigenvalues(const SymmetricOperator& a, Eigen::Index count) {
+  if (a.size <= std::max(small, 2 * count)) return dense_eigenvalues(a).head(count);
+  constexpr double tolerance = 1e-14;
+  return extreme(a, Spectra::SortRule::SmallestAlge, count, std::max(small, 4 * count), tolerance).reverse();
 }
 
 }  // namespace lagroid::optimisation

@@ -21,8 +21,11 @@ struct SymmetricOperator {
   }
 };
 
-/// Least and largest eigenvalue, to about `digits`, by Lanczos' iteration with full orthogonalisation, from a fixed
-/// start; never inside the spectrum by more than that.
-std::pair<double, double> spectrum(const SymmetricOperator& a, double digits = 1e-3);
+/// Bounds of the spectrum that are 1e-4 of its width outside at most, by Lanczos' iteration (Spectra). Not finite where A
+/// is not. Throws std::runtime_error where A is not symmetric.
+std::pair<double, double> spectrum(const SymmetricOperator& a);
+
+/// The `count` smallest eigenvalues, increasing, to round-off: the reference for `Rayleigh` (of -A) and `Brockett`.
+Eigen::VectorXd smallest_eigenvalues(const SymmetricOperator& a, Eigen::Index count);
 
 }  // namespace lagroid::optimisation
