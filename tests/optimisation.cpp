@@ -11,15 +11,17 @@
 #include <lagroid/solvers/optimisation/stiefel.hpp>
 #include <lagroid/solvers/optimisation/testing/manifold_laws.hpp>
 #include <lagroid/solvers/optimisation/trust_region.hpp>
+#include <lagroid/systems/optimisation/instances.hpp>
 #include <lagroid/systems/optimisation/procrustes.hpp>
+#include <lagroid/systems/optimisation/random.hpp>
 #include <lagroid/systems/optimisation/rayleigh.hpp>
 
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
+#include <limits>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -30,25 +32,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-MatrixXd random_matrix(Eigen::Index n, Eigen::Index m, unsigned seed) {
-  std::mt19937 generator(seed);
-  MatrixXd a(n, m);
-  // Sums of twelve uniform numbers: the same on every platform, which normal_distribution is not.
-  for (double& x : a.reshaped()) {
-    x = -6;
-    for (int k = 0; k < 12; ++k) x += double(generator()) / 4294967296.0;
-  }
-  return a;
-}
-MatrixXd random_symmetric(Eigen::Index n, unsigned seed) {
-  const MatrixXd a = random_matrix(n, n, seed);
-  return 0.5 * (a + a.transpose());
-}
-Point random_point(const Manifold& manifold, unsigned seed) {
-  Point x = random_matrix(manifold.size(), 1, seed);
-  EXPECT_TRUE(manifold.nearest(x));
-  return x;
-}
 MatrixXd as_matrix(const Point& x, Eigen::Index n) { return Eigen::Map<const MatrixXd>(x.data(), n, x.size() / n); }
 
 ProductManifold product() {
@@ -140,7 +123,7 @@ TEST(Zeta, IsThatOfTheCurvature) {
   // The bound that the Stiefel manifold declares is attained: K = Trace(U^T U V^T V) - |sym(U^T V)|^2.
   for (unsigned seed = 0; seed < 200; ++seed) {
     const Stiefel manifold(5, 2);
-    const Point x = random_point(manifold, seed);
+    const Point x = random_start(manifold, seed);
     Vector u = random_matrix(10, 1, seed + 1000);
     Vector v = random_matrix(10, 1, seed + 2000);
     manifold.project(x, u);
@@ -188,6 +171,9 @@ struct SphereRecord {
   long to_8;
   long to_12;
   long shortened;
+  bool nesterov = false;  ///< looks ahead and restarts, effective p = 2
+  long restarts = 0;
+  long descent_to_8 = 0;  ///< of gradient descent with the step 1 / L
 };
 
 TEST(Accelerated, ReproducesTheReferenceCountsOnTheSphere) {
@@ -199,7 +185,10 @@ TEST(Accelerated, ReproducesTheReferenceCountsOnTheSphere) {
                                 {100, 1000, 1.3, 3, 219, 237, 8},
                                 {300, 100, 2.1, 1, 123, 196, 0},
                                 {300, 100, 2.1, 2, 85, 136, 0},
-                                {300, 100, 2.1, 3, 68, 109, 5}}) {
+                                {300, 100, 2.1, 3, 68, 109, 5},
+                                {100, 100, 1.3, 1, 108, 167, 0, true, 4, 650},
+                                {100, 1000, 1.3, 1, 231, 314, 0, true, 3, 5351},
+                                {300, 100, 2.1, 1, 110, 165, 0, true, 4, 647}}) {
     VectorXd w(r.n);
     w << VectorXd::LinSpaced(r.n - 1, 0, 1 - 1 / r.kappa), 1;
     const Sphere sphere(r.n);
@@ -208,85 +197,65 @@ TEST(Accelerated, ReproducesTheReferenceCountsOnTheSphere) {
     Point x(r.n);
     for (int i = 1; i <= r.n; ++i) x(i - 1) = std::sin(r.a * i) + 0.5 * std::cos(0.37 * i * i);
     x.normalize();
-    RobustDescent method({.c = r.c, .lipschitz = 2}, {.name = "robust", .rescale = true});
+    RobustDescent method({.c = r.c, .power = r.nesterov ? 2.0 : 18.0, .lipschitz = 2},
+                         {.name = "robust", .rescale = true, .restart = r.nesterov, .look_ahead = r.nesterov});
     const Counts found = count(sphere, objective, x, -1, method, 1000,
                                [&](const Point& at) { return at.cwiseAbs2().dot((1 - w.array()).matrix()); });
     EXPECT_NEAR(double(found.to_8), double(r.to_8), 2) << r.n << ' ' << r.kappa << ' ' << r.c;
     EXPECT_NEAR(double(found.to_12), double(r.to_12), 2) << r.n << ' ' << r.kappa << ' ' << r.c;
     EXPECT_EQ(method.shortened(), r.shortened) << r.n << ' ' << r.kappa << ' ' << r.c;
+    EXPECT_EQ(method.restarts(), r.restarts) << r.n << ' ' << r.kappa << ' ' << r.c;
+    if (r.nesterov) {
+      GradientDescent descent({.step = 0.5});
+      const Counts plain = count(sphere, objective, x, -1, descent, 10000,
+                                 [&](const Point& at) { return at.cwiseAbs2().dot((1 - w.array()).matrix()); });
+      EXPECT_NEAR(double(plain.to_8), double(r.descent_to_8), 2) << r.n << ' ' << r.kappa;
+    }
   }
 }
 
 /// The four problems of [V] Figure 1, random, with their minima.
-struct Instance {
-  std::unique_ptr<Manifold> manifold;
-  std::unique_ptr<Objective> objective;
-  Point start;
-  double least = 0;
-
-  double lipschitz() const {
-    if (const auto declared = objective->lipschitz()) return *declared;
-    Problem problem(*manifold, *objective);
-    State state;
-    state.x = start;
-    problem.evaluate(state);
-    return 1.1 * largest_curvature(problem, state, 8);
+struct RandomInstance : Instance {
+  RandomInstance(Instance instance, unsigned seed)
+      : Instance(std::move(instance)), start(random_start(*manifold, seed)) {
+    if (this->least) {
+      minimum = this->least(start);
+      return;
+    }
+    TrustRegion method;
+    const Result best = minimise(*manifold, *objective, start, method, {.gradient = 1e-9});
+    EXPECT_TRUE(best.converged()) << best.message;
+    minimum = best.value;
   }
+  Point start;
+  double minimum = 0;
 };
-Instance rayleigh(unsigned seed) {
-  Instance out;
-  const MatrixXd a = random_symmetric(100, seed);
-  out.manifold = std::make_unique<Sphere>(100);
-  out.objective = std::make_unique<Rayleigh>(SymmetricOperator::of(a));
-  out.start = random_point(*out.manifold, seed + 100);
-  out.least = -Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvalues()(99);
-  return out;
+RandomInstance rayleigh(unsigned seed) {
+  return {rayleigh_instance(SymmetricOperator::of(random_symmetric(100, seed))), seed + 100};
 }
-Instance brockett(unsigned seed) {
-  Instance out;
-  const MatrixXd a = random_symmetric(100, seed);
-  out.manifold = std::make_unique<Stiefel>(100, 5);
-  out.objective = std::make_unique<Brockett>(SymmetricOperator::of(a), VectorXd::LinSpaced(5, 1, 5));
-  out.start = random_point(*out.manifold, seed + 100);
-  const VectorXd w = Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvalues();
-  for (int j = 0; j < 5; ++j) out.least += (5 - j) * w(j);
-  return out;
+RandomInstance brockett(unsigned seed) {
+  return {brockett_instance(SymmetricOperator::of(random_symmetric(100, seed)), VectorXd::LinSpaced(5, 1, 5)),
+          seed + 100};
 }
-Instance unbalanced(unsigned seed) {
-  Instance out;
-  out.manifold = std::make_unique<Stiefel>(60, 5);
-  out.objective = std::make_unique<Procrustes>(random_matrix(80, 60, seed), random_matrix(80, 5, seed + 1));
-  out.start = random_point(*out.manifold, seed + 100);
-  TrustRegion method;
-  const Result best = minimise(*out.manifold, *out.objective, out.start, method, {.gradient = 1e-9});
-  EXPECT_TRUE(best.converged()) << best.message;
-  out.least = best.value;
-  return out;
+RandomInstance unbalanced(unsigned seed) {
+  return {procrustes_instance(random_matrix(80, 60, seed), random_matrix(80, 5, seed + 1)), seed + 100};
 }
-Instance balanced(unsigned seed) {
-  Instance out;
-  const MatrixXd a = random_matrix(30, 30, seed);
-  const MatrixXd b = random_matrix(30, 30, seed + 1);
-  out.manifold = std::make_unique<Stiefel>(30, 30);
-  out.objective = std::make_unique<Procrustes>(a, b);
-  out.start = random_point(*out.manifold, seed + 100);
-  out.least = (a * balanced_procrustes(a, b, component(as_matrix(out.start, 30))) - b).squaredNorm();
-  return out;
+RandomInstance balanced(unsigned seed) {
+  return {procrustes_instance(random_matrix(30, 30, seed), random_matrix(30, 30, seed + 1)), seed + 100};
 }
 
-HamiltonianDescent hamiltonian(Bregman::Kind kind, double cap) {
+HamiltonianDescent hamiltonian(Bregman::Kind kind, double cap = 1) {
   return HamiltonianDescent({.bregman = {.kind = kind}, .cap = cap}, {.name = "Algorithm 1"});
 }
 
 TEST(Accelerated, AdaptiveBeatsDirectWhichIsNoWorseThanEulerLagrange) {
   for (const auto make : {rayleigh, brockett, unbalanced, balanced}) {
-    const Instance problem = make(1);
-    const double cap = 1 / problem.lipschitz();
-    HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive, cap);
-    HamiltonianDescent direct = hamiltonian(Bregman::Kind::direct, cap);
-    EulerLagrange euler_lagrange({.cap = cap / 1e-6});
+    const RandomInstance problem = make(1);
+    HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive);
+    HamiltonianDescent direct = hamiltonian(Bregman::Kind::direct);
+    EulerLagrange euler_lagrange({});
     const auto to_8 = [&](Method& method) {
-      return count(*problem.manifold, *problem.objective, problem.start, problem.least, method, 30000).to_8;
+      return count(*problem.manifold, *problem.objective, problem.start, problem.minimum, method, 30000).to_8;
     };
     const long a = to_8(adaptive);
     const long d = to_8(direct);
@@ -299,15 +268,15 @@ TEST(Accelerated, AdaptiveBeatsDirectWhichIsNoWorseThanEulerLagrange) {
 }
 
 TEST(EulerLagrange, LosesConvergenceWithoutACap) {
-  const Instance problem = rayleigh(1);
-  EulerLagrange uncapped({});
-  EulerLagrange capped({.cap = 1e6 / problem.lipschitz()});
+  const RandomInstance problem = rayleigh(1);
+  EulerLagrange uncapped({.cap = std::numeric_limits<double>::infinity()});
+  EulerLagrange capped({});
   const auto last = [&](Method& method) {
     return minimise(*problem.manifold, *problem.objective, problem.start, method, {.iterations = 20000, .patience = 0},
                     {.history = true})
                .history.back()
                .value -
-           problem.least;
+           problem.minimum;
   };
   EXPECT_LT(last(capped), 1e-10);
   EXPECT_GT(last(uncapped), 1e-3);
@@ -316,27 +285,27 @@ TEST(EulerLagrange, LosesConvergenceWithoutACap) {
 TEST(Robust, TakesAThirdOfTheIterationsAndNeverDiverges) {
   for (const auto make : {rayleigh, brockett, unbalanced, balanced})
     for (unsigned seed = 1; seed < 60; seed += 10) {
-      const Instance problem = make(seed);
+      const RandomInstance problem = make(seed);
       RobustDescent ours = robust();
       const Counts robust_counts =
-          count(*problem.manifold, *problem.objective, problem.start, problem.least, ours, 4000);
-      HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive, 1 / problem.lipschitz());
+          count(*problem.manifold, *problem.objective, problem.start, problem.minimum, ours, 4000);
+      HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive);
       SCOPED_TRACE(problem.objective->name() + " on the " + problem.manifold->name() + ", seed " +
                    std::to_string(seed));
       ASSERT_GT(robust_counts.to_12, 0) << robust_counts.result.message;
       const long allowed = 3 * robust_counts.to_12;
       const Counts theirs =
-          count(*problem.manifold, *problem.objective, problem.start, problem.least, adaptive, allowed);
+          count(*problem.manifold, *problem.objective, problem.start, problem.minimum, adaptive, allowed);
       EXPECT_EQ(theirs.to_12, -1) << robust_counts.to_12;
     }
 }
 
 TEST(Methods, StayOnTheManifoldToRoundOff) {
-  const Instance problem = brockett(3);
+  const RandomInstance problem = brockett(3);
   RobustDescent ours = robust();
-  HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive, 1 / problem.lipschitz());
-  EulerLagrange euler_lagrange({.cap = 1e6 / problem.lipschitz()});
-  GradientDescent descent({.step = 1 / problem.lipschitz()});
+  HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive);
+  EulerLagrange euler_lagrange({});
+  GradientDescent descent({.c = 1});
   ConjugateGradient conjugate;
   TrustRegion trust;
   for (Method* method : std::vector<Method*>{&ours, &adaptive, &euler_lagrange, &descent, &conjugate, &trust}) {
@@ -353,14 +322,14 @@ TEST(Methods, StayOnTheManifoldToRoundOff) {
 
 TEST(Methods, FindTheMinimum) {
   for (const auto make : {rayleigh, brockett, unbalanced, balanced}) {
-    const Instance problem = make(7);
+    const RandomInstance problem = make(7);
     GradientDescent search({});
     ConjugateGradient conjugate;
     TrustRegion trust;
     RobustDescent ours = robust();
     for (Method* method : std::vector<Method*>{&search, &conjugate, &trust, &ours}) {
       const Result r = minimise(*problem.manifold, *problem.objective, problem.start, *method,
-                                {.value = problem.least + 1e-7, .iterations = 40000});
+                                {.value = problem.minimum + 1e-7, .iterations = 40000});
       EXPECT_TRUE(r.converged()) << method->name() << ": " << r.message;
     }
   }
@@ -383,9 +352,9 @@ TEST(Procrustes, EachComponentOfTheOrthogonalGroupHasItsMinimum) {
 }
 
 TEST(Constraints, ProjectionsFindWhatMultipliersDo) {
-  const Instance problem = rayleigh(5);
+  const RandomInstance problem = rayleigh(5);
   RobustDescent projected({}, {.name = "projected", .constraint = Constraint::projection, .rescale = true});
-  const Counts found = count(*problem.manifold, *problem.objective, problem.start, problem.least, projected, 3000);
+  const Counts found = count(*problem.manifold, *problem.objective, problem.start, problem.minimum, projected, 3000);
   EXPECT_GT(found.to_12, 0);
 }
 
@@ -398,7 +367,7 @@ TEST(Constraints, PenaltiesComeNear) {
     const Penalised penalised(sphere, objective, weight);
     RobustDescent method = robust();
     const Result r =
-        minimise(FlatSpace(20), penalised, random_point(sphere, 3), method, {.gradient = 1e-7, .iterations = 100000});
+        minimise(FlatSpace(20), penalised, random_start(sphere, 3), method, {.gradient = 1e-7, .iterations = 100000});
     ASSERT_TRUE(r.converged()) << r.message;
     // 2 A x = weight c x on the axis: c = 2 w / weight.
     EXPECT_NEAR(sphere.residual(r.x), 2 * largest / weight, 1e-6 * largest);
@@ -410,7 +379,7 @@ TEST(Outcomes, AreTyped) {
   const MatrixXd a = random_symmetric(6, 1);
   const Sphere sphere(6);
   const Rayleigh objective(SymmetricOperator::of(a));
-  const Point start = random_point(sphere, 3);
+  const Point start = random_start(sphere, 3);
   RobustDescent method = robust();
   const auto outcome = [&](const Point& x, const Stopping& stopping, const Callback& callback = nullptr) {
     return minimise(sphere, objective, x, method, stopping, {.callback = callback}).outcome;
@@ -435,7 +404,7 @@ TEST(Outcomes, AreTyped) {
 
   // Without a cap the step of Algorithm 1 leaves the sphere's shadow, and none is invented.
   HamiltonianDescent uncapped = hamiltonian(Bregman::Kind::adaptive, std::numeric_limits<double>::infinity());
-  const Instance problem = rayleigh(1);
+  const RandomInstance problem = rayleigh(1);
   const Result lost =
       minimise(*problem.manifold, *problem.objective, problem.start, uncapped, {.iterations = 100000, .patience = 0});
   EXPECT_EQ(lost.outcome, Outcome::no_step);
@@ -459,7 +428,7 @@ TEST(Outcomes, OfIllConditionedProblemsAreTyped) {
     const Sphere sphere(40);
     const Rayleigh objective(SymmetricOperator::of(MatrixXd(w.asDiagonal())));
     RobustDescent method = robust();
-    const Result r = minimise(sphere, objective, random_point(sphere, 4), method, {.iterations = 20000});
+    const Result r = minimise(sphere, objective, random_start(sphere, 4), method, {.iterations = 20000});
     EXPECT_TRUE(r.outcome == Outcome::stagnated || r.outcome == Outcome::iteration_limit) << to_string(r.outcome);
     EXPECT_TRUE(std::isfinite(r.value));
     EXPECT_LT(r.gradient, 1e-6 * scale);

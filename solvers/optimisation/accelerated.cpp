@@ -1,5 +1,7 @@
 #include <lagroid/solvers/optimisation/accelerated.hpp>
 
+#include <lagroid/solvers/optimisation/lipschitz.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -38,11 +40,11 @@ Step Accelerated::advance(Problem& problem, State& state) {
     at = &ahead_;
   }
   v_ -= shares.gradient * at->gradient;
-  if (options_.restart && v_.dot(state.gradient) > 0) {
-    ++restarts_;
-    forget();
-    displacement_.setZero();
-    v_ = -next().gradient * state.gradient;
+  bool uphill = false;
+  if (options_.restart) {
+    before_ = at->gradient;
+    manifold.project(state.x, before_);
+    uphill = before_.dot(v_) > 0;
   }
   bool found = step(problem, state.x);
   // Half of what the sphere takes is safe for the Stiefel manifold as well.
@@ -69,6 +71,11 @@ Step Accelerated::advance(Problem& problem, State& state) {
     before_ -= state.gradient;
     learn(before_.norm(), displacement_.norm());
   }
+  if (uphill) {
+    ++restarts_;
+    forget();
+    displacement_.setZero();
+  }
   return Step::taken;
 }
 
@@ -79,7 +86,8 @@ HamiltonianDescent::HamiltonianDescent(HamiltonianOptions hamiltonian, Accelerat
     throw std::invalid_argument("step, start time and cap are positive");
 }
 
-void HamiltonianDescent::start(Problem&, const State&) {
+void HamiltonianDescent::start(Problem& problem, const State& state) {
+  largest_ = std::isfinite(hamiltonian_.cap) ? hamiltonian_.cap / lipschitz_bound(problem, state) : hamiltonian_.cap;
   time_ = hamiltonian_.start_time;
   last_alpha_ = 0;
 }
@@ -89,7 +97,7 @@ Accelerated::Shares HamiltonianDescent::next() {
   time_ = next_time;
   const double momentum = last_alpha_ > 0 ? alpha / last_alpha_ : 0;
   last_alpha_ = alpha;
-  return {momentum, std::min(alpha * beta, hamiltonian_.cap)};
+  return {momentum, std::min(alpha * beta, largest_)};
 }
 
 void HamiltonianDescent::forget() {
@@ -104,14 +112,9 @@ RobustDescent::RobustDescent(RobustOptions robust, AcceleratedOptions options)
 }
 
 void RobustDescent::start(Problem& problem, const State& state) {
-  constexpr int power_steps = 8;
-  constexpr double safety = 1.1;  // power steps come from below
   steps_ = 0;
-  const auto declared = problem.objective().lipschitz();
-  known_ = robust_.lipschitz > 0 || declared.has_value();
-  lipschitz_ = robust_.lipschitz > 0 ? robust_.lipschitz
-               : declared            ? *declared
-                                     : safety * largest_curvature(problem, state, power_steps);
+  known_ = robust_.lipschitz > 0 || problem.objective().lipschitz().has_value();
+  lipschitz_ = robust_.lipschitz > 0 ? robust_.lipschitz : lipschitz_bound(problem, state);
 }
 
 Accelerated::Shares RobustDescent::next() {
@@ -123,22 +126,6 @@ void RobustDescent::learn(double change, double moved) {
   // Below this the difference of gradients is one of rounding errors.
   constexpr double telling = 1e-6;
   if (moved > telling) lipschitz_ = std::max(lipschitz_, change / moved);
-}
-
-double largest_curvature(Problem& problem, const State& state, int steps) {
-  Vector v = state.gradient;
-  Vector h(v.size());
-  double largest = 0;
-  for (int k = 0; k < steps; ++k) {
-    const double length = v.norm();
-    if (!(length > 0) || !std::isfinite(length)) break;
-    v /= length;
-    problem.hessian(state, v, h);
-    largest = std::max(largest, h.norm());
-    v = h;
-  }
-  // A function without curvature along its gradient: its size is the only scale there is.
-  return largest > 0 && std::isfinite(largest) ? largest : std::max(1e-300, state.gradient.norm());
 }
 
 }  // namespace lagroid::optimisation

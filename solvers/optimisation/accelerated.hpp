@@ -4,7 +4,6 @@
 #include <lagroid/solvers/optimisation/bregman.hpp>
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
-#include <limits>
 #include <string>
 
 namespace lagroid::optimisation {
@@ -19,7 +18,7 @@ struct AcceleratedOptions {
   std::string name = "accelerated";
   Constraint constraint = Constraint::multipliers;
   bool rescale = false;     ///< shorten a step that leads off the manifold; else there is none
-  bool restart = false;     ///< forget the momentum where it points uphill
+  bool restart = false;     ///< forget the momentum after a step that went uphill
   bool look_ahead = false;  ///< take the gradient where the momentum alone would lead (Nesterov)
 };
 
@@ -71,8 +70,8 @@ struct HamiltonianOptions {
   Bregman bregman;
   double h = 1e-3;
   double start_time = 0.1;
-  /// Upper bound of s = alpha beta, which otherwise grows past what is stable, 4 / L ([V] 5.5 bounds its coefficient).
-  double cap = std::numeric_limits<double>::infinity();
+  /// s = alpha beta <= cap / L; infinite: it grows past what is stable, 4 / L ([V] 5.5 bounds its coefficient).
+  double cap = 1;
 };
 class HamiltonianDescent final : public Accelerated {
  public:
@@ -87,6 +86,7 @@ class HamiltonianDescent final : public Accelerated {
   HamiltonianOptions hamiltonian_;
   double time_ = 0;
   double last_alpha_ = 0;
+  double largest_ = 0;
 };
 
 /// s constant from the start, mu_j = (j / (j + 1))^(power + 1): to leading order the adaptive Hamiltonian with
@@ -114,9 +114,5 @@ class RobustDescent final : public Accelerated {
   bool known_ = false;
   long steps_ = 0;
 };
-
-/// The largest |eigenvalue| of the Riemannian Hessian at the state, by `steps` power steps from the gradient: from
-/// below.
-double largest_curvature(Problem& problem, const State& state, int steps);
 
 }  // namespace lagroid::optimisation

@@ -1,5 +1,7 @@
 #include <lagroid/solvers/optimisation/euler_lagrange.hpp>
 
+#include <lagroid/solvers/optimisation/lipschitz.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -14,8 +16,10 @@ EulerLagrange::EulerLagrange(EulerLagrangeOptions options) : options_(options) {
 
 std::string EulerLagrange::name() const { return options_.version == 1 ? "Euler-Lagrange I" : "Euler-Lagrange II"; }
 
-void EulerLagrange::begin(Problem&, const State& state) {
+void EulerLagrange::begin(Problem& problem, const State& state) {
   k_ = 0;
+  largest_ = options_.cap;
+  if (std::isfinite(largest_)) largest_ /= options_.h * options_.h * lipschitz_bound(problem, state);
   velocity_.setZero(state.x.size());
   v_ = velocity_;
   to_ = state.x;
@@ -27,7 +31,7 @@ Step EulerLagrange::advance(Problem& problem, State& state) {
   const double k = double(++k_);
   const double h = options_.h;
   const double b = 1 - (options_.lambda * options_.p + 1) / k;
-  const double c = std::min(options_.c * options_.p * options_.p * std::pow(k * h, options_.p - 2), options_.cap);
+  const double c = std::min(options_.c * options_.p * options_.p * std::pow(k * h, options_.p - 2), largest_);
   velocity_ *= b;
   if (options_.version == 2) {
     v_ = h * velocity_;

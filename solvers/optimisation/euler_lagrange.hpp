@@ -3,7 +3,6 @@
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
-#include <limits>
 #include <string>
 
 namespace lagroid::optimisation {
@@ -14,8 +13,8 @@ struct EulerLagrangeOptions {
   double h = 1e-3;
   double lambda = 1;  ///< zeta / alpha, at least 1
   int version = 1;    ///< 2: the gradient is taken where the momentum alone would lead
-  /// Upper bound of C p^2 (k h)^(p - 2), which otherwise grows without end and loses convergence ([V] 5.5).
-  double cap = std::numeric_limits<double>::infinity();
+  /// h^2 C p^2 (k h)^(p - 2) <= cap / L; infinite: it grows without end and loses convergence ([V] 5.5).
+  double cap = 1;
   Retraction retraction = Retraction::qr;
 };
 
@@ -36,6 +35,7 @@ class EulerLagrange final : public Method {
  private:
   EulerLagrangeOptions options_;
   long k_ = 0;
+  double largest_ = 0;
   Vector velocity_, v_;
   Point to_;
   State ahead_;

@@ -8,9 +8,10 @@
 namespace lagroid::optimisation {
 
 struct GradientDescentOptions {
-  /// X+ = R_X(-step grad f); 0: by a line search, from twice the last step down until f has fallen by `decrease` of
-  /// what the slope promises (Armijo).
+  /// X+ = R_X(-step grad f). With neither `step` nor `c` by a line search, from twice the last step down until f has
+  /// fallen by `decrease` of what the slope promises (Armijo).
   double step = 0;
+  double c = 0;  ///< step = c / L
   double decrease = 1e-4;
   Retraction retraction = Retraction::qr;
 };
@@ -26,6 +27,7 @@ class GradientDescent final : public Method {
 
  private:
   GradientDescentOptions options_;
+  double step_ = 0;
   double last_ = 0;
   Vector v_;
   Point to_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -131,12 +132,13 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
     out.iterations = iteration;
     return now;
   };
+  const double small = std::max(stopping.gradient, stopping.relative_gradient * out.gradient);
   Iterate now = record(0);
   method.begin(problem, state);
   for (long k = 0;; ++k) {
     if (recording.callback && !recording.callback(now, state.x))
       return end(Outcome::interrupted, fmt::format("interrupted after {} iterations", k));
-    if (now.gradient <= stopping.gradient || now.value <= stopping.value) {
+    if (now.gradient <= small || now.value <= stopping.value) {
       out.x = state.x;
       out.value = now.value;
       out.gradient = now.gradient;

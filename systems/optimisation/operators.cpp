@@ -33,7 +33,7 @@ class Scaled {
   double scale_;
 };
 
-/// Below this Lanczos has nothing to iterate.
+/// The size of Lanczos' basis, below which there is nothing to iterate.
 constexpr Eigen::Index small = 24;
 
 Eigen::VectorXd dense_eigenvalues(const SymmetricOperator& a) {
@@ -83,7 +83,8 @@ std::pair<double, double> spectrum(const SymmetricOperator& a) {
 }
 
 Eigen::VectorXd smallest_eigenvalues(const SymmetricOperator& a, Eigen::Index count) {
-  if (a.size <= std::max(small, 2 * count)) return dense_eigenvalues(a).head(count);
+  constexpr Eigen::Index cheap = 500;  // a second, and two digits more than Lanczos' iteration gives
+  if (a.size <= std::max(cheap, 2 * count)) return dense_eigenvalues(a).head(count);
   constexpr double tolerance = 1e-14;
   return extreme(a, Spectra::SortRule::SmallestAlge, count, std::max(small, 4 * count), tolerance).reverse();
 }

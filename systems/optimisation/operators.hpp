@@ -21,8 +21,8 @@ struct SymmetricOperator {
   }
 };
 
-/// Bounds of the spectrum that are 1e-4 of its width outside at most, by Lanczos' iteration (Spectra). Not finite where A
-/// is not. Throws std::runtime_error where A is not symmetric.
+/// Bounds of the spectrum that are 1e-4 of its width outside at most, by Lanczos' iteration (Spectra). Not finite where
+/// A is not. Throws std::runtime_error where A is not symmetric.
 std::pair<double, double> spectrum(const SymmetricOperator& a);
 
 /// The `count` smallest eigenvalues, increasing, to round-off: the reference for `Rayleigh` (of -A) and `Brockett`.

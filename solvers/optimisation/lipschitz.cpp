@@ -1,0 +1,31 @@
+#include <lagroid/solvers/optimisation/lipschitz.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lagroid::optimisation {
+
+double largest_curvature(Problem& problem, const State& state, int steps) {
+  Vector v = state.gradient;
+  Vector h(v.size());
+  double largest = 0;
+  for (int k = 0; k < steps; ++k) {
+    const double length = v.norm();
+    if (!(length > 0) || !std::isfinite(length)) break;
+    v /= length;
+    problem.hessian(state, v, h);
+    largest = std::max(largest, h.norm());
+    v = h;
+  }
+  // A function without curvature along its gradient: its size is the only scale there is.
+  return largest > 0 && std::isfinite(largest) ? largest : std::max(1e-300, state.gradient.norm());
+}
+
+double lipschitz_bound(Problem& problem, const State& state) {
+  constexpr int power_steps = 8;
+  constexpr double safety = 1.1;  // power steps come from below
+  if (const auto declared = problem.objective().lipschitz()) return *declared;
+  return safety * largest_curvature(problem, state, power_steps);
+}
+
+}  // namespace lagroid::optimisation

@@ -1,0 +1,16 @@
+#pragma once
+/// How large a step f bears.
+
+#include <lagroid/solvers/optimisation/minimise.hpp>
+
+namespace lagroid::optimisation {
+
+/// The largest |eigenvalue| of the Riemannian Hessian at the state, by `steps` power steps from the gradient: from
+/// below.
+double largest_curvature(Problem& problem, const State& state, int steps);
+
+/// L, a Lipschitz constant of the Riemannian gradient: the one that the objective declares, else an estimate at the
+/// state by `largest_curvature`, which costs a few Hessians times vectors.
+double lipschitz_bound(Problem& problem, const State& state);
+
+}  // namespace lagroid::optimisation

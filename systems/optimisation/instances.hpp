@@ -1,0 +1,39 @@
+#pragma once
+/// Problems with their manifold and, where linear algebra knows it, their minimum.
+
+#include <lagroid/solvers/optimisation/manifold.hpp>
+#include <lagroid/solvers/optimisation/objective.hpp>
+#include <lagroid/systems/optimisation/operators.hpp>
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace lagroid::optimisation {
+
+/// Points are `rows` x `columns` matrices, by columns.
+struct Instance {
+  std::unique_ptr<Manifold> manifold;
+  std::unique_ptr<Objective> objective;
+  Eigen::Index rows = 0;
+  Eigen::Index columns = 1;
+  /// The least value that can be reached from a start, without optimisation; empty where nobody knows it.
+  std::function<double(const Point& start)> least;
+  std::string least_by;  ///< how
+};
+
+/// The largest eigenvalue of A ([V] 5.3.1).
+Instance rayleigh_instance(const SymmetricOperator& a);
+/// Brockett's function ([V] (5.7)) for the weights mu. Throws std::invalid_argument as `Brockett` does.
+Instance brockett_instance(const SymmetricOperator& a, const Eigen::VectorXd& weights);
+/// |A X - B|^2 ([V] (5.9)), balanced where B has as many columns as A. Throws std::invalid_argument as `Procrustes`
+/// does.
+Instance procrustes_instance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// The point of the manifold nearest to a random matrix.
+Point random_start(const Manifold& manifold, unsigned seed);
+
+}  // namespace lagroid::optimisation
