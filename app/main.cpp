@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "listing.hpp"
+#include "optimise/optimise.hpp"
 #include "output.hpp"
 #include "registry.hpp"
 #include "report.hpp"
@@ -131,6 +132,10 @@ int main(int argc, char** argv) {
   CLI::App* study_command = app.add_subcommand(
       "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
   add_study_options(*study_command, study_options);
+  OptimiseOptions optimise_options;
+  CLI::App* optimise_command =
+      app.add_subcommand("optimize", "minimise a function on a manifold (see docs/optimisation.md)");
+  add_optimise_options(*optimise_command, optimise_options);
   ReproduceOptions papers;
   CLI::App* reproduce_command = app.add_subcommand("reproduce", "carry out the experiments of a paper, and more");
   add_reproductions(*reproduce_command, papers, options.json);
@@ -149,8 +154,12 @@ int main(int argc, char** argv) {
       static_cast<SceneOptions&>(options) = study_options;
       return study(study_options);
     }
+    if (optimise_command->parsed()) {
+      static_cast<SceneOptions&>(options) = optimise_options;
+      return optimise(optimise_options);
+    }
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
     return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  "name a command: run, resume, view, plot, study, check, list or reproduce; see lagroid --help");
+                  "name a command: run, resume, view, plot, study, optimize, check, list or reproduce; see lagroid --help");
   });
 }

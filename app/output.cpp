@@ -1,8 +1,8 @@
 #include "output.hpp"
 
+#include "hdf5_file.hpp"
 #include "report.hpp"
 
-#include <H5Cpp.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -60,56 +60,21 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
   if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
 }
 
-void attribute(const H5::H5Object& object, const std::string& name, const std::string& value) {
-  const H5::StrType type(H5::PredType::C_S1, std::max<std::size_t>(1, value.size()));
-  object.createAttribute(name, type, H5::DataSpace(H5S_SCALAR)).write(type, value.c_str());
-}
-
-/// The file is made in memory: HDF5 cannot survive a disk that is full (closing the file crashes, at exit at the
-/// latest).
-void write_hdf5(const RunResult& result, const fs::path& file) {
-  H5::Exception::dontPrint();
-  std::string image;
-  try {
-    H5::FileAccPropList in_memory;
-    in_memory.setCore(/*increment=*/1 << 20, /*backing_store=*/false);
-    H5::H5File out(file.string(), H5F_ACC_TRUNC, H5::FileCreatPropList::DEFAULT, in_memory);
-    attribute(out, "system", result.system);
-    attribute(out, "status", result.status);
-    attribute(out, "generator", "lagroid");
-    for (const auto& [name, value] : result.trajectory.conventions) attribute(out, "convention: " + name, value);
-    const auto dataset = [&](const std::string& name, const std::vector<double>& values, std::size_t width) {
-      std::string label = name;
-      for (char& c : label)
-        if (c == '/') c = '_';
-      const std::size_t rows = width > 0 ? values.size() / width : 0;
-      const hsize_t dimensions[2] = {rows, width};
-      const H5::DataSpace space(width == 1 ? 1 : 2, dimensions);
-      // Without the time of day, so that equal runs make equal files.
-      H5::DSetCreatPropList timeless;
-      H5Pset_obj_track_times(timeless.getId(), false);
-      H5::DataSet set = out.createDataSet(label, H5::PredType::NATIVE_DOUBLE, space, timeless);
-      if (!values.empty()) set.write(values.data(), H5::PredType::NATIVE_DOUBLE);
-      return set;
-    };
-    attribute(dataset("time", result.trajectory.time, 1), "unit", "s");
+void write_trajectory(const RunResult& result, const fs::path& file) {
+  write_hdf5(file, [&](const H5::H5File& out) {
+    set_attribute(out, "system", result.system);
+    set_attribute(out, "status", result.status);
+    set_attribute(out, "generator", "lagroid");
+    for (const auto& [name, value] : result.trajectory.conventions) set_attribute(out, "convention: " + name, value);
+    set_attribute(add_dataset(out, "time", result.trajectory.time, 1), "unit", "s");
     for (const auto& s : result.trajectory.series) {
-      const H5::DataSet set = dataset(s.name, s.values, s.width());
-      attribute(set, "unit", s.unit);
-      attribute(set, "meaning", s.meaning);
-      attribute(set, "components", fmt::format("{}", fmt::join(s.components, ", ")));
-      attribute(set, "rows", s.on_arrows ? "one per recorded arrow" : "one per recorded node");
+      const H5::DataSet set = add_dataset(out, s.name, s.values, s.width());
+      set_attribute(set, "unit", s.unit);
+      set_attribute(set, "meaning", s.meaning);
+      set_attribute(set, "components", fmt::format("{}", fmt::join(s.components, ", ")));
+      set_attribute(set, "rows", s.on_arrows ? "one per recorded arrow" : "one per recorded node");
     }
-    out.flush(H5F_SCOPE_GLOBAL);
-    const auto size = H5Fget_file_image(out.getId(), nullptr, 0);
-    if (size < 0) throw H5::FileIException("H5Fget_file_image", "no image of the file");
-    image.resize(std::size_t(size));
-    if (H5Fget_file_image(out.getId(), image.data(), image.size()) != size)
-      throw H5::FileIException("H5Fget_file_image", "no image of the file");
-  } catch (const H5::Exception& error) {
-    throw OutputError(fmt::format("{}: HDF5: {}", file.string(), error.getDetailMsg()));
-  }
-  write_text(image, file);
+  });
 }
 
 /// A text as a gnuplot string: single quotes, no enhanced-text surprises.
@@ -167,7 +132,7 @@ void require_writable(const fs::path& folder) { require_writable(folder, output_
 std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
   return write_whole(folder, output_files, [&](const fs::path& staging) {
     std::vector<std::string> names{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt"};
-    write_hdf5(result, staging / "trajectory.h5");
+    write_trajectory(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
     if (result.trajectory.time.size() > 1) {
       std::size_t columns = 0;

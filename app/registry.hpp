@@ -1,6 +1,7 @@
 #pragma once
 /// The systems a scene can name.
 
+#include "parameter.hpp"
 #include "systems/readers.hpp"
 
 #include <optional>
@@ -10,14 +11,6 @@
 #include <vector>
 
 namespace lagroid::app {
-
-/// A key of [parameters].
-struct Parameter {
-  std::string_view name;
-  std::string_view unit;
-  std::string_view fallback;  ///< empty where the key must be given
-  std::string_view meaning;
-};
 
 template <DiscreteSystem Sys> struct Entry {
   std::string_view name;

@@ -2,6 +2,7 @@
 
 #include "output_folder.hpp"
 #include "progress.hpp"
+#include "reproductions/accelerated_report.hpp"
 #include "reproductions/newton_report.hpp"
 #include "reproductions/time_steps.hpp"
 #include "shell.hpp"
@@ -10,7 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -18,6 +21,7 @@ namespace {
 
 constexpr const char* newton_name = "newton-on-lie-groups";
 constexpr const char* time_name = "time-steps";
+constexpr const char* accelerated_name = "accelerated-optimization";
 
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {
@@ -26,6 +30,21 @@ nlohmann::ordered_json solved(const NewtonFindings& findings) {
     for (const auto method : newton_methods)
       out[fmt::format("example {}", number_of(example))][name_of(method)] = solved_share(findings, example, method);
   return out;
+}
+
+/// Prints what was found, with the files that were written; returns the exit code.
+int conclude(nlohmann::ordered_json result, std::string text, const std::vector<std::filesystem::path>& files,
+             const std::string& note, bool json) {
+  for (const auto& file : files) {
+    result["files"].push_back(file.string());
+    text += fmt::format("  wrote {}\n", file.string());
+  }
+  if (!note.empty()) {
+    result["notes"].push_back("no pictures: " + note);
+    text += fmt::format("  note: no pictures: {}\n", note);
+  }
+  print(json ? result.dump(2) + "\n" : text);
+  return 0;
 }
 
 int reproduce_newton(const ReproduceOptions& options, bool json) {
@@ -59,12 +78,6 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
   result["steps"] = findings.cells.size() / newton_methods.size();
   result["seconds"] = seconds;
   result["solved"] = solved(findings);
-  for (const auto& file : files) result["files"].push_back(file.string());
-  if (!note.empty()) result["notes"].push_back("no pictures: " + note);
-  if (json) {
-    print(result.dump(2) + "\n");
-    return 0;
-  }
   std::string text = fmt::format("{}: {} steps by {} methods in {:.3g} s\n", newton_name, result["steps"].get<long>(),
                                  newton_methods.size(), seconds);
   for (const auto& [example, shares] : result["solved"].items()) {
@@ -72,10 +85,7 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
     for (const auto& [method, share] : shares.items())
       text += fmt::format("    {:<20} {:6.2f} %\n", method, 100 * share.get<double>());
   }
-  if (!note.empty()) text += fmt::format("  note: no pictures: {}\n", note);
-  for (const auto& file : files) text += fmt::format("  wrote {}\n", file.string());
-  print(text);
-  return 0;
+  return conclude(std::move(result), std::move(text), files, note, json);
 }
 
 int reproduce_time_steps(const ReproduceOptions& options, bool json) {
@@ -102,12 +112,6 @@ int reproduce_time_steps(const ReproduceOptions& options, bool json) {
   for (const auto& run : findings.runs)
     if (run.method != "fixed")
       result["gain_at_equal_cost"][run.problem][run.method] = gain_at_equal_cost(findings, run.problem, run.method);
-  for (const auto& file : files) result["files"].push_back(file.string());
-  if (!note.empty()) result["notes"].push_back("no pictures: " + note);
-  if (json) {
-    print(result.dump(2) + "\n");
-    return 0;
-  }
   std::string text =
       fmt::format("{}: {} runs in {:.3g} s\n", time_name, findings.runs.size(), result["seconds"].get<double>());
   for (const auto& [problem, gains] : result["gain_at_equal_cost"].items()) {
@@ -115,10 +119,47 @@ int reproduce_time_steps(const ReproduceOptions& options, bool json) {
     for (const auto& [method, gain] : gains.items())
       text += fmt::format("    {:<20} {:8.3g}\n", method, gain.get<double>());
   }
-  if (!note.empty()) text += fmt::format("  note: no pictures: {}\n", note);
-  for (const auto& file : files) text += fmt::format("  wrote {}\n", file.string());
-  print(text);
-  return 0;
+  return conclude(std::move(result), std::move(text), files, note, json);
+}
+
+int reproduce_accelerated(const ReproduceOptions& options, bool json) {
+  try {
+    require_writable(options.accelerated_out, accelerated_report_files);
+  } catch (const OutputError& error) {
+    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
+  }
+  const AcceleratedStudy& study = options.accelerated;
+  const auto start = std::chrono::steady_clock::now();
+  AcceleratedFindings findings;
+  {
+    Progress progress(accelerated_name, 100, !json);
+    findings = run_accelerated_study(study, [&](long done, long all) { progress.update(100 * done / all); });
+  }
+  std::string note;
+  const auto files = write_accelerated_report(
+      findings,
+      fmt::format("./lagroid reproduce {} --instances {} --first-seed {} --iterations {} --out {}", accelerated_name,
+                  study.instances, study.first_seed, study.iterations, quoted(options.accelerated_out)),
+      options.accelerated_out, note);
+  nlohmann::ordered_json result;
+  result["status"] = "done";
+  result["runs"] = findings.runs.size();
+  result["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::string text =
+      fmt::format("{}: {} runs in {:.3g} s\n", accelerated_name, findings.runs.size(), result["seconds"].get<double>());
+  for (const auto& problem : accelerated_problems()) {
+    text += fmt::format("  {}, iterations to 1e-8 and to 1e-12 of the minimum\n", problem);
+    for (const auto& method : accelerated_methods()) {
+      const double to_8 =
+          median_of(findings, problem, method.name, [](const auto& r) { return double(r.to_8.iterations); });
+      const double to_12 =
+          median_of(findings, problem, method.name, [](const auto& r) { return double(r.to_12.iterations); });
+      result["iterations"][problem][method.name] = {{"1e-8", to_8}, {"1e-12", to_12}};
+      const auto shown = [](double count) { return count < 0 ? std::string("-") : fmt::format("{:.0f}", count); };
+      text += fmt::format("    {:<32} {:>8} {:>8}\n", method.name, shown(to_8), shown(to_12));
+    }
+  }
+  return conclude(std::move(result), std::move(text), files, note, json);
 }
 
 }  // namespace
@@ -151,10 +192,27 @@ void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json)
       ->capture_default_str();
   newton->add_flag("--json", json, "print one JSON object and nothing else on standard output");
   newton->callback([&options] { options.name = newton_name; });
+  CLI::App* accelerated = command.add_subcommand(
+      accelerated_name, "Duruisseaux and Leok, Figure 1: accelerated optimisation on manifolds, and the competition");
+  accelerated->add_option("--out", options.accelerated_out, "the folder for report.md, CSV and figures")
+      ->capture_default_str();
+  accelerated->add_option("--instances", options.accelerated.instances, "how many random instances of each problem")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  accelerated->add_option("--first-seed", options.accelerated.first_seed, "the first of their seeds, 10 apart")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  accelerated->add_option("--iterations", options.accelerated.iterations, "at most, of every run")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  accelerated->add_flag("--json", json, "print one JSON object and nothing else on standard output");
+  accelerated->callback([&options] { options.name = accelerated_name; });
 }
 
 int reproduce(const ReproduceOptions& options, bool json) {
-  return options.name == time_name ? reproduce_time_steps(options, json) : reproduce_newton(options, json);
+  if (options.name == time_name) return reproduce_time_steps(options, json);
+  if (options.name == accelerated_name) return reproduce_accelerated(options, json);
+  return reproduce_newton(options, json);
 }
 
 }  // namespace lagroid::app

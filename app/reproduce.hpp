@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 
+#include "reproductions/accelerated_optimisation.hpp"
 #include "reproductions/newton_on_lie_groups.hpp"
 
 namespace lagroid::app {
@@ -13,6 +14,8 @@ struct ReproduceOptions {
   std::string newton_out = "out/newton-on-lie-groups";
   std::string time_out = "out/time-steps";
   int refinements = 7;
+  AcceleratedStudy accelerated;
+  std::string accelerated_out = "out/accelerated-optimization";
 };
 
 /// The subcommands of `reproduce`.

@@ -232,6 +232,11 @@ bool Section::is_number(std::string_view key) const {
   return node != nullptr && node->is_number();
 }
 
+bool Section::is_table(std::string_view key) const {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_table();
+}
+
 std::vector<double> Section::numbers_at(std::string_view path) const {
   std::vector<double> out;
   if (path.find('[') != std::string_view::npos) return out;
@@ -293,6 +298,14 @@ std::vector<double> Section::numbers(std::string_view key, std::size_t size, std
   std::vector<double> out;
   for (const auto& entry : *array) out.push_back(checked(key, entry, any_number));
   return out;
+}
+
+std::vector<double> Section::list(std::string_view key, std::string_view meaning) const {
+  const toml::node& node = require(key, meaning);
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->empty())
+    fail(key, fmt::format("expected an array of numbers ({}), got {}", meaning, array ? "none" : type_name(node)));
+  return numbers(key, array->size(), meaning);
 }
 
 std::array<double, 4> Section::attitude(std::string_view key) const {

@@ -54,11 +54,14 @@ class Section {
   /// Any string; `what` says which in messages.
   std::string text(std::string_view key, std::string_view what) const;
   bool is_number(std::string_view key) const;
+  bool is_table(std::string_view key) const;
   /// An array of strings; empty where the key is missing.
   std::vector<std::string> texts_or_none(std::string_view key, std::string_view what) const;
   bool flag_or(std::string_view key, bool fallback) const;
   /// An array of exactly `size` finite numbers; `meaning` names its entries in messages.
   std::vector<double> numbers(std::string_view key, std::size_t size, std::string_view meaning) const;
+  /// An array of one or more finite numbers.
+  std::vector<double> list(std::string_view key, std::string_view meaning) const;
   /// A rotation as a unit quaternion (w, x, y, z) or a rotation vector: four or three numbers. Returns a unit
   /// quaternion.
   std::array<double, 4> attitude(std::string_view key) const;

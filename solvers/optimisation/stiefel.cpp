@@ -197,8 +197,10 @@ bool Stiefel::retract(Retraction retraction, const Point& x, const Vector& v, Po
 
 /// T of `orthographic` into normal_, from W in skew_ and B^T B + W^T W in gram_.
 bool Stiefel::multipliers() const {
+  // An iteration of Newton's method costs about as much as a hundred of the fixed point.
+  constexpr int most_fixed = 60;
+  constexpr double slow = 0.5;
   constexpr int most = 12;
-  constexpr double slow = 0.2;
   constexpr double round_off = 1e-16;
   normal_ = -0.5 * gram_;
   const auto residual = [&] {
@@ -207,7 +209,7 @@ bool Stiefel::multipliers() const {
     square_ += 2 * normal_ + product_ + product_.transpose() + gram_;
   };
   double last = INFINITY;
-  for (int k = 0; k < most; ++k) {
+  for (int k = 0; k < most_fixed; ++k) {
     residual();
     const double size = square_.norm();
     if (!std::isfinite(size)) return false;

@@ -12,7 +12,7 @@ namespace lagroid::optimisation {
 
 namespace {
 
-constexpr const char* by_lanczos = "eigenvalues by Lanczos (Spectra), of small matrices by tridiagonalisation (Eigen)";
+constexpr const char* by_lanczos = "eigenvalues (Eigen; of large matrices Spectra)";
 
 }  // namespace
 
@@ -55,7 +55,7 @@ Instance procrustes_instance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b)
       const Eigen::Map<const Eigen::MatrixXd> x(start.data(), a.cols(), b.cols());
       return (a * balanced_procrustes(a, b, component(x)) - b).squaredNorm();
     };
-    out.least_by = "singular value decomposition (Eigen), in the start's component of O(n)";
+    out.least_by = "singular values (Eigen), in the component of the start";
   }
   return out;
 }

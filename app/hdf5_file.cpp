@@ -1,0 +1,49 @@
+#include "hdf5_file.hpp"
+
+#include "output_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lagroid::app {
+
+void set_attribute(const H5::H5Object& object, const std::string& name, const std::string& value) {
+  const H5::StrType type(H5::PredType::C_S1, std::max<std::size_t>(1, value.size()));
+  object.createAttribute(name, type, H5::DataSpace(H5S_SCALAR)).write(type, value.c_str());
+}
+
+H5::DataSet add_dataset(const H5::H5File& file, const std::string& name, const std::vector<double>& values,
+                        std::size_t width) {
+  std::string label = name;
+  std::replace(label.begin(), label.end(), '/', '_');
+  const hsize_t dimensions[2] = {width > 0 ? values.size() / width : 0, width};
+  const H5::DataSpace space(width == 1 ? 1 : 2, dimensions);
+  H5::DSetCreatPropList timeless;
+  H5Pset_obj_track_times(timeless.getId(), false);
+  H5::DataSet set = file.createDataSet(label, H5::PredType::NATIVE_DOUBLE, space, timeless);
+  if (!values.empty()) set.write(values.data(), H5::PredType::NATIVE_DOUBLE);
+  return set;
+}
+
+void write_hdf5(const std::filesystem::path& file, const std::function<void(const H5::H5File&)>& fill) {
+  H5::Exception::dontPrint();
+  std::string image;
+  try {
+    H5::FileAccPropList in_memory;
+    in_memory.setCore(/*increment=*/1 << 20, /*backing_store=*/false);
+    H5::H5File out(file.string(), H5F_ACC_TRUNC, H5::FileCreatPropList::DEFAULT, in_memory);
+    fill(out);
+    out.flush(H5F_SCOPE_GLOBAL);
+    const auto size = H5Fget_file_image(out.getId(), nullptr, 0);
+    if (size < 0) throw H5::FileIException("H5Fget_file_image", "no image of the file");
+    image.resize(std::size_t(size));
+    if (H5Fget_file_image(out.getId(), image.data(), image.size()) != size)
+      throw H5::FileIException("H5Fget_file_image", "no image of the file");
+  } catch (const H5::Exception& error) {
+    throw OutputError(fmt::format("{}: HDF5: {}", file.string(), error.getDetailMsg()));
+  }
+  write_text(image, file);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,28 @@
+#pragma once
+/// The methods that a scene can ask to minimise by.
+
+#include "../parameter.hpp"
+#include "../scene_reader.hpp"
+
+#include <lagroid/solvers/optimisation/minimise.hpp>
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::app {
+
+struct OptimiserEntry {
+  std::string_view name;
+  std::string_view summary;
+  std::vector<Parameter> keys;
+  std::unique_ptr<optimisation::Method> (*read)(const Section& section);
+};
+
+std::span<const OptimiserEntry> optimisers();
+
+/// The one that method.name names, with its keys.
+std::unique_ptr<optimisation::Method> read_optimiser(const Section& method);
+
+}  // namespace lagroid::app

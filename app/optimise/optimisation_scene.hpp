@@ -1,0 +1,40 @@
+#pragma once
+/// What a scene of `lagroid optimize` says.
+
+#include "../scene_reader.hpp"
+
+#include <lagroid/solvers/optimisation/flat.hpp>
+#include <lagroid/solvers/optimisation/minimise.hpp>
+#include <lagroid/solvers/optimisation/penalised.hpp>
+#include <lagroid/systems/optimisation/instances.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace lagroid::app {
+
+struct OptimisationScene {
+  std::string problem;
+  optimisation::Instance instance;
+  optimisation::Point start;
+  std::unique_ptr<optimisation::Method> method;
+  optimisation::Stopping stopping;
+  std::optional<double> least;  ///< where linear algebra was asked for it
+  /// With constraint = "penalty": flat space, and the function with its penalty.
+  std::unique_ptr<optimisation::FlatSpace> flat;
+  std::unique_ptr<optimisation::Penalised> penalised;
+
+  const optimisation::Manifold& manifold() const {
+    return flat ? static_cast<const optimisation::Manifold&>(*flat) : *instance.manifold;
+  }
+  const optimisation::Objective& objective() const {
+    return penalised ? static_cast<const optimisation::Objective&>(*penalised) : *instance.objective;
+  }
+};
+
+/// Reads all of it; files are seen from the folder of `file`. Throws SceneError.
+OptimisationScene read_optimisation(const Section& scene, const std::filesystem::path& file);
+
+}  // namespace lagroid::app

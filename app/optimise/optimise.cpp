@@ -1,0 +1,89 @@
+#include "optimise.hpp"
+
+#include "../interrupt.hpp"
+#include "../output_folder.hpp"
+#include "../progress.hpp"
+#include "methods.hpp"
+#include "optimisation_files.hpp"
+#include "problems.hpp"
+
+#include <fmt/format.h>
+
+namespace lagroid::app {
+
+namespace {
+
+std::string listing() {
+  std::string out;
+  const auto list = [&](const auto& entries, const char* title) {
+    out += fmt::format("{}\n", title);
+    for (const auto& entry : entries) {
+      out += fmt::format("  {:<20} {}\n", entry.name, entry.summary);
+      for (const auto& key : entry.keys)
+        out += fmt::format("    {:<18} {}{}{}\n", key.name, key.meaning,
+                           key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
+                           key.fallback.empty() ? "" : fmt::format(", default {}", key.fallback));
+    }
+  };
+  list(problems(), "problems");
+  list(optimisers(), "methods");
+  return out;
+}
+
+}  // namespace
+
+void add_optimise_options(CLI::App& command, OptimiseOptions& options) {
+  command.add_option("scene", options.scene, "the scene, a TOML file");
+  command.add_option("--set", options.overrides, "override a key: --set method.name=adaptive (repeatable)")
+      ->allow_extra_args(false);
+  command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
+  command.add_option("--out", options.out, "write history, point, plot and summary files into this folder");
+  command.add_flag("--list", options.list, "list problems and methods with their keys");
+}
+
+int optimise(const OptimiseOptions& options) {
+  if (options.list) {
+    print(listing());
+    return 0;
+  }
+  if (options.scene.empty())
+    return refuse(options.json, exit_bad_input, "invalid_command_line", "name a scene; see lagroid optimize --help");
+  OptimisationScene scene = read_optimisation(read_scene(options.scene, options.overrides), options.scene);
+  try {
+    if (options.out) require_writable_optimisation(*options.out);
+  } catch (const OutputError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  }
+  const InterruptGuard guard;
+  optimisation::Result result;
+  {
+    Progress progress(scene.problem, scene.stopping.iterations, !options.json);
+    const auto watch = [&](const optimisation::Iterate& now, const optimisation::Point&) {
+      progress.update(now.iteration);
+      return !guard.interrupted();
+    };
+    result = optimisation::minimise(scene.manifold(), scene.objective(), scene.start, *scene.method, scene.stopping,
+                                    {.history = options.out.has_value(), .callback = watch});
+  }
+  std::string text = optimisation_text(scene, result);
+  auto json = optimisation_json(scene, result);
+  if (options.out) {
+    std::string note;
+    for (const auto& file : write_optimisation(scene, result, *options.out, note)) {
+      text += fmt::format("  wrote {}\n", file.string());
+      json["files"].push_back(file.string());
+    }
+    if (!note.empty()) {
+      text += fmt::format("  note: no pictures: {}\n", note);
+      json["notes"].push_back("no pictures: " + note);
+    }
+  } else {
+    text += "  (no files written; --out DIR writes history, point, plot and summary)\n";
+  }
+  print(options.json ? json.dump(2) + "\n" : text);
+  if (result.converged()) return 0;
+  fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
+  return result.outcome == optimisation::Outcome::interrupted ? exit_interrupted : exit_failed;
+}
+
+}  // namespace lagroid::app
