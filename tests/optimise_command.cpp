@@ -1,0 +1,186 @@
+// `lagroid optimize`: problems, data, methods, endings, files.
+#include "command_line.hpp"
+
+#include <H5Cpp.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+class Optimise : public CommandLine {
+ protected:
+  static std::string scene(const std::string& name) { return "optimize " + example("optimisation/" + name); }
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  nlohmann::json summary(const std::string& arguments) const {
+    const Outcome r = run(arguments + " --json");
+    EXPECT_EQ(r.code, 0) << arguments << r.err << r.out;
+    return nlohmann::json::parse(r.out);
+  }
+};
+
+TEST_F(Optimise, EveryExampleFindsItsMinimum) {
+  for (const std::string name : {"membrane", "markers", "rayleigh"}) {
+    const auto found = summary(scene(name));
+    EXPECT_EQ(found.at("status"), "converged");
+    EXPECT_LT(found.at("gap").get<double>(), 2e-10) << name;
+    EXPECT_LT(found.at("constraints").get<double>(), 1e-14) << name;
+  }
+}
+
+TEST_F(Optimise, EveryMethodFindsTheMinimum) {
+  const std::vector<std::string> methods{"robust",
+                                         "robust --set method.look_ahead=true --set method.restart=true",
+                                         "robust --set method.constraint=projection",
+                                         "adaptive",
+                                         "direct",
+                                         "euler-lagrange",
+                                         "euler-lagrange --set method.version=2",
+                                         "gradient-descent --set method.c=1",
+                                         "gradient-descent --set method.retraction=cayley",
+                                         "conjugate-gradients --set method.retraction=polar",
+                                         "trust-region"};
+  for (const std::string& method : methods) {
+    const auto found =
+        summary(scene("rayleigh") + " --set stop.gap=1e-7 --set stop.iterations=20000 --set method.name=" + method);
+    EXPECT_LT(found.at("gap").get<double>(), 1e-7) << method;
+  }
+}
+
+TEST_F(Optimise, APenaltyComesNear) {
+  const auto found = summary(scene("rayleigh") +
+                             " --set method.name=robust --set method.constraint=penalty --set method.penalty=1e6"
+                             " --set stop.gap=1e9 --set stop.relative_gradient=1e-9 --set stop.iterations=100000");
+  EXPECT_LT(found.at("constraints").get<double>(), 1e-3);
+  EXPECT_GT(found.at("constraints").get<double>(), 1e-7);
+}
+
+TEST_F(Optimise, ReadsEveryKindOfFile) {
+  const std::string problem = file("scene.toml", "problem = \"rayleigh\"\nreference = true\n[data]\nA = \"\"\n");
+  file("a.csv", "# three by three\n2, -1, 0\n-1, 2, -1\n0, -1, 2\n");
+  file("sparse.mtx", "%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n1 1 2\n2 2 2\n3 3 2\n2 1 -1\n3 2 -1\n");
+  file("dense.mtx", "%%MatrixMarket matrix array real general\n3 3\n2\n-1\n0\n-1\n2\n-1\n0\n-1\n2\n");
+  {
+    const double a[9] = {2, -1, 0, -1, 2, -1, 0, -1, 2};
+    const hsize_t size[2] = {3, 3};
+    const H5::H5File out((folder_ / "a.h5").string(), H5F_ACC_TRUNC);
+    out.createDataSet("A", H5::PredType::NATIVE_DOUBLE, H5::DataSpace(2, size)).write(a, H5::PredType::NATIVE_DOUBLE);
+  }
+  for (const std::string data : {"a.csv", "sparse.mtx", "dense.mtx", "a.h5:/A"})
+    EXPECT_NEAR(summary("optimize " + problem + " --set data.A=\\\"" + data + "\\\"").at("value").get<double>(),
+                -2 - std::sqrt(2.0), 1e-13)
+        << data;
+}
+
+TEST_F(Optimise, WritesFilesAndGoesOnFromThem) {
+  const std::string out = (folder_ / "out").string();
+  const Outcome r =
+      run(scene("membrane") + " --set stop.iterations=100 --set stop.relative_gradient=1e-12 --out " + out);
+  EXPECT_EQ(r.code, 3);
+  EXPECT_NE(r.err.find("100 iterations did not suffice"), std::string::npos) << r.err;
+  for (const char* name :
+       {"history.csv", "result.h5", "summary.json", "summary.txt", "plot.gp", "plot.svg", "plot.png"})
+    EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
+  std::ifstream history(out + "/history.csv");
+  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(history), {}, '\n'), 102);
+  const auto before = nlohmann::json::parse(std::ifstream(out + "/summary.json"));
+  const auto after = summary(scene("membrane") + " --set start.file=\\\"" + out + "/result.h5:/x\\\"");
+  EXPECT_LT(after.at("gap").get<double>(), 1e-12);
+  EXPECT_GT(before.at("gap").get<double>(), 1e-6);
+}
+
+TEST_F(Optimise, AnInterruptLeavesTheBestPoint) {
+  const std::string out = (folder_ / "out").string();
+  const Outcome r = run(
+      scene("rayleigh") +
+          " --set stop.gap=1e-300 --set stop.patience=0 --set stop.iterations=1000000000 --set data.A.rows=400 --out " +
+          out,
+      "timeout -s INT 2 ");
+  EXPECT_TRUE(r.code == 4 || r.code == 124) << r.code << r.err;
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(out + "/summary.json")).at("status"), "interrupted");
+}
+
+TEST_F(Optimise, BadInputIsOneLineThatNamesTheRemedy) {
+  file("nan.csv", "1, 0\n0, nan\n");
+  file("word.csv", "1, 0\n0, one\n");
+  file("ragged.csv", "1, 0\n0\n");
+  file("skew.csv", "1, 1\n-1, 1\n");
+  file("wide.csv", "1, 1, 2\n-1, 1, 2\n");
+  file("no.mtx", "1 2 3\n");
+  file("pattern.mtx", "%%MatrixMarket matrix coordinate pattern symmetric\n2 2 1\n2 1\n");
+  file("a.bin", "");
+  file("b.h5", "no HDF5");
+  const std::string path = folder_.string() + "/";
+  const auto data = [&](const char* name) { return scene("rayleigh") + " --set data.A=\\\"" + path + name + "\\\""; };
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {data("missing.csv"), "no such file"},
+      {data("nan.csv"), "entry (2, 2) is nan"},
+      {data("word.csv"), "line 2, column 2: \"one\" is no number"},
+      {data("ragged.csv"), "line 2 has 1 numbers"},
+      {data("skew.csv"), "(A + A^T) / 2"},
+      {data("wide.csv"), "2 x 3; give a symmetric one"},
+      {data("no.mtx"), "MatrixMarket"},
+      {data("pattern.mtx"), "give a real matrix"},
+      {data("a.bin"), ".csv, .mtx (MatrixMarket) and .h5"},
+      {data("b.h5:/A"), "h5ls"},
+      {data("b.h5"), "say which data set"},
+      {scene("rayleigh") + " --set data.A.rows=1", "one eigenvalue"},
+      {scene("membrane") + " --set parameters.weights=[3,2,1]", "0 <= mu_1"},
+      {scene("membrane") + " --set parameters.weights=[]", "weights"},
+      {scene("membrane") + " --set start.file=\\\"data/markers.csv\\\"", "12 x 3 numbers, points of the Stiefel"},
+      {scene("membrane") + " --set start.component=1", "only O(n)"},
+      {scene("markers") + " --set data.B=\\\"data/membrane.mtx\\\"", "as many rows"},
+      {scene("rayleigh") + " --set method.name=newton", "robust"},
+      {scene("rayleigh") + " --set method.name=robust --set method.c=4", "between 0 and 4"},
+      {scene("rayleigh") + " --set method.stpe=1", "unknown key"},
+      {scene("rayleigh") + " --set method.penalty=3", "constraint"},
+      {scene("rayleigh") + " --set problem=max-cut", "rayleigh"},
+      {scene("rayleigh") + " --set stop.gap=-1", "positive"},
+      {"optimize", "name a scene"},
+      {"optimize nowhere.toml", "nowhere.toml"}};
+  for (const auto& [arguments, words] : cases) {
+    const Outcome r = run(arguments);
+    EXPECT_EQ(r.code, 2) << arguments << r.out << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << arguments << "\n" << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_EQ(nlohmann::json::parse(run(arguments + " --json").out).at("message").get<std::string>() + "\n",
+              r.err.substr(std::string("lagroid: ").size()));
+  }
+  // The unbalanced problem has no minimum that is known.
+  const Outcome r =
+      run(scene("markers") + " --set data.B=\\\"" +
+          file("one.csv", std::string("1\n1\n1\n1\n1\n1\n") + "1\n1\n1\n1\n1\n1\n") + "\\\" --set start={}");
+  EXPECT_EQ(r.code, 2) << r.out;
+  EXPECT_NE(r.err.find("nobody knows"), std::string::npos) << r.err;
+}
+
+TEST_F(Optimise, ListsProblemsAndMethods) {
+  const Outcome r = run("optimize --list");
+  EXPECT_EQ(r.code, 0);
+  for (const char* name : {"rayleigh", "brockett", "procrustes", "robust", "adaptive", "direct", "euler-lagrange",
+                           "gradient-descent", "conjugate-gradients", "trust-region"})
+    EXPECT_NE(r.out.find("  " + std::string(name) + " "), std::string::npos) << name;
+}
+
+TEST_F(Optimise, FigureOneIsReproduced) {
+  const std::string out = (folder_ / "figure").string();
+  const auto found =
+      summary("reproduce accelerated-optimization --instances 1 --iterations 4000 --out " + out).at("iterations");
+  for (const char* problem : {"Rayleigh", "Brockett", "unbalanced Procrustes", "balanced Procrustes"}) {
+    const auto to_8 = [&](const char* method) { return found.at(problem).at(method).at("1e-8").get<double>(); };
+    EXPECT_GT(to_8("Algorithm 1 adaptive"), 0) << problem;
+    EXPECT_EQ(to_8("Algorithm 1 direct"), -1) << problem;
+    EXPECT_EQ(to_8("Algorithm 2 I"), -1) << problem;
+    EXPECT_LT(3 * to_8("robust"), to_8("Algorithm 1 adaptive")) << problem;
+  }
+  for (const char* name :
+       {"report.md", "runs.csv", "curves.csv", "costs.csv", "figures.gp", "figure_1.svg", "tuned.svg", "costs.svg"})
+    EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
+}
+
+}  // namespace
