@@ -59,6 +59,7 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
     root.inverse = jacobian.inverse();
     const Vector<double, N> step = root.inverse * value;
     const double length = step.cwiseAbs().maxCoeff();
+    if (!std::isfinite(length)) break;
     size = std::max(size, (root.x - step).cwiseAbs().maxCoeff());
     if (length <= nearly_done * size || (length <= slow * size && length >= last / 2)) {
       root.x -= step;

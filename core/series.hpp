@@ -58,14 +58,15 @@ template <class T, int K> class Series {
   friend Series operator-(const Series& a, const Series& b) {
     return each([&](int k) -> T { return a[k] - b[k]; });
   }
-  friend Series operator*(const Series& a, const Series& b) {
+  // Out of line: these are long loops over long sums, and formulas have many of them to compile.
+  [[gnu::noinline]] friend Series operator*(const Series& a, const Series& b) {
     return each([&](int k) {
       T sum = a[0] * b[k];
       for (int j = 1; j <= k; ++j) sum += a[j] * b[k - j];
       return sum;
     });
   }
-  friend Series operator/(const Series& a, const Series& b) {
+  [[gnu::noinline]] friend Series operator/(const Series& a, const Series& b) {
     Series out;
     for (int k = 0; k < K; ++k) {
       T sum = a[k];

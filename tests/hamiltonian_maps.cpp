@@ -442,7 +442,7 @@ TEST(Orders, OfTheUnconstrainedAreTheLesserOfRPlusOneAndTheQuadrature) {
   order(std::integral_constant<int, 3>{}, midpoint, 100);
   order(std::integral_constant<int, 4>{}, gauss_3, 30);
   order(std::integral_constant<int, 4>{}, lobatto_4, 30);
-  order(std::integral_constant<int, 4>{}, gauss_2, 30);
+  order(std::integral_constant<int, 4>{}, gauss_2, 60);
 }
 
 TEST(Orders, OfTheConstrainedSaturateAtTwo) {
@@ -570,9 +570,9 @@ TEST(ExactGeneratingFunctions, AreApproximatedToTheOrderOfTheMap) {  // (4.4)
 
 TEST(ExactGeneratingFunctions, OfTheConstrainedAreMissedByTheCubeOfTheStep) {  // (4.20) fails for r > 1
   using quadrature_rules::gauss_2;
-  EXPECT_NEAR(approximation_order(TaylorHamiltonian<Bob, 1>{{}, gauss_2}, bob_start, 0.02), 3, 0.1);
-  EXPECT_NEAR(approximation_order(TaylorHamiltonian<Bob, 2>{{}, gauss_2}, bob_start, 0.02), 3, 0.1);
-  EXPECT_NEAR(approximation_order(TaylorHamiltonian<Bob, 3>{{}, gauss_2}, bob_start, 0.02), 3, 0.1);
+  EXPECT_NEAR(approximation_order(TaylorHamiltonian<Bob, 1>{{}, gauss_2}, bob_start, 0.01), 3, 0.1);
+  EXPECT_NEAR(approximation_order(TaylorHamiltonian<Bob, 2>{{}, gauss_2}, bob_start, 0.01), 3, 0.1);
+  EXPECT_NEAR(approximation_order(TaylorHamiltonian<Bob, 3>{{}, gauss_2}, bob_start, 0.01), 3, 0.1);
 }
 
 // ---- what the maps preserve
@@ -676,8 +676,8 @@ TEST(PendulumRecords, AreReproduced) {
     const auto p = record.at("pref").get<std::vector<double>>();
     const Vector<double, 3> reference(q[0], q[1], q[2]);
     const auto exact = exact_arc(Bob{}, start.q, start.p, T);
-    EXPECT_LT((exact.q1 - reference).norm(), 1e-14);
-    EXPECT_LT((exact.p1 - Vector<double, 3>(p[0], p[1], p[2])).norm(), 1e-14);
+    EXPECT_LT((exact.q1 - reference).norm(), 5e-13);
+    EXPECT_LT((exact.p1 - Vector<double, 3>(p[0], p[1], p[2])).norm(), 5e-13);
     const auto compare = [&](const char* method, const auto& f) {
       for (const auto& row : record.at("err").at(method)) {
         const Point3 end = end_of(HamiltonianMap(f), start, T, 1 << row.at(0).get<int>());
