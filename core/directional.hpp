@@ -6,8 +6,7 @@
 namespace lagroid {
 
 /// d/dt f(x + t v) at t = 0, of the type of f(x): S, or a vector of them. f takes Vector<Dual<S>, N>.
-template <class S, int N, class F>
-auto derivative_along(const F& f, const Vector<S, N>& x, const Vector<S, N>& v) {
+template <class S, int N, class F> auto derivative_along(const F& f, const Vector<S, N>& x, const Vector<S, N>& v) {
   Vector<Dual<S>, N> moved(x.size());
   for (int i = 0; i < x.size(); ++i) moved(i) = Dual<S>(x(i), v(i));
   const auto there = f(moved);

@@ -30,7 +30,8 @@ concept GeneratingFunction = requires(const F& f, const Vector<double, F::dimens
   { F::type } -> std::convertible_to<GeneratingType>;
   { F::constraints } -> std::convertible_to<int>;
   { f.generating(x, x, h) } -> std::same_as<double>;
-} &&(F::constraints == 0 || requires(const F& f, const Vector<double, F::dimension>& x) {
+}
+&&(F::constraints == 0 || requires(const F& f, const Vector<double, F::dimension>& x) {
   { f.constraint(x) } -> std::convertible_to<Vector<double, F::constraints>>;
 });
 
@@ -84,8 +85,8 @@ template <GeneratingType To, GeneratingFunction F> InCoordinates<To, F> in_coord
   return {std::move(function)};
 }
 
-/// Of the adjoint map Phi_h* = Phi_{-h}^{-1}: L_d*(q0, q1; h) = -L_d(q1, q0; -h), and H_d-(q, p; h) = -H_d+(q, p; -h), so
-/// that the adjoint of type II is of type III.
+/// Of the adjoint map Phi_h* = Phi_{-h}^{-1}: L_d*(q0, q1; h) = -L_d(q1, q0; -h), and H_d-(q, p; h) = -H_d+(q, p; -h),
+/// so that the adjoint of type II is of type III.
 template <GeneratingFunction F> struct AdjointFunction {
   static constexpr int dimension = F::dimension;
   static constexpr int constraints = F::constraints;

@@ -42,7 +42,8 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
   };
   const auto norm = [](const Vector<J, N>& r) {
     double largest = 0;
-    for (int i = 0; i < N; ++i) largest = std::isfinite(r(i).value) ? std::max(largest, std::abs(r(i).value)) : INFINITY;
+    for (int i = 0; i < N; ++i)
+      largest = std::isfinite(r(i).value) ? std::max(largest, std::abs(r(i).value)) : INFINITY;
     return largest;
   };
   Root<N> root{guess, {}};
@@ -80,10 +81,10 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
 
 }  // namespace detail
 
-/// x(y) with F(x, y) = 0, with its derivatives: the values by Newton's method, the infinitesimals by as many corrections
-/// x -= F_x^{-1} F, F_x^{-1} kept in plain numbers, as there are orders of them, for each is right in one order more.
-/// F(x, y) is a function over any scalar, Vector<U, N> x Vector<U, M> -> Vector<U, N>. Not a number where Newton's
-/// method does not converge from `guess`. No allocation.
+/// x(y) with F(x, y) = 0, with its derivatives: the values by Newton's method, the infinitesimals by as many
+/// corrections x -= F_x^{-1} F, F_x^{-1} kept in plain numbers, as there are orders of them, for each is right in one
+/// order more. F(x, y) is a function over any scalar, Vector<U, N> x Vector<U, M> -> Vector<U, N>. Not a number where
+/// Newton's method does not converge from `guess`. No allocation.
 template <class S, int N, int M, class F>
 Vector<S, N> solve_implicit(const F& residual, const Vector<double, N>& guess, const Vector<S, M>& parameters) {
   Vector<double, M> values;

@@ -18,8 +18,7 @@ Vector<S, N> legendre_inverse(const F& f, const Vector<S, N>& q, const Vector<S,
 }
 
 /// f*(q, y) = ext_x (y.x - f(q, x)); f** = f.
-template <class S, int N, class F>
-S legendre_transform(const F& f, const Vector<S, N>& q, const Vector<S, N>& y) {
+template <class S, int N, class F> S legendre_transform(const F& f, const Vector<S, N>& q, const Vector<S, N>& y) {
   const Vector<S, N> x = legendre_inverse(f, q, y);
   return y.dot(x) - f(q, x);
 }

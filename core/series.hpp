@@ -228,8 +228,8 @@ template <class T, int K> Series<T, K> atan2(const Series<T, K>& y, const Series
 }
 template <class T, int K> Series<T, K> abs(const Series<T, K>& x) { return value_of(x) < 0 ? -x : x; }
 
-/// The Taylor coefficients up to t^{K-1} of the solution of z' = f(z), z(0) = start, by Picard's iteration, each of which
-/// gains one. f maps Vector<Series<S, K>, M> to itself.
+/// The Taylor coefficients up to t^{K-1} of the solution of z' = f(z), z(0) = start, by Picard's iteration, each of
+/// which gains one. f maps Vector<Series<S, K>, M> to itself.
 template <int K, class S, int M, class F>
 Vector<Series<S, K>, M> taylor_solution(const F& f, const Vector<S, M>& start) {
   Vector<Series<S, K>, M> z;
@@ -251,10 +251,12 @@ template <class T, int K> struct Eigen::NumTraits<lagroid::Series<T, K>> : Eigen
   enum { IsComplex = 0, RequireInitialization = 1, ReadCost = K, AddCost = K, MulCost = K * K };
 };
 
-template <class T, int K, class Operation> struct Eigen::ScalarBinaryOpTraits<lagroid::Series<T, K>, double, Operation> {
+template <class T, int K, class Operation>
+struct Eigen::ScalarBinaryOpTraits<lagroid::Series<T, K>, double, Operation> {
   using ReturnType = lagroid::Series<T, K>;
 };
-template <class T, int K, class Operation> struct Eigen::ScalarBinaryOpTraits<double, lagroid::Series<T, K>, Operation> {
+template <class T, int K, class Operation>
+struct Eigen::ScalarBinaryOpTraits<double, lagroid::Series<T, K>, Operation> {
   using ReturnType = lagroid::Series<T, K>;
 };
 

@@ -34,9 +34,9 @@ template <class S, int N> struct ExactArc {
   }
 };
 
-/// The solution of Hamilton's constrained equations ([V] (3.6)) for the time t, of either sign, by Taylor's method of order
-/// 19 with multipliers eliminated (`hamiltonian_rates`) and steps that leave no more than round-off. (q0, p0) must satisfy
-/// the constraint and the hidden one.
+/// The solution of Hamilton's constrained equations ([V] (3.6)) for the time t, of either sign, by Taylor's method of
+/// order 19 with multipliers eliminated (`hamiltonian_rates`) and steps that leave no more than round-off. (q0, p0)
+/// must satisfy the constraint and the hidden one. Not a number where the solution ends before t.
 template <class M, class S, int N>
 ExactArc<S, N> exact_arc(const M& system, const Vector<S, N>& q0, const Vector<S, N>& p0, double t) {
   constexpr int terms = 20;
@@ -53,7 +53,7 @@ ExactArc<S, N> exact_arc(const M& system, const Vector<S, N>& q0, const Vector<S
   Vector<S, 1> none;
   none(0) = S(0.0);
   Vector<S, 2 * N + 1> z = joined(joined(q0, p0), none);
-  for (double left = t; left != 0;) {
+  for (double left = t; left != 0 && !std::isnan(left);) {
     const auto series = taylor_solution<terms>(rates, z);
     // The last two coefficients bound what is left out.
     double step = std::abs(left);
@@ -66,6 +66,7 @@ ExactArc<S, N> exact_arc(const M& system, const Vector<S, N>& q0, const Vector<S
       }
       if (largest > 0) step = std::min(step, 0.7 * std::pow(epsilon * size / largest, 1.0 / k));
     }
+    if (!(step > 1e-9 * std::abs(t))) step = std::numeric_limits<double>::quiet_NaN();
     const double signed_step = std::abs(left) <= step ? left : std::copysign(step, left);
     for (int i = 0; i <= 2 * N; ++i) z(i) = series(i).at(signed_step);
     left -= signed_step;

@@ -30,12 +30,15 @@ template <int N, int D> struct Phase {
 ///     type II    p~ =  D1 H_d+(q_k, p_{k+1}),         q_{k+1} =  D2 H_d+(q_k, p_{k+1})         [V] (3.14), (3.19)
 ///     type III   q_k = -D2 H_d-(q_{k+1}, p~),         p_{k+1} = -D1 H_d-(q_{k+1}, p~)          [V] (3.15), (3.21)
 ///
-/// The sign of lambda is that of docs/notation.md, [V] has the other. Normal parts <nu, C'(q_k)> of p_k go into lambda_k: the
-/// map is one of T*Q, Q = C^{-1}(0), whose points are momenta modulo them, and there are three representatives.
+/// The sign of lambda is that of docs/notation.md, [V] has the other. Normal parts <nu, C'(q_k)> of p_k go into
+/// lambda_k: the map is one of T*Q, Q = C^{-1}(0), whose points are momenta modulo them, and there are three
+/// representatives.
 /// - p_k above arrives at q_k before its multiplier.
-/// - p~ leaves q_k after it, as in the sum (2.9) and, word for word, in (3.15) and (3.21), where p_{k+1} has lambda_{k+1}
+/// - p~ leaves q_k after it, as in the sum (2.9) and, word for word, in (3.15) and (3.21), where p_{k+1} has
+/// lambda_{k+1}
 ///   and p_0 must be consistent: C(q_1) = 0 holds only for the right one. `leave` gives it.
-/// - The tangent one, <H_p, C'(q)> = 0, is the solution's to the order of the method (`project_momentum`); the other two
+/// - The tangent one, <H_p, C'(q)> = 0, is the solution's to the order of the method (`project_momentum`); the other
+/// two
 ///   are so to order one.
 /// The q_k are the same. Without constraints (d = 0) this is the map itself.
 template <GeneratingFunction F> class HamiltonianMap {
@@ -63,16 +66,6 @@ template <GeneratingFunction F> class HamiltonianMap {
     const SolveStatus status = step(next, h);
     if (status == SolveStatus::converged) point.p += constraint_at(point.q).gradient.transpose() * next.multipliers;
     return status;
-  }
-
-  /// The steps gamma_i h of a composition, or none. Where the map is symmetric on T*Q (RATTLE's is), the order is the
-  /// composition's in q and the tangent p; the multipliers are those of the last step.
-  SolveStatus step(Point& point, double h, const Composition& composition) const {
-    Point next = point;
-    for (const double gamma : composition.coefficients)
-      if (const SolveStatus status = step(next, gamma * h); status != SolveStatus::converged) return status;
-    point = next;
-    return SolveStatus::converged;
   }
 
  private:
@@ -222,6 +215,39 @@ template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point
     last = length;
   }
   return SolveStatus::not_converged;
+}
+
+/// H_d- after H_d+, each for half a step, or the same of types I and I or III and II: a map and its adjoint, whose
+/// product is symmetric on T*Q and of even order, two for r = 0.
+template <GeneratingFunction F> class SymmetrisedMap {
+ public:
+  using Point = typename HamiltonianMap<F>::Point;
+
+  explicit SymmetrisedMap(const F& function) : first_(function), second_(adjoint_of(function)) {}
+
+  /// As HamiltonianMap::step; `multipliers` are those of the second half.
+  SolveStatus step(Point& point, double h) const {
+    Point next = point;
+    if (const SolveStatus status = first_.step(next, h / 2); status != SolveStatus::converged) return status;
+    if (const SolveStatus status = second_.step(next, h / 2); status != SolveStatus::converged) return status;
+    point = next;
+    return SolveStatus::converged;
+  }
+
+ private:
+  HamiltonianMap<F> first_;
+  HamiltonianMap<AdjointFunction<F>> second_;
+};
+
+/// The steps gamma_i h of a composition, or none. Of a map that is symmetric on T*Q (RATTLE, SymmetrisedMap) the order
+/// is the composition's, in q and in the tangent p; `multipliers` are those of the last step.
+template <class Map>
+SolveStatus composed_step(const Map& map, typename Map::Point& point, double h, const Composition& composition) {
+  typename Map::Point next = point;
+  for (const double gamma : composition.coefficients)
+    if (const SolveStatus status = map.step(next, gamma * h); status != SolveStatus::converged) return status;
+  point = next;
+  return SolveStatus::converged;
 }
 
 }  // namespace lagroid

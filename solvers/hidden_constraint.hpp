@@ -22,8 +22,8 @@ Vector<S, M::constraints> hidden_constraint(const M& system, const Vector<S, N>&
   return derivative_along([&](const Vector<Dual<S>, N>& x) { return system.constraint(x); }, q, velocity);
 }
 
-/// p + <nu, C'(q)> with nu such that it is tangent to C^{-1}(0): <H_p, C'(q)> = 0 ([V] Remark 3.2; RATTLE's second stage).
-/// By Newton's method from p; not a number where that fails. p itself where there is no constraint.
+/// p + <nu, C'(q)> with nu such that it is tangent to C^{-1}(0): <H_p, C'(q)> = 0 ([V] Remark 3.2; RATTLE's second
+/// stage). By Newton's method from p; not a number where that fails. p itself where there is no constraint.
 template <class M, int N>
 Vector<double, N> project_momentum(const M& system, const Vector<double, N>& q, const Vector<double, N>& p) {
   constexpr int d = M::constraints;
@@ -37,8 +37,7 @@ Vector<double, N> project_momentum(const M& system, const Vector<double, N>& q, 
       const Vector<S, N> x = qp.template head<N>();
       return hidden_constraint(system, x, Vector<S, N>(qp.template tail<N>() + normal(x, nu)));
     };
-    const Vector<double, d> nu =
-        solve_implicit<double, d, 2 * N>(residual, Vector<double, d>::Zero(), joined(q, p));
+    const Vector<double, d> nu = solve_implicit<double, d, 2 * N>(residual, Vector<double, d>::Zero(), joined(q, p));
     return p + normal(q, nu);
   }
 }

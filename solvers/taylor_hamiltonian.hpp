@@ -8,8 +8,8 @@
 namespace lagroid {
 
 /// The discrete right Hamiltonian of a Hamiltonian Taylor variational integrator ([V] 5.4.1), of type II; for type III
-/// take its adjoint, H_d-(q1, p0; h) = -H_d+(q1, p0; -h). With Psi^(r)_t the Taylor method of order r of Hamilton's equations,
-/// without constraints:
+/// take its adjoint, H_d-(q1, p0; h) = -H_d+(q1, p0; -h). With Psi^(r)_t the Taylor method of order r of Hamilton's
+/// equations, without constraints:
 ///
 ///     p1 = p of Psi^(r)_h(q0, p~)                   determines p~
 ///     (q_i, p_i) = Psi^(r)_{c_i h}(q0, p~)          at the nodes c_i of a quadrature with weights b_i
@@ -57,8 +57,7 @@ template <class M, int R> struct TaylorHamiltonian {
 
  private:
   /// The Taylor coefficients of (q, p), up to t^{K-1}.
-  template <int K, class S>
-  Vector<Series<S, K>, 2 * n> flow_from(const Vector<S, n>& q, const Vector<S, n>& p) const {
+  template <int K, class S> Vector<Series<S, K>, 2 * n> flow_from(const Vector<S, n>& q, const Vector<S, n>& p) const {
     using T = Series<S, K>;
     return taylor_solution<K>(
         [this](const Vector<T, 2 * n>& z) {
@@ -73,8 +72,7 @@ template <class M, int R> struct TaylorHamiltonian {
         joined(q, p));
   }
 
-  template <class S>
-  Vector<S, n> initial_momentum(const Vector<S, n>& q0, const Vector<S, n>& p1, double h) const {
+  template <class S> Vector<S, n> initial_momentum(const Vector<S, n>& q0, const Vector<S, n>& p1, double h) const {
     if constexpr (R == 0) {
       return p1;
     } else {
