@@ -16,6 +16,30 @@
 
 namespace lagroid {
 
+namespace detail {
+
+/// The factors of an equilibrated matrix.
+template <int Size> class EquilibratedFactor {
+ public:
+  using Square = Matrix<double, Size, Size>;
+  using Column = Vector<double, Size>;
+
+  explicit EquilibratedFactor(const Square& a) : scaling_(Scaling<Size>::equilibrate(a)), lu_(scaling_.apply(a)) {
+    lu_.setThreshold(1e-12);
+  }
+  bool regular() const { return lu_.isInvertible(); }
+  bool positive() const { return lu_.determinant() > 0; }
+  Column solve(const Column& b) const {
+    return scaling_.column.cwiseProduct(lu_.solve(Column(scaling_.row.cwiseProduct(b))));
+  }
+
+ private:
+  Scaling<Size> scaling_;
+  Eigen::FullPivLU<Square> lu_;
+};
+
+}  // namespace detail
+
 /// A point of T*R^n with C(q) = 0, and the multipliers of the step that led to it.
 template <int N, int D> struct Phase {
   Vector<double, N> q;
@@ -72,6 +96,7 @@ template <GeneratingFunction F> class HamiltonianMap {
   static constexpr int size = n + d;
   using Column = Vector<double, size>;
   using Square = Matrix<double, size, size>;
+  using Factor = detail::EquilibratedFactor<size>;
 
   struct Constraint {
     Vector<double, d> value;
@@ -175,22 +200,16 @@ template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point
   Column unknown = Column::Zero();
   unknown.template head<n>() = F::type == GeneratingType::two ? point.p : point.q;
 
-  const auto factor = [](const Square& matrix, const Scaling<size>& scaling) {
-    Eigen::FullPivLU<Square> lu(scaling.apply(matrix));
-    lu.setThreshold(1e-12);
-    return lu;
-  };
   Equations at = equations(point, here, h, unknown);
   if (!at.residual.allFinite() || !at.matrix.allFinite()) return SolveStatus::not_finite;
-  const bool positive = factor(at.reference, Scaling<size>::equilibrate(at.reference)).determinant() > 0;
+  const bool positive = Factor(at.reference).positive();
   double last = std::numeric_limits<double>::infinity();
   double unit = unknown.cwiseAbs().maxCoeff();
   double unit_of_reaction = point.p.cwiseAbs().maxCoeff();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const auto scaling = Scaling<size>::equilibrate(at.matrix);
-    const auto lu = factor(at.matrix, scaling);
-    if (!lu.isInvertible()) return SolveStatus::singular;
-    const Column correction = scaling.column.cwiseProduct(lu.solve(Column(scaling.row.cwiseProduct(at.residual))));
+    const Factor factor(at.matrix);
+    if (!factor.regular()) return SolveStatus::singular;
+    const Column correction = factor.solve(at.residual);
     unknown -= correction;
     at = equations(point, here, h, unknown);
     if (!unknown.allFinite() || !at.residual.allFinite() || !at.matrix.allFinite()) return SolveStatus::not_finite;
@@ -204,9 +223,9 @@ template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point
     const double length = std::max(relative(correction.template head<n>().cwiseAbs().maxCoeff(), unit),
                                    relative(reaction(correction), unit_of_reaction));
     if (length <= nearly_done || (length <= slow && length >= last / 2)) {
-      const auto solved = factor(at.matrix, Scaling<size>::equilibrate(at.matrix));
-      if (!solved.isInvertible()) return SolveStatus::singular;
-      if ((solved.determinant() > 0) != positive) return SolveStatus::left_domain;
+      const Factor solved(at.matrix);
+      if (!solved.regular()) return SolveStatus::singular;
+      if (solved.positive() != positive) return SolveStatus::left_domain;
       point.q = at.q;
       point.p = at.p;
       if constexpr (d > 0) point.multipliers = unknown.template tail<d>();
