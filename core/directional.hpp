@@ -34,8 +34,31 @@ template <int D, class S, int N, class F> Matrix<S, D, N> jacobian_of(const F& f
   for (int j = 0; j < N; ++j) {
     Vector<S, N> unit;
     for (int i = 0; i < N; ++i) unit(i) = S(i == j ? 1.0 : 0.0);
-    out.col(j) = derivative_along(f, x, unit);
+    const Vector<S, D> column = derivative_along(f, x, unit);
+    for (int i = 0; i < D; ++i) out(i, j) = column(i);
   }
+  return out;
+}
+
+/// (a, b) as one vector. Like `part` by components: Eigen's expressions over nested scalars cost the compiler seconds
+/// each.
+template <class S, int N, int M> Vector<S, N + M> joined(const Vector<S, N>& a, const Vector<S, M>& b) {
+  Vector<S, N + M> out;
+  for (int i = 0; i < N; ++i) out(i) = a(i);
+  for (int i = 0; i < M; ++i) out(N + i) = b(i);
+  return out;
+}
+/// (x_Begin, ..., x_{Begin + Count - 1}).
+template <int Begin, int Count, class S, int N> Vector<S, Count> part(const Vector<S, N>& x) {
+  static_assert(Begin + Count <= N);
+  Vector<S, Count> out;
+  for (int i = 0; i < Count; ++i) out(i) = x(Begin + i);
+  return out;
+}
+/// x as constants of the scalar S.
+template <class S, class T, int N> Vector<S, N> constants(const Vector<T, N>& x) {
+  Vector<S, N> out;
+  for (int i = 0; i < N; ++i) out(i) = S(x(i));
   return out;
 }
 

@@ -66,8 +66,7 @@ requires(To != F::type && (To == GeneratingType::one || F::type == GeneratingTyp
       }
     };
     const auto residual = [&]<class U>(const Vector<U, n>& x, const Vector<U, 2 * n>& given) -> Vector<U, n> {
-      Vector<Dual<U>, n> fixed;
-      for (int i = 0; i < n; ++i) fixed(i) = Dual<U>(given(i));
+      const auto fixed = constants<Dual<U>>(part<0, n>(given));
       Vector<U, n> out = gradient_of([&](const Vector<Dual<U>, n>& z) { return value(z, fixed); }, x);
       for (int i = 0; i < n; ++i) out(i) -= given(n + i) * sign;
       return out;

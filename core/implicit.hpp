@@ -1,7 +1,7 @@
 #pragma once
 /// Functions that are defined by equations, over any scalar.
 
-#include <lagroid/core/dual.hpp>
+#include <lagroid/core/directional.hpp>
 #include <lagroid/core/jet.hpp>
 #include <lagroid/core/series.hpp>
 
@@ -34,11 +34,11 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
   constexpr int most_halvings = 20;
   constexpr double nearly_done = 1e-10;  // the square of what is left then is round-off
   constexpr double slow = 1e-6;          // steps this small that do not fall are round-off
-  const Vector<J, M> constants = parameters.template cast<J>();
+  const Vector<J, M> fixed = constants<J>(parameters);
   const auto at = [&](const Vector<double, N>& x) {
     Vector<J, N> seed;
     for (int i = 0; i < N; ++i) seed(i) = J::variable(x(i), i);
-    return Vector<J, N>(residual(seed, constants));
+    return Vector<J, N>(residual(seed, fixed));
   };
   const auto norm = [](const Vector<J, N>& r) {
     double largest = 0;
@@ -98,14 +98,6 @@ Vector<S, N> solve_implicit(const F& residual, const Vector<double, N>& guess, c
       for (int j = 0; j < N; ++j) x(i) -= f(j) * root.inverse(i, j);
   }
   return x;
-}
-
-/// (a, b) as one vector.
-template <class S, int N, int M> Vector<S, N + M> joined(const Vector<S, N>& a, const Vector<S, M>& b) {
-  Vector<S, N + M> out;
-  for (int i = 0; i < N; ++i) out(i) = a(i);
-  for (int i = 0; i < M; ++i) out(N + i) = b(i);
-  return out;
 }
 
 }  // namespace lagroid

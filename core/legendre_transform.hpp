@@ -10,9 +10,10 @@ namespace lagroid {
 template <class S, int N, class F>
 Vector<S, N> legendre_inverse(const F& f, const Vector<S, N>& q, const Vector<S, N>& y) {
   const auto residual = [&]<class U>(const Vector<U, N>& x, const Vector<U, 2 * N>& qy) -> Vector<U, N> {
-    Vector<Dual<U>, N> at;
-    for (int i = 0; i < N; ++i) at(i) = Dual<U>(qy(i));
-    return gradient_of([&](const Vector<Dual<U>, N>& z) { return f(at, z); }, x) - qy.template tail<N>();
+    const auto at = constants<Dual<U>>(part<0, N>(qy));
+    Vector<U, N> out = gradient_of([&](const Vector<Dual<U>, N>& z) { return f(at, z); }, x);
+    for (int i = 0; i < N; ++i) out(i) -= qy(N + i);
+    return out;
   };
   return solve_implicit<S, N, 2 * N>(residual, Vector<double, N>::Zero(), joined(q, y));
 }

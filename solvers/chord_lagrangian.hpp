@@ -20,11 +20,15 @@ template <class M> struct ChordLagrangian {
   QuadratureRule rule = quadrature_rules::trapezoid;
 
   template <class S, int N> S generating(const Vector<S, N>& q0, const Vector<S, N>& q1, double h) const {
-    const Vector<S, N> chord = q1 - q0;
-    const Vector<S, N> velocity = chord * (1 / h);
+    Vector<S, N> velocity;
+    for (int i = 0; i < N; ++i) velocity(i) = (q1(i) - q0(i)) * (1 / h);
     S sum(0.0);
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
-      sum += system.lagrangian(Vector<S, N>(q0 + chord * rule.nodes[i]), velocity) * (h * rule.weights[i]);
+    for (std::size_t node = 0; node < rule.nodes.size(); ++node) {
+      const double c = rule.nodes[node];
+      Vector<S, N> q;
+      for (int i = 0; i < N; ++i) q(i) = q0(i) * (1 - c) + q1(i) * c;
+      sum += system.lagrangian(q, velocity) * (h * rule.weights[node]);
+    }
     return sum;
   }
   template <class S, int N> auto constraint(const Vector<S, N>& q) const { return system.constraint(q); }

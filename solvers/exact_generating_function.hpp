@@ -43,8 +43,8 @@ ExactArc<S, N> exact_arc(const M& system, const Vector<S, N>& q0, const Vector<S
   constexpr double epsilon = std::numeric_limits<double>::epsilon() / 16;
   using T = Series<S, terms>;
   const auto rates = [&](const Vector<T, 2 * N + 1>& z) {
-    const Vector<T, N> q = z.template head<N>();
-    const Vector<T, N> p = z.template segment<N>(N);
+    const Vector<T, N> q = part<0, N>(z);
+    const Vector<T, N> p = part<N, N>(z);
     const auto r = hamiltonian_rates(system, q, p);
     Vector<T, 1> action;
     action(0) = p.dot(r.q) - system.hamiltonian(q, p);
@@ -71,7 +71,7 @@ ExactArc<S, N> exact_arc(const M& system, const Vector<S, N>& q0, const Vector<S
     for (int i = 0; i <= 2 * N; ++i) z(i) = series(i).at(signed_step);
     left -= signed_step;
   }
-  return {q0, p0, z.template head<N>(), z.template segment<N>(N), z(2 * N)};
+  return {q0, p0, part<0, N>(z), part<N, N>(z), z(2 * N)};
 }
 
 }  // namespace lagroid

@@ -15,8 +15,7 @@ namespace lagroid {
 ///     template <class S> Vector<S, d> constraint(const Vector<S, n>& q) const               where d > 0
 template <class M, class S, int N>
 Vector<S, M::constraints> hidden_constraint(const M& system, const Vector<S, N>& q, const Vector<S, N>& p) {
-  Vector<Dual<S>, N> fixed;
-  for (int i = 0; i < N; ++i) fixed(i) = Dual<S>(q(i));
+  const auto fixed = constants<Dual<S>>(q);
   const Vector<S, N> velocity =
       gradient_of([&](const Vector<Dual<S>, N>& x) { return system.hamiltonian(fixed, x); }, p);
   return derivative_along([&](const Vector<Dual<S>, N>& x) { return system.constraint(x); }, q, velocity);
@@ -30,15 +29,18 @@ Vector<double, N> project_momentum(const M& system, const Vector<double, N>& q, 
   if constexpr (d == 0) {
     return p;
   } else {
-    const auto normal = [&]<class S>(const Vector<S, N>& x, const Vector<S, d>& nu) -> Vector<S, N> {
-      return jacobian_of<d>([&](const Vector<Dual<S>, N>& y) { return system.constraint(y); }, x).transpose() * nu;
+    const auto kicked = [&]<class S>(const Vector<S, N>& x, Vector<S, N> y, const Vector<S, d>& nu) {
+      const auto normals = jacobian_of<d>([&](const Vector<Dual<S>, N>& z) { return system.constraint(z); }, x);
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < d; ++j) y(i) += normals(j, i) * nu(j);
+      return y;
     };
     const auto residual = [&]<class S>(const Vector<S, d>& nu, const Vector<S, 2 * N>& qp) -> Vector<S, d> {
-      const Vector<S, N> x = qp.template head<N>();
-      return hidden_constraint(system, x, Vector<S, N>(qp.template tail<N>() + normal(x, nu)));
+      const Vector<S, N> x = part<0, N>(qp);
+      return hidden_constraint(system, x, kicked(x, part<N, N>(qp), nu));
     };
     const Vector<double, d> nu = solve_implicit<double, d, 2 * N>(residual, Vector<double, d>::Zero(), joined(q, p));
-    return p + normal(q, nu);
+    return kicked(q, p, nu);
   }
 }
 
@@ -58,34 +60,35 @@ HamiltonianRates<S, N, M::constraints> hamiltonian_rates(const M& system, const 
   constexpr int d = M::constraints;
   static_assert(d <= 4, "the small system for lambda is solved by cofactors");
   const Vector<S, 2 * N> z = joined(q, p);
-  const Vector<S, 2 * N> slope = gradient_of(
-      [&](const Vector<Dual<S>, 2 * N>& x) {
-        return system.hamiltonian(Vector<Dual<S>, N>(x.template head<N>()), Vector<Dual<S>, N>(x.template tail<N>()));
-      },
-      z);
-  HamiltonianRates<S, N, d> out{slope.template tail<N>(), -slope.template head<N>(), {}};
+  const Vector<S, 2 * N> slope =
+      gradient_of([&](const Vector<Dual<S>, 2 * N>& x) { return system.hamiltonian(part<0, N>(x), part<N, N>(x)); }, z);
+  HamiltonianRates<S, N, d> out{part<N, N>(slope), {}, {}};
+  for (int i = 0; i < N; ++i) out.p(i) = -slope(i);
   if constexpr (d > 0) {
     const Matrix<S, d, N> normals =
         jacobian_of<d>([&](const Vector<Dual<S>, N>& x) { return system.constraint(x); }, q);
     const auto hidden_along = [&](const Vector<S, N>& dq, const Vector<S, N>& dp) {
       return derivative_along(
-          [&](const Vector<Dual<S>, 2 * N>& x) {
-            return hidden_constraint(system, Vector<Dual<S>, N>(x.template head<N>()),
-                                     Vector<Dual<S>, N>(x.template tail<N>()));
-          },
-          z, joined(dq, dp));
+          [&](const Vector<Dual<S>, 2 * N>& x) { return hidden_constraint(system, part<0, N>(x), part<N, N>(x)); }, z,
+          joined(dq, dp));
     };
     const Vector<S, d> free = hidden_along(out.q, out.p);
     Matrix<S, d, d> matrix;
     Vector<S, N> rest;
     for (int i = 0; i < N; ++i) rest(i) = S(0.0);
-    for (int j = 0; j < d; ++j) matrix.col(j) = hidden_along(rest, Vector<S, N>(normals.row(j).transpose()));
+    for (int j = 0; j < d; ++j) {
+      Vector<S, N> normal;
+      for (int i = 0; i < N; ++i) normal(i) = normals(j, i);
+      const Vector<S, d> column = hidden_along(rest, normal);
+      for (int i = 0; i < d; ++i) matrix(i, j) = column(i);
+    }
     if constexpr (d == 1) {
       out.multipliers(0) = -free(0) / matrix(0, 0);
     } else {
       out.multipliers = -(matrix.inverse() * free);
     }
-    out.p += normals.transpose() * out.multipliers;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < d; ++j) out.p(i) += normals(j, i) * out.multipliers(j);
   }
   return out;
 }

@@ -34,19 +34,15 @@ template <class M, int R> struct TaylorHamiltonian {
 
   template <class S> S generating(const Vector<S, n>& q0, const Vector<S, n>& p1, double h) const {
     const auto flow = flow_from<R + 2>(q0, initial_momentum(q0, p1, h));
-    const auto at = [&](double t, int terms) {
-      Vector<S, 2 * n> z;
-      for (int i = 0; i < 2 * n; ++i) z(i) = flow(i).at(t, terms);
-      return z;
-    };
-    S sum = p1.dot(Vector<S, n>(at(h, R + 2).template head<n>()));
+    S sum(0.0);
+    for (int i = 0; i < n; ++i) sum += p1(i) * flow(i).at(h);
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-      const Vector<S, 2 * n> z = at(rule.nodes[i] * h, R + 1);
-      const Vector<S, n> q = z.template head<n>();
-      const Vector<S, n> p = z.template tail<n>();
+      Vector<S, 2 * n> z;
+      for (int j = 0; j < 2 * n; ++j) z(j) = flow(j).at(rule.nodes[i] * h, R + 1);
+      const Vector<S, n> q = part<0, n>(z);
+      const Vector<S, n> p = part<n, n>(z);
       // p.H_p is the derivative along p.
-      Vector<Dual<S>, n> fixed;
-      for (int j = 0; j < n; ++j) fixed(j) = Dual<S>(q(j));
+      const auto fixed = constants<Dual<S>>(q);
       const S legendre =
           derivative_along([&](const Vector<Dual<S>, n>& x) { return system.hamiltonian(fixed, x); }, p, p);
       sum -= (legendre - system.hamiltonian(q, p)) * (h * rule.weights[i]);
@@ -62,12 +58,13 @@ template <class M, int R> struct TaylorHamiltonian {
     return taylor_solution<K>(
         [this](const Vector<T, 2 * n>& z) {
           const Vector<T, 2 * n> slope = gradient_of(
-              [this](const Vector<Dual<T>, 2 * n>& x) {
-                return system.hamiltonian(Vector<Dual<T>, n>(x.template head<n>()),
-                                          Vector<Dual<T>, n>(x.template tail<n>()));
-              },
-              z);
-          return joined(Vector<T, n>(slope.template tail<n>()), Vector<T, n>(-slope.template head<n>()));
+              [this](const Vector<Dual<T>, 2 * n>& x) { return system.hamiltonian(part<0, n>(x), part<n, n>(x)); }, z);
+          Vector<T, 2 * n> rate;
+          for (int i = 0; i < n; ++i) {
+            rate(i) = slope(n + i);
+            rate(n + i) = -slope(i);
+          }
+          return rate;
         },
         joined(q, p));
   }
@@ -77,7 +74,7 @@ template <class M, int R> struct TaylorHamiltonian {
       return p1;
     } else {
       const auto residual = [&]<class U>(const Vector<U, n>& p, const Vector<U, 2 * n>& given) -> Vector<U, n> {
-        const auto flow = flow_from<R + 1>(Vector<U, n>(given.template head<n>()), p);
+        const auto flow = flow_from<R + 1>(part<0, n>(given), p);
         Vector<U, n> out;
         for (int i = 0; i < n; ++i) out(i) = flow(n + i).at(h) - given(n + i);
         return out;

@@ -586,7 +586,7 @@ TEST(ExactGeneratingFunctions, OfChordAndArcDifferByTheCubeOfTheStep) {  // (4.1
   // (2 sin(v h / 2))^2 / (2 h) - v^2 h / 2 = -v^4 h^3 / 24 + ..., though without the circle the chord is exact.
   const double v = 1.3;
   for (const double h : {0.1, 0.05, 0.025}) {
-    const auto arc = exact_arc(Circle{}, Vector<double, 2>(1, 0), Vector<double, 2>(0, v), h);
+    const auto arc = exact_arc(Circle{}, Vector<double, Circle::dimension>(1, 0), Vector<double, 2>(0, v), h);
     const double chord = ChordLagrangian<Circle>{{}}.generating(arc.q0, arc.q1, h);
     EXPECT_NEAR((chord - arc.generating(one)) / std::pow(h, 3), -std::pow(v, 4) / 24, 0.2 * h * h);
   }
