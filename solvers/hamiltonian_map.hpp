@@ -55,15 +55,11 @@ template <int N, int D> struct Phase {
 ///     type III   q_k = -D2 H_d-(q_{k+1}, p~),         p_{k+1} = -D1 H_d-(q_{k+1}, p~)          [V] (3.15), (3.21)
 ///
 /// The sign of lambda is that of docs/notation.md, [V] has the other. Normal parts <nu, C'(q_k)> of p_k go into
-/// lambda_k: the map is one of T*Q, Q = C^{-1}(0), whose points are momenta modulo them, and there are three
-/// representatives.
-/// - p_k above arrives at q_k before its multiplier.
-/// - p~ leaves q_k after it, as in the sum (2.9) and, word for word, in (3.15) and (3.21), where p_{k+1} has
-/// lambda_{k+1}
-///   and p_0 must be consistent: C(q_1) = 0 holds only for the right one. `leave` gives it.
-/// - The tangent one, <H_p, C'(q)> = 0, is the solution's to the order of the method (`project_momentum`); the other
-/// two
-///   are so to order one.
+/// lambda_k: the map is one of T*Q, Q = C^{-1}(0), whose points are momenta modulo them. Three represent a point:
+/// - p_k above arrives at q_k, before its multiplier.
+/// - p~ leaves q_k, after it: the momentum of (2.9) and, word for word, of (3.15) and (3.21), where lambda_{k+1} is
+///   in p_{k+1}, and p_0 must be consistent, or C(q_1) = 0 does not hold. `leave` makes it so.
+/// - The tangent one satisfies <H_p, C'(q)> = 0. It alone is of the order of the method (`project_momentum`).
 /// The q_k are the same. Without constraints (d = 0) this is the map itself.
 template <GeneratingFunction F> class HamiltonianMap {
  public:
@@ -77,7 +73,7 @@ template <GeneratingFunction F> class HamiltonianMap {
 
   /// A step h of either sign, by Newton's method from the point itself with exact second derivatives, to round-off.
   /// Leaves `point` as it is unless it converges; else
-  /// - singular: C' has not full rank, or D1 D2 of the function is singular
+  /// - singular: the matrix of the step is, as where C' has not full rank
   /// - left_domain: a solution, but not the one that is continuous in h (the determinant has the other sign)
   /// - not_finite: a NaN or an infinity in the point, the function or the iteration
   /// - not_converged: no solution was found, as of a step too long.
