@@ -173,6 +173,13 @@ TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathem
 TEST(HigherOrder, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/higher_order.md"))), none); }
 TEST(HigherOrder, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/higher_order.md")), none); }
 
+TEST(HamiltonianMapsPage, WhatItNamesExists) {
+  EXPECT_EQ(unknown_names(prose_of(read("docs/hamiltonian_maps.md"))), none);
+}
+TEST(HamiltonianMapsPage, ItsCodeIsThatOfTheTest) {
+  EXPECT_EQ(foreign_blocks(read("docs/hamiltonian_maps.md"), "cpp", read("tests/hamiltonian_maps.cpp")), none);
+}
+
 TEST(Newton, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/newton.md"))), none); }
 TEST(Newton, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/newton.md"), "cpp", read("examples/implicit_step.cpp")), none);
