@@ -45,10 +45,11 @@ Retraction retraction(const Section& section) {
 }
 
 MadeMethod read_robust(const Section& section) {
-  const RobustOptions robust{.c = section.number_or("c", 2, positive),
+  const AcceleratedOptions options = accelerated(section, "robust", true);
+  const RobustOptions robust{.c = section.number_or("c", options.look_ahead ? 1 : 2, positive),
                              .power = section.number_or("power", 18, positive),
                              .lipschitz = section.number_or("lipschitz", 0, nonnegative)};
-  return std::make_unique<RobustDescent>(robust, accelerated(section, "robust", true));
+  return std::make_unique<RobustDescent>(robust, options);
 }
 
 MadeMethod read_hamiltonian(const Section& section, Bregman::Kind kind, const char* name) {
@@ -130,7 +131,7 @@ std::span<const OptimiserEntry> optimisers() {
   static const std::vector<OptimiserEntry> all{
       {"robust",
        "our setting of the adaptive Hamiltonian: constant s = c / L, mu = (j / (j + 1))^(power + 1)",
-       {{"c", "", "2", "below 4"},
+       {{"c", "", "2", "below 4; with look_ahead below 4/3, default 1"},
         {"power", "", "18", "effective p"},
         {"lipschitz", "", "", "L; found where it is not given"},
         constraint_key,

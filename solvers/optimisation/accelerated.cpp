@@ -107,6 +107,8 @@ void HamiltonianDescent::forget() {
 
 RobustDescent::RobustDescent(RobustOptions robust, AcceleratedOptions options)
     : Accelerated(std::move(options)), robust_(robust) {
+  if (looks_ahead() && !(robust_.c > 0 && robust_.c < 4.0 / 3))
+    throw std::invalid_argument("c of s = c / L is between 0 and 4 / 3 with look_ahead, best 1");
   if (!(robust_.c > 0 && robust_.c < 4)) throw std::invalid_argument("c of s = c / L is between 0 and 4, best 2");
   if (!(robust_.power > 0) || !(robust_.lipschitz >= 0)) throw std::invalid_argument("power and L are positive");
 }

@@ -45,6 +45,7 @@ class Accelerated : public Method {
     double momentum;  ///< mu
     double gradient;  ///< s
   };
+  bool looks_ahead() const { return options_.look_ahead; }
   virtual void start(Problem& problem, const State& state) = 0;
   /// Of the next step.
   virtual Shares next() = 0;
@@ -92,7 +93,7 @@ class HamiltonianDescent final : public Accelerated {
 /// s constant from the start, mu_j = (j / (j + 1))^(power + 1): to leading order the adaptive Hamiltonian with
 /// p^2 / po = `power` at the largest stable s, instead of growing towards it (docs/optimisation.md).
 struct RobustOptions {
-  double c = 2;          ///< s = c / L; stable below 4
+  double c = 2;          ///< s = c / L; stable below 4, with look_ahead below 4 / 3
   double power = 18;     ///< effective p
   double lipschitz = 0;  ///< L, of the Riemannian gradient; 0: the objective's, or found by power steps and on the way
 };
