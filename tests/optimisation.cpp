@@ -19,7 +19,10 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -418,6 +421,76 @@ TEST(Outcomes, AreTyped) {
   EXPECT_THROW(Procrustes(a, MatrixXd::Zero(5, 2)), std::invalid_argument);
   EXPECT_THROW(hamiltonian(Bregman::Kind::direct, -1), std::invalid_argument);
 }
+
+TEST(Outcomes, OfLargeProblemsWithClustersAreTyped) {
+  // Condition 1e8: the two lowest eigenvalues differ by 1e-8 of the width.
+  const Eigen::Index n = 2000;
+  VectorXd w = VectorXd::LinSpaced(n, 0.5, 1);
+  w.head(4) << 1e-8, 2e-8, 0.1, 0.2;
+  const Instance problem = brockett_instance(
+      {n, [w](const Eigen::Ref<const MatrixXd>& x, Eigen::Ref<MatrixXd> y) { y = w.asDiagonal() * x; }},
+      VectorXd::LinSpaced(3, 1, 3));
+  const Point start = random_start(*problem.manifold, 2);
+  const double least = problem.least(start);
+  EXPECT_NEAR(least, 3 * 1e-8 + 2 * 2e-8 + 0.1, 1e-13);
+  RobustDescent ours = robust();
+  ConjugateGradient conjugate;
+  for (Method* method : std::vector<Method*>{&ours, &conjugate}) {
+    const Result r = minimise(*problem.manifold, *problem.objective, start, *method,
+                              {.relative_gradient = 1e-7, .iterations = 3000});
+    EXPECT_TRUE(r.converged()) << method->name() << r.message;
+    EXPECT_LT(r.value - least, 1e-6) << method->name();
+    EXPECT_LT(r.residual, 1e-15 * double(n)) << method->name();
+  }
+}
+
+#ifdef NDEBUG
+/// Seconds of `work`, least of several times.
+double least_seconds(const std::function<void()>& work) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 15; ++k) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return least;
+}
+
+TEST(Costs, AStepCostsNoMoreThanOneOfGradientDescentByQr) {
+  const Eigen::Index n = 2000;
+  const VectorXd w = VectorXd::LinSpaced(n, 0, 1);
+  const SymmetricOperator a{
+      n, [&](const Eigen::Ref<const MatrixXd>& x, Eigen::Ref<MatrixXd> y) { y = w.asDiagonal() * x; }};
+  const Instance problem = brockett_instance(a, VectorXd::LinSpaced(20, 1, 20));
+  const Point start = random_start(*problem.manifold, 1);
+  const auto seconds = [&](Method& method) {
+    return least_seconds(
+        [&] { minimise(*problem.manifold, *problem.objective, start, method, {.iterations = 40, .patience = 0}); });
+  };
+  Vector gradient(start.size());
+  const double function = least_seconds([&] {
+    for (int k = 0; k < 40; ++k) problem.objective->evaluate(start, gradient);
+  });
+  RobustDescent ours = robust();
+  GradientDescent descent({.c = 1});
+  EXPECT_LT(seconds(ours) - function, 1.3 * (seconds(descent) - function));
+}
+
+TEST(Costs, MultipliersAreCheaperThanQr) {
+  for (const Eigen::Index m : {20, 40}) {
+    const Stiefel manifold(2000, m);
+    const Point x = random_start(manifold, 1);
+    Vector v = random_matrix(manifold.size(), 1, 2);
+    manifold.project(x, v);
+    v *= 0.1 / v.norm();
+    Point to = x;
+    Vector moved = v;
+    EXPECT_LT(least_seconds([&] { manifold.orthographic(x, v, to, moved); }),
+              least_seconds([&] { manifold.retract(Retraction::qr, x, v, to); }))
+        << m;
+  }
+}
+#endif
 
 TEST(Outcomes, OfIllConditionedProblemsAreTyped) {
   // Spectra with a cluster, of condition 1e8, and far from one.

@@ -172,7 +172,7 @@ TEST_F(Optimise, ListsProblemsAndMethods) {
 TEST_F(Optimise, FigureOneIsReproduced) {
   const std::string out = (folder_ / "figure").string();
   const auto found =
-      summary("reproduce accelerated-optimization --instances 1 --iterations 4000 --out " + out).at("iterations");
+      summary("reproduce accelerated-optimization --instances 1 --iterations 3000 --out " + out).at("iterations");
   for (const char* problem : {"Rayleigh", "Brockett", "unbalanced Procrustes", "balanced Procrustes"}) {
     const auto to_8 = [&](const char* method) { return found.at(problem).at(method).at("1e-8").get<double>(); };
     EXPECT_GT(to_8("Algorithm 1 adaptive"), 0) << problem;

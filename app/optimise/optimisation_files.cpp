@@ -20,20 +20,21 @@ using optimisation::Result;
 constexpr std::array<const char*, 7> files{"history.csv", "result.h5", "summary.json", "summary.txt",
                                            "plot.gp",     "plot.svg",  "plot.png"};
 
-/// Above the reference, or where there is none above the least value met.
-double gap(const OptimisationScene& scene, const Result& result, double value) {
-  double least = scene.least.value_or(result.value);
-  if (!scene.least)
-    for (const auto& now : result.history) least = std::min(least, now.value);
-  return value - least;
+/// The reference, or where there is none the least value met.
+double least(const OptimisationScene& scene, const Result& result) {
+  if (scene.least) return *scene.least;
+  double out = result.value;
+  for (const auto& now : result.history) out = std::min(out, now.value);
+  return out;
 }
 
 std::string history_csv(const OptimisationScene& scene, const Result& result) {
   std::string out = "iteration,value,gap,gradient,seconds,values,gradients,hessians\n";
+  const double lowest = least(scene, result);
   for (const auto& now : result.history)
     fmt::format_to(std::back_inserter(out), "{},{:.17g},{:.6g},{:.6g},{:.6g},{},{},{}\n", now.iteration, now.value,
-                   gap(scene, result, now.value), now.gradient, now.seconds, now.evaluations.values,
-                   now.evaluations.gradients, now.evaluations.hessians);
+                   now.value - lowest, now.gradient, now.seconds, now.evaluations.values, now.evaluations.gradients,
+                   now.evaluations.hessians);
   return out;
 }
 
@@ -81,7 +82,7 @@ nlohmann::ordered_json optimisation_json(const OptimisationScene& scene, const R
   if (scene.least) {
     out["reference"] = *scene.least;
     out["reference_by"] = scene.instance.least_by;
-    out["gap"] = gap(scene, result, result.value);
+    out["gap"] = result.value - *scene.least;
   }
   out["iterations"] = result.iterations;
   out["evaluations"] = {{"values", result.evaluations.values},
@@ -98,7 +99,7 @@ std::string optimisation_text(const OptimisationScene& scene, const Result& resu
                      result.gradient, scene.instance.manifold->residual(result.x));
   if (scene.least)
     out += fmt::format("  reference    {:.15g} by {}; f is above it by {:.1e}\n", *scene.least, scene.instance.least_by,
-                       gap(scene, result, result.value));
+                       result.value - *scene.least);
   out += fmt::format("  iterations   {}: {} gradients, {} values, {} Hessians times vectors, {}\n", result.iterations,
                      result.evaluations.gradients, result.evaluations.values, result.evaluations.hessians,
                      duration(result.seconds));

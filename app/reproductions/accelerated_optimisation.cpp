@@ -113,8 +113,8 @@ double seconds_of(const std::function<void()>& work) {
 
 /// Brockett's function of a diagonal matrix, whose gradient costs next to nothing.
 IterationCost cost(long n, long m) {
-  constexpr int rounds = 5;
-  const int steps = int(std::clamp(1e8 / double(n * m * m), 20.0, 400.0));
+  constexpr int rounds = 4;
+  const int steps = int(std::clamp(5e7 / double(n * m * m), 16.0, 400.0));
   const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(n, 0, 1);
   const SymmetricOperator a{
       n, [&](const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Ref<Eigen::MatrixXd> y) { y = w.asDiagonal() * x; }};

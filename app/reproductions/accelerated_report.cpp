@@ -20,9 +20,9 @@ std::string runs_csv(const AcceleratedFindings& findings) {
   std::string out =
       "problem,method,seed,outcome,gap,iterations_8,evaluations_8,seconds_8,iterations_12,evaluations_12,seconds_12\n";
   for (const auto& r : findings.runs)
-    fmt::format_to(std::back_inserter(out), "{},{},{},{},{:.3g},{},{},{:.3g},{},{},{:.3g}\n", r.problem,
-                   r.method, r.seed, r.outcome, r.gap, r.to_8.iterations, r.to_8.evaluations,
-                   r.to_8.seconds, r.to_12.iterations, r.to_12.evaluations, r.to_12.seconds);
+    fmt::format_to(std::back_inserter(out), "{},{},{},{},{:.3g},{},{},{:.3g},{},{},{:.3g}\n", r.problem, r.method,
+                   r.seed, r.outcome, r.gap, r.to_8.iterations, r.to_8.evaluations, r.to_8.seconds, r.to_12.iterations,
+                   r.to_12.evaluations, r.to_12.seconds);
   return out;
 }
 

@@ -28,7 +28,13 @@ template <class F> bool ProductManifold::each(const F& f) const {
 
 std::string ProductManifold::name() const {
   std::string out;
-  for (const auto& factor : factors_) out += (out.empty() ? "" : " x ") + factor->name();
+  for (std::size_t i = 0; i < factors_.size();) {
+    const std::string name = factors_[i]->name();
+    std::size_t end = i + 1;
+    while (end < factors_.size() && factors_[end]->name() == name) ++end;
+    out += (out.empty() ? "" : " x ") + (end - i > 1 ? std::to_string(end - i) + " times the " : "") + name;
+    i = end;
+  }
   return out;
 }
 
