@@ -180,6 +180,16 @@ TEST(HamiltonianMapsPage, ItsCodeIsThatOfTheTest) {
   EXPECT_EQ(foreign_blocks(read("docs/hamiltonian_maps.md"), "cpp", read("tests/hamiltonian_maps.cpp")), none);
 }
 
+TEST(OptimisationPage, WhatItNamesExists) {
+  const std::string page = read("docs/optimisation.md");
+  for (const char* heading : {"## A function of your own", "## Algorithm 1, and what its multipliers are",
+                              "## What is promised", "## The setting that we recommend"})
+    EXPECT_EQ(unknown_names(prose_of(section(page, heading))), none) << heading;
+}
+TEST(OptimisationPage, ItsCodeIsThatOfTheExample) {
+  EXPECT_EQ(foreign_blocks(read("docs/optimisation.md"), "cpp", read("examples/my_objective.cpp")), none);
+}
+
 TEST(Newton, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/newton.md"))), none); }
 TEST(Newton, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/newton.md"), "cpp", read("examples/implicit_step.cpp")), none);

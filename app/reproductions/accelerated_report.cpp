@@ -94,8 +94,9 @@ std::string figures() {
 
 std::string table(const AcceleratedFindings& findings, const std::string& problem) {
   std::string out =
-      "| method | iterations to 1e-8 | to 1e-12 | evaluations to 1e-12 | time to 1e-12 | arrived at 1e-12 |\n"
-      "|---|---|---|---|---|---|\n";
+      "| method | iterations to 1e-8 | to 1e-12 | evaluations to 1e-12 | time to 1e-12 | arrived at 1e-12 | at the end "
+      "|\n"
+      "|---|---|---|---|---|---|---|\n";
   for (const auto& method : accelerated_methods()) {
     const auto median = [&](const std::function<double(const AcceleratedRun&)>& count) {
       return median_of(findings, problem, method.name, count);
@@ -106,11 +107,12 @@ std::string table(const AcceleratedFindings& findings, const std::string& proble
       return r.problem == problem && r.method == method.name && r.to_12.iterations >= 0;
     });
     out += fmt::format(
-        "| {} | {} | {} | {} | {} | {} of {} |\n", method.name,
+        "| {} | {} | {} | {} | {} | {} of {} | {:.0e} |\n", method.name,
         shown(median([](const auto& r) { return double(r.to_8.iterations); })),
         shown(median([](const auto& r) { return double(r.to_12.iterations); })),
         shown(median([](const auto& r) { return r.to_12.iterations < 0 ? -1.0 : double(r.to_12.evaluations); })),
-        seconds < 0 ? "-" : duration(seconds), arrived, findings.study.instances);
+        seconds < 0 ? "-" : duration(seconds), arrived, findings.study.instances,
+        median([](const auto& r) { return std::max(0.0, r.gap); }));
   }
   return out;
 }
@@ -122,7 +124,8 @@ std::string report(const AcceleratedFindings& findings, const std::string& comma
       "the sizes below, {} instances each, medians. Algorithms 1 and 2 have their coefficient capped at s = 1 / L, "
       "where "
       "it is not said otherwise (p-ring = 2, t0 = 0.1, C = 1); *robust* and what follows it are tuned. Evaluations are "
-      "those of f, of its gradient and of a Hessian times a vector, each as much as one. At most {} iterations. Where "
+      "those of f, of its gradient and of a Hessian times a vector, each as much as one. At most {} iterations; the "
+      "last column is f above its minimum after the last. Where "
       "the minimum is not known (unbalanced Procrustes), it is the least that any method found; a method that ends in "
       "another local minimum has not arrived.\n",
       command, machine(), findings.study.instances, findings.study.iterations);
