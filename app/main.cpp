@@ -159,7 +159,8 @@ int main(int argc, char** argv) {
       return optimise(optimise_options);
     }
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
-    return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  "name a command: run, resume, view, plot, study, optimize, check, list or reproduce; see lagroid --help");
+    return refuse(
+        options.json, exit_bad_input, "invalid_command_line",
+        "name a command: run, resume, view, plot, study, optimize, check, list or reproduce; see lagroid --help");
   });
 }

@@ -6,10 +6,17 @@
 
 namespace lagroid::optimisation {
 
+namespace {
+
+/// What values near the minimum differ by for rounding alone.
+double rounding_of(const State& state) { return 64 * std::numeric_limits<double>::epsilon() * std::abs(state.value); }
+
+}  // namespace
+
 double backtrack(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
                  double first, double decrease, Point& to, Vector& buffer) {
   constexpr int most = 60;
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(state.value);
+  const double rounding = rounding_of(state);
   double t = first;
   for (int k = 0; k < most; ++k) {
     buffer = t * direction;
@@ -30,7 +37,7 @@ double secant_search(Problem& problem, Retraction retraction, const State& state
   constexpr int most = 30;
   constexpr double decrease = 1e-4;
   constexpr double furthest = 8;  // times the last, where the slope still falls
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(state.value);
+  const double rounding = rounding_of(state);
   double low = 0;
   double low_slope = slope;
   double high = std::numeric_limits<double>::infinity();
