@@ -3,6 +3,7 @@
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "reproductions/accelerated_report.hpp"
+#include "reproductions/constrained_maps.hpp"
 #include "reproductions/newton_report.hpp"
 #include "reproductions/time_steps.hpp"
 #include "shell.hpp"
@@ -10,8 +11,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -22,6 +25,7 @@ namespace {
 constexpr const char* newton_name = "newton-on-lie-groups";
 constexpr const char* time_name = "time-steps";
 constexpr const char* accelerated_name = "accelerated-optimization";
+constexpr const char* maps_name = "constrained-maps";
 
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {
@@ -162,57 +166,117 @@ int reproduce_accelerated(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
+int reproduce_maps(const ReproduceOptions& options, bool json) {
+  try {
+    require_writable(options.maps_out, map_report_files);
+  } catch (const OutputError& error) {
+    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
+  }
+  std::vector<MapMethod> methods;
+  {
+    Progress progress(maps_name, 100, !json);
+    methods = run_map_study(options.coarsest, options.map_refinements,
+                            [&](long done, long all) { progress.update(100 * done / all); });
+  }
+  std::string note;
+  const auto files =
+      write_map_report(methods,
+                       fmt::format("./lagroid reproduce {} --coarsest {} --refinements {} --out {}", maps_name,
+                                   options.coarsest, options.map_refinements, quoted(options.maps_out)),
+                       options.maps_out, note);
+  nlohmann::ordered_json result;
+  result["status"] = "done";
+  std::string text = fmt::format("{}: orders in q, p and tangent p\n", maps_name);
+  for (const auto& method : methods) {
+    const double q = map_order(method, [](const auto& e) { return e.q; });
+    const double p = map_order(method, [](const auto& e) { return e.p; });
+    const double tangent = map_order(method, [](const auto& e) { return e.tangent; });
+    result["orders"][method.problem][method.name] = {{"q", q}, {"p", p}, {"tangent", tangent}};
+    text += fmt::format("  {:<20} {:<32} {:6.2f} {:6.2f} {:6.2f}\n", method.problem, method.name, q, p, tangent);
+  }
+  return conclude(std::move(result), std::move(text), files, note, json);
+}
+
+void newton_options(CLI::App& command, ReproduceOptions& options) {
+  command.add_option("--out", options.newton_out, "the folder for report.md, tables, CSV and figures")
+      ->capture_default_str();
+  command.add_option("--smallest", options.newton.smallest, "the least N")
+      ->check(CLI::Range(2, 50))
+      ->capture_default_str();
+  command.add_option("--largest", options.newton.largest, "the greatest N; large ones take long (N^6)")
+      ->check(CLI::Range(2, 50))
+      ->capture_default_str();
+  command.add_option("--seeds", options.newton.seeds, "how many random starting points for each N")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command.add_option("--first-seed", options.newton.first_seed, "the first of their seeds")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+void time_options(CLI::App& command, ReproduceOptions& options) {
+  command.add_option("--out", options.time_out, "the folder for report.md, CSV and figures")->capture_default_str();
+  command.add_option("--refinements", options.refinements, "how many step sizes a method runs with")
+      ->check(CLI::Range(2, 12))
+      ->capture_default_str();
+}
+
+void accelerated_options(CLI::App& command, ReproduceOptions& options) {
+  command.add_option("--out", options.accelerated_out, "the folder for report.md, CSV and figures")
+      ->capture_default_str();
+  command.add_option("--instances", options.accelerated.instances, "how many random instances of each problem")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--first-seed", options.accelerated.first_seed, "the first of their seeds, 10 apart")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--iterations", options.accelerated.iterations, "at most, of every run")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+}
+
+void map_options(CLI::App& command, ReproduceOptions& options) {
+  command.add_option("--out", options.maps_out, "the folder for report.md, CSV and the figure")->capture_default_str();
+  command.add_option("--coarsest", options.coarsest, "the least number of steps")
+      ->check(CLI::Range(10, 10000))
+      ->capture_default_str();
+  command.add_option("--refinements", options.map_refinements, "how often it is doubled, and one")
+      ->check(CLI::Range(2, 12))
+      ->capture_default_str();
+}
+
+struct Reproduction {
+  const char* name;
+  const char* summary;
+  void (*options)(CLI::App& command, ReproduceOptions& options);
+  int (*run)(const ReproduceOptions& options, bool json);
+};
+constexpr Reproduction reproductions[] = {
+    {time_name, "fixed, adaptive and controlled steps, composed and split ones: error against time and evaluations",
+     time_options, reproduce_time_steps},
+    {newton_name, "Owren and Welfert, section 5: Newton, fixed point, Ceres and the path on O(N), and what they cost",
+     newton_options, reproduce_newton},
+    {maps_name, "Duruisseaux and Leok, sections 2 to 5.4.1: orders of constrained maps of types I, II and III",
+     map_options, reproduce_maps},
+    {accelerated_name, "Duruisseaux and Leok, Figure 1: accelerated optimisation on manifolds, and the competition",
+     accelerated_options, reproduce_accelerated}};
+
 }  // namespace
 
 void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json) {
   command.require_subcommand(1);
-  CLI::App* time = command.add_subcommand(
-      time_name, "fixed, adaptive and controlled steps, composed and split ones: error against time and evaluations");
-  time->add_option("--out", options.time_out, "the folder for report.md, CSV and figures")->capture_default_str();
-  time->add_option("--refinements", options.refinements, "how many step sizes a method runs with")
-      ->check(CLI::Range(2, 12))
-      ->capture_default_str();
-  time->add_flag("--json", json, "print one JSON object and nothing else on standard output");
-  time->callback([&options] { options.name = time_name; });
-  CLI::App* newton = command.add_subcommand(
-      newton_name, "Owren and Welfert, section 5: Newton, fixed point, Ceres and the path on O(N), and what they cost");
-  newton->add_option("--out", options.newton_out, "the folder for report.md, tables, CSV and figures")
-      ->capture_default_str();
-  newton->add_option("--smallest", options.newton.smallest, "the least N")
-      ->check(CLI::Range(2, 50))
-      ->capture_default_str();
-  newton->add_option("--largest", options.newton.largest, "the greatest N; large ones take long (N^6)")
-      ->check(CLI::Range(2, 50))
-      ->capture_default_str();
-  newton->add_option("--seeds", options.newton.seeds, "how many random starting points for each N")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  newton->add_option("--first-seed", options.newton.first_seed, "the first of their seeds")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  newton->add_flag("--json", json, "print one JSON object and nothing else on standard output");
-  newton->callback([&options] { options.name = newton_name; });
-  CLI::App* accelerated = command.add_subcommand(
-      accelerated_name, "Duruisseaux and Leok, Figure 1: accelerated optimisation on manifolds, and the competition");
-  accelerated->add_option("--out", options.accelerated_out, "the folder for report.md, CSV and figures")
-      ->capture_default_str();
-  accelerated->add_option("--instances", options.accelerated.instances, "how many random instances of each problem")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  accelerated->add_option("--first-seed", options.accelerated.first_seed, "the first of their seeds, 10 apart")
-      ->check(CLI::Range(0, 1'000'000))
-      ->capture_default_str();
-  accelerated->add_option("--iterations", options.accelerated.iterations, "at most, of every run")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  accelerated->add_flag("--json", json, "print one JSON object and nothing else on standard output");
-  accelerated->callback([&options] { options.name = accelerated_name; });
+  for (const Reproduction& each : reproductions) {
+    CLI::App* added = command.add_subcommand(each.name, each.summary);
+    each.options(*added, options);
+    added->add_flag("--json", json, "print one JSON object and nothing else on standard output");
+    added->callback([&options, &each] { options.name = each.name; });
+  }
 }
 
 int reproduce(const ReproduceOptions& options, bool json) {
-  if (options.name == time_name) return reproduce_time_steps(options, json);
-  if (options.name == accelerated_name) return reproduce_accelerated(options, json);
-  return reproduce_newton(options, json);
+  return std::find_if(std::begin(reproductions), std::end(reproductions),
+                      [&](const Reproduction& each) { return options.name == each.name; })
+      ->run(options, json);
 }
 
 }  // namespace lagroid::app

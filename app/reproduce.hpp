@@ -16,6 +16,9 @@ struct ReproduceOptions {
   int refinements = 7;
   AcceleratedStudy accelerated;
   std::string accelerated_out = "out/accelerated-optimization";
+  int coarsest = 40;
+  int map_refinements = 5;
+  std::string maps_out = "out/constrained-maps";
 };
 
 /// The subcommands of `reproduce`.

@@ -185,4 +185,28 @@ TEST_F(Optimise, FigureOneIsReproduced) {
     EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
 }
 
+TEST_F(Optimise, OrdersOfConstrainedMapsAreReproduced) {
+  const std::string out = (folder_ / "maps").string();
+  const auto found = summary("reproduce constrained-maps --refinements 3 --out " + out).at("orders");
+  const auto order = [&](const char* problem, const char* method, const char* of) {
+    return found.at(problem).at(method).at(of).get<double>();
+  };
+  for (const auto& [method, expected] : {std::pair("type II r = 0", 1),
+                                         {"type III r = 0", 1},
+                                         {"type I trapezoid (RATTLE)", 2},
+                                         {"type II r = 1 trapezoid", 2},
+                                         {"type II r = 2 Gauss", 2},
+                                         {"type II r = 3 Gauss", 2},
+                                         {"RATTLE triple jump", 4},
+                                         {"RATTLE Suzuki", 4}}) {
+    EXPECT_NEAR(order("spherical pendulum", method, "q"), expected, 0.2) << method;
+    EXPECT_NEAR(order("spherical pendulum", method, "tangent"), expected, 0.2) << method;
+    EXPECT_NEAR(order("spherical pendulum", method, "p"), 1, 0.2) << method;
+  }
+  for (int r = 0; r <= 4; ++r)
+    EXPECT_NEAR(order("planar pendulum", ("type II r = " + std::to_string(r)).c_str(), "q"), r + 1, 0.3) << r;
+  for (const char* name : {"report.md", "errors.csv", "figures.gp", "errors.svg"})
+    EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
+}
+
 }  // namespace
