@@ -44,8 +44,8 @@ std::string costs_csv(const AcceleratedFindings& findings) {
 /// Four panels: f above its minimum over iterations, by the methods whose kind `wanted` accepts.
 template <class Wanted> std::string curves_figure(const char* file, const Wanted& wanted) {
   std::string out = fmt::format(
-      "set terminal svg size 1040,900 background 'white' noenhanced\nset output '{}'\nset multiplot layout 2,2\n"
-      "set logscale xy\nset format y '%.0e'\nset yrange [1e-14:*]\nset xlabel 'iteration'\nset key bottom left\n",
+      "set terminal svg size 1040,1200 background 'white' noenhanced\nset output '{}'\nset multiplot layout 2,2\n"
+      "set logscale xy\nset format y '%.0e'\nset yrange [1e-14:*]\nset xlabel 'iteration'\nset key below\n",
       file);
   for (const std::string& problem : accelerated_problems()) {
     out += fmt::format("set title '{}: f above its minimum'\nplot ", problem);
@@ -72,8 +72,8 @@ std::string figures() {
   out += curves_figure(
       "tuned.svg", [](const AcceleratedMethod& m) { return m.kind == "tuned" || m.name == "Algorithm 1 adaptive"; });
   out +=
-      "set terminal svg size 1040,420 background 'white' noenhanced\nset output 'costs.svg'\nset multiplot layout 1,2\n"
-      "set logscale xy\nset ylabel 's of an iteration, without the gradient of f'\nset key top left\n";
+      "set terminal svg size 1040,500 background 'white' noenhanced\nset output 'costs.svg'\nset multiplot layout 1,2\n"
+      "set logscale xy\nset ylabel 's of an iteration, without the gradient of f'\nset key below\n";
   for (const auto& [along, other, value] : {std::tuple("n", "m", 20), std::tuple("m", "n", 2000)}) {
     out += fmt::format("set xlabel '{}'\nset title '{} = {}'\nplot ", along, other, value);
     bool first = true;

@@ -24,7 +24,7 @@ std::string errors_csv(const std::vector<MapMethod>& methods) {
 std::string figures(const std::vector<MapMethod>& methods) {
   std::string out =
       "# Draws errors.csv; run by lagroid, or by hand: gnuplot figures.gp\nset datafile separator ','\nset grid\n"
-      "set terminal svg size 1040,560 background 'white' noenhanced\nset output 'errors.svg'\nset multiplot layout "
+      "set terminal svg size 1040,620 background 'white' noenhanced\nset output 'errors.svg'\nset multiplot layout "
       "1,2\n"
       "set logscale xy\nset format y '%.0e'\nset xlabel 'steps'\nset key below\n";
   for (std::size_t i = 0; i < methods.size();) {
@@ -43,7 +43,8 @@ std::string figures(const std::vector<MapMethod>& methods) {
 std::string report(const std::vector<MapMethod>& methods, const std::string& command, bool pictures) {
   std::string out = fmt::format(
       "# Orders of constrained Hamiltonian maps\n\nWritten by\n\n    {}\n\n"
-      "Errors after T = 2 (planar pendulum: T = 8) against the solution by Taylor's method of order 19, in q, in the momentum as the map has "
+      "Errors after T = 2 (planar pendulum: T = 8) against the solution by Taylor's method of order 19, in q, in the "
+      "momentum as the map has "
       "it, "
       "and in its tangent part; orders from the last two numbers of steps whose errors are above round-off. With "
       "multipliers at the nodes the order ends at two, whatever r and the quadrature; composing the projected "

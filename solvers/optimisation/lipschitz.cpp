@@ -9,12 +9,15 @@ double largest_curvature(Problem& problem, const State& state, int steps) {
   Vector v = state.gradient;
   Vector h(v.size());
   double largest = 0;
+  constexpr double settled = 1e-3;
   for (int k = 0; k < steps; ++k) {
     const double length = v.norm();
     if (!(length > 0) || !std::isfinite(length)) break;
     v /= length;
     problem.hessian(state, v, h);
-    largest = std::max(largest, h.norm());
+    const double found = h.norm();
+    if (found <= (1 + settled) * largest) break;
+    largest = found;
     v = h;
   }
   // A function without curvature along its gradient: its size is the only scale there is.
@@ -22,7 +25,7 @@ double largest_curvature(Problem& problem, const State& state, int steps) {
 }
 
 double lipschitz_bound(Problem& problem, const State& state) {
-  constexpr int power_steps = 8;
+  constexpr int power_steps = 50;
   constexpr double safety = 1.1;  // power steps come from below
   if (const auto declared = problem.objective().lipschitz()) return *declared;
   return safety * largest_curvature(problem, state, power_steps);

@@ -5,8 +5,8 @@
 
 namespace lagroid::optimisation {
 
-/// The largest |eigenvalue| of the Riemannian Hessian at the state, by `steps` power steps from the gradient: from
-/// below.
+/// The largest |eigenvalue| of the Riemannian Hessian at the state, from below: by power steps from the gradient until
+/// one adds less than a thousandth, `steps` of them at most.
 double largest_curvature(Problem& problem, const State& state, int steps);
 
 /// L, a Lipschitz constant of the Riemannian gradient: the one that the objective declares, else an estimate at the
