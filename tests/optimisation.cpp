@@ -78,6 +78,7 @@ class BrokenSphere : public Manifold {
     moved = to - x;
     return true;
   }
+  double reach(const Vector& v) const override { return v.norm(); }
   bool logarithm(const Point& x, const Point& y, Vector& v) const override {
     v = y - x;
     return true;
@@ -304,23 +305,51 @@ TEST(Robust, TakesAThirdOfTheIterationsAndNeverDiverges) {
 }
 
 TEST(Methods, StayOnTheManifoldToRoundOff) {
-  const RandomInstance problem = brockett(3);
-  RobustDescent ours = robust();
-  HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive);
-  EulerLagrange euler_lagrange({});
-  GradientDescent descent({.c = 1});
-  ConjugateGradient conjugate;
-  TrustRegion trust;
-  for (Method* method : std::vector<Method*>{&ours, &adaptive, &euler_lagrange, &descent, &conjugate, &trust}) {
-    double worst = 0;
-    minimise(*problem.manifold, *problem.objective, problem.start, *method, {.iterations = 500},
-             {.callback = [&](const Iterate&, const Point& x) {
-               worst = std::max(worst, problem.manifold->residual(x));
-               return true;
-             }});
-    EXPECT_LT(worst, 1e-15 * 100) << method->name();
-    EXPECT_LT(worst, 5e-15) << method->name();
+  for (const auto make : {brockett, unbalanced, balanced}) {
+    const RandomInstance problem = make(3);
+    RobustDescent ours = robust();
+    HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive);
+    EulerLagrange euler_lagrange({});
+    GradientDescent descent({.c = 1});
+    ConjugateGradient conjugate;
+    TrustRegion trust;
+    for (Method* method : std::vector<Method*>{&ours, &adaptive, &euler_lagrange, &descent, &conjugate, &trust}) {
+      double worst = 0;
+      minimise(*problem.manifold, *problem.objective, problem.start, *method, {.iterations = 500},
+               {.callback = [&](const Iterate&, const Point& x) {
+                 worst = std::max(worst, problem.manifold->residual(x));
+                 return true;
+               }});
+      EXPECT_LT(worst, 1e-15 * double(problem.rows)) << method->name();
+    }
   }
+}
+
+TEST(Methods, FindTheMinimumFromManyStarts) {
+  // Markers of a body in three dimensions: small groups, long first steps.
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const RandomInstance problem(procrustes_instance(random_matrix(12, 3, seed), random_matrix(12, 3, seed + 50)),
+                                 seed);
+    ConjugateGradient conjugate;
+    TrustRegion trust;
+    RobustDescent ours = robust();
+    for (Method* method : std::vector<Method*>{&conjugate, &trust, &ours}) {
+      const Result r =
+          minimise(*problem.manifold, *problem.objective, problem.start, *method, {.relative_gradient = 1e-7});
+      EXPECT_TRUE(r.converged()) << method->name() << ", seed " << seed << ": " << r.message;
+    }
+  }
+}
+
+TEST(Methods, DoNotSlowDownWhereTheirStepsAreLong) {
+  // From a start where a step with multipliers does not exist at first, on O(60).
+  const RandomInstance problem(procrustes_instance(random_matrix(60, 60, 1), random_matrix(60, 60, 2)), 3);
+  RobustDescent ours = robust();
+  const Result r =
+      minimise(*problem.manifold, *problem.objective, problem.start, ours, {.iterations = 300, .seconds = 60});
+  EXPECT_GT(ours.shortened(), 0);
+  EXPECT_EQ(r.iterations, 300);
+  EXPECT_LT(r.residual, 6e-14);
 }
 
 TEST(Methods, FindTheMinimum) {

@@ -6,12 +6,14 @@
 #include <boost/tokenizer.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 namespace lagroid::app {
@@ -40,13 +42,15 @@ Dense read_csv(const fs::path& file) {
     try {
       for (const std::string& field : boost::tokenizer<boost::escaped_list_separator<char>>(line)) {
         ++column;
-        const std::string word = trimmed(field);
+        std::string word = trimmed(field);
+        if (word.starts_with('+')) word.erase(0, 1);
         double x = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
         if (error != std::errc() || end != word.data() + word.size())
-          throw DataError(
-              fmt::format("{}: line {}, column {}: \"{}\" is no number; give numbers alone, without a header",
-                          file.string(), number, column, word));
+          throw DataError(fmt::format(
+              "{}: line {}, column {}: \"{}\" is no number; give numbers alone, with commas between them and "
+              "without a header",
+              file.string(), number, column, word));
         values.push_back(x);
       }
     } catch (const boost::escaped_list_error& error) {
@@ -110,9 +114,7 @@ class Cholmod {
   AnyMatrix read(std::FILE* in, const fs::path& file) {
     constexpr int both_halves = 1;
     read_ = cholmod_read_matrix(in, both_halves, &kind_, &common_);
-    if (read_ == nullptr)
-      throw DataError(
-          fmt::format("{}: no MatrixMarket matrix; it begins with \"%%MatrixMarket matrix\"", file.string()));
+    if (read_ == nullptr) throw DataError(fmt::format("{}: CHOLMOD cannot read this MatrixMarket file", file.string()));
     const int type = kind_ == CHOLMOD_SPARSE ? static_cast<cholmod_sparse*>(read_)->xtype
                                              : static_cast<cholmod_dense*>(read_)->xtype;
     if (type != CHOLMOD_REAL) throw DataError(fmt::format("{}: complex; give a real matrix", file.string()));
@@ -133,12 +135,52 @@ class Cholmod {
   void* read_ = nullptr;
 };
 
+/// What CHOLMOD would take for something else: another kind of matrix, more or fewer entries than announced, indices
+/// from zero. Throws DataError.
+void require_market(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::size_t number = 1;
+  const auto refuse = [&](const std::string& problem) {
+    throw DataError(fmt::format("{}: line {}: {}", file.string(), number, problem));
+  };
+  std::getline(in, line);
+  std::transform(line.begin(), line.end(), line.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  if (!line.starts_with("%%matrixmarket matrix")) refuse("a MatrixMarket file begins with \"%%MatrixMarket matrix\"");
+  const bool sparse = line.find("coordinate") != std::string::npos;
+  const bool whole = line.find("general") != std::string::npos;
+  const bool skew = line.find("skew") != std::string::npos;
+  // CHOLMOD makes a Laplacian of patterns.
+  if (line.find("pattern") != std::string::npos) refuse("a pattern without numbers; give a real matrix");
+  if (line.find("complex") != std::string::npos) refuse("complex; give a real matrix");
+  long rows = -1;
+  long columns = -1;
+  long announced = -1;
+  long found = 0;
+  while (std::getline(in, line)) {
+    ++number;
+    if (trimmed(line).empty() || trimmed(line).front() == '%') continue;
+    std::istringstream words(line);
+    if (rows < 0) {
+      if (!(words >> rows >> columns) || (sparse && !(words >> announced)) || rows < 1 || columns < 1)
+        refuse(sparse ? "expected rows, columns and the number of entries" : "expected rows and columns");
+      if (!sparse) announced = whole ? rows * columns : rows * (skew ? rows - 1 : rows + 1) / 2;
+      continue;
+    }
+    if (++found > announced) refuse(fmt::format("more than the {} entries that were announced", announced));
+    long i = 1;
+    long j = 1;
+    double x = 0;
+    if ((sparse && !(words >> i >> j)) || !(words >> x)) refuse(fmt::format("\"{}\" is no entry", trimmed(line)));
+    if (i < 1 || j < 1 || i > rows || j > columns)
+      refuse(fmt::format("entry ({}, {}) of a matrix of {} x {}; indices begin at 1", i, j, rows, columns));
+  }
+  if (found < announced || rows < 0)
+    throw DataError(fmt::format("{}: {} entries where {} were announced", file.string(), found, announced));
+}
+
 AnyMatrix read_market(const fs::path& file) {
-  std::string header;
-  std::getline(std::ifstream(file) >> std::ws, header);
-  // CHOLMOD makes a Laplacian of these.
-  if (header.find("pattern") != std::string::npos)
-    throw DataError(fmt::format("{}: a pattern without numbers; give a real matrix", file.string()));
+  require_market(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "r"), &std::fclose);
   if (!in) throw DataError(fmt::format("{}: cannot be opened", file.string()));
   return Cholmod().read(in.get(), file);

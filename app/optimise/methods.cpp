@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -31,8 +32,10 @@ AcceleratedOptions accelerated(const Section& section, std::string name, bool re
 }
 
 double cap(const Section& section) {
-  return section.flag_or("capped", true) ? section.number_or("cap", 1, positive)
-                                         : std::numeric_limits<double>::infinity();
+  const bool capped = section.flag_or("capped", true);
+  const double cap = section.number_or("cap", 1, positive);
+  if (!capped && section.has("cap")) section.fail("cap", "goes with capped = true");
+  return capped ? cap : std::numeric_limits<double>::infinity();
 }
 
 Retraction retraction(const Section& section) {
@@ -125,7 +128,25 @@ std::vector<Parameter> hamiltonian_keys(bool adaptive) {
   return out;
 }
 
+const OptimiserEntry& named(const Section& method) {
+  std::vector<std::string> names;
+  for (const auto& entry : optimisers()) names.emplace_back(entry.name);
+  const std::string name = method.choice_or("name", names.front(), names);
+  return *std::find_if(optimisers().begin(), optimisers().end(), [&](const auto& e) { return e.name == name; });
+}
+
 }  // namespace
+
+std::optional<double> read_penalty(const Section& method) {
+  const auto& keys = named(method).keys;
+  if (std::none_of(keys.begin(), keys.end(), [](const Parameter& key) { return key.name == penalty_key.name; }))
+    return std::nullopt;
+  const double weight = method.number_or("penalty", 1e4, positive);
+  const bool penalises =
+      method.choice_or("constraint", "multipliers", {"multipliers", "projection", "penalty"}) == "penalty";
+  if (!penalises && method.has("penalty")) method.fail("penalty", "goes with constraint = \"penalty\"");
+  return penalises ? std::optional(weight) : std::nullopt;
+}
 
 std::span<const OptimiserEntry> optimisers() {
   static const std::vector<OptimiserEntry> all{
@@ -172,12 +193,8 @@ std::span<const OptimiserEntry> optimisers() {
 }
 
 MadeMethod read_optimiser(const Section& method) {
-  std::vector<std::string> names;
-  for (const auto& entry : optimisers()) names.emplace_back(entry.name);
-  const std::string name = method.choice_or("name", names.front(), names);
   try {
-    return std::find_if(optimisers().begin(), optimisers().end(), [&](const auto& e) { return e.name == name; })
-        ->read(method);
+    return named(method).read(method);
   } catch (const std::invalid_argument& error) {
     method.fail("", error.what());
   }

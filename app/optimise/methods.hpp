@@ -7,6 +7,7 @@
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -24,5 +25,8 @@ std::span<const OptimiserEntry> optimisers();
 
 /// The one that method.name names, with its keys.
 std::unique_ptr<optimisation::Method> read_optimiser(const Section& method);
+
+/// The weight of the penalty that takes the constraint's place, where method.constraint says so.
+std::optional<double> read_penalty(const Section& method);
 
 }  // namespace lagroid::app

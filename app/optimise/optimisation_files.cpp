@@ -78,7 +78,8 @@ nlohmann::ordered_json optimisation_json(const OptimisationScene& scene, const R
   out["method"] = scene.method->name();
   out["value"] = result.value;
   out["gradient"] = result.gradient;
-  out["constraints"] = scene.instance.manifold->residual(result.x);
+  out["constraints"] = result.residual;
+  if (scene.penalty) out["off_manifold"] = result.off_manifold;
   if (scene.least) {
     out["reference"] = *scene.least;
     out["reference_by"] = scene.instance.least_by;
@@ -96,7 +97,10 @@ std::string optimisation_text(const OptimisationScene& scene, const Result& resu
   std::string out = fmt::format("{} on the {}, {}: {}\n", scene.problem, scene.instance.manifold->name(),
                                 scene.method->name(), to_string(result.outcome));
   out += fmt::format("  value        {:.15g}\n  gradient     {:.2e}\n  constraints  {:.1e}\n", result.value,
-                     result.gradient, scene.instance.manifold->residual(result.x));
+                     result.gradient, result.residual);
+  if (scene.penalty)
+    out += fmt::format("  off it by    {:.1e} where the penalty was least, before the nearest point was taken\n",
+                       result.off_manifold);
   if (scene.least)
     out += fmt::format("  reference    {:.15g} by {}; f is above it by {:.1e}\n", *scene.least, scene.instance.least_by,
                        result.value - *scene.least);

@@ -34,6 +34,10 @@ Point read_start(const Section& scene, const Instance& instance, const std::file
     x = matrix.reshaped();
     if (start.flag_or("nearest", false) && !instance.manifold->nearest(x))
       start.fail("file", fmt::format("no point of the {} is nearest to it", instance.manifold->name()));
+    constexpr double on_it = 1e-8;
+    if (const double off = instance.manifold->residual(x); off > on_it)
+      start.fail("file", fmt::format("off the {} by {:.1e}; start.nearest = true takes the nearest point of it",
+                                     instance.manifold->name(), off));
   } else {
     x = optimisation::random_start(*instance.manifold, seed);
   }
@@ -51,7 +55,9 @@ Stopping read_stopping(const Section& scene) {
   const Section stop = scene.section_or_empty("stop");
   Stopping out;
   out.gradient = stop.number_or("gradient", 0, nonnegative);
-  out.relative_gradient = stop.number_or("relative_gradient", stop.has("gradient") ? 0 : 1e-8, nonnegative);
+  const bool other = stop.has("gradient") || stop.has("gap") || stop.has("value");
+  constexpr NumberRule share{"from 0 to below 1", [](double x) { return x >= 0 && x < 1; }};
+  out.relative_gradient = stop.number_or("relative_gradient", other ? 0 : 1e-8, share);
   out.iterations = stop.integer_or("iterations", out.iterations, 1, 1'000'000'000);
   if (stop.has("seconds")) out.seconds = stop.number("seconds", positive);
   out.patience = stop.integer_or("patience", out.patience, 0, 1'000'000'000);
@@ -69,19 +75,15 @@ OptimisationScene read_optimisation(const Section& scene, const std::filesystem:
   out.start = read_start(scene, out.instance, folder);
   const Section method = scene.section_or_empty("method");
   out.method = read_optimiser(method);
-  if (method.has("constraint") && method.text("constraint", "a way to meet it") == "penalty") {
-    out.flat = std::make_unique<optimisation::FlatSpace>(out.instance.manifold->size());
-    out.penalised = std::make_unique<optimisation::Penalised>(*out.instance.manifold, *out.instance.objective,
-                                                              method.number_or("penalty", 1e4, positive));
-  } else if (method.has("penalty")) {
-    method.fail("penalty", "goes with constraint = \"penalty\"");
-  }
+  out.penalty = read_penalty(method);
   out.stopping = read_stopping(scene);
   const Section stop = scene.section_or_empty("stop");
   const bool wants_gap = stop.has("gap");
   const double gap = stop.number_or("gap", 0, positive);
   const bool reference = scene.flag_or("reference", wants_gap);
   scene.finish();
+  if (out.penalty && (reference || wants_gap))
+    scene.fail(wants_gap ? "stop" : "reference", "a penalty goes below the minimum; stop by the gradient");
   if (reference || wants_gap) {
     if (!out.instance.least)
       scene.fail(wants_gap ? "stop" : "reference",

@@ -3,9 +3,7 @@
 
 #include "../scene_reader.hpp"
 
-#include <lagroid/solvers/optimisation/flat.hpp>
 #include <lagroid/solvers/optimisation/minimise.hpp>
-#include <lagroid/solvers/optimisation/penalised.hpp>
 #include <lagroid/systems/optimisation/instances.hpp>
 
 #include <filesystem>
@@ -21,17 +19,8 @@ struct OptimisationScene {
   optimisation::Point start;
   std::unique_ptr<optimisation::Method> method;
   optimisation::Stopping stopping;
-  std::optional<double> least;  ///< where linear algebra was asked for it
-  /// With constraint = "penalty": flat space, and the function with its penalty.
-  std::unique_ptr<optimisation::FlatSpace> flat;
-  std::unique_ptr<optimisation::Penalised> penalised;
-
-  const optimisation::Manifold& manifold() const {
-    return flat ? static_cast<const optimisation::Manifold&>(*flat) : *instance.manifold;
-  }
-  const optimisation::Objective& objective() const {
-    return penalised ? static_cast<const optimisation::Objective&>(*penalised) : *instance.objective;
-  }
+  std::optional<double> least;    ///< where linear algebra was asked for it
+  std::optional<double> penalty;  ///< the weight, with constraint = "penalty"
 };
 
 /// Reads all of it; files are seen from the folder of `file`. Throws SceneError.

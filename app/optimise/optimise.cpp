@@ -7,7 +7,11 @@
 #include "optimisation_files.hpp"
 #include "problems.hpp"
 
+#include <lagroid/solvers/optimisation/penalised.hpp>
+
 #include <fmt/format.h>
+
+#include <new>
 
 namespace lagroid::app {
 
@@ -41,7 +45,9 @@ void add_optimise_options(CLI::App& command, OptimiseOptions& options) {
   command.add_flag("--list", options.list, "list problems and methods with their keys");
 }
 
-int optimise(const OptimiseOptions& options) {
+namespace {
+
+int run(const OptimiseOptions& options) {
   if (options.list) {
     print(listing());
     return 0;
@@ -62,8 +68,13 @@ int optimise(const OptimiseOptions& options) {
       progress.update(now.iteration);
       return !guard.interrupted();
     };
-    result = optimisation::minimise(scene.manifold(), scene.objective(), scene.start, *scene.method, scene.stopping,
-                                    {.history = options.out.has_value(), .callback = watch});
+    const optimisation::Recording recording{.history = options.out.has_value(), .callback = watch};
+    const optimisation::Manifold& manifold = *scene.instance.manifold;
+    const optimisation::Objective& objective = *scene.instance.objective;
+    result = scene.penalty
+                 ? optimisation::minimise_penalised(manifold, objective, *scene.penalty, scene.start, *scene.method,
+                                                    scene.stopping, recording)
+                 : optimisation::minimise(manifold, objective, scene.start, *scene.method, scene.stopping, recording);
   }
   std::string text = optimisation_text(scene, result);
   auto json = optimisation_json(scene, result);
@@ -84,6 +95,18 @@ int optimise(const OptimiseOptions& options) {
   if (result.converged()) return 0;
   fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
   return result.outcome == optimisation::Outcome::interrupted ? exit_interrupted : exit_failed;
+}
+
+}  // namespace
+
+int optimise(const OptimiseOptions& options) {
+  try {
+    return run(options);
+  } catch (const std::bad_alloc&) {
+    return refuse(options.json, exit_failed, "out_of_memory",
+                  fmt::format("{}: out of memory; give a sparse matrix (.mtx), a smaller one, or fewer stop.iterations",
+                              options.scene));
+  }
 }
 
 }  // namespace lagroid::app

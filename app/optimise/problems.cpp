@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <exception>
 #include <string>
 
 namespace lagroid::app {
@@ -47,28 +47,26 @@ optimisation::SymmetricOperator read_symmetric(const Section& scene, const fs::p
   return std::visit([](const auto& matrix) { return optimisation::SymmetricOperator::of(matrix); }, a);
 }
 
-/// What the problem says of data that do not fit.
-template <class Make> Instance made(const Section& scene, const Make& make) {
+/// The instance; what it says of data that do not fit is told of table.key.
+template <class Make> Instance made(const Section& scene, const char* table, const char* key, const Make& make) {
   try {
     return make();
-  } catch (const std::invalid_argument& error) {
-    scene.fail("problem", error.what());
-  } catch (const std::runtime_error& error) {
-    scene.fail("data", error.what());
+  } catch (const std::exception& error) {
+    scene.section(table, "").fail(key, error.what());
   }
 }
 
 Instance read_rayleigh(const Section& scene, const fs::path& folder) {
   const auto a = read_symmetric(scene, folder);
   if (a.size < 2) scene.section("data", "").fail("A", "a matrix of 1 x 1 has one eigenvalue");
-  return made(scene, [&] { return optimisation::rayleigh_instance(a); });
+  return made(scene, "data", "A", [&] { return optimisation::rayleigh_instance(a); });
 }
 
 Instance read_brockett(const Section& scene, const fs::path& folder) {
   const auto a = read_symmetric(scene, folder);
   const auto weights = scene.section("parameters", "the weights")
                            .list("weights", "one for each eigenvalue, increasing from zero or more");
-  return made(scene, [&] {
+  return made(scene, "parameters", "weights", [&] {
     return optimisation::brockett_instance(
         a, Eigen::Map<const Eigen::VectorXd>(weights.data(), Eigen::Index(weights.size())));
   });
@@ -77,7 +75,7 @@ Instance read_brockett(const Section& scene, const fs::path& folder) {
 Instance read_procrustes(const Section& scene, const fs::path& folder) {
   const Eigen::MatrixXd a = dense(read_data(scene, "A", folder));
   const Eigen::MatrixXd b = dense(read_data(scene, "B", folder));
-  return made(scene, [&] { return optimisation::procrustes_instance(a, b); });
+  return made(scene, "data", "B", [&] { return optimisation::procrustes_instance(a, b); });
 }
 
 const Parameter data_a{"data.A", "", "", "a symmetric matrix: a file, or {random = \"symmetric\", rows, seed}"};

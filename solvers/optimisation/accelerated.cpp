@@ -47,7 +47,6 @@ Step Accelerated::advance(Problem& problem, State& state) {
     uphill = before_.dot(v_) > 0;
   }
   bool found = step(problem, state.x);
-  // Half of what the sphere takes is safe for the Stiefel manifold as well.
   constexpr int most = 40;
   double longest = 0.5;
   for (int k = 0; !found && options_.rescale && k < most; ++k, longest /= 2) {
@@ -55,8 +54,8 @@ Step Accelerated::advance(Problem& problem, State& state) {
       ++shortened_;
       manifold.project(state.x, v_);
     }
-    const double length = v_.norm();
-    if (!std::isfinite(length)) return Step::none;
+    const double length = manifold.reach(v_);
+    if (!(length > 0) || !std::isfinite(length)) return Step::none;
     v_ *= longest / length;
     found = step(problem, state.x);
   }

@@ -17,7 +17,7 @@ void ConjugateGradient::begin(Problem&, const State& state) {
 }
 
 Step ConjugateGradient::advance(Problem& problem, State& state) {
-  constexpr double flat = 0.3;
+  constexpr double flat = 0.1;
   double slope = state.gradient.dot(direction_);
   if (!(slope < 0)) {
     direction_ = -state.gradient;

@@ -30,6 +30,7 @@ class FlatSpace final : public Manifold {
     to = x + z;
     return true;
   }
+  double reach(const Vector&) const override { return 0; }
   bool logarithm(const Point& x, const Point& y, Vector& v) const override {
     v = y - x;
     return true;

@@ -34,24 +34,35 @@ double backtrack(Problem& problem, Retraction retraction, const State& state, co
 
 double secant_search(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
                      double first, double flat, State& to, Vector& buffer) {
-  constexpr int most = 30;
+  constexpr int most = 40;
+  constexpr int patience = 8;  // then a point that falls is enough
   constexpr double decrease = 1e-4;
   constexpr double furthest = 8;  // times the last, where the slope still falls
   const double rounding = rounding_of(state);
   double low = 0;
   double low_slope = slope;
   double high = std::numeric_limits<double>::infinity();
+  double best = 0;
+  double best_value = std::numeric_limits<double>::infinity();
   double t = first;
-  for (int k = 0; k < most && t > 0 && std::isfinite(t); ++k) {
-    buffer = t * direction;
-    bool falls = problem.manifold().retract(retraction, state.x, buffer, to.x);
+  const auto evaluate = [&](double at) {
+    buffer = at * direction;
+    if (!problem.manifold().retract(retraction, state.x, buffer, to.x)) return false;
+    problem.evaluate(to);
+    return true;
+  };
+  for (int k = 0; k < most && t > 0 && std::isfinite(t) && !(k >= patience && best > 0); ++k) {
+    bool falls = evaluate(t);
     double there = std::numeric_limits<double>::quiet_NaN();
     if (falls) {
-      problem.evaluate(to);
       there = to.gradient.dot(direction);
       falls = to.value <= state.value + decrease * t * slope + rounding;
     }
     if (falls && std::abs(there) <= flat * std::abs(slope)) return t;
+    if (falls && to.value < best_value) {
+      best = t;
+      best_value = to.value;
+    }
     const double secant = low + (t - low) * low_slope / (low_slope - there);
     if (falls && there < 0) {
       const double ahead = there > low_slope ? secant : furthest * t;
@@ -64,7 +75,7 @@ double secant_search(Problem& problem, Retraction retraction, const State& state
       t = there > 0 ? std::clamp(secant, low + 0.1 * (high - low), low + 0.9 * (high - low)) : low + 0.3 * (high - low);
     }
   }
-  return 0;
+  return best > 0 && evaluate(best) ? best : 0;
 }
 
 }  // namespace lagroid::optimisation

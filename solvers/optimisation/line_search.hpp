@@ -14,7 +14,8 @@ double backtrack(Problem& problem, Retraction retraction, const State& state, co
 
 /// The step t for which f(R_x(t d)) <= f(x) + 1e-4 t slope, as above near the minimum, and the slope there, of which d
 /// itself stands for the curve's direction, is at most `flat` times the one at x: by secants from `first`, between
-/// bounds once there are two. `to` is evaluated there. 0 where none is found.
+/// bounds once there are two. Where that slope is not met in a few trials, for d stands for the curve's direction near
+/// x only, the lowest of them. `to` is evaluated there. 0 where none falls.
 double secant_search(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
                      double first, double flat, State& to, Vector& buffer);
 

@@ -27,7 +27,7 @@ std::string_view to_string(Retraction retraction);
 ///
 /// Invariants (checked by `manifold_laws`): `project` is the orthogonal projection onto the tangent space; `retract`
 /// lands on Q, keeps the point for v = 0 and has the derivative of the identity there; `logarithm` inverts the
-/// exponential; `orthographic` differs from x + z by a normal vector at x.
+/// exponential; `orthographic` differs from x + z by a normal vector at x, and is there for every z of reach 1/2.
 ///
 /// Operations use buffers of the manifold: one object for each thread.
 class Manifold {
@@ -55,6 +55,8 @@ class Manifold {
   /// The step with multipliers, x+ = x + z - dC^T lambda with C(x+) = 0, for any vector z at x ([V] (3.19)): `to`, and
   /// `moved` = x+ - x without cancellation. False where |tangent part of z| is too long for it.
   virtual bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const = 0;
+  /// A norm of tangent vectors; the step with multipliers exists where it is at most 1/2.
+  virtual double reach(const Vector& v) const = 0;
   /// The tangent vector at x whose geodesic reaches y at the time one. False where it is not known in closed form or
   /// not unique.
   virtual bool logarithm(const Point& x, const Point& y, Vector& v) const = 0;

@@ -24,6 +24,8 @@ std::string_view to_string(Outcome outcome) {
       return "interrupted";
     case Outcome::infeasible_start:
       return "infeasible_start";
+    case Outcome::off_manifold:
+      return "off_manifold";
     case Outcome::not_finite:
       return "not_finite";
     case Outcome::no_step:
@@ -117,8 +119,10 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
   // What rounding leaves of a gradient that vanishes.
   const double rounding = 4e-15 * std::sqrt(double(manifold.size())) * state.euclidean.norm();
   if (out.gradient <= rounding)
-    return end(out.value <= stopping.value ? Outcome::converged : Outcome::stationary_start,
-               "the gradient vanishes at the start, which need not be a minimum; begin elsewhere");
+    return out.value <= stopping.value
+               ? end(Outcome::converged)
+               : end(Outcome::stationary_start,
+                     "the gradient vanishes at the start, which need not be a minimum; begin elsewhere");
 
   Progress progress;
   const auto record = [&](long iteration) {
@@ -137,7 +141,7 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
   method.begin(problem, state);
   for (long k = 0;; ++k) {
     if (recording.callback && !recording.callback(now, state.x))
-      return end(Outcome::interrupted, fmt::format("interrupted after {} iterations", k));
+      return end(Outcome::interrupted, fmt::format("interrupted after {} iterations; go on from the best point", k));
     if (now.gradient <= small || now.value <= stopping.value) {
       out.x = state.x;
       out.value = now.value;
@@ -151,10 +155,12 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
                              stopping.patience, out.gradient));
     if (k == stopping.iterations)
       return end(Outcome::iteration_limit,
-                 fmt::format("{} iterations did not suffice; |grad f| = {:.1e}", k, out.gradient));
+                 fmt::format("{} iterations did not suffice, |grad f| = {:.1e}; allow more, or take another method", k,
+                             out.gradient));
     if (seconds() > stopping.seconds)
       return end(Outcome::time_limit,
-                 fmt::format("{:g} s did not suffice; |grad f| = {:.1e}", stopping.seconds, out.gradient));
+                 fmt::format("{:g} s did not suffice, |grad f| = {:.1e}; allow more, or take another method",
+                             stopping.seconds, out.gradient));
     if (method.advance(problem, state) == Step::none)
       return end(Outcome::no_step, fmt::format("{} finds no step after {} iterations; take a smaller one or another "
                                                "method",

@@ -21,6 +21,7 @@ enum class Outcome {
   time_limit,        ///< as long as was allowed
   interrupted,       ///< the callback said so
   infeasible_start,  ///< the start is not on the manifold
+  off_manifold,      ///< a penalty was too weak (`minimise_penalised`)
   not_finite,        ///< a NaN or an infinity appeared: in the data, or because the method diverged
   no_step,           ///< the method's step does not exist: the manifold is left, or no step decreases f
 };
@@ -98,9 +99,11 @@ struct Stopping {
 struct Result {
   Outcome outcome = Outcome::not_finite;
   Point x;
-  double value = 0;
-  double gradient = 0;
-  double residual = 0;  ///< of the constraints
+  /// Not a number where nothing was evaluated.
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double gradient = std::numeric_limits<double>::quiet_NaN();
+  double residual = std::numeric_limits<double>::quiet_NaN();  ///< of the constraints
+  double off_manifold = 0;                                     ///< of a penalty: what it left of them
   long iterations = 0;
   double seconds = 0;
   Evaluations evaluations;

@@ -1,8 +1,7 @@
 #pragma once
 /// A constraint as a part of the function ([V] 5.5).
 
-#include <lagroid/solvers/optimisation/manifold.hpp>
-#include <lagroid/solvers/optimisation/objective.hpp>
+#include <lagroid/solvers/optimisation/minimise.hpp>
 
 #include <string>
 
@@ -26,5 +25,11 @@ class Penalised final : public Objective {
   const Objective& objective_;
   double weight_;
 };
+
+/// `minimise` without the constraint but with its penalty, and then the nearest point of the manifold: value and
+/// gradient are f's there, `off_manifold` is what the penalty left. The outcome is `off_manifold` where that is more
+/// than a tenth. Value, gradient and history until then are those of the penalised function.
+Result minimise_penalised(const Manifold& manifold, const Objective& objective, double weight, const Point& start,
+                          Method& method, const Stopping& stopping, const Recording& recording = {});
 
 }  // namespace lagroid::optimisation

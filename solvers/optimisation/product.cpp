@@ -114,6 +114,16 @@ bool ProductManifold::orthographic(const Point& x, const Vector& z, Point& to, V
   });
 }
 
+double ProductManifold::reach(const Vector& v) const {
+  double out = 0;
+  each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(v);
+    out = std::max(out, factor.reach(at.x));
+    return true;
+  });
+  return out;
+}
+
 bool ProductManifold::logarithm(const Point& x, const Point& y, Vector& v) const {
   v.resize(size());
   return each([&](const Manifold& factor, Buffers& at, const auto& part) {

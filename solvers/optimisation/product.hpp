@@ -30,6 +30,7 @@ class ProductManifold final : public Manifold {
   bool offers(Retraction retraction) const override;
   bool retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const override;
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
+  double reach(const Vector& v) const override;
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override;

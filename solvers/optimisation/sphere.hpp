@@ -24,6 +24,7 @@ class Sphere final : public Manifold {
   bool offers(Retraction) const override { return true; }
   bool retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const override;
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
+  double reach(const Vector& v) const override { return v.norm(); }
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 2 ? 1 : 0; }

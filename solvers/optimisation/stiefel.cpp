@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -36,17 +37,24 @@ bool solve_lyapunov(const Matrix& k, const Matrix& f, Matrix& d) {
   const Eigen::MatrixXcd& u = schur.matrixU();
   const Eigen::MatrixXcd& r = schur.matrixT();
   Eigen::MatrixXcd y = u.transpose() * f * u;
+  const double least_pivot = 1e-14 * (1 + r.norm());
   for (Eigen::Index j = 0; j < m; ++j)
     for (Eigen::Index i = 0; i < m; ++i) {
       std::complex<double> sum = y(i, j);
       for (Eigen::Index l = 0; l < i; ++l) sum -= r(l, i) * y(l, j);
       for (Eigen::Index l = 0; l < j; ++l) sum -= y(i, l) * r(l, j);
       const std::complex<double> pivot = r(i, i) + r(j, j);
-      if (std::abs(pivot) < 1e-14 * (1 + r.norm())) return false;
+      if (std::abs(pivot) < least_pivot) return false;
       y(i, j) = sum / pivot;
     }
   d = (u.conjugate() * y * u.adjoint()).real();
   return true;
+}
+
+/// The largest singular value of V, of which `gram` is V^T V.
+double spectral_norm(const Matrix& gram) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()(gram.rows() - 1)));
 }
 
 }  // namespace
@@ -218,6 +226,19 @@ bool Stiefel::multipliers() const {
     normal_ -= 0.5 * square_;
     last = size;
   }
+  // W is the skew part of S + W, and (S + W)^T (S + W) = I - B^T B.
+  product_.noalias() = skew_.transpose() * skew_;
+  if (spectral_norm(product_) >= 1) return false;
+  square_ = gram_ - product_;
+  if (spectral_norm(square_) >= 1) return false;
+  if (n_ == m_) {
+    // S = (I - W^T W)^(1/2).
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram_);
+    const Eigen::VectorXd t =
+        eigen.eigenvalues().unaryExpr([](double w) { return -w / (1 + std::sqrt(std::max(0.0, 1 - w))); });
+    normal_.noalias() = eigen.eigenvectors() * t.asDiagonal() * eigen.eigenvectors().transpose();
+    return true;
+  }
   for (int k = 0; k < most; ++k) {
     residual();
     const double size = square_.norm();
@@ -251,6 +272,12 @@ bool Stiefel::orthographic(const Point& x, const Vector& z, Point& to, Vector& m
   to = x + moved;
   polish(to);
   return true;
+}
+
+double Stiefel::reach(const Vector& v) const {
+  const ConstMap vector(v.data(), n_, m_);
+  symmetric_product(vector, vector, gram_);
+  return gram_.allFinite() ? spectral_norm(gram_) : std::numeric_limits<double>::infinity();
 }
 
 bool Stiefel::logarithm(const Point& x, const Point& y, Vector& v) const {

@@ -39,6 +39,7 @@ class Stiefel final : public Manifold {
   /// the symmetric part of X^T Z). One Newton-Schulz step X <- X (3 I - X^T X) / 2 keeps X^T X = I to round-off.
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
   /// Known for m = n: X log(X^T Y). False for m < n, in the other component and at half turns.
+  double reach(const Vector& v) const override;
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   /// P_X(h - V sym(X^T G)).
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;

@@ -8,7 +8,7 @@ namespace lagroid::optimisation {
 
 void TrustRegion::begin(Problem& problem, const State& state) {
   largest_ = options_.largest_radius > 0 ? options_.largest_radius : std::sqrt(double(problem.manifold().dimension()));
-  radius_ = options_.first_radius > 0 ? options_.first_radius : largest_ / 8;
+  radius_ = options_.first_radius > 0 ? std::min(options_.first_radius, largest_) : largest_ / 8;
   first_gradient_ = state.gradient.norm();
   for (Vector* v : {&step_, &curved_step_, &residual_, &direction_, &curved_}) v->setZero(state.x.size());
   to_ = state.x;

@@ -1,5 +1,6 @@
 #include <lagroid/systems/optimisation/procrustes.hpp>
 
+#include <fmt/format.h>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -15,8 +16,12 @@ using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
 }  // namespace
 
 Procrustes::Procrustes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) : a_(a), b_(b) {
-  if (a.rows() != b.rows()) throw std::invalid_argument("Procrustes: A and B have as many rows");
-  if (b.cols() > a.cols()) throw std::invalid_argument("Procrustes: B has no more columns than A");
+  if (a.rows() != b.rows())
+    throw std::invalid_argument(
+        fmt::format("Procrustes: A has {} rows and B {}; they need the same number", a.rows(), b.rows()));
+  if (b.cols() > a.cols())
+    throw std::invalid_argument(
+        fmt::format("Procrustes: A has {} columns and B {}; B may have no more than A", a.cols(), b.cols()));
   residual_.resize(b.rows(), b.cols());
 }
 

@@ -40,7 +40,7 @@ Brockett::Brockett(SymmetricOperator a, Eigen::VectorXd weights)
     throw std::invalid_argument("Brockett: give one to n weights for an n x n matrix");
   for (Eigen::Index i = 0; i < weights_.size(); ++i)
     if (!(weights_(i) >= (i > 0 ? weights_(i - 1) : 0)))
-      throw std::invalid_argument("Brockett: weights are 0 <= mu_1 <= ... <= mu_m");
+      throw std::invalid_argument("Brockett: the weights have to satisfy 0 <= mu_1 <= ... <= mu_m");
   lipschitz_ = 2 * width(a_) * weights_(weights_.size() - 1);
 }
 

@@ -98,8 +98,13 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
   }
   law("a step with multipliers differs from its vector by a normal one", 1e-13, [&] {
     const Point x = draw_point(manifold);
-    Vector z = draw_ambient(manifold);
-    z *= 0.4 / z.norm();
+    Vector z = draw_tangent(manifold, x, 1);
+    const double size = *rc::gen::element(0.0, 1e-8, 0.1, 0.5);
+    if (const double reach = manifold.reach(z); reach > 0) z *= size / reach;
+    const Vector free = draw_ambient(manifold);
+    Vector tangent = free;
+    manifold.project(x, tangent);
+    z += free - tangent;
     Point to;
     Vector moved;
     if (!manifold.orthographic(x, z, to, moved)) return 1.0;
