@@ -2,14 +2,14 @@
 set datafile separator ','
 set grid
 
-set terminal svg size 1040,900 background 'white' noenhanced
+set terminal svg size 1040,1200 background 'white' noenhanced
 set output 'figure_1.svg'
 set multiplot layout 2,2
 set logscale xy
 set format y '%.0e'
 set yrange [1e-14:*]
 set xlabel 'iteration'
-set key bottom left
+set key below
 set title 'Rayleigh: f above its minimum'
 plot 'curves.csv' using (column('iteration') + 1):((strcol('problem') eq 'Rayleigh') && (strcol('method') eq 'Algorithm 1 adaptive') && (column('gap') > 0) ? column('gap') : NaN) with lines linewidth 1.5  title 'Algorithm 1 adaptive', \
   'curves.csv' using (column('iteration') + 1):((strcol('problem') eq 'Rayleigh') && (strcol('method') eq 'Algorithm 1 direct') && (column('gap') > 0) ? column('gap') : NaN) with lines linewidth 1.5  title 'Algorithm 1 direct', \
@@ -51,14 +51,14 @@ set output
 unset logscale
 set yrange [*:*]
 
-set terminal svg size 1040,900 background 'white' noenhanced
+set terminal svg size 1040,1200 background 'white' noenhanced
 set output 'tuned.svg'
 set multiplot layout 2,2
 set logscale xy
 set format y '%.0e'
 set yrange [1e-14:*]
 set xlabel 'iteration'
-set key bottom left
+set key below
 set title 'Rayleigh: f above its minimum'
 plot 'curves.csv' using (column('iteration') + 1):((strcol('problem') eq 'Rayleigh') && (strcol('method') eq 'Algorithm 1 adaptive') && (column('gap') > 0) ? column('gap') : NaN) with lines linewidth 1.5  title 'Algorithm 1 adaptive', \
   'curves.csv' using (column('iteration') + 1):((strcol('problem') eq 'Rayleigh') && (strcol('method') eq 'robust') && (column('gap') > 0) ? column('gap') : NaN) with lines linewidth 1.5  title 'robust', \
@@ -96,12 +96,12 @@ set output
 unset logscale
 set yrange [*:*]
 
-set terminal svg size 1040,420 background 'white' noenhanced
+set terminal svg size 1040,500 background 'white' noenhanced
 set output 'costs.svg'
 set multiplot layout 1,2
 set logscale xy
 set ylabel 's of an iteration, without the gradient of f'
-set key top left
+set key below
 set xlabel 'n'
 set title 'm = 20'
 plot 'costs.csv' using (column('m') == 20 ? column('n') : NaN):'ours' smooth unique with linespoints pointtype 7 pointsize 0.5 title 'Algorithm 1, robust', \

@@ -1,7 +1,7 @@
 # Draws errors.csv; run by lagroid, or by hand: gnuplot figures.gp
 set datafile separator ','
 set grid
-set terminal svg size 1040,560 background 'white' noenhanced
+set terminal svg size 1040,620 background 'white' noenhanced
 set output 'errors.svg'
 set multiplot layout 1,2
 set logscale xy

@@ -142,7 +142,7 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
   for (long k = 0;; ++k) {
     if (recording.callback && !recording.callback(now, state.x))
       return end(Outcome::interrupted, fmt::format("interrupted after {} iterations; go on from the best point", k));
-    if (now.gradient <= small || now.value <= stopping.value) {
+    if ((small > 0 && now.gradient <= small) || now.value <= stopping.value) {
       out.x = state.x;
       out.value = now.value;
       out.gradient = now.gradient;

@@ -87,7 +87,7 @@ struct Iterate {
 
 /// What ends the loop; the first that holds.
 struct Stopping {
-  double gradient = 0;                                      ///< |grad f| at most this
+  double gradient = 0;                                      ///< |grad f| at most this; 0: not asked
   double relative_gradient = 0;                             ///< or this times the one at the start
   double value = -std::numeric_limits<double>::infinity();  ///< f at most this: the minimum, where known, and a gap
   long iterations = 10000;
