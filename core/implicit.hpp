@@ -26,53 +26,60 @@ template <int N> struct Root {
   Matrix<double, N, N> inverse;
 };
 
-/// By Newton's method, with steps halved until the residual falls.
+/// By Newton's method, with steps halved until the residual falls, until each equation is left with the rounding of its
+/// terms: of F's derivatives times what they multiply, unknowns and parameters.
 template <int N, int M, class F>
 Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vector<double, M>& parameters) {
-  using J = Jet<double, N>;
+  using J = Jet<double, N + M>;
   constexpr int most_iterations = 60;
   constexpr int most_halvings = 20;
-  constexpr double nearly_done = 1e-10;  // the square of what is left then is round-off
-  constexpr double slow = 1e-6;          // steps this small that do not fall are round-off
-  const Vector<J, M> fixed = constants<J>(parameters);
-  const auto at = [&](const Vector<double, N>& x) {
-    Vector<J, N> seed;
-    for (int i = 0; i < N; ++i) seed(i) = J::variable(x(i), i);
-    return Vector<J, N>(residual(seed, fixed));
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  constexpr double floor = 100;  // times that is as far as some get
+  struct At {
+    Vector<double, N> value;
+    Matrix<double, N, N> jacobian;
+    double largest;  ///< |F_i|
+    double excess;   ///< |F_i| over its rounding
   };
-  const auto norm = [](const Vector<J, N>& r) {
-    double largest = 0;
-    for (int i = 0; i < N; ++i)
-      largest = std::isfinite(r(i).value) ? std::max(largest, std::abs(r(i).value)) : INFINITY;
-    return largest;
+  const auto at = [&](const Vector<double, N>& x) {
+    Vector<J, N> unknown;
+    Vector<J, M> fixed;
+    for (int i = 0; i < N; ++i) unknown(i) = J::variable(x(i), i);
+    for (int i = 0; i < M; ++i) fixed(i) = J::variable(parameters(i), N + i);
+    const Vector<J, N> f = residual(unknown, fixed);
+    At out{{}, {}, 0, 0};
+    for (int i = 0; i < N; ++i) {
+      const Vector<double, N + M> slope = f(i).gradient();
+      out.value(i) = f(i).value;
+      out.jacobian.row(i) = slope.template head<N>().transpose();
+      const double terms = slope.template head<N>().cwiseAbs().dot(x.cwiseAbs()) +
+                           slope.template tail<M>().cwiseAbs().dot(parameters.cwiseAbs());
+      const bool finite = std::isfinite(out.value(i)) && std::isfinite(terms);
+      const double size = finite ? std::abs(out.value(i)) : INFINITY;
+      out.largest = std::max(out.largest, size);
+      if (size > 0) out.excess = std::max(out.excess, finite ? size / (rounding * terms) : INFINITY);
+    }
+    return out;
   };
   Root<N> root{guess, {}};
-  Vector<J, N> f = at(root.x);
+  At now = at(root.x);
   double last = INFINITY;
-  double size = root.x.cwiseAbs().maxCoeff();
-  for (int iteration = 0; iteration < most_iterations && std::isfinite(norm(f)); ++iteration) {
-    Matrix<double, N, N> jacobian;
-    Vector<double, N> value;
-    for (int i = 0; i < N; ++i) {
-      value(i) = f(i).value;
-      jacobian.row(i) = f(i).gradient().transpose();
-    }
-    root.inverse = jacobian.inverse();
-    const Vector<double, N> step = root.inverse * value;
-    const double length = step.cwiseAbs().maxCoeff();
-    if (!std::isfinite(length)) break;
-    size = std::max(size, (root.x - step).cwiseAbs().maxCoeff());
-    if (length <= nearly_done * size || (length <= slow * size && length >= last / 2)) {
+  for (int iteration = 0; iteration < most_iterations && std::isfinite(now.largest); ++iteration) {
+    root.inverse = now.jacobian.inverse();
+    const Vector<double, N> step = root.inverse * now.value;
+    if (!step.allFinite()) break;
+    if (now.excess <= 1 || (now.excess <= floor && now.excess >= last / 2)) {
       root.x -= step;
       return root;
     }
-    last = length;
+    last = now.excess;
     double part = 1;
-    Vector<J, N> next = at(root.x - step);
-    for (int halving = 0; halving < most_halvings && !(norm(next) < norm(f)) && length > slow * size; ++halving)
+    At next = at(root.x - step);
+    for (int halving = 0; halving < most_halvings && !(next.largest < now.largest) && !(next.excess <= floor);
+         ++halving)
       next = at(root.x - (part /= 2) * step);
     root.x -= part * step;
-    f = next;
+    now = next;
   }
   root.x.setConstant(std::numeric_limits<double>::quiet_NaN());
   root.inverse.setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -18,13 +18,15 @@ namespace lagroid {
 
 namespace detail {
 
-/// The factors of an equilibrated matrix.
-template <int Size> class EquilibratedFactor {
+/// The factors of an equilibrated matrix ((A, B), (C, 0)) of N + D rows. B and C are brought to the size of A first:
+/// the rows and columns of (epsilon I, B; B^T, 0) look balanced as they are.
+template <int N, int D> class EquilibratedFactor {
  public:
-  using Square = Matrix<double, Size, Size>;
-  using Column = Vector<double, Size>;
+  static constexpr int size = N + D;
+  using Square = Matrix<double, size, size>;
+  using Column = Vector<double, size>;
 
-  explicit EquilibratedFactor(const Square& a) : scaling_(Scaling<Size>::equilibrate(a)), lu_(scaling_.apply(a)) {
+  explicit EquilibratedFactor(const Square& a) : scaling_(balanced(a)), lu_(scaling_.apply(a)) {
     lu_.setThreshold(1e-12);
   }
   bool regular() const { return lu_.isInvertible(); }
@@ -34,7 +36,24 @@ template <int Size> class EquilibratedFactor {
   }
 
  private:
-  Scaling<Size> scaling_;
+  static Scaling<size> balanced(const Square& a) {
+    Scaling<size> first{Column::Ones(), Column::Ones()};
+    if constexpr (D > 0) {
+      const auto ratio = [](double x, double of) {
+        return x > 0 && of > 0 && std::isfinite(x / of) ? std::exp2(std::round(std::log2(x / of))) : 1.0;
+      };
+      const double block = a.template topLeftCorner<N, N>().cwiseAbs().maxCoeff();
+      first.column.template tail<D>().setConstant(
+          ratio(block, a.template topRightCorner<N, D>().cwiseAbs().maxCoeff()));
+      first.row.template tail<D>().setConstant(ratio(block, a.template bottomLeftCorner<D, N>().cwiseAbs().maxCoeff()));
+    }
+    Scaling<size> then = Scaling<size>::equilibrate(first.apply(a));
+    then.row = then.row.cwiseProduct(first.row);
+    then.column = then.column.cwiseProduct(first.column);
+    return then;
+  }
+
+  Scaling<size> scaling_;
   Eigen::FullPivLU<Square> lu_;
 };
 
@@ -71,10 +90,12 @@ template <GeneratingFunction F> class HamiltonianMap {
 
   const F& function() const { return function_; }
 
-  /// A step h of either sign, by Newton's method from the point itself with exact second derivatives, to round-off.
+  /// A step h of either sign, not zero, by Newton's method from the point itself with exact second derivatives, until
+  /// each equation is left with the rounding of its terms.
   /// Leaves `point` as it is unless it converges; else
   /// - singular: the matrix of the step is, as where C' has not full rank
-  /// - left_domain: a solution, but not the one that is continuous in h (the determinant has the other sign)
+  /// - left_domain: a solution beyond a fold, where the determinant of the step's matrix has not the sign that it has
+  ///   where the iteration begins
   /// - not_finite: a NaN or an infinity in the point, the function or the iteration
   /// - not_converged: no solution was found, as of a step too long.
   /// No allocation.
@@ -92,7 +113,7 @@ template <GeneratingFunction F> class HamiltonianMap {
   static constexpr int size = n + d;
   using Column = Vector<double, size>;
   using Square = Matrix<double, size, size>;
-  using Factor = detail::EquilibratedFactor<size>;
+  using Factor = detail::EquilibratedFactor<n, d>;
 
   struct Constraint {
     Vector<double, d> value;
@@ -118,6 +139,7 @@ template <GeneratingFunction F> class HamiltonianMap {
     Vector<double, n> q;  ///< q_{k+1}
     Vector<double, n> p;  ///< p_{k+1}
     Column residual;
+    double excess;  ///< the largest |residual| over the rounding of its terms
     Square matrix;
     Square reference;  ///< `matrix` with C'(q_k) in place of C'(q_{k+1})
   };
@@ -154,6 +176,9 @@ auto HamiltonianMap<F>::equations(const Point& point, const Constraint& here, do
   Matrix<double, n, d> equation_lambda;
   Matrix<double, n, n> position_x = Matrix<double, n, n>::Identity();
   Vector<double, n> equation;
+  Vector<double, n> terms = hessian.template topLeftCorner<n, 2 * n>().cwiseAbs() * joined(first, second).cwiseAbs() +
+                            d1.cwiseAbs() + point.p.cwiseAbs() +
+                            here.gradient.transpose().cwiseAbs() * unknown.template tail<d>().cwiseAbs();
   if constexpr (F::type == GeneratingType::one) {
     out.q = x;
     out.p = d2;
@@ -171,6 +196,8 @@ auto HamiltonianMap<F>::equations(const Point& point, const Constraint& here, do
     out.q = x;
     out.p = -d1;
     equation = point.q + d2;
+    terms = hessian.template bottomLeftCorner<n, 2 * n>().cwiseAbs() * joined(first, second).cwiseAbs() +
+            d2.cwiseAbs() + point.q.cwiseAbs();
     equation_x = mixed.transpose();
     equation_lambda = momenta * here.gradient.transpose();
   }
@@ -179,9 +206,17 @@ auto HamiltonianMap<F>::equations(const Point& point, const Constraint& here, do
   out.matrix.template topLeftCorner<n, n>() = equation_x;
   out.matrix.template topRightCorner<n, d>() = equation_lambda;
   out.reference = out.matrix;
+  const auto excess = [](double residual, double of) {
+    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+    return residual == 0 ? 0 : std::isfinite(of) ? std::abs(residual) / (rounding * of) : INFINITY;
+  };
+  out.excess = 0;
+  for (int i = 0; i < n; ++i) out.excess = std::max(out.excess, excess(equation(i), terms(i)));
   if constexpr (d > 0) {
     const Constraint there = constraint_at(out.q);
     out.residual.template tail<d>() = there.value;
+    for (int i = 0; i < d; ++i)
+      out.excess = std::max(out.excess, excess(there.value(i), there.gradient.row(i).cwiseAbs().dot(out.q.cwiseAbs())));
     out.matrix.template bottomLeftCorner<d, n>() = there.gradient * position_x;
     out.reference.template bottomLeftCorner<d, n>() = here.gradient * position_x;
   }
@@ -190,8 +225,7 @@ auto HamiltonianMap<F>::equations(const Point& point, const Constraint& here, do
 
 template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point, double h) const {
   constexpr int most_iterations = 50;
-  constexpr double nearly_done = 1e-10;  // the square of what is left then is round-off
-  constexpr double slow = 1e-6;          // corrections this small that do not fall are round-off
+  constexpr double floor = 100;  // times the rounding of its terms is as far as some residuals get
   const Constraint here = constraint_at(point.q);
   Column unknown = Column::Zero();
   unknown.template head<n>() = F::type == GeneratingType::two ? point.p : point.q;
@@ -200,25 +234,13 @@ template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point
   if (!at.residual.allFinite() || !at.matrix.allFinite()) return SolveStatus::not_finite;
   const bool positive = Factor(at.reference).positive();
   double last = std::numeric_limits<double>::infinity();
-  double unit = unknown.cwiseAbs().maxCoeff();
-  double unit_of_reaction = point.p.cwiseAbs().maxCoeff();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Factor factor(at.matrix);
     if (!factor.regular()) return SolveStatus::singular;
-    const Column correction = factor.solve(at.residual);
-    unknown -= correction;
+    unknown -= factor.solve(at.residual);
     at = equations(point, here, h, unknown);
     if (!unknown.allFinite() || !at.residual.allFinite() || !at.matrix.allFinite()) return SolveStatus::not_finite;
-
-    const auto reaction = [&](const Column& c) {
-      return d == 0 ? 0 : (here.gradient.transpose() * c.template tail<d>()).cwiseAbs().sum();
-    };
-    unit = std::max(unit, unknown.template head<n>().cwiseAbs().maxCoeff());
-    unit_of_reaction = std::max(unit_of_reaction, reaction(unknown));
-    const auto relative = [](double x, double of) { return x > 0 ? x / of : 0; };
-    const double length = std::max(relative(correction.template head<n>().cwiseAbs().maxCoeff(), unit),
-                                   relative(reaction(correction), unit_of_reaction));
-    if (length <= nearly_done || (length <= slow && length >= last / 2)) {
+    if (at.excess <= 1 || (at.excess <= floor && at.excess >= last / 2)) {
       const Factor solved(at.matrix);
       if (!solved.regular()) return SolveStatus::singular;
       if (solved.positive() != positive) return SolveStatus::left_domain;
@@ -227,7 +249,7 @@ template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point
       if constexpr (d > 0) point.multipliers = unknown.template tail<d>();
       return SolveStatus::converged;
     }
-    last = length;
+    last = at.excess;
   }
   return SolveStatus::not_converged;
 }

@@ -779,6 +779,92 @@ TEST(Outcomes, AreTypedAndLeaveThePointAlone) {
   EXPECT_EQ(point.q, bob_start.q);
 }
 
+/// Mass, length and gravity in any units, gravity in any direction, the sphere anywhere.
+struct AnyBob {
+  static constexpr int dimension = 3;
+  static constexpr int constraints = 1;
+  double mass = 1;
+  double length = 1;
+  Vector<double, 3> gravity = Vector<double, 3>(0, 0, -1);
+  Vector<double, 3> centre = Vector<double, 3>::Zero();
+  double scale = 1;  ///< of C
+  template <class S> S height(const Vector<S, 3>& q) const {
+    return q(0) * gravity(0) + q(1) * gravity(1) + q(2) * gravity(2);
+  }
+  template <class S> S hamiltonian(const Vector<S, 3>& q, const Vector<S, 3>& p) const {
+    return p.squaredNorm() * (0.5 / mass) - height(q) * mass;
+  }
+  template <class S> S lagrangian(const Vector<S, 3>& q, const Vector<S, 3>& v) const {
+    return v.squaredNorm() * (0.5 * mass) + height(q) * mass;
+  }
+  template <class S> Vector<S, 1> constraint(const Vector<S, 3>& q) const {
+    S square(0.0);
+    for (int i = 0; i < 3; ++i) square += (q(i) - centre(i)) * (q(i) - centre(i));
+    return Vector<S, 1>((square - length * length) * (0.5 * scale));
+  }
+};
+
+/// How many of 20 steps converge, by types I, II and III together.
+int steps_done(const AnyBob& bob, const Point3& start, double h) {
+  const auto count = [&](const auto& function) {
+    Point3 point = start;
+    const HamiltonianMap map(function);
+    int done = 0;
+    while (done < 20 && map.step(point, h) == SolveStatus::converged) ++done;
+    return done;
+  };
+  return count(ChordLagrangian<AnyBob>{bob}) + count(TaylorHamiltonian<AnyBob, 0>{bob}) +
+         count(adjoint_of(TaylorHamiltonian<AnyBob, 0>{bob}));
+}
+
+TEST(Maps, StepFromRestInAnyUnits) {
+  const Vector<double, 3> along = Vector<double, 3>(0.48, -0.36, 0.8);
+  for (const double speed : {0.0, 1e-12, 1e-8}) {
+    const Vector<double, 3> velocity = speed * Vector<double, 3>(0, along(2), -along(1));
+    // Hanging along gravity, and free.
+    EXPECT_EQ(steps_done({.gravity = 9.81 * along}, {along, velocity}, 0.0137), 60) << speed;
+    EXPECT_EQ(steps_done({.gravity = Vector<double, 3>::Zero()}, {along, velocity}, 0.0137), 60) << speed;
+  }
+  for (const double h : {1e-6, 1e-9, -1e-12}) EXPECT_EQ(steps_done({}, bob_start, h), 60) << h;
+  for (const double mass : {1e-20, 1e-14, 1e20})
+    EXPECT_EQ(steps_done({.mass = mass}, {bob_start.q, mass * bob_start.p}, 0.1), 60) << mass;
+  for (const double scale : {1e-20, 1e13, 1e20}) EXPECT_EQ(steps_done({.scale = scale}, bob_start, 0.1), 60) << scale;
+  const Vector<double, 3> far(1e8, 0, 0);
+  EXPECT_EQ(steps_done({.centre = far}, {far + bob_start.q, bob_start.p}, 0.01), 60);
+}
+
+/// A pendulum of variable mass beside a free particle that may be heavy.
+struct Beside {
+  static constexpr int dimension = 2;
+  static constexpr int constraints = 0;
+  double mass = 1;
+  template <class S> S hamiltonian(const Vector<S, 2>& q, const Vector<S, 2>& p) const {
+    using std::cos, std::sin;
+    return p(0) * p(0) * 0.5 / (sin(q(0)) * 0.5 + 1.0) - cos(q(0)) + p(1) * p(1) * (0.5 / mass);
+  }
+};
+
+TEST(Maps, AreNotLessExactBesideWhatIsLarge) {
+  const auto end = [](double mass) {
+    Phase<2, 0> point{{0.4, 0}, {0.9, 0.5 * mass}};
+    EXPECT_EQ(HamiltonianMap(TaylorHamiltonian<Beside, 1>{{mass}}).step(point, 0.5), SolveStatus::converged);
+    return Vector<double, 2>(point.q(0), point.p(0));
+  };
+  for (const double mass : {1e8, 1e12}) EXPECT_LT((end(mass) - end(1)).norm(), 1e-14) << mass;
+}
+
+TEST(Momenta, ThatAreTangentStaySo) {
+  Vector<double, 3> q = bob_start.q;
+  Vector<double, 3> p = bob_start.p;
+  for (int k = 1; k <= 2000; ++k) {
+    q = Vector<double, 3>(std::sin(1.1 * k), std::cos(2.3 * k), std::sin(0.7 * k + 1)).normalized();
+    p = project_momentum(Bob{}, q, Vector<double, 3>(std::cos(0.9 * k), std::sin(1.7 * k), std::cos(3.1 * k)));
+    const Vector<double, 3> again = project_momentum(Bob{}, q, p);
+    EXPECT_LT((again - p).norm(), 1e-15) << k;
+    EXPECT_LT(std::abs(q.dot(again)), 1e-15) << k;
+  }
+}
+
 TEST(Maps, AllocateNothing) {
   const HamiltonianMap map(TaylorHamiltonian<Bob, 1>{{}, quadrature_rules::trapezoid});
   Point3 point = bob_start;
