@@ -11,6 +11,13 @@
 
 namespace {
 
+TEST_F(CommandLine, ALastNodeThatIsNotFiniteIsNoSuccess) {
+  // Velocities overflow in steps this small; the last node alone is recorded.
+  const Outcome r = run("run " + example("chain_drop") + " --set time.step=1e-300 --set time.steps=2");
+  EXPECT_EQ(r.code, 3);
+  EXPECT_NE(r.err.find("no finite numbers at the end"), std::string::npos) << r.err;
+}
+
 TEST_F(CommandLine, EveryExampleRuns) {
   for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
     if (entry.path().extension() != ".toml") continue;

@@ -388,7 +388,10 @@ class Run final : public SteppedRun {
   RunResult go() {
     result_.initial = endpoint();
     drive(*this, pace_, context_, result_);
-    if (last_observed_ != motion_->index()) see();
+    if (last_observed_ != motion_->index() && !see() && result_.converged()) {
+      result_.status = std::string(to_string(SolveStatus::not_finite));
+      result_.message = "energy or constraints are no finite numbers at the end; use a smaller or a larger step";
+    }
     if (bodies_.counts_cost) result_.cost = cost_;
     promises_->report(*motion_, result_.ledger);
     result_.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
