@@ -1,0 +1,116 @@
+#pragma once
+/// Products of spheres and of their cotangent bundles, with the groups that act on them.
+
+#include <lagroid/core/elementary.hpp>
+#include <lagroid/core/special_functions.hpp>
+#include <lagroid/core/types.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace lagroid {
+
+/// a x b, in any scalars.
+template <class A, class B> LAGROID_INLINE inline auto cross(const A& a, const B& b) {
+  using S = typename A::Scalar;
+  return Vector<S, 3>(a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0));
+}
+
+/// (S^2)^k with SO(3)^k acting factor by factor, exp(w) q = q + c_1 w x q + c_2 w x (w x q). K is k, or Eigen::Dynamic.
+/// Points and algebra: 3 x k, column i belongs to the i-th factor.
+template <int K, class S = double> struct Spheres {
+  using Point = Eigen::Matrix<S, 3, K>;
+  using Algebra = Eigen::Matrix<S, 3, K>;
+  int count = K == Eigen::Dynamic ? 1 : K;  ///< k
+
+  Point zero_point() const { return Point::Zero(3, count); }
+  Algebra zero_algebra() const { return Algebra::Zero(3, count); }
+
+  void act(const Algebra& u, Point& z) const {
+    for (int i = 0; i < z.cols(); ++i) {
+      const Vector<S, 3> w = u.col(i);
+      const Vector<S, 3> q = z.col(i);
+      const S x = w.squaredNorm();
+      const Vector<S, 3> wq = cross(w, q);
+      z.col(i) = q + stumpff<1>(x) * wq + stumpff<2>(x) * cross(w, wq);
+    }
+  }
+  void generator(const Algebra& u, const Point& z, Point& v) const {
+    for (int i = 0; i < z.cols(); ++i) v.col(i) = cross(Vector<S, 3>(u.col(i)), Vector<S, 3>(z.col(i)));
+  }
+  void bracket(const Algebra& u, const Algebra& v, Algebra& w) const {
+    for (int i = 0; i < u.cols(); ++i) w.col(i) = cross(Vector<S, 3>(u.col(i)), Vector<S, 3>(v.col(i)));
+  }
+  /// One Newton step towards |q| = 1.
+  void project(Point& z) const {
+    for (int i = 0; i < z.cols(); ++i) z.col(i) *= 1.5 - 0.5 * S(z.col(i).squaredNorm());
+  }
+  std::string name() const { return "(S^2)^" + std::to_string(count); }
+};
+
+/// (T*S^2)^k, and (TS^2)^k, which the metric of S^2 makes the same: pairs (q, p) with |q| = 1, q.p = 0. SE(3)^k acts by
+/// (R, r)(q, p) = (R q, R p + r x R q) ([H] (act)); for u = (xi, eta) in se(3), R = exp(xi) and r = eta + c_2 xi x eta
+/// + c_3 xi x (xi x eta), and u_M(q, p) = (xi x q, xi x p + eta x q) ([H] (infgen)). K is k, or Eigen::Dynamic. Points
+/// and algebra: 6 x k, column i holds (q_i, p_i), or (xi_i, eta_i).
+template <int K, class S = double> struct CotangentSpheres {
+  using Point = Eigen::Matrix<S, 6, K>;
+  using Algebra = Eigen::Matrix<S, 6, K>;
+  using V = Vector<S, 3>;
+  int count = K == Eigen::Dynamic ? 1 : K;  ///< k
+
+  Point zero_point() const { return Point::Zero(6, count); }
+  Algebra zero_algebra() const { return Algebra::Zero(6, count); }
+
+  void act(const Algebra& u, Point& z) const {
+    for (int i = 0; i < z.cols(); ++i) {
+      const V xi = first(u, i);
+      const V eta = second(u, i);
+      const V q = first(z, i);
+      const V p = second(z, i);
+      const S x = xi.squaredNorm();
+      const S c1 = stumpff<1>(x);
+      const S c2 = stumpff<2>(x);
+      const V xq = cross(xi, q);
+      const V xp = cross(xi, p);
+      const V xe = cross(xi, eta);
+      const V turned = q + c1 * xq + c2 * cross(xi, xq);
+      const V r = eta + c2 * xe + stumpff<3>(x) * cross(xi, xe);
+      set(z, i, turned, p + c1 * xp + c2 * cross(xi, xp) + cross(r, turned));
+    }
+  }
+  void generator(const Algebra& u, const Point& z, Point& v) const {
+    for (int i = 0; i < z.cols(); ++i) {
+      const V xi = first(u, i);
+      const V q = first(z, i);
+      set(v, i, cross(xi, q), cross(xi, second(z, i)) + cross(second(u, i), q));
+    }
+  }
+  void bracket(const Algebra& u, const Algebra& v, Algebra& w) const {
+    for (int i = 0; i < u.cols(); ++i) {
+      const V a = first(u, i);
+      const V b = first(v, i);
+      set(w, i, cross(a, b), cross(a, second(v, i)) + cross(second(u, i), b));
+    }
+  }
+  /// One Newton step towards |q| = 1, then p without its part along q.
+  void project(Point& z) const {
+    for (int i = 0; i < z.cols(); ++i) {
+      const V p = second(z, i);
+      V q = first(z, i);
+      q *= 1.5 - 0.5 * S(q.squaredNorm());
+      set(z, i, q, p - q * S(q.dot(p)));
+    }
+  }
+  std::string name() const { return "(T*S^2)^" + std::to_string(count); }
+
+  /// q_i, or xi_i.
+  template <class Z> LAGROID_INLINE static V first(const Z& z, int i) { return z.col(i).template head<3>(); }
+  /// p_i, or eta_i.
+  template <class Z> LAGROID_INLINE static V second(const Z& z, int i) { return z.col(i).template tail<3>(); }
+  template <class Z> LAGROID_INLINE static void set(Z& z, int i, const V& a, const V& b) {
+    z.col(i).template head<3>() = a;
+    z.col(i).template tail<3>() = b;
+  }
+};
+
+}  // namespace lagroid

@@ -1,0 +1,40 @@
+#pragma once
+/// Groups acting on themselves and on matrices, as homogeneous spaces.
+
+#include <lagroid/groupoids/matrix_group.hpp>
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include <string>
+
+namespace lagroid {
+
+/// A matrix group acting on itself from the left, exp(u) g; u_M(g) = hat(u) g.
+template <class Group> struct Translations {
+  using Point = typename Group::template Arrow<double>;
+  using Algebra = Vector<double, Group::dimension>;
+
+  Point zero_point() const { return Point::Zero(); }
+  Algebra zero_algebra() const { return Algebra::Zero(); }
+  void act(const Algebra& u, Point& g) const { g = (Group::exp(u) * g).eval(); }
+  void generator(const Algebra& u, const Point& g, Point& v) const { v = (Group::hat(u) * g).eval(); }
+  void bracket(const Algebra& u, const Algebra& v, Algebra& w) const { w = (Group::template ad<double>(u) * v).eval(); }
+  void project(Point& g) const { g = Group::project(g); }
+  std::string name() const { return Group::name() + " on itself"; }
+};
+
+/// GL(N) acting on N x Columns matrices, exp(A) Y: the space of linear systems Y' = A(t) Y.
+template <int N, int Columns = 1> struct LinearAction {
+  using Point = Matrix<double, N, Columns>;
+  using Algebra = Matrix<double, N, N>;
+
+  Point zero_point() const { return Point::Zero(); }
+  Algebra zero_algebra() const { return Algebra::Zero(); }
+  void act(const Algebra& a, Point& y) const { y = (a.exp() * y).eval(); }
+  void generator(const Algebra& a, const Point& y, Point& v) const { v = (a * y).eval(); }
+  void bracket(const Algebra& a, const Algebra& b, Algebra& w) const { w = (a * b - b * a).eval(); }
+  void project(Point&) const {}
+  std::string name() const { return "GL(" + std::to_string(N) + ") on matrices"; }
+};
+
+}  // namespace lagroid

@@ -1,0 +1,162 @@
+#pragma once
+/// Marches by Lie group integrators: with equal steps, and with steps that an error estimate controls.
+
+#include <lagroid/core/tape.hpp>
+#include <lagroid/solvers/lie_group/step.hpp>
+#include <lagroid/solvers/method.hpp>
+#include <lagroid/solvers/step_solver.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lagroid {
+
+/// What a method declares of itself.
+inline MethodTraits traits_of(const LieGroupMethod& method) {
+  return {std::string(method.name), method.order, false, false, true, method.stages};
+}
+
+/// Equal steps. After each, rounding is kept from M (HomogeneousSpace::project), except by a classical method, which is
+/// not on M to begin with.
+template <HomogeneousSpace M, AlgebraField<M> F> class LieGroupIntegrator {
+ public:
+  using Point = typename M::Point;
+
+  LieGroupIntegrator(M space, F field, const LieGroupMethod& method, Point start, double h, double time = 0)
+      : step_(std::move(space), method), field_(std::move(field)), point_(start), trial_(start), h_(h), start_(time) {}
+
+  const Point& point() const { return point_; }
+  double time() const { return start_ + double(index_) * h_; }
+  long index() const { return index_; }
+  MethodTraits traits() const { return traits_of(step_.method()); }
+
+  /// `converged`, or `not_finite`, which leaves everything as it was.
+  StepReport advance() {
+    trial_ = point_;
+    step_.advance(field_, time(), h_, trial_);
+    StepReport report;
+    report.status = SolveStatus::not_finite;
+    if (!trial_.allFinite()) {
+      step_.forget();
+      return report;
+    }
+    if (step_.method().scheme != LieGroupScheme::classical) step_.space().project(trial_);
+    std::swap(point_, trial_);
+    ++index_;
+    report.status = SolveStatus::converged;
+    return report;
+  }
+
+  /// To go on from a state that was kept.
+  void restore(const Point& z, long index) {
+    point_ = z;
+    index_ = index;
+    step_.forget();
+  }
+
+ private:
+  LieGroupStep<M> step_;
+  F field_;
+  Point point_, trial_;
+  double h_, start_;
+  long index_ = 0;
+};
+
+/// How steps are controlled.
+struct LieGroupControl {
+  double tolerance = 1e-10;  ///< of an embedded method's error over a step, in the algebra
+  double first_step = 1e-3;
+  double largest_step = 1e300;
+  long most_steps = 100'000'000;
+};
+
+/// Steps whose size follows the estimate of an embedded method: h <- h 0.9 (tolerance / error)^(1/order), changed by
+/// factors of 0.2 to 5.
+template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegrator {
+ public:
+  using Point = typename M::Point;
+
+  /// Throws std::invalid_argument for a method without an embedded one, or control that is not positive.
+  ControlledLieGroupIntegrator(M space, F field, const LieGroupMethod& method, Point start,
+                               const LieGroupControl& control, double time = 0)
+      : step_(std::move(space), method),
+        field_(std::move(field)),
+        point_(start),
+        trial_(start),
+        control_(control),
+        h_(control.first_step),
+        time_(time) {
+    if (!method.embedded()) throw std::invalid_argument(std::string(method.name) + " estimates no error");
+    if (!(control.tolerance > 0) || !(control.first_step > 0) || !(control.largest_step > 0))
+      throw std::invalid_argument("tolerance and steps of a controlled march are positive");
+  }
+
+  const Point& point() const { return point_; }
+  double time() const { return time_; }
+  long steps() const { return steps_; }        ///< accepted so far
+  long rejected() const { return rejected_; }  ///< tried in vain so far
+  MethodTraits traits() const { return traits_of(step_.method()); }
+
+  /// Steps until `end`, where the last ends exactly. `no_step`: the error stays above the tolerance however small the
+  /// step; `not_finite`: so does a number that is not finite; `not_converged`: the limit of steps is reached. The point
+  /// is the last one accepted.
+  StepReport advance_to(double end) {
+    StepReport report;
+    while (time_ < end) {
+      const double left = end - time_;
+      double h = std::min({h_, left, control_.largest_step});
+      // No crumb is left for the last step.
+      if (h < left && left < 2 * h) h = 0.5 * left;
+      if (!(time_ + h > time_) || steps_ + rejected_ >= control_.most_steps) {
+        report.status = steps_ + rejected_ >= control_.most_steps ? SolveStatus::not_converged
+                        : finite_                                 ? SolveStatus::no_step
+                                                                  : SolveStatus::not_finite;
+        return report;
+      }
+      try_step(h, h == left ? end : time_ + h);
+    }
+    report.status = SolveStatus::converged;
+    return report;
+  }
+
+ private:
+  void try_step(double h, double reached) {
+    trial_ = point_;
+    step_.advance(field_, time_, h, trial_);
+    const double error = step_.error();
+    finite_ = trial_.allFinite() && std::isfinite(error);
+    if (!finite_) {
+      step_.forget();
+      h_ = 0.2 * h;
+      ++rejected_;
+      return;
+    }
+    const double factor =
+        std::clamp(0.9 * std::pow(control_.tolerance / std::max(error, 1e-300), 1.0 / step_.method().order), 0.2, 5.0);
+    if (error > control_.tolerance) {
+      step_.reject();
+      h_ = h * factor;
+      ++rejected_;
+      return;
+    }
+    step_.space().project(trial_);
+    std::swap(point_, trial_);
+    time_ = reached;
+    h_ = h < h_ ? std::max(h_, h * factor) : h * factor;
+    ++steps_;
+  }
+
+  LieGroupStep<M> step_;
+  F field_;
+  Point point_, trial_;
+  LieGroupControl control_;
+  double h_, time_;
+  long steps_ = 0;
+  long rejected_ = 0;
+  bool finite_ = true;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,200 @@
+#pragma once
+/// The variational integrator of chains of spherical pendula.
+
+#include <lagroid/systems/pendulum_chain.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace lagroid {
+
+/// RATTLE on (S^2)^k: the discrete Euler-Lagrange equations of the trapezoid Lagrangian h (L(q, (q' - q)/h) + L(q', (q'
+/// - q)/h)) / 2 with |q_i| = 1, in O(k) by tensions (Ryckaert, Ciccotti and Berendsen 1977; Andersen 1983; Hairer,
+/// Lubich, Wanner VII.1.4). Order 2, symmetric and symplectic; the momentum about the vertical is exact, because
+/// tensions act along the rods whatever their size. With v_i = q_i' and d_i = 1/m_i + 1/m_{i-1}:
+///
+///     l_i v_i* = l_i v_i + h/2 (-[i=1] g e_3 - T_i d_i q_i + T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1})
+///     q_i+ = q_i + h v_i*,   |q_i+| = 1                                     (Newton on the k tensions, tridiagonal)
+///     l_i v_i+ = l_i v_i* + the same at q+ with tensions such that q_i+.v_i+ = 0               (linear, tridiagonal)
+template <int K> class ChainRattle {
+ public:
+  using Points = typename PendulumChain<K>::Points;
+  using V = Vector<double, 3>;
+  using Columns = Eigen::Matrix<double, 3, K>;
+
+  /// `start` is (q, w).
+  ChainRattle(const PendulumChain<K>& chain, const Points& start, double h)
+      : chain_(chain),
+        h_(h),
+        q_(start.template topRows<3>()),
+        v_(q_),
+        next_(q_),
+        half_(q_),
+        tension_(Vector<double, K>::Zero(chain.links())),
+        end_(tension_),
+        gap_(tension_),
+        lower_(tension_),
+        inverse_mass_(chain.mass.cwiseInverse()),
+        system_(chain.links()) {
+    restore(start, 0);
+  }
+
+  MethodTraits traits() const { return {"rattle", 2, true, true, false}; }
+  double time() const { return double(index_) * h_; }
+  long index() const { return index_; }
+  const Columns& directions() const { return q_; }
+  const Columns& velocities() const { return v_; }  ///< q_i'
+  /// (q, w).
+  Points point() const {
+    Points z(6, chain_.links());
+    for (int i = 0; i < chain_.links(); ++i)
+      CotangentSpheres<K>::set(z, i, q_.col(i), cross(V(q_.col(i)), V(v_.col(i))));
+    return z;
+  }
+
+  /// `converged`; `left_domain` where the step is too large for the rods to keep their lengths; `not_finite`. Only the
+  /// first advances.
+  StepReport advance();
+
+  void restore(const Points& z, long index) {
+    q_ = z.template topRows<3>();
+    for (int i = 0; i < chain_.links(); ++i) v_.col(i) = PendulumChain<K>::link_velocity(z, i);
+    index_ = index;
+    tensions_at_rest();
+  }
+  /// Visits all that the next step goes on from.
+  template <class Visit> void persist(const Visit& visit) {
+    visit("q", q_);
+    visit("v", v_);
+    visit("tension", end_);
+    visit("gap", gap_);
+    visit("index", index_);
+  }
+
+ private:
+  /// sum_j (d l_i v_i / d(h T_j / 2)) T_j, that is -T_i d_i q_i + T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1}.
+  V pull(const Columns& q, const Vector<double, K>& t, int i) const {
+    const int k = chain_.links();
+    V out = q.col(i) * (-t(i) * share(i));
+    if (i + 1 < k) out += q.col(i + 1) * (t(i + 1) * inverse_mass_(i));
+    if (i > 0) out += q.col(i - 1) * (t(i - 1) * inverse_mass_(i - 1));
+    return out;
+  }
+  /// d_i.
+  double share(int i) const { return inverse_mass_(i) + (i > 0 ? inverse_mass_(i - 1) : 0.0); }
+
+  void tensions_at_rest();
+  /// Tensions such that q_i . (l_i v_i + h/2 (pull + gravity)) = 0.
+  void project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t);
+  StepReport close();
+
+  PendulumChain<K> chain_;
+  double h_;
+  long index_ = 0;
+  Columns q_, v_, next_, half_;
+  Vector<double, K> tension_;  ///< over the step, T
+  Vector<double, K> end_;      ///< at its end, for the velocities
+  Vector<double, K> gap_;      ///< tension_ less end_ at the start of the step: changes slowly from step to step
+  Vector<double, K> lower_, inverse_mass_;
+  TridiagonalSystem<K, double> system_;
+};
+
+template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t) {
+  const int k = chain_.links();
+  for (int i = 0; i < k; ++i) {
+    system_.diagonal(i) = share(i);
+    if (i + 1 < k) system_.upper(i) = -q.col(i).dot(q.col(i + 1)) * inverse_mass_(i);
+    system_.x(i) = chain_.length(i) * q.col(i).dot(v.col(i)) * (2 / h_);
+  }
+  system_.x(0) -= chain_.gravity * q(2, 0);
+  system_.solve();
+  t = system_.x;
+}
+
+template <int K> void ChainRattle<K>::tensions_at_rest() {
+  // Those of the continuous motion, l_i |v_i|^2 in place of 2 l_i q.v / h.
+  const int k = chain_.links();
+  for (int i = 0; i < k; ++i) {
+    system_.diagonal(i) = share(i);
+    if (i + 1 < k) system_.upper(i) = -q_.col(i).dot(q_.col(i + 1)) * inverse_mass_(i);
+    system_.x(i) = chain_.length(i) * v_.col(i).squaredNorm();
+  }
+  system_.x(0) -= chain_.gravity * q_(2, 0);
+  system_.solve();
+  end_ = system_.x;
+  gap_.setZero();
+}
+
+/// Newton's iteration for the tensions that keep |q+| = 1, from those that stand in tension_; leaves q+ and v*.
+template <int K> StepReport ChainRattle<K>::close() {
+  constexpr int most = 50;
+  constexpr double quadratic = 1e-8;  // an iteration from here ends at round-off
+  const int k = chain_.links();
+  StepReport report;
+  for (report.iterations = 1; report.iterations <= most; ++report.iterations) {
+    double worst = 0;
+    for (int i = 0; i < k; ++i) {
+      V change = pull(q_, tension_, i);
+      if (i == 0) change(2) -= chain_.gravity;
+      half_.col(i) = v_.col(i) + change * (h_ / 2 / chain_.length(i));
+      next_.col(i) = q_.col(i) + h_ * half_.col(i);
+      const double off = 0.5 * (next_.col(i).squaredNorm() - 1);
+      const double unit = chain_.length(i) * 2 / (h_ * h_);
+      system_.x(i) = off * unit;
+      system_.diagonal(i) = next_.col(i).dot(q_.col(i)) * share(i);
+      if (i + 1 < k) system_.upper(i) = -next_.col(i).dot(q_.col(i + 1)) * inverse_mass_(i);
+      if (i > 0) lower_(i) = -next_.col(i).dot(q_.col(i - 1)) * inverse_mass_(i - 1);
+      if (!(std::abs(off) <= worst)) worst = std::abs(off);
+    }
+    report.residual = worst;
+    if (!std::isfinite(worst)) {
+      report.status = SolveStatus::not_finite;
+      return report;
+    }
+    // Not symmetric, but its diagonal is positive while no rod turns by a right angle.
+    for (int i = 0; i < k; ++i) {
+      if (!(system_.diagonal(i) > 0)) {
+        report.status = SolveStatus::left_domain;
+        return report;
+      }
+      if (i + 1 == k) break;
+      const double ratio = lower_(i + 1) / system_.diagonal(i);
+      system_.diagonal(i + 1) -= ratio * system_.upper(i);
+      system_.x(i + 1) -= ratio * system_.x(i);
+    }
+    for (int i = k; i-- > 0;) {
+      if (i + 1 < k) system_.x(i) -= system_.upper(i) * system_.x(i + 1);
+      system_.x(i) /= system_.diagonal(i);
+    }
+    tension_ += system_.x;
+    if (worst < quadratic) {
+      for (int i = 0; i < k; ++i) {
+        half_.col(i) += pull(q_, system_.x, i) * (h_ / 2 / chain_.length(i));
+        next_.col(i) = q_.col(i) + h_ * half_.col(i);
+      }
+      report.status = SolveStatus::converged;
+      return report;
+    }
+  }
+  report.status = SolveStatus::not_converged;
+  return report;
+}
+
+template <int K> StepReport ChainRattle<K>::advance() {
+  tension_ = end_ + gap_;
+  const StepReport report = close();
+  if (!report.converged()) return report;
+  gap_ = tension_ - end_;
+  std::swap(q_, next_);
+  project_velocities(q_, half_, end_);
+  for (int i = 0; i < chain_.links(); ++i) {
+    V change = pull(q_, end_, i);
+    if (i == 0) change(2) -= chain_.gravity;
+    v_.col(i) = half_.col(i) + change * (h_ / 2 / chain_.length(i));
+  }
+  ++index_;
+  return report;
+}
+
+}  // namespace lagroid
