@@ -1,5 +1,5 @@
 #pragma once
-/// Groups acting on themselves and on matrices, as homogeneous spaces.
+/// Groups acting on themselves, on matrices and on vectors, as homogeneous spaces.
 
 #include <lagroid/groupoids/matrix_group.hpp>
 
@@ -35,6 +35,20 @@ template <int N, int Columns = 1> struct LinearAction {
   void bracket(const Algebra& a, const Algebra& b, Algebra& w) const { w = (a * b - b * a).eval(); }
   void project(Point&) const {}
   std::string name() const { return "GL(" + std::to_string(N) + ") on matrices"; }
+};
+
+/// R^N acting on itself by addition: methods for homogeneous spaces are then the classical ones.
+template <int N> struct EuclideanSpace {
+  using Point = Vector<double, N>;
+  using Algebra = Vector<double, N>;
+
+  Point zero_point() const { return Point::Zero(); }
+  Algebra zero_algebra() const { return Algebra::Zero(); }
+  void act(const Algebra& u, Point& z) const { z += u; }
+  void generator(const Algebra& u, const Point&, Point& v) const { v = u; }
+  void bracket(const Algebra&, const Algebra&, Algebra& w) const { w.setZero(); }
+  void project(Point&) const {}
+  std::string name() const { return "R^" + std::to_string(N); }
 };
 
 }  // namespace lagroid
