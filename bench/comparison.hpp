@@ -61,6 +61,8 @@ std::vector<Subject> boundary_subjects();
 std::vector<Goal> boundary_goals();
 std::vector<Subject> scene_subjects();
 std::vector<Goal> scene_goals();
+std::vector<Subject> pendulum_chain_subjects();
+std::vector<Goal> pendulum_chain_goals();
 /// Markdown: instructions and memory of a scene's step without and with each effect. Needs valgrind.
 std::string effects_table();
 /// Markdown: what accuracy costs on a chain, by a scene, by hand and by MuJoCo.

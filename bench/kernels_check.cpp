@@ -1,6 +1,8 @@
 // The hand-written kernels compute what the framework computes.
 #include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/lie_group/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/systems/chain_rattle.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/spherical_pendulum.hpp>
 
@@ -16,6 +18,7 @@
 #include "kernels/so3_cayley.hpp"
 #include "kernels/spherical_pendulum.hpp"
 #include "lie_newton_case.hpp"
+#include "pendulum_case.hpp"
 
 #include <gtest/gtest.h>
 
@@ -305,6 +308,34 @@ TEST(SphericalChainKernel, IsTheScene) {
   }
   for (std::size_t i = 0; i < links; ++i)
     EXPECT_LT((scene->configuration().x[i] - kernel.places()[i].vector()).norm(), close) << i;
+}
+
+template <int K> void expect_pendulum_kernels_are_the_framework() {
+  auto cf4 = bench::pendulum_cf4<K>();
+  auto rattle = bench::pendulum_rattle<K>();
+  const auto chain = bench::pendulum_chain<K>(K);
+  const double h = bench::pendulum_step(K);
+  LieGroupIntegrator by_exponentials(chain.space(), ChainMomentumField<K>(chain), lie_group_methods::commutator_free_4,
+                                     chain.to_momenta(bench::pendulum_start<K>(K)), h);
+  ChainRattle<K> variational(chain, bench::pendulum_start<K>(K), h);
+  for (int k = 0; k < steps; ++k) {
+    cf4.step();
+    ASSERT_TRUE(rattle.step());
+    ASSERT_TRUE(by_exponentials.advance().converged());
+    ASSERT_TRUE(variational.advance().converged());
+  }
+  for (int i = 0; i < K; ++i) {
+    const auto at = std::size_t(i);
+    EXPECT_LT((cf4.directions()[at].vector() - by_exponentials.point().col(i).template head<3>()).norm(), close);
+    EXPECT_LT((cf4.momenta()[at].vector() - by_exponentials.point().col(i).template tail<3>()).norm(), close);
+    EXPECT_LT((rattle.directions()[at].vector() - variational.directions().col(i)).norm(), close);
+    EXPECT_LT((rattle.velocities()[at].vector() - variational.velocities().col(i)).norm(), 10 * close);
+  }
+}
+
+TEST(PendulumChainKernels, AreTheFramework) {
+  expect_pendulum_kernels_are_the_framework<1>();
+  expect_pendulum_kernels_are_the_framework<10>();
 }
 
 }  // namespace

@@ -29,42 +29,49 @@ int main(int argc, char** argv) try {
     fmt::print(stderr, "lagroid bench: --page takes every measurement; leave out \"{}\"\n", part);
     return 2;
   }
-  const auto steps = bench::matching(bench::step_subjects(), part);
-  const auto boundary = bench::matching(bench::boundary_subjects(), part);
-  const auto groups = bench::matching(bench::lie_newton_subjects(), part);
-  const auto scenes = bench::matching(bench::scene_subjects(), part);
-  if (part != "effects" && part != "accuracy" && scenes.empty() && steps.empty() && boundary.empty() &&
-      groups.empty()) {
+  struct Chapter {
+    const char* mark;  // in the page's template
+    std::vector<bench::Subject> subjects;
+    std::vector<bench::Goal> goals;
+    int repetitions;
+    std::string tables = {};
+  };
+  std::vector<Chapter> chapters{
+      {"@STEPS@", bench::step_subjects(), bench::step_goals(), 21},
+      {"@SCENES@", bench::scene_subjects(), bench::scene_goals(), 21},
+      {"@PENDULUM_CHAINS@", bench::pendulum_chain_subjects(), bench::pendulum_chain_goals(), 21},
+      {"@BOUNDARY@", bench::boundary_subjects(), bench::boundary_goals(), 7},
+      {"@LIE_NEWTON@", bench::lie_newton_subjects(), bench::lie_newton_goals(), 21},
+  };
+  bool any = part == "effects" || part == "accuracy";
+  for (auto& chapter : chapters) {
+    chapter.subjects = bench::matching(std::move(chapter.subjects), part);
+    any = any || !chapter.subjects.empty();
+  }
+  if (!any) {
     fmt::print(stderr, "lagroid bench: no subject's name contains \"{}\"; docs/performance.md shows the names\n", part);
     return 2;
   }
-  bench::Results results = bench::run(steps, 21, 0.02);
-  results.merge(bench::run(scenes, 21, 0.02));
-  results.merge(bench::run(boundary, 7, 0.02));
-  results.merge(bench::run(groups, 21, 0.02));
-  std::vector<bench::Goal> goals = bench::step_goals();
-  for (auto& goal : bench::boundary_goals()) goals.push_back(std::move(goal));
-  for (auto& goal : bench::lie_newton_goals()) goals.push_back(std::move(goal));
-  for (auto& goal : bench::scene_goals()) goals.push_back(std::move(goal));
-  const std::string step_tables = bench::table(steps, results);
-  const std::string boundary_tables = bench::table(boundary, results);
-  const std::string scene_tables = bench::table(scenes, results);
-  const std::string group_tables = bench::table(groups, results);
+  bench::Results results;
+  std::vector<bench::Goal> goals;
+  std::string tables;
+  for (auto& chapter : chapters) {
+    results.merge(bench::run(chapter.subjects, chapter.repetitions, 0.02));
+    goals.insert(goals.end(), chapter.goals.begin(), chapter.goals.end());
+    chapter.tables = bench::table(chapter.subjects, results);
+    tables += chapter.tables;
+  }
   const std::string goals_reached = bench::goals_table(goals, results, /*every=*/part.empty());
   const std::string accuracy = part.empty() || part == "accuracy" ? bench::chain_accuracy_table() : std::string();
   const std::string effects = part.empty() || part == "effects" ? bench::effects_table() : std::string();
-  fmt::print("{}{}{}{}\n{}\n{}\n{}", step_tables, scene_tables, boundary_tables, group_tables, accuracy, effects,
-             goals_reached);
+  fmt::print("{}\n{}\n{}\n{}", tables, accuracy, effects, goals_reached);
   if (write_page) {
     std::string page = bench::file_contents(LAGROID_SOURCE "/bench/performance.md.in");
     bench::put(page, "@MACHINE@", bench::machine());
     bench::put(page, "@GOALS@", goals_reached);
-    bench::put(page, "@STEPS@", step_tables);
-    bench::put(page, "@SCENES@", scene_tables);
+    for (const auto& chapter : chapters) bench::put(page, chapter.mark, chapter.tables);
     bench::put(page, "@EFFECTS@", effects);
     bench::put(page, "@CHAIN@", accuracy);
-    bench::put(page, "@BOUNDARY@", boundary_tables);
-    bench::put(page, "@LIE_NEWTON@", group_tables);
     bench::put(page, "@COMPILE@", bench::compile_times());
     bench::write_whole(LAGROID_SOURCE "/docs/performance.md", page);
     fmt::print("\nwritten: docs/performance.md\n");

@@ -36,7 +36,11 @@ template <int K> class ChainRattle {
         gap_(tension_),
         lower_(tension_),
         inverse_mass_(chain.mass.cwiseInverse()),
+        share_(inverse_mass_),
+        kick_(chain.length.cwiseInverse() * (h / 2)),
+        unit_(chain.length * (2 / (h * h))),
         system_(chain.links()) {
+    for (int i = 1; i < chain.links(); ++i) share_(i) += inverse_mass_(i - 1);
     restore(start, 0);
   }
 
@@ -76,14 +80,11 @@ template <int K> class ChainRattle {
   /// sum_j (d l_i v_i / d(h T_j / 2)) T_j, that is -T_i d_i q_i + T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1}.
   V pull(const Columns& q, const Vector<double, K>& t, int i) const {
     const int k = chain_.links();
-    V out = q.col(i) * (-t(i) * share(i));
+    V out = q.col(i) * (-t(i) * share_(i));
     if (i + 1 < k) out += q.col(i + 1) * (t(i + 1) * inverse_mass_(i));
     if (i > 0) out += q.col(i - 1) * (t(i - 1) * inverse_mass_(i - 1));
     return out;
   }
-  /// d_i.
-  double share(int i) const { return inverse_mass_(i) + (i > 0 ? inverse_mass_(i - 1) : 0.0); }
-
   void tensions_at_rest();
   /// Tensions such that q_i . (l_i v_i + h/2 (pull + gravity)) = 0.
   void project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t);
@@ -96,14 +97,18 @@ template <int K> class ChainRattle {
   Vector<double, K> tension_;  ///< over the step, T
   Vector<double, K> end_;      ///< at its end, for the velocities
   Vector<double, K> gap_;      ///< tension_ less end_ at the start of the step: changes slowly from step to step
-  Vector<double, K> lower_, inverse_mass_;
+  Vector<double, K> lower_;    ///< below the diagonal of the tensions' matrix
+  Vector<double, K> inverse_mass_;
+  Vector<double, K> share_;  ///< d_i
+  Vector<double, K> kick_;   ///< h / (2 l_i)
+  Vector<double, K> unit_;   ///< 2 l_i / h^2
   TridiagonalSystem<K, double> system_;
 };
 
 template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t) {
   const int k = chain_.links();
   for (int i = 0; i < k; ++i) {
-    system_.diagonal(i) = share(i);
+    system_.diagonal(i) = share_(i);
     if (i + 1 < k) system_.upper(i) = -q.col(i).dot(q.col(i + 1)) * inverse_mass_(i);
     system_.x(i) = chain_.length(i) * q.col(i).dot(v.col(i)) * (2 / h_);
   }
@@ -116,7 +121,7 @@ template <int K> void ChainRattle<K>::tensions_at_rest() {
   // Those of the continuous motion, l_i |v_i|^2 in place of 2 l_i q.v / h.
   const int k = chain_.links();
   for (int i = 0; i < k; ++i) {
-    system_.diagonal(i) = share(i);
+    system_.diagonal(i) = share_(i);
     if (i + 1 < k) system_.upper(i) = -q_.col(i).dot(q_.col(i + 1)) * inverse_mass_(i);
     system_.x(i) = chain_.length(i) * v_.col(i).squaredNorm();
   }
@@ -137,12 +142,11 @@ template <int K> StepReport ChainRattle<K>::close() {
     for (int i = 0; i < k; ++i) {
       V change = pull(q_, tension_, i);
       if (i == 0) change(2) -= chain_.gravity;
-      half_.col(i) = v_.col(i) + change * (h_ / 2 / chain_.length(i));
+      half_.col(i) = v_.col(i) + change * kick_(i);
       next_.col(i) = q_.col(i) + h_ * half_.col(i);
       const double off = 0.5 * (next_.col(i).squaredNorm() - 1);
-      const double unit = chain_.length(i) * 2 / (h_ * h_);
-      system_.x(i) = off * unit;
-      system_.diagonal(i) = next_.col(i).dot(q_.col(i)) * share(i);
+      system_.x(i) = off * unit_(i);
+      system_.diagonal(i) = next_.col(i).dot(q_.col(i)) * share_(i);
       if (i + 1 < k) system_.upper(i) = -next_.col(i).dot(q_.col(i + 1)) * inverse_mass_(i);
       if (i > 0) lower_(i) = -next_.col(i).dot(q_.col(i - 1)) * inverse_mass_(i - 1);
       if (!(std::abs(off) <= worst)) worst = std::abs(off);
@@ -170,7 +174,7 @@ template <int K> StepReport ChainRattle<K>::close() {
     tension_ += system_.x;
     if (worst < quadratic) {
       for (int i = 0; i < k; ++i) {
-        half_.col(i) += pull(q_, system_.x, i) * (h_ / 2 / chain_.length(i));
+        half_.col(i) += pull(q_, system_.x, i) * kick_(i);
         next_.col(i) = q_.col(i) + h_ * half_.col(i);
       }
       report.status = SolveStatus::converged;
@@ -191,7 +195,7 @@ template <int K> StepReport ChainRattle<K>::advance() {
   for (int i = 0; i < chain_.links(); ++i) {
     V change = pull(q_, end_, i);
     if (i == 0) change(2) -= chain_.gravity;
-    v_.col(i) = half_.col(i) + change * (h_ / 2 / chain_.length(i));
+    v_.col(i) = half_.col(i) + change * kick_(i);
   }
   ++index_;
   return report;
