@@ -190,6 +190,13 @@ TEST(OptimisationPage, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/optimisation.md"), "cpp", read("examples/my_objective.cpp")), none);
 }
 
+TEST(LieGroupPage, WhatItNamesExists) {
+  EXPECT_EQ(unknown_names(prose_of(read("docs/lie_group_integrators.md"))), none);
+}
+TEST(LieGroupPage, ItsCodeIsThatOfTheExample) {
+  EXPECT_EQ(foreign_blocks(read("docs/lie_group_integrators.md"), "cpp", read("examples/my_hamiltonian.cpp")), none);
+}
+
 TEST(Newton, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/newton.md"))), none); }
 TEST(Newton, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/newton.md"), "cpp", read("examples/implicit_step.cpp")), none);
