@@ -1,0 +1,32 @@
+#pragma once
+/// How good a learned Hamiltonian is.
+
+#include <lagroid/solvers/learning/model.hpp>
+#include <lagroid/solvers/learning/trajectories.hpp>
+
+#include <vector>
+
+namespace lagroid::learning {
+
+/// The learned motion, followed to `tolerance` (Model::follow) from the starts of data that were not trained on.
+struct Measures {
+  double mse = 0;  ///< weighted mean of (z - z_data)^2 over all numbers of all points but the first
+  std::vector<double> times;
+  std::vector<double> rms;  ///< at each of these: the root of the mean squared error, over all trajectories
+  /// What the learned H varies by along a trajectory of the data, of the true motion therefore: the largest of
+  /// |H(z_j) - H(z_0)|, and the root of the mean square. Noise is in it, from the first point on.
+  double energy_largest = 0;
+  double energy_rms = 0;
+  /// The largest change of e_3 . sum_i q_i x p_i, the momentum about the vertical, along a learned motion: zero where
+  /// the learned V has the symmetry; and along the data.
+  double momentum_learned = 0;
+  double momentum_data = 0;
+  long lost = 0;  ///< trajectories that could not be followed, left out of all
+};
+
+Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance = 1e-12);
+
+/// e_3 . sum_i q_i x p_i.
+double vertical_momentum(const Eigen::Ref<const Eigen::VectorXd>& z);
+
+}  // namespace lagroid::learning

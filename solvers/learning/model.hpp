@@ -1,0 +1,58 @@
+#pragma once
+/// Hamiltonians with parameters on (T*S^2)^k, for those who train, measure and run them.
+
+#include <lagroid/solvers/lie_group/method.hpp>
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lagroid::learning {
+
+/// Equal steps from t = 0: z is wanted after 1, ..., `intervals` intervals, each made in `substeps` steps.
+struct Schedule {
+  LieGroupMethod method = lie_group_methods::commutator_free_4;
+  double interval = 0;
+  int intervals = 1;
+  int substeps = 1;
+};
+
+/// H = 1/2 p^T M(q)^{-1} p + V(q) with parameters theta, the mass matrix's first (ParametricField). States are 6 x k
+/// matrices, column i (q_i, p_i), written one after the other in a column of 6k numbers.
+class Model {
+ public:
+  virtual ~Model() = default;
+  virtual std::string name() const = 0;
+  virtual int bodies() const = 0;
+  virtual Eigen::Index size() const = 0;
+  /// Where training may begin: unit masses up to a factor, and a random potential.
+  virtual Eigen::VectorXd start(unsigned seed) const = 0;
+
+  /// m.
+  virtual Eigen::MatrixXd mass(const Eigen::VectorXd& theta) const = 0;
+  virtual double energy(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
+  /// F[H], 6k numbers (xi_i, eta_i).
+  virtual Eigen::VectorXd field(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
+
+  /// z <- the wanted states from each column of `starts`, 6k * intervals numbers a column.
+  virtual void predict(const Eigen::VectorXd& theta, const Schedule& schedule,
+                       const Eigen::Ref<const Eigen::MatrixXd>& starts, Eigen::Ref<Eigen::MatrixXd> z) const = 0;
+  /// The same, and d z / d theta exactly: a row for each number of z, column after column.
+  virtual void differentiate(const Eigen::VectorXd& theta, const Schedule& schedule,
+                             const Eigen::Ref<const Eigen::MatrixXd>& starts, Eigen::Ref<Eigen::MatrixXd> z,
+                             Eigen::Ref<Eigen::MatrixXd> derivative) const = 0;
+  /// The states at rising `times` > 0 under control of the error (Munthe-Kaas on Dormand and Prince's pair); false
+  /// where the motion cannot be followed, and then nothing is known of z.
+  virtual bool follow(const Eigen::VectorXd& theta, const Eigen::VectorXd& start, std::span<const double> times,
+                      double tolerance, Eigen::MatrixXd& z) const = 0;
+};
+
+/// The models that are compiled: V a polynomial of a degree, or a network with hidden layers. Throw
+/// std::invalid_argument as PolynomialPotential and NetworkPotential do.
+std::unique_ptr<Model> polynomial_model(int bodies, int degree);
+std::unique_ptr<Model> network_model(int bodies, std::vector<int> hidden);
+
+}  // namespace lagroid::learning

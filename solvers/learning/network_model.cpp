@@ -1,0 +1,17 @@
+#include <lagroid/solvers/learning/network_potential.hpp>
+#include <lagroid/solvers/learning/parametric_model.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace lagroid::learning {
+
+std::unique_ptr<Model> network_model(int bodies, std::vector<int> hidden) {
+  const std::string name = fmt::format("network:{}", fmt::join(hidden, ","));
+  NetworkPotential potential(bodies, std::move(hidden));
+  if (bodies == 1) return std::make_unique<ParametricModel<NetworkPotential, 1>>(name, std::move(potential));
+  if (bodies == 2) return std::make_unique<ParametricModel<NetworkPotential, 2>>(name, std::move(potential));
+  return std::make_unique<ParametricModel<NetworkPotential, Eigen::Dynamic>>(name, std::move(potential), bodies);
+}
+
+}  // namespace lagroid::learning

@@ -1,0 +1,16 @@
+#include <lagroid/solvers/learning/parametric_model.hpp>
+#include <lagroid/solvers/learning/polynomial_potential.hpp>
+
+#include <fmt/format.h>
+
+namespace lagroid::learning {
+
+std::unique_ptr<Model> polynomial_model(int bodies, int degree) {
+  const std::string name = fmt::format("polynomial:{}", degree);
+  PolynomialPotential potential(bodies, degree);
+  if (bodies == 1) return std::make_unique<ParametricModel<PolynomialPotential, 1>>(name, std::move(potential));
+  if (bodies == 2) return std::make_unique<ParametricModel<PolynomialPotential, 2>>(name, std::move(potential));
+  return std::make_unique<ParametricModel<PolynomialPotential, Eigen::Dynamic>>(name, std::move(potential), bodies);
+}
+
+}  // namespace lagroid::learning

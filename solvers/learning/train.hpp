@@ -1,0 +1,83 @@
+#pragma once
+/// Fits a Hamiltonian to trajectories.
+
+#include <lagroid/solvers/learning/model.hpp>
+#include <lagroid/solvers/learning/trajectories.hpp>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::learning {
+
+enum class Outcome {
+  converged,        ///< the error falls no more
+  reached,          ///< the training error is as small as was asked
+  early_stopped,    ///< the error on held-out trajectories rose while the training error fell
+  iteration_limit,  ///< as many iterations as were allowed
+  time_limit,       ///< as long as was allowed
+  interrupted,      ///< the callback said so
+  too_little_data,  ///< fewer numbers than parameters
+  not_finite,       ///< no start has a finite error
+};
+std::string_view to_string(Outcome outcome);
+
+/// Where a training is, after an iteration.
+struct Stage {
+  int start = 0;  ///< of `starts`; the last stage, with all data, counts as one more
+  int iteration = 0;
+  double mse = 0;         ///< on the trajectories it trains on
+  double validation = 0;  ///< on those held out; not a number where there are none
+  double damping = 0;     ///< one over the radius of the trust region
+  double seconds = 0;     ///< of the processor, since the beginning
+};
+
+/// How to train.
+struct Training {
+  LieGroupMethod method = lie_group_methods::commutator_free_4;
+  int substeps = 2;   ///< in each interval of the data
+  unsigned seed = 1;  ///< of the first start; the others are the following ones
+  int starts = 4;     ///< how many are tried
+  int trial = 30;     ///< iterations of each, on `share` of the trajectories; the best goes on with all of them
+  double share = 0.2;
+  int iterations = 100;  ///< with all trajectories
+  /// Of the trajectories, the last ones, that are held out to stop early by; 0: none.
+  double validation = 0;
+  int patience = 10;             ///< iterations without a lower error on those
+  double enough = 0;             ///< mean squared error at which it stops
+  double least_progress = 1e-3;  ///< and the relative fall of it over ten iterations below which it does
+  /// The floor under the damping of a step, relative to the squared norms of the columns of J: J has no full rank,
+  /// because neither the part of V away from the spheres nor symmetries of a network move anything.
+  double damping_floor = 1e-14;
+  double seconds = std::numeric_limits<double>::infinity();  ///< of the processor
+  /// Sees every iteration; false interrupts.
+  std::function<bool(const Stage&)> callback = nullptr;
+};
+
+struct Trained {
+  Outcome outcome = Outcome::not_finite;
+  std::string message;         ///< one line where it did not converge, with the remedy
+  Eigen::VectorXd parameters;  ///< the best met; empty where nothing could be evaluated
+  double mse = std::numeric_limits<double>::quiet_NaN();
+  double validation = std::numeric_limits<double>::quiet_NaN();
+  int start = 0;       ///< the seed of the start that was best
+  int iterations = 0;  ///< of all stages
+  double seconds = 0;  ///< of the processor
+  std::vector<Stage> history;
+
+  bool usable() const { return parameters.size() > 0; }
+};
+
+/// The weighted mean of (z - z_data)^2 over all numbers of all points but the first; infinite where the motion is not
+/// finite.
+double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, const Schedule& schedule,
+                          const Trajectories& data);
+
+/// Minimises the mean squared error of the integrator's trajectories by Ceres' Levenberg-Marquardt method with exact
+/// derivatives (ParametricModel), from several starts. Never throws for numbers: the outcome tells. Equal data and
+/// options give equal bits, unless the time limit or the callback ends it.
+Trained train(const Model& model, const Trajectories& data, const Training& options);
+
+}  // namespace lagroid::learning

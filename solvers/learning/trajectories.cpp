@@ -1,0 +1,141 @@
+#include <lagroid/solvers/learning/trajectories.hpp>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstddef>
+#include <set>
+
+namespace lagroid::learning {
+
+namespace {
+
+/// What a text file with seven digits leaves.
+constexpr double written = 1e-6;
+/// Of the noise: beyond so many times its size is a mistake.
+constexpr double spread = 6;
+
+std::string place(const Observation& row) {
+  return fmt::format("row {} (trajectory {}, t = {:g})", row.row, row.trajectory, row.time);
+}
+
+void require_state(const Observation& row, double noise) {
+  for (Eigen::Index i = 0; i < row.z.size(); ++i)
+    if (!std::isfinite(row.z(i)))
+      throw DataRefused(fmt::format("{}: {}_{} is {}; every number has to be finite", place(row), i % 6 < 3 ? 'q' : 'p',
+                                    i / 6 + 1, row.z(i)));
+  if (!std::isfinite(row.time)) throw DataRefused(fmt::format("row {}: the time is not finite", row.row));
+  if (!(row.weight >= 0) || !std::isfinite(row.weight))
+    throw DataRefused(fmt::format("{}: weight {}; weights are zero or positive", place(row), row.weight));
+  for (Eigen::Index i = 0; i < row.z.size(); i += 6) {
+    const Eigen::Vector3d q = row.z.segment<3>(i);
+    const Eigen::Vector3d p = row.z.segment<3>(i + 3);
+    const double allowed = written + spread * noise;
+    const double off = std::abs(q.norm() - 1);
+    if (!(off <= allowed))
+      throw DataRefused(
+          fmt::format("{}: q_{} is off the unit sphere by {:.1e}; give unit vectors, or the size of the "
+                      "noise",
+                      place(row), i / 6 + 1, off));
+    const double along = std::abs(q.dot(p));
+    if (!(along <= allowed * (1 + p.norm())))
+      throw DataRefused(
+          fmt::format("{}: p_{} has a part {:.1e} along q_{}; give tangent momenta, or the size of the "
+                      "noise",
+                      place(row), i / 6 + 1, along, i / 6 + 1));
+  }
+}
+
+void require_first(const Observation& row) {
+  if (row.z.size() < 6 || row.z.size() % 6 != 0)
+    throw DataRefused(
+        fmt::format("row {}: {} numbers are no state; each body has q and p, six numbers", row.row, row.z.size()));
+}
+
+}  // namespace
+
+void put_on_spheres(Eigen::Ref<Eigen::VectorXd> z) {
+  for (Eigen::Index i = 0; i < z.size(); i += 6) {
+    z.segment<3>(i).normalize();
+    const Eigen::Vector3d q = z.segment<3>(i);
+    z.segment<3>(i + 3) -= q * q.dot(z.segment<3>(i + 3));
+  }
+}
+
+Trajectories Trajectories::part(Eigen::Index first, Eigen::Index number) const {
+  return {bodies,
+          points,
+          interval,
+          starts.middleCols(first, number),
+          ends.middleCols(first, number),
+          weights.middleCols(first, number)};
+}
+
+Trajectories assemble(std::span<const Observation> rows, double noise) {
+  if (!(noise >= 0) || !std::isfinite(noise)) throw DataRefused("the size of the noise is zero or positive");
+  if (rows.empty()) throw DataRefused("no rows; give one or more trajectories");
+  require_first(rows.front());
+  const Eigen::Index width = rows.front().z.size();
+  std::vector<std::size_t> begins;
+  std::set<long> seen;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Observation& row = rows[r];
+    if (row.z.size() != width)
+      throw DataRefused(
+          fmt::format("row {}: {} numbers, the first row has {}; make them equal", row.row, row.z.size(), width));
+    require_state(row, noise);
+    if (r > 0 && row.trajectory == rows[r - 1].trajectory) continue;
+    if (!seen.insert(row.trajectory).second)
+      throw DataRefused(
+          fmt::format("{}: the trajectory began before, and another came between; keep its rows together", place(row)));
+    begins.push_back(r);
+  }
+  begins.push_back(rows.size());
+
+  const std::size_t points = begins[1];
+  if (points < 2)
+    throw DataRefused(
+        fmt::format("{}: a trajectory of one point says nothing of the motion; give two or more", place(rows.front())));
+  Trajectories out;
+  out.bodies = int(width / 6);
+  out.points = int(points);
+  out.interval = (rows[points - 1].time - rows[0].time) / double(points - 1);
+  if (!(out.interval > 0))
+    throw DataRefused(
+        fmt::format("{}: the last time of the trajectory is not after its first", place(rows[points - 1])));
+  const auto count = Eigen::Index(begins.size() - 1);
+  const auto later = Eigen::Index(points - 1);
+  out.starts.resize(width, count);
+  out.ends.resize(width * later, count);
+  out.weights.resize(later, count);
+  for (Eigen::Index n = 0; n < count; ++n) {
+    const std::size_t begin = begins[std::size_t(n)];
+    const std::size_t length = begins[std::size_t(n) + 1] - begin;
+    if (length != points)
+      throw DataRefused(fmt::format("{}: this trajectory has {} points, the first one {}; cut them to equal lengths",
+                                    place(rows[begin + std::min(length, points) - 1]), length, points));
+    for (std::size_t j = 0; j < points; ++j) {
+      const Observation& row = rows[begin + j];
+      const double expected = rows[begin].time + double(j) * out.interval;
+      if (!(std::abs(row.time - expected) <= 1e-6 * out.interval * double(points)))
+        throw DataRefused(
+            fmt::format("{}: equal intervals would have t = {:g} here; sample all trajectories at equal "
+                        "intervals of {:g}",
+                        place(row), expected, out.interval));
+      if (j == 0) {
+        out.starts.col(n) = row.z;
+        put_on_spheres(out.starts.col(n));
+      } else {
+        out.ends.col(n).segment(Eigen::Index(j - 1) * width, width) = row.z;
+        out.weights(Eigen::Index(j - 1), n) = row.weight;
+      }
+    }
+  }
+  const double mean = out.weights.mean();
+  if (!(mean > 0)) throw DataRefused("all weights are zero; give some points a positive one");
+  out.weights /= mean;
+  return out;
+}
+
+}  // namespace lagroid::learning
