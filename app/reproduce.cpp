@@ -26,6 +26,7 @@ constexpr const char* newton_name = "newton-on-lie-groups";
 constexpr const char* time_name = "time-steps";
 constexpr const char* accelerated_name = "accelerated-optimization";
 constexpr const char* maps_name = "constrained-maps";
+constexpr const char* learning_name = "learning-hamiltonians";
 
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {
@@ -197,6 +198,43 @@ int reproduce_maps(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
+int reproduce_learning(const ReproduceOptions& options, bool json) {
+  try {
+    require_writable(options.learning_out, learning_report_files);
+  } catch (const OutputError& error) {
+    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
+  }
+  const LearningStudy& study = options.learning;
+  const auto start = std::chrono::steady_clock::now();
+  LearningFindings findings;
+  {
+    Progress progress(learning_name, 100, !json);
+    findings = run_learning_study(study, [&](long done, long all) { progress.update(100 * done / all); });
+  }
+  std::string note;
+  const auto files = write_learning_report(
+      findings,
+      fmt::format("./lagroid reproduce {} --runs {} --first-seed {} --largest {} --units {} --substeps {} --out {}",
+                  learning_name, study.runs, study.first_seed, study.largest, study.units, study.substeps,
+                  quoted(options.learning_out)),
+      options.learning_out, note);
+  nlohmann::ordered_json result;
+  result["status"] = "done";
+  result["fits"] = findings.fits.size();
+  result["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::string text =
+      fmt::format("{}: {} fits in {:.3g} s\n", learning_name, findings.fits.size(), result["seconds"].get<double>());
+  for (const auto& fit : findings.fits) {
+    if (fit.noise != 0 || fit.points != 5 || fit.seed != study.first_seed) continue;
+    const double test = median_of(findings, fit, &LearningFit::test);
+    result["test_mse"][fmt::format("k = {}", fit.bodies)][fit.integrator][fmt::format("N = {}", fit.count)][fit.model] =
+        test;
+    text += fmt::format("  k = {}, {:<4} N = {:<5} {:<14} test MSE {:.3g}\n", fit.bodies, fit.integrator, fit.count,
+                        fit.model, test);
+  }
+  return conclude(std::move(result), std::move(text), files, note, json);
+}
+
 void newton_options(CLI::App& command, ReproduceOptions& options) {
   command.add_option("--out", options.newton_out, "the folder for report.md, tables, CSV and figures")
       ->capture_default_str();
@@ -245,6 +283,26 @@ void map_options(CLI::App& command, ReproduceOptions& options) {
       ->capture_default_str();
 }
 
+void learning_options(CLI::App& command, ReproduceOptions& options) {
+  LearningStudy& study = options.learning;
+  command.add_option("--out", options.learning_out, "the folder for report.md, CSV and the figure")
+      ->capture_default_str();
+  command.add_option("--runs", study.runs, "data sets of each cell")->check(CLI::Range(1, 100))->capture_default_str();
+  command.add_option("--first-seed", study.first_seed, "the first of their seeds")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--largest", study.largest, "leave out cells with more trajectories")
+      ->check(CLI::Range(50, 1500))
+      ->capture_default_str();
+  command.add_option("--units", study.units, "of the network's hidden layer")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--substeps", study.substeps, "of the integrator between two points")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--threads", study.threads, "fits at a time")->check(CLI::Range(1, 256))->capture_default_str();
+}
+
 struct Reproduction {
   const char* name;
   const char* summary;
@@ -256,6 +314,8 @@ constexpr Reproduction reproductions[] = {
      time_options, reproduce_time_steps},
     {newton_name, "Owren and Welfert, section 5: Newton, fixed point, Ceres and the path on O(N), and what they cost",
      newton_options, reproduce_newton},
+    {learning_name, "Celledoni and others: Hamiltonians of spherical pendula learned from data, the parameter study",
+     learning_options, reproduce_learning},
     {maps_name, "Duruisseaux and Leok, sections 2 to 5.4.1: orders of constrained maps of types I, II and III",
      map_options, reproduce_maps},
     {accelerated_name, "Duruisseaux and Leok, Figure 1: accelerated optimisation on manifolds, and the competition",

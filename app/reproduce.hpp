@@ -4,6 +4,7 @@
 #include "command.hpp"
 
 #include "reproductions/accelerated_optimisation.hpp"
+#include "reproductions/learning_hamiltonians.hpp"
 #include "reproductions/newton_on_lie_groups.hpp"
 
 namespace lagroid::app {
@@ -19,6 +20,8 @@ struct ReproduceOptions {
   int coarsest = 40;
   int map_refinements = 5;
   std::string maps_out = "out/constrained-maps";
+  LearningStudy learning;
+  std::string learning_out = "out/learning-hamiltonians";
 };
 
 /// The subcommands of `reproduce`.

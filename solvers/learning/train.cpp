@@ -15,7 +15,12 @@ namespace lagroid::learning {
 
 namespace {
 
-double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
+/// Of this thread.
+double processor_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
 
 /// How many trajectories are predicted at a time: some hundred numbers.
 Eigen::Index block_of(const Trajectories& data) { return std::max<Eigen::Index>(1, 512 / data.ends.rows()); }

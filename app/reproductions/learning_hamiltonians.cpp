@@ -1,0 +1,143 @@
+#include "learning_hamiltonians.hpp"
+
+#include <lagroid/solvers/learning/measures.hpp>
+#include <lagroid/solvers/learning/train.hpp>
+#include <lagroid/systems/chain_trajectories.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+namespace lagroid::app {
+
+namespace {
+
+using learning::Model;
+using learning::Trajectories;
+
+constexpr int counts[] = {50, 500, 1000, 1500};
+constexpr int numbers_of_points[] = {2, 3, 5};
+constexpr double noises[] = {0, 0.001, 0.01, 0.1};
+constexpr unsigned test_seed = 1'000'007;
+
+LieGroupMethod method_of(const std::string& integrator) {
+  return integrator == "CF4"   ? lie_group_methods::commutator_free_4
+         : integrator == "LE"  ? lie_group_methods::lie_euler
+         : integrator == "RK4" ? lie_group_methods::runge_kutta_4
+                               : lie_group_methods::euler;
+}
+
+std::unique_ptr<Model> model_of(const LearningStudy& study, int bodies, const std::string& name) {
+  if (name.starts_with("network")) return learning::network_model(bodies, {study.units});
+  return learning::polynomial_model(bodies, 2);
+}
+
+/// Unit masses, lengths and gravity.
+PendulumChain<Eigen::Dynamic> chain(int bodies) {
+  return {Eigen::VectorXd::Ones(bodies), Eigen::VectorXd::Ones(bodies), 1};
+}
+/// The original's test data: a hundred trajectories of 15 points until t = 1.
+Trajectories test_data(int bodies) {
+  return assemble(draw_trajectories(chain(bodies), {.count = 100, .points = 15, .duration = 1, .seed = test_seed}));
+}
+
+/// The fits to be made, without their findings.
+std::vector<LearningFit> cells(const LearningStudy& study) {
+  std::vector<LearningFit> out;
+  const auto add = [&](LearningFit fit) {
+    for (const std::string& model : learning_models(study))
+      for (int run = 0; run < study.runs; ++run) {
+        fit.model = model;
+        fit.seed = study.first_seed + unsigned(run);
+        out.push_back(fit);
+      }
+  };
+  for (const double noise : noises)
+    for (const std::string& integrator : learning_integrators())
+      for (const int count : counts)
+        for (const int points : numbers_of_points)
+          if (count <= study.largest) add({1, noise, integrator, count, points});
+  for (const std::string& integrator : learning_integrators()) add({2, 0, integrator, std::min(500, study.largest), 5});
+  return out;
+}
+
+void fit(LearningFit& cell, const LearningStudy& study, const Trajectories& test) {
+  const auto observed = draw_trajectories(
+      chain(cell.bodies),
+      {.count = cell.count, .points = cell.points, .duration = 0.1, .noise = cell.noise, .seed = cell.seed});
+  const auto model = model_of(study, cell.bodies, cell.model);
+  const auto trained = train(*model, learning::assemble(observed, cell.noise),
+                             {.method = method_of(cell.integrator),
+                              .substeps = study.substeps,
+                              .seed = cell.seed,
+                              .validation = cell.noise > 0 ? 0.2 : 0});
+  cell.outcome = std::string(to_string(trained.outcome));
+  cell.training = trained.mse;
+  cell.seconds = trained.seconds;
+  cell.test = std::numeric_limits<double>::quiet_NaN();
+  if (!trained.usable()) return;
+  const auto measured = measure(*model, trained.parameters, test);
+  if (measured.lost == 0) cell.test = measured.mse;
+}
+
+}  // namespace
+
+const std::vector<std::string>& learning_integrators() {
+  static const std::vector<std::string> names{"CF4", "RK4", "LE", "EE"};
+  return names;
+}
+std::vector<std::string> learning_models(const LearningStudy& study) {
+  return {fmt::format("network:{}", study.units), "polynomial:2"};
+}
+
+LearningFindings run_learning_study(const LearningStudy& study, const std::function<void(long, long)>& report) {
+  LearningFindings findings{study, cells(study)};
+  const Trajectories tests[] = {test_data(1), test_data(2)};
+  std::atomic<std::size_t> next = 0;
+  std::mutex reporting;
+  long done = 0;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < findings.fits.size(); i = next++) {
+      LearningFit& cell = findings.fits[i];
+      try {
+        fit(cell, study, tests[cell.bodies - 1]);
+      } catch (...) {
+        const std::lock_guard guard(reporting);
+        failure = std::current_exception();
+        next = findings.fits.size();
+        return;
+      }
+      const std::lock_guard guard(reporting);
+      report(++done, long(findings.fits.size()));
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 1; t < study.threads; ++t) threads.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+  return findings;
+}
+
+double median_of(const LearningFindings& findings, const LearningFit& cell, double LearningFit::*value) {
+  std::vector<double> found;
+  for (const LearningFit& f : findings.fits)
+    if (f.bodies == cell.bodies && f.noise == cell.noise && f.integrator == cell.integrator && f.count == cell.count &&
+        f.points == cell.points && f.model == cell.model)
+      found.push_back(f.*value);
+  if (found.empty()) return std::numeric_limits<double>::quiet_NaN();
+  // Fits that failed count as the worst.
+  std::sort(found.begin(), found.end(), [](double a, double b) { return a < b || (a == a && b != b); });
+  return found[found.size() / 2];
+}
+
+}  // namespace lagroid::app

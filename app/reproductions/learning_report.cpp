@@ -1,0 +1,170 @@
+#include "../clock.hpp"
+#include "../machine.hpp"
+#include "../output_folder.hpp"
+#include "learning_hamiltonians.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace lagroid::app {
+
+const std::vector<const char*> learning_report_files{"report.md", "fits.csv", "figures.gp", "errors.svg"};
+
+namespace {
+
+constexpr double loss_over = 20;  // of the original's loss
+
+std::string fits_csv(const LearningFindings& findings) {
+  std::string out = "bodies,noise,integrator,N,M,model,seed,outcome,training_mse,test_mse,seconds,published_test_mse\n";
+  for (const auto& f : findings.fits) {
+    const PublishedFit* published = f.bodies == 1 ? published_fit(f.noise, f.integrator, f.count, f.points) : nullptr;
+    const double original = published != nullptr                                       ? published->test
+                            : f.bodies == 2 && f.integrator == "CF4" && f.count == 500 ? published_two
+                                                                                       : std::nan("");
+    fmt::format_to(std::back_inserter(out), "{},{:g},{},{},{},{},{},{},{:.4g},{:.4g},{:.3g},{}\n", f.bodies, f.noise,
+                   f.integrator, f.count, f.points, f.model, f.seed, f.outcome, f.training, f.test, f.seconds,
+                   original == original ? fmt::format("{:.4g}", original) : std::string());
+  }
+  return out;
+}
+
+std::string figures(const LearningFindings& findings) {
+  const auto models = learning_models(findings.study);
+  std::string out =
+      "# Draws fits.csv; run by lagroid, or by hand: gnuplot figures.gp\nset datafile separator ','\nset grid\n"
+      "set terminal svg size 1040,620 background 'white' noenhanced\nset output 'errors.svg'\nset multiplot layout "
+      "1,2\nset logscale xy\nset format y '%.0e'\nset ylabel 'test MSE'\nset key below\n";
+  const auto curves = [&](const std::string& x, const std::string& rows, bool each_integrator) {
+    std::string plot = "plot ";
+    const auto add = [&](const std::string& which, const std::string& column, const std::string& title,
+                         const std::string& style) {
+      plot += fmt::format(
+          "{}'fits.csv' using ({}):(({}) && {} ? column('{}') : NaN) smooth unique with linespoints pointtype 7 "
+          "pointsize 0.5 {} title '{}'",
+          plot == "plot " ? "" : ", \\\n  ", x, rows, which, column, style, title);
+    };
+    for (const auto& integrator : learning_integrators()) {
+      if (!each_integrator && integrator != "CF4") continue;
+      const std::string of = fmt::format("(strcol('integrator') eq '{}')", integrator);
+      add(of, "published_test_mse", integrator + ", published", "dashtype 2");
+      for (const auto& model : models)
+        add(fmt::format("{} && (strcol('model') eq '{}')", of, model), "test_mse", integrator + ", " + model, "");
+    }
+    return plot + "\n";
+  };
+  out += "set title 'without noise, M = 5'\nset xlabel 'N'\n" +
+         curves("column('N')", "(column('bodies') == 1) && (column('noise') == 0) && (column('M') == 5)", true);
+  out += fmt::format("set title 'CF4, M = 5, N = {0}'\nset xlabel 'noise'\n", findings.study.largest) +
+         curves("column('noise') + 1e-4",
+                fmt::format("(column('bodies') == 1) && (column('N') == {}) && (column('M') == 5)",
+                            findings.study.largest),
+                false);
+  return out + "unset multiplot\nset output\n";
+}
+
+std::string shown(double x) { return x == x ? fmt::format("{:.2g}", x) : std::string("-"); }
+
+/// In how many cells of one pendulum the model's test error is below the published median, and in how many it is not.
+std::pair<long, long> against_published(const LearningFindings& findings, const std::string& model) {
+  std::pair<long, long> out{0, 0};
+  for (const auto& f : findings.fits) {
+    if (f.bodies != 1 || f.model != model || f.seed != findings.study.first_seed) continue;
+    const PublishedFit* published = published_fit(f.noise, f.integrator, f.count, f.points);
+    if (published == nullptr) continue;
+    ++(median_of(findings, f, &LearningFit::test) < published->test ? out.first : out.second);
+  }
+  return out;
+}
+
+std::string table(const LearningFindings& findings, double noise) {
+  const auto models = learning_models(findings.study);
+  std::string out = fmt::format(
+      "| integrator | N | M | test MSE: published | {0} | {1} | training MSE: published | {0} | {1} | s to train: {0} "
+      "| {1} |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+      models[0], models[1]);
+  for (const auto& f : findings.fits) {
+    if (f.bodies != 1 || f.noise != noise || f.model != models[0] || f.seed != findings.study.first_seed) continue;
+    const PublishedFit* published = published_fit(f.noise, f.integrator, f.count, f.points);
+    LearningFit other = f;
+    other.model = models[1];
+    const auto both = [&](double LearningFit::*value) {
+      return fmt::format("{} | {}", shown(median_of(findings, f, value)), shown(median_of(findings, other, value)));
+    };
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", f.integrator, f.count, f.points,
+                       shown(published ? published->test : std::nan("")), both(&LearningFit::test),
+                       shown(published ? loss_over * published->loss : std::nan("")), both(&LearningFit::training),
+                       both(&LearningFit::seconds));
+  }
+  return out;
+}
+
+std::string two_pendula(const LearningFindings& findings) {
+  std::string out =
+      "| integrator | N | M | model | test MSE | training MSE | s to train | outcome |\n"
+      "|---|---|---|---|---|---|---|---|\n";
+  for (const auto& f : findings.fits) {
+    if (f.bodies != 2 || f.seed != findings.study.first_seed) continue;
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", f.integrator, f.count, f.points, f.model,
+                       shown(median_of(findings, f, &LearningFit::test)),
+                       shown(median_of(findings, f, &LearningFit::training)),
+                       shown(median_of(findings, f, &LearningFit::seconds)), f.outcome);
+  }
+  return out + fmt::format("| CF4 | 500 | 5 | published | {} | | | |\n", shown(published_two));
+}
+
+std::string report(const LearningFindings& findings, const std::string& command, bool pictures) {
+  const auto models = learning_models(findings.study);
+  std::string out = fmt::format(
+      "# Learning Hamiltonians: the parameter study\n\nWritten by\n\n    {}\n\non {}.\n\n"
+      "N trajectories of M points until t = 0.1 of a spherical pendulum of unit mass, length and gravity, with uniform "
+      "errors up to the noise in every number but the first points'. H = p.M(q)^{{-1}} p / 2 + V(q) is fitted through "
+      "four integrators, with {} between two points, by Levenberg and Marquardt's method with exact derivatives "
+      "(docs/learning.md). V is a network of one hidden layer ({}), or a polynomial ({}), which contains the true "
+      "potential. Test MSE: over 100 other trajectories without noise, 15 points until t = 1, by the learned motion "
+      "itself, free of the integrator's error. Published: medians of five runs of the original, whose training loss is "
+      "the mean squared error over {:g}; with one step between points our training error through the methods of order "
+      "one is the published one, so that this is what the original did. Ours: {}. With noise a fifth of the "
+      "trajectories is held out, to stop early.\n\n",
+      command, machine(),
+      findings.study.substeps == 1 ? std::string("one step") : fmt::format("{} steps", findings.study.substeps),
+      models[0], models[1], loss_over,
+      findings.study.runs == 1 ? std::string("one run") : fmt::format("medians of {} runs", findings.study.runs));
+  for (const auto& model : models) {
+    const auto [below, not_below] = against_published(findings, model);
+    out += fmt::format("- {}: below the published median in {} of {} cells.\n", model, below, below + not_below);
+  }
+  out +=
+      "\nWhat the integrator cannot resolve is the floor without noise: the methods of order one learn a Hamiltonian "
+      "whose numerical motion fits, and that is not the true one. With noise every method ends at the data's own "
+      "floor, noise^2 / 3 in training.\n";
+  if (pictures) out += "\n![test errors over N and noise](errors.svg)\n";
+  std::set<double> noises;
+  for (const auto& f : findings.fits)
+    if (f.bodies == 1) noises.insert(f.noise);
+  for (const double noise : noises)
+    out += fmt::format("\n## One pendulum, {}\n\n{}",
+                       noise == 0 ? std::string("without noise") : fmt::format("noise {:g}", noise),
+                       table(findings, noise));
+  return out + "\n## Two pendula, without noise\n\n" + two_pendula(findings);
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> write_learning_report(const LearningFindings& findings, const std::string& command,
+                                                         const std::filesystem::path& folder, std::string& note) {
+  return write_whole(folder, learning_report_files, [&](const std::filesystem::path& staging) {
+    std::vector<std::string> names{"report.md", "fits.csv", "figures.gp"};
+    write_text(fits_csv(findings), staging / "fits.csv");
+    write_text(figures(findings), staging / "figures.gp");
+    note = run_gnuplot(staging, "figures.gp", {"errors.svg"});
+    if (note.empty()) names.emplace_back("errors.svg");
+    write_text(report(findings, command, note.empty()), staging / "report.md");
+    return names;
+  });
+}
+
+}  // namespace lagroid::app
