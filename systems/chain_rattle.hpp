@@ -1,6 +1,7 @@
 #pragma once
 /// The variational integrator of chains of spherical pendula.
 
+#include <lagroid/core/tape.hpp>
 #include <lagroid/systems/pendulum_chain.hpp>
 
 #include <algorithm>
@@ -63,14 +64,8 @@ template <int K> class ChainRattle {
     index_ = index;
     tensions_at_rest();
   }
-  /// Visits all that the next step goes on from.
-  template <class Visit> void persist(const Visit& visit) {
-    visit("q", q_);
-    visit("v", v_);
-    visit("tension", end_);
-    visit("gap", gap_);
-    visit("index", index_);
-  }
+  /// Visits all that the next step goes on from, to its last bit.
+  void persist(Tape& tape) { tape(q_, v_, end_, gap_, index_); }
 
  private:
   /// sum_j (d l_i v_i / d(h T_j / 2)) T_j, that is -T_i d_i q_i + T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1}.

@@ -49,6 +49,11 @@ template <HomogeneousSpace M> class LieGroupStep {
   /// component.
   double error() const { return error_; }
 
+  /// Visits what the next step goes on from, beside the point.
+  template <class Tape> void persist(Tape& tape) {
+    if (method_.reuses_last) tape(knows_first_, slope_[std::size_t(method_.stages) - 1]);
+  }
+
  private:
   /// sum <- h sum_j w_j K_j; false where all weights are zero.
   bool combine(const LieGroupMethod::Row& weights, double h, int stages) {
