@@ -27,8 +27,8 @@ class Tape {
   /// Whether all that was written has been read.
   bool at_end() const { return at_ == numbers_.size(); }
 
-  /// Visits numbers, flags, matrices and arrays, which keep the sizes that they have, and whatever visits its own
-  /// fields. Throws std::out_of_range where the tape is read beyond its end: it was written by another computation.
+  /// Visits numbers, flags, matrices and arrays of fixed size, and whatever visits its own fields. Throws
+  /// std::out_of_range where the tape is read beyond its end: it was written by another computation.
   template <class... Fields> void operator()(Fields&... fields) { (visit(fields), ...); }
   template <class G> void arrow(const G& groupoid, ArrowOf<G>& g) {
     auto x = groupoid.coordinates_of_arrow(g);
@@ -60,6 +60,7 @@ class Tape {
     } else if constexpr (requires { field.persist(*this); }) {
       field.persist(*this);
     } else if constexpr (requires { T::SizeAtCompileTime; }) {
+      static_assert(T::SizeAtCompileTime != Eigen::Dynamic);
       for (Eigen::Index i = 0; i < field.size(); ++i) visit(field.data()[i]);
     } else {
       for (auto& each : field) visit(each);

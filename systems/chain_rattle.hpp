@@ -2,6 +2,7 @@
 /// The variational integrator of chains of spherical pendula.
 
 #include <lagroid/core/tape.hpp>
+#include <lagroid/solvers/lie_group/step.hpp>
 #include <lagroid/systems/pendulum_chain.hpp>
 
 #include <algorithm>
@@ -41,7 +42,7 @@ template <int K> class ChainRattle {
     restore(start, 0);
   }
 
-  MethodTraits traits() const { return {"rattle", 2, true, true, false}; }
+  static MethodTraits traits() { return {"rattle", 2, true, true, false}; }
   double time() const { return double(index_) * h_; }
   long index() const { return index_; }
   const Columns& directions() const { return q_; }
@@ -65,7 +66,13 @@ template <int K> class ChainRattle {
     tensions_at_rest();
   }
   /// Visits all that the next step goes on from, to its last bit.
-  void persist(Tape& tape) { tape(q_, v_, end_, gap_, index_); }
+  void persist(Tape& tape) {
+    auto q = numbers_of(q_);
+    auto v = numbers_of(v_);
+    auto end = numbers_of(end_);
+    auto gap = numbers_of(gap_);
+    tape(q, v, end, gap, index_);
+  }
 
  private:
   /// sum_j (d l_i v_i / d(h T_j / 2)) T_j, that is -T_i d_i q_i + T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1}.

@@ -74,6 +74,18 @@ template <int K> struct PendulumChain {
     }
     return sum;
   }
+  /// sum_i m_i |x_i| |x_i'|, the size of its terms.
+  double momentum_size(const Points& z) const {
+    V place = V::Zero();
+    V velocity = V::Zero();
+    double sum = 0;
+    for (int i = 0; i < links(); ++i) {
+      place += length(i) * V(z.col(i).template head<3>());
+      velocity += length(i) * link_velocity(z, i);
+      sum += mass(i) * place.norm() * velocity.norm();
+    }
+    return sum;
+  }
   /// (q, w) -> (q, p), the Legendre transform.
   Points to_momenta(const Points& z) const {
     Points out = z;

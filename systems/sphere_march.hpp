@@ -43,6 +43,10 @@ class SphereMarch {
   virtual void persist(Tape& tape) = 0;
 };
 
+/// How far points are from the bundle: the largest of ||q_i|^2 - 1| / 2 and |q_i.w_i|, the latter over the largest
+/// |w_j|.
+double off_spheres(const SphereMarch::Points& z);
+
 namespace detail {
 
 template <class F> class EqualSphereSteps final : public SphereMarch {

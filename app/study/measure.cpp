@@ -101,7 +101,7 @@ class Extrapolated final : public Reference {
     std::vector<std::vector<Block>> next{reached->state};
     constexpr std::size_t most = 3;  // extrapolating further multiplies round-off
     for (std::size_t k = 0; k < row.size() && k < most; ++k) {
-      const double factor = std::pow(2.0, method_.order + 2 * int(k)) - 1;
+      const double factor = std::pow(2.0, method_.order + (method_.even_powers ? 2 : 1) * int(k)) - 1;
       auto better = next[k];
       for (std::size_t b = 0; b < better.size(); ++b)
         for (std::size_t i = 0; i < better[b].values.size(); ++i)
@@ -409,8 +409,9 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       out.message = fmt::format("step {} of {}", out.work.steps + 1, std::lround(experiment.end / h));
       return out;
     }
+    const bool at_end = method.equal_steps || std::abs(out.reached - experiment.end) <= 1e-12 * experiment.end;
     if (reference != nullptr)
-      out.trajectory = distance(trial->see().state, reference->at(method.equal_steps ? experiment.end : out.reached));
+      out.trajectory = distance(trial->see().state, reference->at(at_end ? experiment.end : out.reached));
     if (reference != nullptr && method.equal_steps && !std::isfinite(out.trajectory)) {
       out.status = std::string(to_string(SolveStatus::not_finite));
       out.message = "the state at the end is not finite";

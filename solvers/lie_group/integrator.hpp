@@ -57,7 +57,10 @@ template <HomogeneousSpace M, AlgebraField<M> F> class LieGroupIntegrator {
     step_.forget();
   }
   /// Visits all that the next step goes on from, to its last bit.
-  void persist(Tape& tape) { tape(point_, index_, step_); }
+  void persist(Tape& tape) {
+    auto point = numbers_of(point_);
+    tape(point, index_, step_);
+  }
 
  private:
   LieGroupStep<M> step_;
@@ -126,7 +129,10 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
     return report;
   }
   /// Visits all that the next step goes on from, to its last bit.
-  void persist(Tape& tape) { tape(point_, h_, time_, steps_, rejected_, step_); }
+  void persist(Tape& tape) {
+    auto point = numbers_of(point_);
+    tape(point, h_, time_, steps_, rejected_, step_);
+  }
 
  private:
   void try_step(double h, double reached) {

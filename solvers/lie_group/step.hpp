@@ -2,13 +2,20 @@
 /// One step of an explicit Lie group integrator.
 
 #include <lagroid/core/homogeneous_space.hpp>
+#include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace lagroid {
+
+/// The numbers of a matrix of any size, for tapes.
+template <class Matrix> std::span<typename Matrix::Scalar> numbers_of(Matrix& m) {
+  return {m.data(), std::size_t(m.size())};
+}
 
 /// Steps z' = F(t, z)_M(z) by a LieGroupMethod. Holds the workspace, so that a step allocates nothing; for any scalar
 /// of M. No step looks at whether its numbers are finite.
@@ -50,8 +57,10 @@ template <HomogeneousSpace M> class LieGroupStep {
   double error() const { return error_; }
 
   /// Visits what the next step goes on from, beside the point.
-  template <class Tape> void persist(Tape& tape) {
-    if (method_.reuses_last) tape(knows_first_, slope_[std::size_t(method_.stages) - 1]);
+  void persist(Tape& tape) {
+    if (!method_.reuses_last) return;
+    auto slope = numbers_of(slope_[std::size_t(method_.stages) - 1]);
+    tape(knows_first_, slope);
   }
 
  private:
