@@ -76,13 +76,6 @@ LedgerEntry QuantityWatch::entry() const {
   return e;
 }
 
-LedgerEntry unpromised(LedgerEntry entry) {
-  entry.promise = "none";
-  entry.bound = 0;
-  entry.verdict = "watched";
-  return entry;
-}
-
 LedgerEntry constraint_entry(double largest, double size) {
   LedgerEntry e;
   e.name = "constraint residual";

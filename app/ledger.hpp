@@ -43,9 +43,6 @@ class QuantityWatch {
   double noise_ = 0;  // the largest
 };
 
-/// The same of what the method does not promise: how far it went is told.
-LedgerEntry unpromised(LedgerEntry entry);
-
 /// The entry for a constraint residual: the largest |phi| met, against round-off in its terms, which have the given
 /// size.
 LedgerEntry constraint_entry(double largest, double size);

@@ -237,11 +237,6 @@ bool Section::is_table(std::string_view key) const {
   return node != nullptr && node->is_table();
 }
 
-bool Section::is_text(std::string_view key) const {
-  const toml::node* node = find(key);
-  return node != nullptr && node->is_string();
-}
-
 std::vector<double> Section::numbers_at(std::string_view path) const {
   std::vector<double> out;
   if (path.find('[') != std::string_view::npos) return out;

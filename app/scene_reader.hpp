@@ -55,7 +55,6 @@ class Section {
   std::string text(std::string_view key, std::string_view what) const;
   bool is_number(std::string_view key) const;
   bool is_table(std::string_view key) const;
-  bool is_text(std::string_view key) const;
   /// An array of strings; empty where the key is missing.
   std::vector<std::string> texts_or_none(std::string_view key, std::string_view what) const;
   bool flag_or(std::string_view key, bool fallback) const;

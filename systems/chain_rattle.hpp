@@ -1,8 +1,8 @@
 #pragma once
 /// The variational integrator of chains of spherical pendula.
 
+#include <lagroid/core/numbers_of.hpp>
 #include <lagroid/core/tape.hpp>
-#include <lagroid/solvers/lie_group/step.hpp>
 #include <lagroid/systems/pendulum_chain.hpp>
 
 #include <algorithm>

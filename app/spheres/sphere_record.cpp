@@ -25,6 +25,14 @@ std::vector<Coordinate> place(std::size_t bob) {
   return {fmt::format("x{}", bob), fmt::format("y{}", bob), fmt::format("z{}", bob)};
 }
 
+/// What the method does not promise: how far it went is told.
+LedgerEntry unpromised(LedgerEntry entry) {
+  entry.promise = "none";
+  entry.bound = 0;
+  entry.verdict = "watched";
+  return entry;
+}
+
 }  // namespace
 
 bool SphereNode::finite() const {

@@ -19,8 +19,8 @@ const std::vector<SphereEntry>& sphere_systems() {
 }
 
 const SphereEntry* sphere_system_of(const Section& scene) {
-  if (scene.has("body") || !scene.is_text("system")) return nullptr;
-  const std::string name = scene.text("system", "a name");
+  if (scene.has("body") || !scene.has("system")) return nullptr;
+  const std::string name = scene.text("system", "the name of a system, as lagroid list tells them");
   for (const SphereEntry& entry : sphere_systems())
     if (entry.name == name) return &entry;
   return nullptr;

@@ -57,7 +57,6 @@ std::vector<Method> sphere_methods(const SphereSystem& system) {
       Method each{form == forms.front() ? std::string(method.name) : fmt::format("{}/{}", method.name, word(form)),
                   method.order, method.stages, true, settings(method.name, form)};
       each.to_compare = method.scheme == LieGroupScheme::classical;
-      each.even_powers = false;
       all.push_back(std::move(each));
     }
   }

@@ -51,7 +51,6 @@ struct Method {
   bool equal_steps = true;
   std::vector<std::string> settings;
   bool to_compare = false;  ///< there to be compared with, and not chosen for anyone
-  bool even_powers = true;  ///< its error has an expansion in even powers of the step
 };
 
 /// Counts a step of a march with these traits.

@@ -2,20 +2,15 @@
 /// One step of an explicit Lie group integrator.
 
 #include <lagroid/core/homogeneous_space.hpp>
+#include <lagroid/core/numbers_of.hpp>
 #include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
 
 #include <array>
 #include <cmath>
-#include <span>
 #include <utility>
 
 namespace lagroid {
-
-/// The numbers of a matrix of any size, for tapes.
-template <class Matrix> std::span<typename Matrix::Scalar> numbers_of(Matrix& m) {
-  return {m.data(), std::size_t(m.size())};
-}
 
 /// Steps z' = F(t, z)_M(z) by a LieGroupMethod. Holds the workspace, so that a step allocates nothing; for any scalar
 /// of M. No step looks at whether its numbers are finite.
