@@ -215,7 +215,7 @@ TEST_F(PendulumChains, WhatIsWrongIsSaidInOneLine) {
       {two + "[initial]\ndirections = [0, 0, 1]\nmomenta = [0, 0, 1]\n" + grid, "initial.project_velocities = true"},
       {two + "[initial]\ndirections = [0, 0, 1]\nmomenta = [1, 0, 0]\nangular_velocities = [1, 0, 0]\n" + grid,
        "initial.momenta: stand there beside angular_velocities"},
-      {two + "[initial]\ndirections = [0, 0, 1]\nangular_velocities = [1e200, 0, 0]\n" + grid, "energy at the start"},
+      {two + "[initial]\ndirections = [0, 0, 1]\nangular_velocities = [1e200, 0, 0]\n" + grid, "energy or momentum at the start is no finite number"},
       {two + hanging + "velocities = 3\n" + grid, "initial.velocities: unknown key"},
       {two + hanging, "[time]"},
       {two + hanging + grid + "method = \"ratle\"\n", "did you mean \"rattle\"?"},

@@ -101,9 +101,10 @@ Points read_start(const Section& scene, const SphereSystem& system, SphereForm f
   Points z(6, count);
   for (int i = 0; i < count; ++i) Spheres::set(z, i, q[std::size_t(i)], moving[std::size_t(i)]);
   z = system.in_form(z, given, form);
-  const double energy = system.measure(z, form).front().value;
-  if (!z.allFinite() || !std::isfinite(energy))
-    scene.fail("", "the energy at the start is no finite number: a mass, a length or a velocity is too large or small");
+  const auto measured = system.measure(z, form);
+  const auto finite = [](const Measured& m) { return std::isfinite(m.value) && std::isfinite(m.size); };
+  if (!z.allFinite() || !std::all_of(measured.begin(), measured.end(), finite))
+    scene.fail("", "energy or momentum at the start is no finite number: a mass, a length or a velocity is too large");
   return z;
 }
 
