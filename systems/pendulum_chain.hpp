@@ -74,7 +74,8 @@ template <int K> struct PendulumChain {
     }
     return sum;
   }
-  /// sum_i m_i |x_i| |x_i'|, the size of its terms.
+  /// sum_i |x_i| (m_i |x_i'| + mu_i (|g| l_i)^(1/2)), the size of its terms and of what tensions exchange between them
+  /// over a step that resolves the swing.
   double momentum_size(const Points& z) const {
     V place = V::Zero();
     V velocity = V::Zero();
@@ -82,7 +83,7 @@ template <int K> struct PendulumChain {
     for (int i = 0; i < links(); ++i) {
       place += length(i) * V(z.col(i).template head<3>());
       velocity += length(i) * link_velocity(z, i);
-      sum += mass(i) * place.norm() * velocity.norm();
+      sum += place.norm() * (mass(i) * velocity.norm() + carried(i) * std::sqrt(std::abs(gravity) * length(i)));
     }
     return sum;
   }

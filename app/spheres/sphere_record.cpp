@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace lagroid::app {
@@ -120,15 +121,17 @@ void SphereRecord::describe(RunResult& result) const {
       {"ends", "position holds the directions, momentum the momenta, in either form"}};
 }
 
-SpherePromises::SpherePromises(const SphereSystem& system, const MethodTraits& method, bool keeps_spheres)
-    : promises_(method.symplectic), keeps_spheres_(keeps_spheres) {
+SpherePromises::SpherePromises(const SphereSystem& system, const MethodTraits& method, bool keeps_spheres, long every)
+    : promises_(method.symplectic),
+      keeps_spheres_(keeps_spheres),
+      walk_(7 * std::numeric_limits<double>::epsilon() * std::sqrt(double(every - 1))) {
   for (const auto& q : system.quantities()) quantities_.emplace_back(q.name, q.promise, 1);
 }
 
 void SpherePromises::observe(const SphereNode& node) {
   residual_ = std::isnan(node.residual) ? node.residual : std::max(residual_, node.residual);
   for (std::size_t i = 0; i < quantities_.size(); ++i)
-    quantities_[i].observe(&node.measured[i].value, node.measured[i].size);
+    quantities_[i].observe(&node.measured[i].value, node.measured[i].size, walk_ * node.measured[i].size);
 }
 
 void SpherePromises::report(Ledger& ledger) const {

@@ -41,10 +41,10 @@ class SphereRecord {
 };
 
 /// Watches what the method promises: of the system's quantities where it is symplectic, of the spheres where it keeps
-/// to them.
+/// to them. Sees every n-th node, over which rounding walks on.
 class SpherePromises {
  public:
-  SpherePromises(const SphereSystem& system, const MethodTraits& method, bool keeps_spheres);
+  SpherePromises(const SphereSystem& system, const MethodTraits& method, bool keeps_spheres, long every);
 
   void observe(const SphereNode& node);
   void report(Ledger& ledger) const;
@@ -53,6 +53,7 @@ class SpherePromises {
  private:
   bool promises_;
   bool keeps_spheres_;
+  double walk_;  ///< of rounding between nodes that are seen, relative to the terms
   double residual_ = 0;
   std::vector<QuantityWatch> quantities_;
 };

@@ -65,7 +65,7 @@ class SphereRun final : public SteppedRun {
         context_(context),
         march_(scene_.begin()),
         record_(*scene_.system, scene_.options.form),
-        promises_(*scene_.system, march_->traits(), keeps_spheres(scene_.options)) {
+        promises_(*scene_.system, march_->traits(), keeps_spheres(scene_.options), scene_.pace.every) {
     result_.system = scene_.system->name();
     result_.method = description(march_->traits());
     if (scene_.options.tolerance > 0) result_.method += fmt::format(", tolerance {:g}", scene_.options.tolerance);
