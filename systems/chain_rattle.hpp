@@ -87,8 +87,8 @@ template <int K> class ChainRattle {
   double share(int i) const { return inverse_mass_(i) + (i > 0 ? inverse_mass_(i - 1) : 0.0); }
 
   void tensions_at_rest();
-  /// Tensions such that q_i . (l_i v_i + h/2 (pull + gravity)) = 0.
-  void project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t);
+  /// Tensions such that q_i . (l_i v_i + h/2 (pull + gravity)) = 0, in system_.x.
+  void project_velocities(const Columns& q, const Columns& v);
   StepReport close();
 
   PendulumChain<K> chain_;
@@ -102,7 +102,7 @@ template <int K> class ChainRattle {
   TridiagonalSystem<K, double> system_;
 };
 
-template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t) {
+template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v) {
   const int k = chain_.links();
   for (int i = 0; i < k; ++i) {
     system_.diagonal(i) = share(i);
@@ -111,7 +111,6 @@ template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const
   }
   system_.x(0) -= chain_.gravity * q(2, 0);
   system_.solve();
-  t = system_.x;
 }
 
 template <int K> void ChainRattle<K>::tensions_at_rest() {
@@ -185,16 +184,22 @@ template <int K> StepReport ChainRattle<K>::close() {
 
 template <int K> StepReport ChainRattle<K>::advance() {
   tension_ = end_ + gap_;
-  const StepReport report = close();
+  StepReport report = close();
   if (!report.converged()) return report;
-  gap_ = tension_ - end_;
-  std::swap(q_, next_);
-  project_velocities(q_, half_, end_);
+  project_velocities(next_, half_);
   for (int i = 0; i < chain_.links(); ++i) {
-    V change = pull(q_, end_, i);
+    V change = pull(next_, system_.x, i);
     if (i == 0) change(2) -= chain_.gravity;
-    v_.col(i) = half_.col(i) + change * (h_ / 2 / chain_.length(i));
+    half_.col(i) += change * (h_ / 2 / chain_.length(i));
   }
+  if (!half_.allFinite()) {
+    report.status = SolveStatus::not_finite;
+    return report;
+  }
+  gap_ = tension_ - end_;
+  end_ = system_.x;
+  std::swap(q_, next_);
+  std::swap(v_, half_);
   ++index_;
   return report;
 }

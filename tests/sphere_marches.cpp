@@ -143,6 +143,7 @@ TEST(SphereMarches, StayWhereAStepFails) {
     EXPECT_TRUE(march->point().bottomRows<3>().isApprox(z.bottomRows<3>(), 1e-15));
   };
   check({.method = "rattle", .step = 3}, 9.81, SolveStatus::left_domain);
+  check({.method = "rattle", .step = 1e-300}, 9.81, SolveStatus::not_finite);
   check({.method = "lie-euler", .step = 1e300}, 1e300, SolveStatus::not_finite);
   check({.method = "munthe-kaas-54", .step = 1, .tolerance = 1e-10, .most_inner = 5}, 9.81, SolveStatus::not_converged);
 }

@@ -41,7 +41,7 @@ std::string sphere_failure(const StepReport& report, long step, double time, con
   const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
   switch (report.status) {
     case SolveStatus::not_finite:
-      return fmt::format("{}: a number overflowed or became NaN; use a smaller time.step", where);
+      return fmt::format("{}: a number overflowed or became NaN; use a smaller or a larger time.step", where);
     case SolveStatus::no_step:
       return fmt::format("{}: the error stays above time.tolerance = {:g} however small the inner steps; raise it",
                          where, options.tolerance);

@@ -122,7 +122,7 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
   LawReport report{subject.name + " by " + subject.options.method, {}};
   const MethodTraits traits = subject.begin(subject.start, subject.options)->traits();
   const auto begun = [&](const Points& z) { return subject.begin(z, subject.options); };
-  const auto once = [&](const char* name, double tolerance, const std::function<double()>& defect) {
+  const auto ask_law = [&](const char* name, double tolerance, const std::function<double()>& defect) {
     Law law;
     law.name = name;
     law.tolerance = tolerance;
@@ -139,8 +139,8 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
     report.laws.push_back(check_law("points stay on the spheres", 1e-13, [&] {
       return off_spheres(detail::marched(*begun(detail::drawn_beside(subject.start)), steps));
     }));
-  once("at least the order declared", 0.1,
-       [&] { return std::max(0.0, traits.order - detail::observed_order(subject)); });
+  ask_law("at least the order declared", 0.1,
+          [&] { return std::max(0.0, traits.order - detail::observed_order(subject)); });
   if (subject.forms.size() > 1)
     report.laws.push_back(check_law("all forms are one motion", 1e-9, [&] {
       const Points z = detail::drawn_beside(subject.start);
@@ -165,7 +165,7 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
     back.bottomRows<3>() *= -1;
     return detail::sphere_distance(back, z, z);
   }));
-  once("symplectic", 1e-8, [&] {
+  ask_law("symplectic", 1e-8, [&] {
     constexpr int points = 64;
     std::vector<std::unique_ptr<SphereMarch>> marches;
     for (int k = 0; k < points; ++k) {
