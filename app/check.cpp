@@ -4,12 +4,15 @@
 #include "command.hpp"
 #include "registry.hpp"
 #include "scenes/scene_run.hpp"
+#include "spheres/sphere_run.hpp"
+#include "spheres/sphere_time.hpp"
 #include "study/accuracy.hpp"
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/systems/certificates.hpp>
 #include <lagroid/systems/multibody/testing/scene_laws.hpp>
+#include <lagroid/systems/testing/sphere_laws.hpp>
 
 #include <fmt/format.h>
 
@@ -18,6 +21,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -112,16 +116,51 @@ Certificate certify_bodies(const Section& scene, const CheckOptions& options) {
   return certificate;
 }
 
+/// The laws of the method of a scene on (T*S^2)^k, beside where it starts.
+Certificate certify_spheres(const SphereEntry& entry, const Section& scene, const CheckOptions& options) {
+  const auto clock = std::chrono::steady_clock::now();
+  const SpheresToCheck asked = spheres_to_check(entry, scene);
+  const SphereSystem& system = *asked.system;
+  laws::SphereSubject subject{
+      std::string(entry.name),
+      asked.options,
+      asked.start,
+      [&](const auto& start, const auto& by) { return system.begin(start, by); },
+      [&](const auto& z, SphereForm from, SphereForm to) { return system.in_form(z, from, to); },
+      system.forms()};
+  subject.keeps_spheres = keeps_spheres(asked.options);
+  const auto quantities = system.quantities();
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    if (quantities[i].promise == Promise::conserved)
+      subject.conserved = [&, i](const auto& z) {
+        const Measured measured = system.measure(z, asked.options.form)[i];
+        return std::pair(measured.value, measured.size);
+      };
+  Certificate certificate;
+  certificate.system = entry.name;
+  certificate.groupoid = entry.groupoid;
+  certificate.states = 1;
+  certificate.samples = options.samples;
+  certificate.seed = options.seed;
+  certificate.suites.push_back(laws::sphere_laws(subject));
+  certificate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return certificate;
+}
+
+Certificate certificate_of(const Section& scene, const CheckOptions& options) {
+  if (scene.has("body")) return certify_bodies(scene, options);
+  if (const SphereEntry* entry = sphere_system_of(scene)) return certify_spheres(*entry, scene, options);
+  return with_system_of(
+      scene, [&](const auto& entry) { return certify(entry.read(scene, {.progress = !options.json}), options); });
+}
+
 int check(const CheckOptions& options) {
   // RapidCheck reads its options from here, and reports each law on std::cerr: the certificate does.
   ::setenv("RC_PARAMS", fmt::format("seed={} max_success={}", options.seed, options.samples).c_str(), 1);
   std::cerr.setstate(std::ios::failbit);
   Section scene = read_scene(options.scene, options.overrides);
   if (scene.has("accuracy")) scene = choose_by_accuracy(scene).scene;
-  const Certificate certificate =
-      scene.has("body") ? certify_bodies(scene, options) : with_system_of(scene, [&](const auto& entry) {
-        return certify(entry.read(scene, {.progress = !options.json}), options);
-      });
+  const Certificate certificate = certificate_of(scene, options);
   print(options.json ? json_certificate(certificate) + "\n" : text_certificate(certificate));
   if (!certificate.failure.empty()) fmt::print(stderr, "lagroid: {}: {}\n", options.scene, certificate.failure);
   return certificate.holds() ? 0 : exit_failed;

@@ -33,6 +33,9 @@ std::vector<Listed> listed() {
       if (quantity.promise == Promise::conserved) one.conserved.push_back(quantity.name);
     out.push_back(std::move(one));
   });
+  for (const SphereEntry& entry : sphere_systems())
+    out.push_back({std::string(entry.name), std::string(entry.summary), std::string(entry.groupoid), entry.parameters,
+                   entry.symmetries, entry.conserved});
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "registry.hpp"
 
 #include "scenes/scene_run.hpp"
+#include "spheres/sphere_run.hpp"
 #include "study/accuracy.hpp"
 
 namespace lagroid::app {
@@ -13,6 +14,7 @@ RunResult run_scene(const Section& scene, const RunContext& context) {
     return result;
   }
   if (scene.has("body")) return run_bodies(scene, context);
+  if (const SphereEntry* spheres = sphere_system_of(scene)) return run_spheres(*spheres, scene, context);
   return with_system_of(scene, [&](const auto& entry) { return entry.read(scene, context).run(nullptr); });
 }
 

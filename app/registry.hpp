@@ -2,6 +2,7 @@
 /// The systems a scene can name.
 
 #include "parameter.hpp"
+#include "spheres/sphere_system.hpp"
 #include "systems/readers.hpp"
 
 #include <optional>
@@ -19,7 +20,8 @@ template <DiscreteSystem Sys> struct Entry {
   std::vector<Parameter> parameters;
 };
 
-/// Visits the entry of every system, in the order in which they are listed to users.
+/// Visits the entry of every system whose groupoid is a type, in the order in which they are listed to users; those of
+/// `sphere_systems` come after them.
 template <class Visit> void for_each_system(const Visit& visit) {
   const Parameter quadrature{"quadrature", "", "", "of the potential over a step: midpoint or trapezoid"};
   const Parameter inertia{"inertia", "kg m^2", "", "three principal moments"};
@@ -116,10 +118,11 @@ template <class Visit> void for_each_system(const Visit& visit) {
                            rotation}});
 }
 
-/// What `visit(entry)` returns for the system that the scene names.
+/// What `visit(entry)` returns for the system that the scene names, which is none of `sphere_systems`.
 template <class Visit> auto with_system_of(const Section& scene, const Visit& visit) {
   std::vector<std::string> names;
   for_each_system([&](const auto& entry) { names.emplace_back(entry.name); });
+  for (const SphereEntry& entry : sphere_systems()) names.emplace_back(entry.name);
   const std::string name = scene.choice("system", names);
   std::optional<decltype(visit(Entry<PlateBall>{}))> result;
   for_each_system([&](const auto& entry) {

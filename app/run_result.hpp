@@ -50,13 +50,13 @@ struct Minimum {
 /// One line of the ledger: what was promised, what was found.
 struct LedgerEntry {
   std::string name;
-  std::string promise;  ///< "round-off", "conserved", "bounded", "counted"
+  std::string promise;  ///< "round-off", "conserved", "bounded", "none", "counted"
   std::vector<double> initial;
   std::vector<double> final;
   double drift = 0;           ///< largest deviation from the initial value
   double relative_drift = 0;  ///< the same over the size of the initial value (over one if that vanishes)
   double bound = 0;           ///< on `drift`; zero where none is promised
-  std::string verdict;        ///< "kept", "BROKEN", "bounded", "growing", "unjudged", "counted"
+  std::string verdict;        ///< "kept", "BROKEN", "bounded", "growing", "unjudged", "watched", "counted"
   bool broken() const { return verdict == "BROKEN"; }
 };
 

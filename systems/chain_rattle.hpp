@@ -1,6 +1,8 @@
 #pragma once
 /// The variational integrator of chains of spherical pendula.
 
+#include <lagroid/core/numbers_of.hpp>
+#include <lagroid/core/tape.hpp>
 #include <lagroid/systems/pendulum_chain.hpp>
 
 #include <algorithm>
@@ -44,7 +46,7 @@ template <int K> class ChainRattle {
     restore(start, 0);
   }
 
-  MethodTraits traits() const { return {"rattle", 2, true, true, false}; }
+  static MethodTraits traits() { return {"rattle", 2, true, true, false}; }
   double time() const { return double(index_) * h_; }
   long index() const { return index_; }
   const Columns& directions() const { return q_; }
@@ -67,13 +69,13 @@ template <int K> class ChainRattle {
     index_ = index;
     tensions_at_rest();
   }
-  /// Visits all that the next step goes on from.
-  template <class Visit> void persist(const Visit& visit) {
-    visit("q", q_);
-    visit("v", v_);
-    visit("tension", end_);
-    visit("gap", gap_);
-    visit("index", index_);
+  /// Visits all that the next step goes on from, to its last bit.
+  void persist(Tape& tape) {
+    auto q = numbers_of(q_);
+    auto v = numbers_of(v_);
+    auto end = numbers_of(end_);
+    auto gap = numbers_of(gap_);
+    tape(q, v, end, gap, index_);
   }
 
  private:
@@ -86,8 +88,8 @@ template <int K> class ChainRattle {
     return out;
   }
   void tensions_at_rest();
-  /// Tensions such that q_i . (l_i v_i + h/2 (pull + gravity)) = 0.
-  void project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t);
+  /// Tensions such that q_i . (l_i v_i + h/2 (pull + gravity)) = 0, in system_.x.
+  void project_velocities(const Columns& q, const Columns& v);
   StepReport close();
 
   PendulumChain<K> chain_;
@@ -105,7 +107,7 @@ template <int K> class ChainRattle {
   TridiagonalSystem<K, double> system_;
 };
 
-template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v, Vector<double, K>& t) {
+template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v) {
   const int k = chain_.links();
   for (int i = 0; i < k; ++i) {
     system_.diagonal(i) = share_(i);
@@ -114,7 +116,6 @@ template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const
   }
   system_.x(0) -= chain_.gravity * q(2, 0);
   system_.solve();
-  t = system_.x;
 }
 
 template <int K> void ChainRattle<K>::tensions_at_rest() {
@@ -187,16 +188,22 @@ template <int K> StepReport ChainRattle<K>::close() {
 
 template <int K> StepReport ChainRattle<K>::advance() {
   tension_ = end_ + gap_;
-  const StepReport report = close();
+  StepReport report = close();
   if (!report.converged()) return report;
-  gap_ = tension_ - end_;
-  std::swap(q_, next_);
-  project_velocities(q_, half_, end_);
+  project_velocities(next_, half_);
   for (int i = 0; i < chain_.links(); ++i) {
-    V change = pull(q_, end_, i);
+    V change = pull(next_, system_.x, i);
     if (i == 0) change(2) -= chain_.gravity;
-    v_.col(i) = half_.col(i) + change * kick_(i);
+    half_.col(i) += change * kick_(i);
   }
+  if (!half_.allFinite()) {
+    report.status = SolveStatus::not_finite;
+    return report;
+  }
+  gap_ = tension_ - end_;
+  end_ = system_.x;
+  std::swap(q_, next_);
+  std::swap(v_, half_);
   ++index_;
   return report;
 }

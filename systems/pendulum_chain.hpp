@@ -74,6 +74,19 @@ template <int K> struct PendulumChain {
     }
     return sum;
   }
+  /// sum_i |x_i| (m_i |x_i'| + mu_i (|g| l_i)^(1/2)), the size of its terms and of what tensions exchange between them
+  /// over a step that resolves the swing.
+  double momentum_size(const Points& z) const {
+    V place = V::Zero();
+    V velocity = V::Zero();
+    double sum = 0;
+    for (int i = 0; i < links(); ++i) {
+      place += length(i) * V(z.col(i).template head<3>());
+      velocity += length(i) * link_velocity(z, i);
+      sum += place.norm() * (mass(i) * velocity.norm() + carried(i) * std::sqrt(std::abs(gravity) * length(i)));
+    }
+    return sum;
+  }
   /// (q, w) -> (q, p), the Legendre transform.
   Points to_momenta(const Points& z) const {
     Points out = z;

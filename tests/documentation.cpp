@@ -220,8 +220,9 @@ TEST(Mathematics, ItNamesEveryLaw) {
   const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +
                                  read("docs/higher_order.md") + read("docs/multibody.md"),
                              "\"([^\"]+)\"");
-  const auto laws = matches(text_of({"core/testing", "solvers/testing", "systems/multibody/testing"}, ".hpp"),
-                            "law\\( ?\"([^\"]+)\"");
+  const auto laws =
+      matches(text_of({"core/testing", "solvers/testing", "systems/multibody/testing", "systems/testing"}, ".hpp"),
+              "law\\( ?\"([^\"]+)\"");
   EXPECT_GT(laws.size(), 50U);
   for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;
 }

@@ -1,22 +1,37 @@
-// libFuzzer on scenes of bodies: whatever the file holds, it is refused by a SceneError, or read and begun, and what
-// converges is finite.
+// libFuzzer on scenes of bodies and of systems on spheres: whatever the file holds, it is refused by a SceneError, or read
+// and begun, and what converges is finite.
 
 #include "scene_reader.hpp"
 #include "scenes/scene_run.hpp"
+#include "spheres/sphere_run.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
 
+namespace {
+
+using namespace lagroid::app;
+
+/// None where it is no such scene, or one whose inner steps could take long.
+std::optional<RunResult> run(const Section& scene) {
+  constexpr long most_steps = 2;
+  if (scene.has("body")) return run_bodies(scene, {.record = true}, most_steps);
+  const SphereEntry* entry = sphere_system_of(scene);
+  if (entry == nullptr || scene.section_or_empty("time").has("tolerance")) return std::nullopt;
+  return run_spheres(*entry, scene, {.record = true}, most_steps);
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace lagroid::app;
   try {
-    const Section scene = parse_scene({reinterpret_cast<const char*>(data), size}, "fuzz.toml", {});
-    if (!scene.has("body")) return -1;
-    const RunResult result = run_bodies(scene, {.record = true}, /*most_steps=*/2);
-    if (!result.converged()) return 0;
-    for (const auto& series : result.trajectory.series)
+    const auto result = run(parse_scene({reinterpret_cast<const char*>(data), size}, "fuzz.toml", {}));
+    if (!result) return -1;
+    if (!result->converged()) return 0;
+    for (const auto& series : result->trajectory.series)
       for (const double x : series.values)
         if (!std::isfinite(x)) std::abort();
   } catch (const SceneError&) {

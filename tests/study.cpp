@@ -9,6 +9,8 @@
 #include <study/measure.hpp>
 #include <study/methods.hpp>
 
+#include <lagroid/solvers/testing/order_laws.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -65,9 +67,9 @@ TEST(Methods, DeclareThemselves) {
 
 /// Whatever a method declares is accepted by the scene that it was declared for, and marches with its order.
 TEST(Methods, AreAcceptedByTheirScenes) {
-  for (const char* name :
-       {"kepler", "rigid_body", "heavy_top", "pendulum", "spherical_pendulum", "damped_pendulum", "driven_pendulum",
-        "driven_body", "rolling_ball", "chaplygin_sleigh", "chain_drop", "figure_eight", "tops"}) {
+  for (const char* name : {"kepler", "rigid_body", "heavy_top", "pendulum", "spherical_pendulum", "damped_pendulum",
+                           "driven_pendulum", "driven_body", "rolling_ball", "chaplygin_sleigh", "chain_drop",
+                           "figure_eight", "tops", "pendulum_chain", "pendulum_chain_adaptive"}) {
     const Experiment experiment = read_experiment(example(name));
     for (const Method& method : experiment.methods) {
       const auto trial = experiment.begin(method, experiment.step);
@@ -79,6 +81,42 @@ TEST(Methods, AreAcceptedByTheirScenes) {
       EXPECT_FALSE(trial->see().state.empty());
     }
   }
+}
+
+/// Of chains, every method with equal steps, in both forms, shows its order.
+TEST(Methods, OfChainsHaveTheirOrders) {
+  const Experiment experiment = read_experiment(example("pendulum_chain", {"time.steps=250"}));
+  const auto reference = extrapolated_reference(experiment, 5);
+  EXPECT_LT(reference->uncertainty, 1e-11);
+  int equal = 0;
+  for (const Method& method : experiment.methods) {
+    if (!method.equal_steps) continue;
+    ++equal;
+    const auto error = [&](int steps) {
+      return measure_once(experiment, method, experiment.end / steps, reference.get(), 60).trajectory;
+    };
+    const double order = laws::measured_order(error, method.order == 1 ? 1000 : 200);
+    EXPECT_GT(order, method.order - 0.15) << method.name;
+    EXPECT_LT(order, method.order + 0.5) << method.name;
+  }
+  EXPECT_EQ(equal, 17) << "rattle, and eight methods in two forms";
+}
+
+/// Steps by a tolerance come near it, whatever the distance of the nodes.
+TEST(Methods, OfChainsWithATolerance) {
+  const Experiment experiment = read_experiment(example("pendulum_chain", {"time.steps=250"}));
+  const auto reference = extrapolated_reference(experiment, 5);
+  double last = 1;
+  for (const char* name : {"munthe-kaas-54/1e-6", "munthe-kaas-54/1e-9", "munthe-kaas-54/1e-12"}) {
+    const Method& method = method_named(experiment.methods, name);
+    const auto run = measure_once(experiment, method, experiment.end / 5, reference.get(), 60);
+    ASSERT_TRUE(run.converged()) << name;
+    EXPECT_EQ(run.work.steps, 5);
+    EXPECT_GT(run.work.evaluations, 5 * 6);
+    EXPECT_LT(run.trajectory, 0.01 * last) << name;
+    last = run.trajectory;
+  }
+  EXPECT_LT(last, 1e-11);
 }
 
 TEST(Methods, AreFoundByPatterns) {

@@ -34,6 +34,7 @@ SCENES = {
     "chain_drop": [],
     "six_bar": [],
     "tops": [],
+    "pendulum_chain": [],
 }
 
 

@@ -39,7 +39,7 @@ Goal read_goal(const Section& scene) {
     goal.methods = accuracy.text("methods", "patterns of names, as lagroid study takes them");
   accuracy.finish();
   const Section time = scene.section("time", "duration");
-  for (const char* key : {"mode", "method", "order", "composition", "accuracy", "without_root"})
+  for (const char* key : {"mode", "method", "form", "order", "composition", "tolerance", "accuracy", "without_root"})
     if (time.has(key)) time.fail(key, "accuracy.target chooses the method and the step; leave one of them out");
   return goal;
 }

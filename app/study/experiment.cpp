@@ -3,6 +3,7 @@
 #include "../registry.hpp"
 #include "../scenes/scene_run.hpp"
 #include "../simulation.hpp"
+#include "../spheres/sphere_run.hpp"
 
 #include <fmt/format.h>
 
@@ -13,8 +14,8 @@ namespace lagroid::app {
 
 namespace {
 
-constexpr std::array choosing{"time.mode",         "time.method",   "time.order", "time.composition",
-                              "time.without_root", "time.accuracy", "accuracy"};
+constexpr std::array choosing{"time.mode",      "time.method",       "time.form",     "time.order", "time.composition",
+                              "time.tolerance", "time.without_root", "time.accuracy", "accuracy"};
 
 Section without_choice(Section scene) {
   for (const char* key : choosing) scene = scene.without(key);
@@ -31,6 +32,10 @@ Begun begin_scene(const Section& scene) {
   if (scene.has("body")) {
     BodiesTrial bodies = begin_bodies(scene);
     return {bodies.name, std::move(bodies.trial), std::move(bodies.methods)};
+  }
+  if (const SphereEntry* entry = sphere_system_of(scene)) {
+    SphereTrialOf spheres = begin_spheres(*entry, scene);
+    return {std::string(entry->name), std::move(spheres.trial), std::move(spheres.methods)};
   }
   return with_system_of(scene, [&](const auto& entry) {
     const auto task = entry.read(scene, {});

@@ -47,13 +47,24 @@ const Method& of_highest_order(const Experiment& experiment) {
   return *best;
 }
 
-/// Romberg's table of states after steps h, h/2, h/4, ..., of which `rows` are computed.
+/// Of scenes that refuse the step, nothing is known before it is halved: true, as most are.
+bool is_symmetric(const Experiment& experiment, const Method& method, double h) {
+  try {
+    return experiment.begin(method, h)->traits().symmetric;
+  } catch (const SceneError&) {
+    return true;
+  }
+}
+
+/// Romberg's table of states after steps h, h/2, h/4, ..., of which `rows` are computed. The error of a symmetric
+/// method has even powers of the step alone.
 class Extrapolated final : public Reference {
  public:
   Extrapolated(const Experiment& experiment, double budget)
       : experiment_(experiment), method_(of_highest_order(experiment)) {
     const auto start = std::chrono::steady_clock::now();
     first_step_ = experiment.step * std::sqrt(double(method_.stages));
+    powers_apart_ = is_symmetric(experiment, method_, first_step_) ? 2 : 1;
     std::vector<std::vector<Block>> table;
     double least = std::numeric_limits<double>::infinity();
     double most_after = 0;  // what rows beyond the best one changed
@@ -101,7 +112,7 @@ class Extrapolated final : public Reference {
     std::vector<std::vector<Block>> next{reached->state};
     constexpr std::size_t most = 3;  // extrapolating further multiplies round-off
     for (std::size_t k = 0; k < row.size() && k < most; ++k) {
-      const double factor = std::pow(2.0, method_.order + 2 * int(k)) - 1;
+      const double factor = std::pow(2.0, method_.order + powers_apart_ * int(k)) - 1;
       auto better = next[k];
       for (std::size_t b = 0; b < better.size(); ++b)
         for (std::size_t i = 0; i < better[b].values.size(); ++i)
@@ -115,6 +126,7 @@ class Extrapolated final : public Reference {
   const Experiment& experiment_;
   Method method_;
   double first_step_ = 0;
+  int powers_apart_ = 2;
   int rows_ = 0;
   std::vector<Block> best_;
 };
@@ -409,8 +421,9 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       out.message = fmt::format("step {} of {}", out.work.steps + 1, std::lround(experiment.end / h));
       return out;
     }
+    const bool at_end = method.equal_steps || std::abs(out.reached - experiment.end) <= 1e-12 * experiment.end;
     if (reference != nullptr)
-      out.trajectory = distance(trial->see().state, reference->at(method.equal_steps ? experiment.end : out.reached));
+      out.trajectory = distance(trial->see().state, reference->at(at_end ? experiment.end : out.reached));
     if (reference != nullptr && method.equal_steps && !std::isfinite(out.trajectory)) {
       out.status = std::string(to_string(SolveStatus::not_finite));
       out.message = "the state at the end is not finite";

@@ -35,8 +35,9 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
 /// The largest distance of two blocks, each relative to the size that the true motion gave it.
 double distance(const std::vector<Block>& state, const std::vector<Block>& truth);
 
-/// The method of highest order among those with equal steps, extrapolated: its error has an expansion in even powers of
-/// the step. Steps are halved until two extrapolations differ no less than before, or `budget` seconds are over.
+/// The method of highest order among those with equal steps, extrapolated in even powers of the step, or in all where
+/// its error has those. Steps are halved until two extrapolations differ no less than before, or `budget` seconds are
+/// over.
 std::unique_ptr<Reference> extrapolated_reference(const Experiment& experiment, double budget);
 /// The numbers of one method with one step, and as uncertainty what half the step changes.
 std::unique_ptr<Reference> method_reference(const Experiment& experiment, const Method& method, double h);

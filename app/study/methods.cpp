@@ -14,7 +14,7 @@ std::string time_keys(const Method& method, const std::string& grid) {
     const auto equals = setting.find('=');
     const std::string key = setting.substr(setting.find('.') + 1, equals - setting.find('.') - 1);
     const std::string value = setting.substr(equals + 1);
-    const bool number = value.find_first_not_of("0123456789.") == std::string::npos;
+    const bool number = value.find_first_of("0123456789") == 0;
     out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", key, number ? value : '"' + value + '"');
   }
   return out;

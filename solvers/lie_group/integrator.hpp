@@ -16,7 +16,7 @@ namespace lagroid {
 
 /// What a method declares of itself.
 inline MethodTraits traits_of(const LieGroupMethod& method) {
-  return {std::string(method.name), method.order, false, false, true, method.stages};
+  return {std::string(method.name), method.order, false, false, true, method.stages - (method.reuses_last ? 1 : 0)};
 }
 
 /// Equal steps. After each, rounding is kept from M (HomogeneousSpace::project), except by a classical method, which is
@@ -56,6 +56,11 @@ template <HomogeneousSpace M, AlgebraField<M> F> class LieGroupIntegrator {
     index_ = index;
     step_.forget();
   }
+  /// Visits all that the next step goes on from, to its last bit.
+  void persist(Tape& tape) {
+    auto point = numbers_of(point_);
+    tape(point, index_, step_);
+  }
 
  private:
   LieGroupStep<M> step_;
@@ -70,7 +75,7 @@ struct LieGroupControl {
   double tolerance = 1e-10;  ///< of an embedded method's error over a step, in the algebra
   double first_step = 1e-3;
   double largest_step = 1e300;
-  long most_steps = 100'000'000;
+  long most_steps = 100'000'000;  ///< tried on the way to one end
 };
 
 /// Steps whose size follows the estimate of an embedded method: h <- h 0.9 (tolerance / error)^(1/order), changed by
@@ -105,21 +110,28 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
   /// is the last one accepted.
   StepReport advance_to(double end) {
     StepReport report;
+    const long before = steps_ + rejected_;
     while (time_ < end) {
       const double left = end - time_;
       double h = std::min({h_, left, control_.largest_step});
       // No crumb is left for the last step.
       if (h < left && left < 2 * h) h = 0.5 * left;
-      if (!(time_ + h > time_) || steps_ + rejected_ >= control_.most_steps) {
-        report.status = steps_ + rejected_ >= control_.most_steps ? SolveStatus::not_converged
-                        : finite_                                 ? SolveStatus::no_step
-                                                                  : SolveStatus::not_finite;
+      const bool too_many = steps_ + rejected_ - before >= control_.most_steps;
+      if (!(time_ + h > time_) || too_many) {
+        report.status = too_many  ? SolveStatus::not_converged
+                        : finite_ ? SolveStatus::no_step
+                                  : SolveStatus::not_finite;
         return report;
       }
       try_step(h, h == left ? end : time_ + h);
     }
     report.status = SolveStatus::converged;
     return report;
+  }
+  /// Visits all that the next step goes on from, to its last bit.
+  void persist(Tape& tape) {
+    auto point = numbers_of(point_);
+    tape(point, h_, time_, steps_, rejected_, step_);
   }
 
  private:

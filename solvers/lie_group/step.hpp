@@ -2,6 +2,8 @@
 /// One step of an explicit Lie group integrator.
 
 #include <lagroid/core/homogeneous_space.hpp>
+#include <lagroid/core/numbers_of.hpp>
+#include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
 
 #include <array>
@@ -48,6 +50,13 @@ template <HomogeneousSpace M> class LieGroupStep {
   /// Of an embedded method, the last step's h sum_j e_j K_j, the difference of both in the algebra; its largest
   /// component.
   double error() const { return error_; }
+
+  /// Visits what the next step goes on from, beside the point.
+  void persist(Tape& tape) {
+    if (!method_.reuses_last) return;
+    auto slope = numbers_of(slope_[std::size_t(method_.stages) - 1]);
+    tape(knows_first_, slope);
+  }
 
  private:
   /// sum <- h sum_j w_j K_j; false where all weights are zero.

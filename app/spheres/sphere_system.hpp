@@ -1,0 +1,73 @@
+#pragma once
+/// Systems on (T*S^2)^k, as scenes speak of them.
+
+#include "../parameter.hpp"
+#include "../scene_reader.hpp"
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/systems/sphere_march.hpp>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::app {
+
+/// What a system keeps, and what its own methods promise of it. Lie group methods promise nothing.
+struct SphereQuantity {
+  std::string name;
+  std::string column;
+  std::string unit;
+  Promise promise = Promise::bounded;
+};
+
+/// The value of one, and the size of the terms that it is made of.
+struct Measured {
+  double value = 0;
+  double size = 0;
+};
+
+class SphereSystem {
+ public:
+  using Points = SphereMarch::Points;
+
+  virtual ~SphereSystem() = default;
+  virtual std::string_view name() const = 0;
+  /// The forms that it has, the usual one first; its momenta are always known.
+  virtual std::vector<SphereForm> forms() const = 0;
+  /// Methods beside those for Lie groups: implicit ones, made for the system. The first is what scenes get.
+  virtual std::vector<MethodTraits> own_methods() const { return {}; }
+  /// Points in another form; only for forms that it has.
+  virtual Points in_form(const Points& z, SphereForm from, SphereForm to) const = 0;
+  virtual std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const = 0;
+
+  /// The energy first.
+  virtual std::vector<SphereQuantity> quantities() const = 0;
+  /// In the same order.
+  virtual std::vector<Measured> measure(const Points& z, SphereForm form) const = 0;
+
+  /// It is shown as a chain that hangs from the origin: lengths of rods (m), as many as there are points, and the
+  /// masses at their ends (of any unit).
+  virtual std::vector<double> rods() const = 0;
+  virtual std::vector<double> bobs() const = 0;
+  int count() const { return int(rods().size()); }
+};
+
+struct SphereEntry {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view groupoid;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> symmetries;
+  std::vector<std::string> conserved;
+  /// Reads [parameters] of a scene.
+  std::unique_ptr<SphereSystem> (*read)(const Section& scene);
+};
+
+/// In the order in which they are listed to users.
+const std::vector<SphereEntry>& sphere_systems();
+/// The one that the scene names; null where it names none of these.
+const SphereEntry* sphere_system_of(const Section& scene);
+
+}  // namespace lagroid::app

@@ -1,0 +1,29 @@
+#include "pendulum_chain.hpp"
+#include "sphere_system.hpp"
+
+namespace lagroid::app {
+
+const std::vector<SphereEntry>& sphere_systems() {
+  static const std::vector<SphereEntry> all{
+      {"pendulum_chain",
+       "chain of spherical pendula",
+       "SE(3)^k acting on (T*S^2)^k",
+       {{"masses", "kg", "", "of the bobs, from the top: one each, or one for all"},
+        {"lengths", "m", "", "of the rods: one each, or one for all"},
+        {"links", "1", "", "how many, where neither masses nor lengths says it"},
+        {"gravity", "m/s^2", "9.81", "acceleration"}},
+       {"turning about the vertical"},
+       {"vertical angular momentum"},
+       read_pendulum_chain}};
+  return all;
+}
+
+const SphereEntry* sphere_system_of(const Section& scene) {
+  if (scene.has("body") || !scene.has("system")) return nullptr;
+  const std::string name = scene.text("system", "the name of a system, as lagroid list tells them");
+  for (const SphereEntry& entry : sphere_systems())
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,81 @@
+#include "sphere_time.hpp"
+
+#include "../simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace lagroid::app {
+
+namespace {
+
+const char* word(SphereForm form) { return form == SphereForm::velocities ? "velocities" : "momenta"; }
+
+std::string usual_method(const SphereSystem& system) {
+  const auto own = system.own_methods();
+  return own.empty() ? std::string(lie_group_methods::commutator_free_4.name) : own.front().name;
+}
+
+}  // namespace
+
+SphereMarchOptions read_sphere_time(const Section& scene, const SphereSystem& system) {
+  const Section time = scene.section("time", "step and steps, or duration and steps");
+  SphereMarchOptions options;
+  options.step = read_time(scene).step;
+  refuse_accuracy(scene);
+  std::vector<std::string> names;
+  for (const MethodTraits& own : system.own_methods()) names.push_back(own.name);
+  for (const LieGroupMethod& method : lie_group_methods::all) names.emplace_back(method.name);
+  options.method = time.choice_or("method", usual_method(system), names);
+  const auto forms = system.forms();
+  std::vector<std::string> words;
+  for (const SphereForm form : forms) words.emplace_back(word(form));
+  const std::string chosen = time.choice_or("form", words.front(), words);
+  for (const SphereForm form : forms)
+    if (word(form) == chosen) options.form = form;
+  if (!time.has("tolerance")) return options;
+  const LieGroupMethod* method = lie_group_methods::named(options.method);
+  if (method == nullptr || !method->embedded())
+    time.fail("tolerance", fmt::format("goes with a method that estimates its error: method = \"{}\"",
+                                       lie_group_methods::munthe_kaas_54.name));
+  options.tolerance = time.number("tolerance", {"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }});
+  return options;
+}
+
+std::vector<Method> sphere_methods(const SphereSystem& system) {
+  const auto forms = system.forms();
+  const auto settings = [](std::string_view method, SphereForm form) -> std::vector<std::string> {
+    return {fmt::format("time.method={}", method), fmt::format("time.form={}", word(form))};
+  };
+  std::vector<Method> all;
+  for (const MethodTraits& own : system.own_methods())
+    all.push_back({own.name, own.order, 1, true, settings(own.name, forms.front())});
+  for (const SphereForm form : forms) {
+    for (const LieGroupMethod& method : lie_group_methods::all) {
+      Method each{form == forms.front() ? std::string(method.name) : fmt::format("{}/{}", method.name, word(form)),
+                  method.order, method.stages, true, settings(method.name, form)};
+      each.to_compare = method.scheme == LieGroupScheme::classical;
+      all.push_back(std::move(each));
+    }
+  }
+  constexpr std::array tolerances{"1e-6", "1e-9", "1e-12"};
+  for (const LieGroupMethod& method : lie_group_methods::all) {
+    if (!method.embedded()) continue;
+    for (const char* tolerance : tolerances) {
+      Method each{fmt::format("{}/{}", method.name, tolerance), method.order, method.stages, false,
+                  settings(method.name, forms.front())};
+      each.settings.push_back(fmt::format("time.tolerance={}", tolerance));
+      all.push_back(std::move(each));
+    }
+  }
+  return all;
+}
+
+bool keeps_spheres(const SphereMarchOptions& options) {
+  const LieGroupMethod* method = lie_group_methods::named(options.method);
+  return method == nullptr || method->scheme != LieGroupScheme::classical;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,46 @@
+#include <lagroid/systems/chain_rattle.hpp>
+#include <lagroid/systems/sphere_march.hpp>
+
+#include <stdexcept>
+
+namespace lagroid {
+
+namespace {
+
+using Chain = PendulumChain<Eigen::Dynamic>;
+
+class RattleMarch final : public SphereMarch {
+ public:
+  RattleMarch(const Chain& chain, const Points& start, const SphereMarchOptions& options)
+      : chain_(chain),
+        form_(options.form),
+        rattle_(chain, form_ == SphereForm::momenta ? chain.to_velocities(start) : start, options.step) {}
+
+  StepReport advance() override { return rattle_.advance(); }
+  Points point() const override {
+    return form_ == SphereForm::momenta ? chain_.to_momenta(rattle_.point()) : rattle_.point();
+  }
+  double time() const override { return rattle_.time(); }
+  MethodTraits traits() const override { return rattle_.traits(); }
+  void persist(Tape& tape) override { rattle_.persist(tape); }
+
+ private:
+  Chain chain_;
+  SphereForm form_;
+  ChainRattle<Eigen::Dynamic> rattle_;
+};
+
+}  // namespace
+
+std::unique_ptr<SphereMarch> make_chain_march(const Chain& chain, const SphereMarch::Points& start,
+                                              const SphereMarchOptions& options) {
+  if (options.method == "rattle") {
+    if (options.tolerance > 0) throw std::invalid_argument("rattle estimates no error");
+    return std::make_unique<RattleMarch>(chain, start, options);
+  }
+  if (options.form == SphereForm::momenta)
+    return march_on_spheres(ChainMomentumField<Eigen::Dynamic>(chain), start, options);
+  return march_on_spheres(ChainVelocityField<Eigen::Dynamic>(chain), start, options);
+}
+
+}  // namespace lagroid

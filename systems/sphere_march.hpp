@@ -1,0 +1,127 @@
+#pragma once
+/// Motions on (TS^2)^k and (T*S^2)^k by a method chosen at run time.
+
+#include <lagroid/core/tape.hpp>
+#include <lagroid/groupoids/spheres.hpp>
+#include <lagroid/solvers/lie_group/integrator.hpp>
+#include <lagroid/solvers/method.hpp>
+#include <lagroid/solvers/step_solver.hpp>
+
+#include <memory>
+#include <string>
+
+namespace lagroid {
+
+/// Of which bundle the points are.
+enum class SphereForm {
+  velocities,  ///< (q_i, w_i) in (TS^2)^k, q_i' = w_i x q_i
+  momenta      ///< (q_i, p_i) in (T*S^2)^k
+};
+
+struct SphereMarchOptions {
+  std::string method;  ///< the name of a LieGroupMethod, or one of the system's own
+  SphereForm form = SphereForm::velocities;
+  double step = 0.01;           ///< from node to node
+  double tolerance = 0;         ///< of inner steps, which an embedded method then controls; 0: one step a node
+  long most_inner = 1'000'000;  ///< of these, from one node to the next
+};
+
+/// A trajectory in the making, of equally spaced nodes. A step that does not converge leaves everything as it was.
+class SphereMarch {
+ public:
+  using Points = CotangentSpheres<Eigen::Dynamic>::Point;
+
+  virtual ~SphereMarch() = default;
+  /// To the next node. Of inner steps the report counts those tried.
+  virtual StepReport advance() = 0;
+  /// In the form asked for.
+  virtual Points point() const = 0;
+  virtual double time() const = 0;
+  virtual MethodTraits traits() const = 0;
+  /// Visits all that the next step goes on from: a march begun with the same arguments, to which it is restored, goes
+  /// on with the same bits.
+  virtual void persist(Tape& tape) = 0;
+};
+
+/// How far points are from the bundle: the largest of ||q_i|^2 - 1| / 2 and |q_i.w_i|, the latter over the largest
+/// |w_j|.
+double off_spheres(const SphereMarch::Points& z);
+
+namespace detail {
+
+template <class F> class EqualSphereSteps final : public SphereMarch {
+ public:
+  EqualSphereSteps(F field, const LieGroupMethod& method, const Points& start, double step)
+      : integrator_({int(start.cols())}, std::move(field), method, start, step) {}
+
+  StepReport advance() override { return integrator_.advance(); }
+  Points point() const override { return integrator_.point(); }
+  double time() const override { return integrator_.time(); }
+  MethodTraits traits() const override { return integrator_.traits(); }
+  void persist(Tape& tape) override { integrator_.persist(tape); }
+
+ private:
+  LieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F> integrator_;
+};
+
+template <class F> class ControlledSphereSteps final : public SphereMarch {
+ public:
+  ControlledSphereSteps(F field, const LieGroupMethod& method, const Points& start, const SphereMarchOptions& options)
+      : integrator_({int(start.cols())}, std::move(field), method, start,
+                    {.tolerance = options.tolerance, .first_step = options.step, .most_steps = options.most_inner}),
+        node_(start),
+        step_(options.step) {}
+
+  StepReport advance() override {
+    const long before = tried();
+    StepReport report = integrator_.advance_to(double(index_ + 1) * step_);
+    report.iterations = int(tried() - before);
+    if (!report.converged()) return report;
+    node_ = integrator_.point();
+    ++index_;
+    return report;
+  }
+  Points point() const override { return node_; }
+  double time() const override { return double(index_) * step_; }
+  MethodTraits traits() const override {
+    MethodTraits traits = integrator_.traits();
+    traits.name += ", steps controlled";
+    return traits;
+  }
+  void persist(Tape& tape) override {
+    integrator_.persist(tape);
+    tape(index_);
+    if (tape.reading()) node_ = integrator_.point();
+  }
+
+ private:
+  long tried() const { return integrator_.steps() + integrator_.rejected(); }
+
+  ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F> integrator_;
+  Points node_;
+  double step_;
+  long index_ = 0;
+};
+
+}  // namespace detail
+
+/// The march of z' = F(z)_M(z) by the Lie group method of that name. Throws std::invalid_argument where there is none,
+/// and where a tolerance is asked of one that estimates no error.
+template <class F>
+std::unique_ptr<SphereMarch> march_on_spheres(F field, const SphereMarch::Points& start,
+                                              const SphereMarchOptions& options) {
+  const LieGroupMethod* method = lie_group_methods::named(options.method);
+  if (method == nullptr) throw std::invalid_argument("no Lie group method is called \"" + options.method + "\"");
+  if (options.tolerance > 0)
+    return std::make_unique<detail::ControlledSphereSteps<F>>(std::move(field), *method, start, options);
+  return std::make_unique<detail::EqualSphereSteps<F>>(std::move(field), *method, start, options.step);
+}
+
+template <int K> struct PendulumChain;
+
+/// A chain of any length. Its own method is "rattle", the variational one (ChainRattle). `start` is of the form asked
+/// for. Throws std::invalid_argument as `march_on_spheres`, and where rattle is to have a tolerance. Compiled.
+std::unique_ptr<SphereMarch> make_chain_march(const PendulumChain<Eigen::Dynamic>& chain,
+                                              const SphereMarch::Points& start, const SphereMarchOptions& options);
+
+}  // namespace lagroid
