@@ -3,10 +3,13 @@
 
 #include <lagroid/core/numbers_of.hpp>
 #include <lagroid/core/tape.hpp>
+#include <lagroid/solvers/compositions.hpp>
 #include <lagroid/systems/pendulum_chain.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <tuple>
 #include <utility>
 
 namespace lagroid {
@@ -19,6 +22,8 @@ namespace lagroid {
 ///     l_i v_i* = l_i v_i + h/2 (-[i=1] g e_3 - T_i d_i q_i + T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1})
 ///     q_i+ = q_i + h v_i*,   |q_i+| = 1                                     (Newton on the k tensions, tridiagonal)
 ///     l_i v_i+ = l_i v_i* + the same at q+ with tensions such that q_i+.v_i+ = 0               (linear, tridiagonal)
+///
+/// A step may be composed of several such, of orders four, six and eight (Composition).
 template <int K> class ChainRattle {
  public:
   using Points = typename PendulumChain<K>::Points;
@@ -26,8 +31,10 @@ template <int K> class ChainRattle {
   using Columns = Eigen::Matrix<double, 3, K>;
 
   /// `start` is (q, w).
-  ChainRattle(const PendulumChain<K>& chain, const Points& start, double h)
+  ChainRattle(const PendulumChain<K>& chain, const Points& start, double h,
+              const Composition& composition = compositions::single)
       : chain_(chain),
+        composition_(composition),
         h_(h),
         q_(start.template topRows<3>()),
         v_(q_),
@@ -35,18 +42,21 @@ template <int K> class ChainRattle {
         half_(q_),
         tension_(Vector<double, K>::Zero(chain.links())),
         end_(tension_),
-        gap_(tension_),
+        slope_(tension_),
         lower_(tension_),
         inverse_mass_(chain.mass.cwiseInverse()),
         share_(inverse_mass_),
-        kick_(chain.length.cwiseInverse() * (h / 2)),
-        unit_(chain.length * (2 / (h * h))),
+        inverse_length_(chain.length.cwiseInverse()),
         system_(chain.links()) {
     for (int i = 1; i < chain.links(); ++i) share_(i) += inverse_mass_(i - 1);
     restore(start, 0);
   }
 
-  static MethodTraits traits() { return {"rattle", 2, true, true, false}; }
+  static MethodTraits traits(const Composition& composition) {
+    const bool single = composition.stages() == 1;
+    return {single ? "rattle" : "rattle, " + std::string(composition.name), composition.order, true, true, false};
+  }
+  MethodTraits traits() const { return traits(composition_); }
   double time() const { return double(index_) * h_; }
   long index() const { return index_; }
   const Columns& directions() const { return q_; }
@@ -74,8 +84,8 @@ template <int K> class ChainRattle {
     auto q = numbers_of(q_);
     auto v = numbers_of(v_);
     auto end = numbers_of(end_);
-    auto gap = numbers_of(gap_);
-    tape(q, v, end, gap, index_);
+    auto slope = numbers_of(slope_);
+    tape(q, v, end, slope, index_);
   }
 
  private:
@@ -89,30 +99,34 @@ template <int K> class ChainRattle {
   }
   void tensions_at_rest();
   /// Tensions such that q_i . (l_i v_i + h/2 (pull + gravity)) = 0, in system_.x.
-  void project_velocities(const Columns& q, const Columns& v);
-  StepReport close();
+  void project_velocities(const Columns& q, const Columns& v, double h);
+  /// A step of order two of this size; nothing changes where it does not converge.
+  StepReport stage(double h);
+  StepReport close(double h);
 
   PendulumChain<K> chain_;
+  Composition composition_;
   double h_;
   long index_ = 0;
   Columns q_, v_, next_, half_;
-  Vector<double, K> tension_;  ///< over the step, T
-  Vector<double, K> end_;      ///< at its end, for the velocities
-  Vector<double, K> gap_;      ///< tension_ less end_ at the start of the step: changes slowly from step to step
-  Vector<double, K> lower_;    ///< below the diagonal of the tensions' matrix
+  std::tuple<Columns, Columns, Vector<double, K>, Vector<double, K>> start_;  ///< of a step of several stages
+  Vector<double, K> tension_;                                                 ///< over the step, T
+  Vector<double, K> end_;                                                     ///< at its end, for the velocities
+  Vector<double, K> slope_;  ///< by which tension_ differs from end_ at the start of the step, over h
+  Vector<double, K> lower_;  ///< below the diagonal of the tensions' matrix
   Vector<double, K> inverse_mass_;
   Vector<double, K> share_;  ///< d_i
-  Vector<double, K> kick_;   ///< h / (2 l_i)
-  Vector<double, K> unit_;   ///< 2 l_i / h^2
+  Vector<double, K> inverse_length_;
   TridiagonalSystem<K, double> system_;
 };
 
-template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v) {
+template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v, double h) {
   const int k = chain_.links();
+  const double rate = 2 / h;
   for (int i = 0; i < k; ++i) {
     system_.diagonal(i) = share_(i);
     if (i + 1 < k) system_.upper(i) = -q.col(i).dot(q.col(i + 1)) * inverse_mass_(i);
-    system_.x(i) = chain_.length(i) * q.col(i).dot(v.col(i)) * (2 / h_);
+    system_.x(i) = chain_.length(i) * q.col(i).dot(v.col(i)) * rate;
   }
   system_.x(0) -= chain_.gravity * q(2, 0);
   system_.solve();
@@ -129,13 +143,15 @@ template <int K> void ChainRattle<K>::tensions_at_rest() {
   system_.x(0) -= chain_.gravity * q_(2, 0);
   system_.solve();
   end_ = system_.x;
-  gap_.setZero();
+  slope_.setZero();
 }
 
 /// Newton's iteration for the tensions that keep |q+| = 1, from those that stand in tension_; leaves q+ and v*.
-template <int K> StepReport ChainRattle<K>::close() {
+template <int K> StepReport ChainRattle<K>::close(double h) {
   constexpr int most = 50;
   constexpr double quadratic = 1e-8;  // an iteration from here ends at round-off
+  const double kick = h / 2;
+  const double unit = 2 / (h * h);
   const int k = chain_.links();
   StepReport report;
   for (report.iterations = 1; report.iterations <= most; ++report.iterations) {
@@ -143,10 +159,10 @@ template <int K> StepReport ChainRattle<K>::close() {
     for (int i = 0; i < k; ++i) {
       V change = pull(q_, tension_, i);
       if (i == 0) change(2) -= chain_.gravity;
-      half_.col(i) = v_.col(i) + change * kick_(i);
-      next_.col(i) = q_.col(i) + h_ * half_.col(i);
+      half_.col(i) = v_.col(i) + change * (kick * inverse_length_(i));
+      next_.col(i) = q_.col(i) + h * half_.col(i);
       const double off = 0.5 * (next_.col(i).squaredNorm() - 1);
-      system_.x(i) = off * unit_(i);
+      system_.x(i) = off * chain_.length(i) * unit;
       system_.diagonal(i) = next_.col(i).dot(q_.col(i)) * share_(i);
       if (i + 1 < k) system_.upper(i) = -next_.col(i).dot(q_.col(i + 1)) * inverse_mass_(i);
       if (i > 0) lower_(i) = -next_.col(i).dot(q_.col(i - 1)) * inverse_mass_(i - 1);
@@ -172,11 +188,11 @@ template <int K> StepReport ChainRattle<K>::close() {
       if (i + 1 < k) system_.x(i) -= system_.upper(i) * system_.x(i + 1);
       system_.x(i) /= system_.diagonal(i);
     }
-    tension_ += system_.x;
+    for (int i = 0; i < k; ++i) tension_(i) += system_.x(i);
     if (worst < quadratic) {
       for (int i = 0; i < k; ++i) {
-        half_.col(i) += pull(q_, system_.x, i) * kick_(i);
-        next_.col(i) = q_.col(i) + h_ * half_.col(i);
+        half_.col(i) += pull(q_, system_.x, i) * (kick * inverse_length_(i));
+        next_.col(i) = q_.col(i) + h * half_.col(i);
       }
       report.status = SolveStatus::converged;
       return report;
@@ -186,25 +202,49 @@ template <int K> StepReport ChainRattle<K>::close() {
   return report;
 }
 
-template <int K> StepReport ChainRattle<K>::advance() {
-  tension_ = end_ + gap_;
-  StepReport report = close();
+template <int K> StepReport ChainRattle<K>::stage(double h) {
+  for (int i = 0; i < chain_.links(); ++i) tension_(i) = end_(i) + h * slope_(i);
+  StepReport report = close(h);
   if (!report.converged()) return report;
-  project_velocities(next_, half_);
+  project_velocities(next_, half_, h);
+  const double kick = h / 2;
   for (int i = 0; i < chain_.links(); ++i) {
     V change = pull(next_, system_.x, i);
     if (i == 0) change(2) -= chain_.gravity;
-    half_.col(i) += change * kick_(i);
+    half_.col(i) += change * (kick * inverse_length_(i));
   }
   if (!half_.allFinite()) {
     report.status = SolveStatus::not_finite;
     return report;
   }
-  gap_ = tension_ - end_;
-  end_ = system_.x;
+  for (int i = 0; i < chain_.links(); ++i) {
+    slope_(i) = (tension_(i) - end_(i)) * (1 / h);
+    end_(i) = system_.x(i);
+  }
   std::swap(q_, next_);
   std::swap(v_, half_);
-  ++index_;
+  return report;
+}
+
+template <int K> StepReport ChainRattle<K>::advance() {
+  if (composition_.stages() == 1) {
+    const StepReport report = stage(h_);
+    if (report.converged()) ++index_;
+    return report;
+  }
+  start_ = {q_, v_, end_, slope_};
+  StepReport report;
+  int iterations = 0;
+  for (const double weight : composition_.coefficients) {
+    report = stage(weight * h_);
+    iterations += report.iterations;
+    if (!report.converged()) {
+      std::tie(q_, v_, end_, slope_) = start_;
+      break;
+    }
+  }
+  report.iterations = iterations;
+  if (report.converged()) ++index_;
   return report;
 }
 

@@ -3,6 +3,7 @@
 
 #include <lagroid/core/tape.hpp>
 #include <lagroid/groupoids/spheres.hpp>
+#include <lagroid/solvers/compositions.hpp>
 #include <lagroid/solvers/lie_group/integrator.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/step_solver.hpp>
@@ -24,6 +25,7 @@ struct SphereMarchOptions {
   double step = 0.01;           ///< from node to node
   double tolerance = 0;         ///< of inner steps, which an embedded method then controls; 0: one step a node
   long most_inner = 1'000'000;  ///< of these, from one node to the next
+  Composition composition = compositions::single;  ///< of a symmetric method of the system's own
 };
 
 /// A trajectory in the making, of equally spaced nodes. A step that does not converge leaves everything as it was.

@@ -368,6 +368,37 @@ TEST(ChainRattle, IsReversible) {
   EXPECT_LT(largest(end - c.velocities), 1e-9);
 }
 
+TEST(ChainRattle, ComposedHasItsOrderAndKeepsTheMomentum) {
+  const Case c = named("pub_k2_equal");
+  ControlledLieGroupIntegrator exact(c.chain.space(), ChainVelocityField<any>(c.chain),
+                                     lie_group_methods::munthe_kaas_54, c.velocities, {.tolerance = 1e-15});
+  ASSERT_TRUE(exact.advance_to(0.5).converged());
+  const auto flat = [](const Points& z) -> Eigen::VectorXd {
+    return Eigen::Map<const Eigen::VectorXd>(z.data(), z.size());
+  };
+  for (const Composition& composition : compositions::all) {
+    const auto end = [&](int steps) {
+      ChainRattle<any> march(c.chain, c.velocities, 0.5 / steps, composition);
+      for (int n = 0; n < steps; ++n) EXPECT_TRUE(march.advance().converged());
+      EXPECT_NEAR(c.chain.vertical_momentum(march.point()), c.vertical, 1e-13) << composition.name;
+      return flat(march.point());
+    };
+    const auto report = laws::order_laws(ChainRattle<any>::traits(composition),
+                                         {end, flat(exact.point()), composition.order > 4 ? 6 : 12, 2e-12});
+    EXPECT_TRUE(report.holds()) << composition.name << ": " << report;
+  }
+}
+
+TEST(ChainRattle, AStageThatFailsUndoesTheStep) {
+  const Case c = named("pub_k2_equal");
+  ChainRattle<any> march(c.chain, c.velocities, 0.9, compositions::suzuki);
+  StepReport report;
+  Points before = march.point();
+  while ((report = march.advance()).converged() && march.index() < 100) before = march.point();
+  ASSERT_FALSE(report.converged());
+  EXPECT_EQ(largest(march.point() - before), 0);
+}
+
 /// The canonical two-form of (T*S^2)^k on tangent vectors a, b at (q, p).
 double canonical_form(const Points& a, const Points& b) {
   double sum = 0;

@@ -35,6 +35,12 @@ SphereMarchOptions read_sphere_time(const Section& scene, const SphereSystem& sy
   const std::string chosen = time.choice_or("form", words.front(), words);
   for (const SphereForm form : forms)
     if (word(form) == chosen) options.form = form;
+  if (lie_group_methods::named(options.method) == nullptr) {
+    options.composition = read_composition(time, compositions::all);
+  } else {
+    for (const char* key : {"order", "composition"})
+      if (time.has(key)) time.fail(key, fmt::format("is of the steps of {}", usual_method(system)));
+  }
   if (!time.has("tolerance")) return options;
   const LieGroupMethod* method = lie_group_methods::named(options.method);
   if (method == nullptr || !method->embedded())
@@ -51,7 +57,11 @@ std::vector<Method> sphere_methods(const SphereSystem& system) {
   };
   std::vector<Method> all;
   for (const MethodTraits& own : system.own_methods())
-    all.push_back({own.name, own.order, 1, true, settings(own.name, forms.front())});
+    for (Method& method : composed_methods(own.name, steps_composed(own.symmetric))) {
+      std::erase(method.settings, "time.mode=fixed");
+      method.settings.push_back(fmt::format("time.form={}", word(forms.front())));
+      all.push_back(std::move(method));
+    }
   for (const SphereForm form : forms) {
     for (const LieGroupMethod& method : lie_group_methods::all) {
       Method each{form == forms.front() ? std::string(method.name) : fmt::format("{}/{}", method.name, word(form)),
