@@ -9,7 +9,7 @@ namespace {
 
 using Chain = PendulumChain<Eigen::Dynamic>;
 
-/// One link is common, and a third faster when the compiler knows.
+/// K = 1 where there is one link, of which the compiler makes use (docs/performance.md).
 template <int K> class RattleMarch final : public SphereMarch {
  public:
   RattleMarch(const Chain& chain, const Points& start, const SphereMarchOptions& options)
