@@ -19,8 +19,11 @@ TEST_F(CommandLine, EveryExampleIsCertified) {
     std::ifstream file(entry.path());
     const std::string text(std::istreambuf_iterator<char>(file), {});
     const int samples = text.find("[[body]]") == std::string::npos ? 10 : 1;
+    // Orders and loops of marches on spheres are asked once.
+    const bool on_spheres = text.find("pendulum_chain") != std::string::npos;
     for (const auto& suite : json.at("suites"))
-      for (const auto& law : suite.at("laws")) EXPECT_EQ(law.at("samples"), samples) << law;
+      for (const auto& law : suite.at("laws"))
+        EXPECT_TRUE(law.at("samples") == samples || (on_spheres && law.at("samples") == 1)) << law;
   }
 }
 
@@ -52,7 +55,12 @@ TEST_F(CommandLine, SystemsAtRestInOtherUnitsAndWithTinyStepsAreCertified) {
            example("pendulum") + " --set time.step=1e-5", example("rigid_body") + " --set time.step=1e-6",
            example("plate_ball_initial_value") + " --set time.step=1e-3",
            example("kepler") + " --set parameters.strength=3.986e14 --set initial.position=[7e6,0] --set "
-                               "initial.momentum=[0,7500] --set time.step=10"}) {
+                               "initial.momentum=[0,7500] --set time.step=10",
+           example("pendulum_chain") +
+               " --set initial.theta=3.141592653589793 --set initial.angular_velocities=[0,0,0]",
+           example("pendulum_chain") + " --set time.step=1e-5",
+           example("pendulum_chain") +
+               " --set time.step=0.01 --set time.form=momenta --set parameters.masses=[1,1,1e-6]"}) {
     const Outcome r = run("check " + scene + " --samples 20");
     EXPECT_EQ(r.code, 0) << scene << r.out << r.err;
   }

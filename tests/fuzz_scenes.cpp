@@ -1,5 +1,5 @@
-// libFuzzer on scenes of bodies and of systems on spheres: whatever the file holds, it is refused by a SceneError, or read
-// and begun, and what converges is finite.
+// libFuzzer on scenes of bodies and of systems on spheres: whatever the file holds, it is refused by a SceneError, or
+// read and begun, and what converges is finite.
 
 #include "scene_reader.hpp"
 #include "scenes/scene_run.hpp"

@@ -35,26 +35,39 @@ namespace detail {
 
 using SpherePoints = SphereMarch::Points;
 
-/// The states turned by u_i and their second halves moved by v_i |second halves|, kept tangent; u, v are 3 x k.
-inline SpherePoints displaced(const SpherePoints& z, const Eigen::Matrix3Xd& u, const Eigen::Matrix3Xd& v) {
-  const CotangentSpheres<Eigen::Dynamic> space{int(z.cols())};
+/// The start with its directions turned by u_i and its second halves, in the usual form, moved by v_i times their size.
+inline SpherePoints displaced(const SphereSubject& subject, const Eigen::Matrix3Xd& u, const Eigen::Matrix3Xd& v) {
+  const CotangentSpheres<Eigen::Dynamic> space{int(subject.start.cols())};
   auto turn = space.zero_algebra();
   turn.topRows<3>() = u;
-  SpherePoints out = z;
-  space.act(turn, out);
+  const SphereForm usual = subject.forms.front();
+  SpherePoints z = subject.in_form(subject.start, subject.options.form, usual);
+  space.act(turn, z);
   const double size = z.bottomRows<3>().cwiseAbs().maxCoeff();
-  out.bottomRows<3>() += (size > 0 ? size : 1) * v;
-  space.project(out);
-  return out;
+  z.bottomRows<3>() += (size > 0 ? size : 1) * v;
+  space.project(z);
+  return subject.in_form(z, usual, subject.options.form);
 }
 
-inline SpherePoints drawn_beside(const SpherePoints& z) {
-  const auto draw = [&](double size) {
-    return Eigen::Matrix3Xd(
-        Eigen::Matrix3Xd::Zero(3, z.cols()).unaryExpr([=](double) { return size * draw_uniform(); }));
+/// A closed curve of states around the start.
+inline SpherePoints on_loop(const SphereSubject& subject, double phase) {
+  Eigen::Matrix3Xd u(3, subject.start.cols()), v = u;
+  for (Eigen::Index i = 0; i < u.cols(); ++i) {
+    const double apart = 0.7 * double(i);
+    u.col(i) << 0.2 * std::cos(phase + apart), 0.2 * std::sin(phase), 0.1 * std::sin(2 * phase + apart);
+    v.col(i) << 0.2 * std::sin(phase + apart), 0.1 * std::cos(2 * phase), 0.2 * std::cos(phase);
+  }
+  return displaced(subject, u, v);
+}
+
+inline SpherePoints drawn_beside(const SphereSubject& subject) {
+  const auto draw = [&] {
+    Eigen::Matrix3Xd u(3, subject.start.cols());
+    for (Eigen::Index i = 0; i < u.size(); ++i) u.data()[i] = 0.3 * draw_uniform();
+    return u;
   };
-  const auto turn = draw(0.3);
-  return displaced(z, turn, draw(0.3));
+  const auto turn = draw();
+  return displaced(subject, turn, draw());
 }
 
 /// Directions as they are, second halves over their size in `like`.
@@ -90,21 +103,23 @@ inline std::pair<double, double> loop_integral(const std::vector<SpherePoints>& 
   return {sum, variation};
 }
 
-/// The order that the method shows from `start`, over a time in which a few steps leave an error to speak of.
+/// The order that the method shows from beside the start, which may be at rest, over a time in which a few steps leave
+/// an error to speak of.
 inline double observed_order(const SphereSubject& subject) {
   SphereMarchOptions exact = subject.options;
   exact.method = lie_group_methods::munthe_kaas_54.name;
   exact.tolerance = 1e-14;
   constexpr int few = 8;
+  const SpherePoints start = on_loop(subject, 1);
   const double h = subject.options.step;
   for (double horizon = 0.125 * h; horizon < 1e6 * h; horizon *= 1.5) {
     exact.step = horizon;
-    const auto end = marched(*subject.begin(subject.start, exact), 1);
+    const auto end = marched(*subject.begin(start, exact), 1);
     const auto error = [&](int steps) {
       SphereMarchOptions own = subject.options;
       own.tolerance = 0;
       own.step = horizon / steps;
-      return sphere_distance(marched(*subject.begin(subject.start, own), steps), end, end);
+      return sphere_distance(marched(*subject.begin(start, own), steps), end, end);
     };
     if (error(few) > 1e-4) return measured_order(error, 2 * few);
   }
@@ -137,13 +152,13 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
 
   if (subject.keeps_spheres)
     report.laws.push_back(check_law("points stay on the spheres", 1e-13, [&] {
-      return off_spheres(detail::marched(*begun(detail::drawn_beside(subject.start)), steps));
+      return off_spheres(detail::marched(*begun(detail::drawn_beside(subject)), steps));
     }));
   ask_law("at least the order declared", 0.1,
           [&] { return std::max(0.0, traits.order - detail::observed_order(subject)); });
   if (subject.forms.size() > 1)
     report.laws.push_back(check_law("all forms are one motion", 1e-9, [&] {
-      const Points z = detail::drawn_beside(subject.start);
+      const Points z = detail::drawn_beside(subject);
       const auto end = [&](SphereForm form) {
         SphereMarchOptions options = subject.options;
         options.method = lie_group_methods::munthe_kaas_54.name;
@@ -158,7 +173,7 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
   if (!traits.symplectic) return report;
 
   report.laws.push_back(check_law("steps go back the way they came", 1e-9, [&] {
-    const Points z = detail::drawn_beside(subject.start);
+    const Points z = detail::drawn_beside(subject);
     Points turned = detail::marched(*begun(z), steps);
     turned.bottomRows<3>() *= -1;
     Points back = detail::marched(*begun(turned), steps);
@@ -168,16 +183,7 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
   ask_law("symplectic", 1e-8, [&] {
     constexpr int points = 64;
     std::vector<std::unique_ptr<SphereMarch>> marches;
-    for (int k = 0; k < points; ++k) {
-      const double phase = 2 * M_PI * k / points;
-      Eigen::Matrix3Xd u(3, subject.start.cols()), v = u;
-      for (Eigen::Index i = 0; i < u.cols(); ++i) {
-        const double apart = 0.7 * double(i);
-        u.col(i) << 0.2 * std::cos(phase + apart), 0.2 * std::sin(phase), 0.1 * std::sin(2 * phase + apart);
-        v.col(i) << 0.2 * std::sin(phase + apart), 0.1 * std::cos(2 * phase), 0.2 * std::cos(phase);
-      }
-      marches.push_back(begun(detail::displaced(subject.start, u, v)));
-    }
+    for (int k = 0; k < points; ++k) marches.push_back(begun(detail::on_loop(subject, 2 * M_PI * k / points)));
     const auto integral = [&] {
       std::vector<Points> loop;
       for (const auto& march : marches)
@@ -191,7 +197,7 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
   });
   if (subject.conserved)
     report.laws.push_back(check_law("what symmetries give is kept", 1e-12, [&] {
-      const auto march = begun(detail::drawn_beside(subject.start));
+      const auto march = begun(detail::drawn_beside(subject));
       const auto [before, size] = subject.conserved(march->point());
       const auto [after, size_after] = subject.conserved(detail::marched(*march, steps));
       return std::abs(after - before) / std::max({size, size_after, 1e-300});
