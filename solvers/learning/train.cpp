@@ -195,7 +195,7 @@ class Trainer final : public ceres::IterationCallback {
 std::string message_of(Outcome outcome, const Training& options, double mse) {
   switch (outcome) {
     case Outcome::iteration_limit:
-      return fmt::format("{} iterations did not suffice, the mean squared error {:.1e} still falls; allow more",
+      return fmt::format("after {} iterations the mean squared error {:.1e} still falls; allow more to go on",
                          options.iterations, mse);
     case Outcome::time_limit:
       return fmt::format("{:g} s did not suffice, the mean squared error is {:.1e}; allow more", options.seconds, mse);
