@@ -81,6 +81,14 @@ TEST_F(Learn, WritesFilesAndReadsTheModel) {
   EXPECT_EQ(model.at("kind"), "learned_hamiltonian");
   EXPECT_EQ(model.at("model"), "network:4");
   EXPECT_EQ(model.at("parameters").size(), 21U);
+  // Read again it is the same, and training goes on from it.
+  const auto before = nlohmann::json::parse(read(out + "/summary.json"));
+  const auto same = summary("learn " + data + " --model " + out + "/model.json --iterations 0 --test " + test);
+  for (const char* key : {"training_mse", "mass_matrix", "model"}) EXPECT_EQ(same.at(key), before.at(key)) << key;
+  EXPECT_EQ(same.at("held_out").at("mse"), before.at("held_out").at("mse"));
+  const auto further = summary("learn " + data + " --model " + out + "/model.json --iterations 20");
+  EXPECT_LT(further.at("training_mse"), same.at("training_mse"));
+  EXPECT_LE(further.at("iterations"), 20);
   // Without held-out data their file goes.
   EXPECT_EQ(run("learn " + data + " --model polynomial:1 --out " + out).code, 0);
   EXPECT_FALSE(fs::exists(out + "/errors.csv"));
@@ -113,6 +121,10 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
   const auto rows = [&](const char* name, const std::string& text) { return file(name, header + text); };
   const std::string good = "1,0,0,0,1,1,0,0\n1,0.1,0,0,1,1,0,0\n";
   file("broken.h5", "no HDF5");
+  const auto model = [&](const char* name, const std::string& text) {
+    return "learn " + data + " --model " + file(name, text);
+  };
+  const std::string kind = "{\"kind\": \"learned_hamiltonian\"";
   { const H5::H5File out(path("empty.h5"), H5F_ACC_TRUNC); }
   const std::vector<std::pair<std::string, std::string>> cases{
       {"learn", "data is required"},
@@ -139,6 +151,18 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
       {"learn " + data + " --model forest:3", "polynomial:DEGREE or network:UNITS"},
       {"learn " + data + " --model network:8,", "polynomial:DEGREE or network:UNITS"},
       {"learn " + data + " --model polynomial:30", "lower the degree"},
+      {"learn " + data + " --model nowhere.json", "nowhere.json: there is no such file"},
+      {model("a.json", "{"), "no JSON object"},
+      {model("b.json", "{\"kind\": \"scene\"}"), "kind is not"},
+      {model("c.json", kind + ", \"bodies\": 0}"), "bodies is no number of bodies"},
+      {model("d.json", kind + ", \"bodies\": 1, \"model\": 3}"), "model is no name"},
+      {model("e.json", kind + ", \"bodies\": 1, \"model\": \"forest:1\"}"), "e.json: model \"forest:1\" is none"},
+      {model("f.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [1, 2]}"),
+       "parameters are not the 4 numbers of polynomial:1"},
+      {model("g.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [1, 2, 3, \"x\"]}"),
+       "parameters[3] is no number"},
+      {model("h.json", kind + ", \"bodies\": 2, \"model\": \"polynomial:1\", \"parameters\": [0,0,0,0,0,0,0,0,0]}"),
+       "give data of its system"},
       {"learn " + data + " --integrator leapfrog", "commutator-free-4"},
       {"learn " + data + " --substeps 0", "--substeps"},
       {"learn " + data + " --validation 1", "--validation"},

@@ -368,6 +368,11 @@ TEST(Training, EndsAsItSays) {
   EXPECT_NE(few.message.find("allow more"), std::string::npos);
   EXPECT_EQ(few.history.size(), 4U);
   EXPECT_NEAR(few.history.back().mse, few.mse, 1e-12 * few.mse);
+  const Trained further = train(*network, data, {.iterations = 5, .begin = few.parameters});
+  EXPECT_LT(further.mse, few.mse);
+  EXPECT_NEAR(further.history.front().mse, few.mse, 1e-12 * few.mse);
+  EXPECT_EQ(train(*network, data, {.iterations = 0, .begin = few.parameters}).parameters, few.parameters);
+  EXPECT_THROW(train(*network, data, {.begin = VectorXd::Zero(3)}), std::invalid_argument);
   const Trained enough = train(*network, data, {.starts = 1, .enough = 1e-6});
   EXPECT_EQ(enough.outcome, Outcome::reached);
   EXPECT_LE(enough.mse, 1e-6);

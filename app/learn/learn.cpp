@@ -45,7 +45,14 @@ Lesson prepare(const LearnOptions& options) {
   Lesson lesson;
   lesson.options = options;
   lesson.data = read_trajectories(options.data, options.noise);
-  lesson.learned.model = named_model(options.model, lesson.data.bodies);
+  if (options.model.ends_with(".json")) {
+    lesson.learned = read_model(options.model);
+    if (lesson.learned.model->bodies() != lesson.data.bodies)
+      throw DataError(fmt::format("{} is of {} bodies, {} of {}; give data of its system", options.model,
+                                  lesson.learned.model->bodies(), options.data, lesson.data.bodies));
+  } else {
+    lesson.learned.model = named_model(options.model, lesson.data.bodies);
+  }
   if (options.test) {
     lesson.test = read_trajectories(*options.test, options.test_noise);
     if (lesson.test->bodies != lesson.data.bodies)
@@ -61,15 +68,16 @@ learning::Trained train(const Lesson& lesson, const InterruptGuard& guard) {
   training.method = *lie_group_methods::named(options.integrator);
   training.substeps = options.substeps;
   training.seed = options.seed;
-  training.starts = options.starts;
+  training.begin = lesson.learned.parameters;
+  training.starts = training.begin.size() > 0 ? 1 : options.starts;
   training.iterations = options.iterations;
   training.validation = options.validation.value_or(options.noise > 0 ? usual_validation : 0);
   training.enough = options.enough;
   training.seconds = options.seconds;
-  const long trials = options.starts > 1 ? long(options.starts) * training.trial : 0;
+  const long trials = training.starts > 1 ? long(training.starts) * training.trial : 0;
   Progress progress(options.model, trials + options.iterations, !options.json);
   training.callback = [&](const learning::Stage& now) {
-    const long before = options.starts > 1 ? long(now.start) * training.trial : 0;
+    const long before = training.starts > 1 ? long(now.start) * training.trial : 0;
     progress.update(before + now.iteration);
     return !guard.interrupted();
   };
@@ -125,8 +133,10 @@ int serve(const LearnOptions& options) {
 void add_learn_options(CLI::App& command, LearnOptions& options) {
   const auto share = CLI::Range(0.0, 0.9);
   command.add_option("data", options.data, "trajectories, a .csv or .h5 file (see docs/learning.md)")->required();
-  command.add_option("--model", options.model,
-                     "of the potential: polynomial:DEGREE, or network:UNITS[,UNITS...] (default network:8)");
+  command.add_option(
+      "--model", options.model,
+      "of the potential: polynomial:DEGREE, or network:UNITS[,UNITS...] (default network:8); or a model.json to "
+      "go on from");
   command.add_option("--integrator", options.integrator,
                      fmt::format("trained through: {} (default commutator-free-4)", integrator_names()));
   command.add_option("--substeps", options.substeps, "of the integrator between points (default 2)")
@@ -143,7 +153,7 @@ void add_learn_options(CLI::App& command, LearnOptions& options) {
   command.add_option("--starts", options.starts, "tried, of which the best goes on (default 4)")
       ->check(CLI::Range(1, 10000));
   command.add_option("--iterations", options.iterations, "of the best, at most (default 100)")
-      ->check(CLI::Range(1, 1'000'000));
+      ->check(CLI::Range(0, 1'000'000));
   command.add_option("--seed", options.seed, "of the first start (default 1)");
   command.add_option("--enough", options.enough, "mean squared error in training at which it stops (default 0)")
       ->check(CLI::NonNegativeNumber);

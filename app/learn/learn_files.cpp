@@ -136,8 +136,9 @@ std::string lesson_text(const Lesson& lesson) {
     out += fmt::format("  momentum     about the vertical changes by {:.1e} on learned motions, {:.1e} in the data\n",
                        found.momentum_learned, found.momentum_data);
   }
-  out += fmt::format("  iterations   {}, {} of the processor; the best start was that of seed {}\n", trained.iterations,
-                     duration(trained.seconds), trained.start);
+  out += fmt::format("  iterations   {}, {} of the processor", trained.iterations, duration(trained.seconds));
+  out += options.model.ends_with(".json") ? fmt::format("; from {}\n", options.model)
+                                          : fmt::format("; the best start was that of seed {}\n", trained.start);
   if (!trained.message.empty()) out += fmt::format("  note: {}\n", trained.message);
   return out;
 }
