@@ -3,6 +3,8 @@
 #include "checkpoint.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
+#include "learn/draw.hpp"
+#include "learn/learn.hpp"
 #include "listing.hpp"
 #include "optimise/optimise.hpp"
 #include "output.hpp"
@@ -136,6 +138,14 @@ int main(int argc, char** argv) {
   CLI::App* optimise_command =
       app.add_subcommand("optimize", "minimise a function on a manifold (see docs/optimisation.md)");
   add_optimise_options(*optimise_command, optimise_options);
+  LearnOptions learn_options;
+  CLI::App* learn_command =
+      app.add_subcommand("learn", "fit a Hamiltonian on (T*S^2)^k to trajectories (see docs/learning.md)");
+  add_learn_options(*learn_command, learn_options);
+  DrawOptions draw_options;
+  CLI::App* draw_command =
+      app.add_subcommand("trajectories", "draw trajectories of a pendulum chain into a file, to learn from");
+  add_draw_options(*draw_command, draw_options);
   ReproduceOptions papers;
   CLI::App* reproduce_command = app.add_subcommand("reproduce", "carry out the experiments of a paper, and more");
   add_reproductions(*reproduce_command, papers, options.json);
@@ -158,9 +168,12 @@ int main(int argc, char** argv) {
       static_cast<SceneOptions&>(options) = optimise_options;
       return optimise(optimise_options);
     }
+    if (learn_command->parsed()) return learn(learn_options);
+    if (draw_command->parsed()) return draw(draw_options);
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
     return refuse(
         options.json, exit_bad_input, "invalid_command_line",
-        "name a command: run, resume, view, plot, study, optimize, check, list or reproduce; see lagroid --help");
+        "name a command: run, resume, view, plot, study, optimize, learn, trajectories, check, list or reproduce; see "
+        "lagroid --help");
   });
 }

@@ -197,6 +197,13 @@ TEST(LieGroupPage, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/lie_group_integrators.md"), "cpp", read("examples/my_hamiltonian.cpp")), none);
 }
 
+TEST(LearningPage, WhatItNamesExists) {
+  EXPECT_EQ(unknown_names(prose_of(section(read("docs/learning.md"), "## A potential of your own"))), none);
+}
+TEST(LearningPage, ItsCodeIsThatOfTheExample) {
+  EXPECT_EQ(foreign_blocks(read("docs/learning.md"), "cpp", read("examples/my_potential.cpp")), none);
+}
+
 TEST(Newton, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/newton.md"))), none); }
 TEST(Newton, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/newton.md"), "cpp", read("examples/implicit_step.cpp")), none);

@@ -94,7 +94,11 @@ TEST(LearnedField, OfTheChainIsItsOwn) {
     field(0, z.reshaped(6, 3), u);
     const VectorXd expected = velocity(z, u.reshaped());
     EXPECT_LT((velocity(z, model->field(theta, z)) - expected).norm(), 1e-13 * (1 + expected.norm()));
+    MotionField motion(model->motion(theta));
+    motion(0, z.reshaped(6, 3), u);
+    EXPECT_EQ(VectorXd(u.reshaped()), model->field(theta, z));
     const auto state = chain.to_velocities(z.reshaped(6, 3));
+    EXPECT_EQ(model->motion(theta)->energy(z.reshaped(6, 3)), model->energy(theta, z));
     EXPECT_NEAR(model->energy(theta, z), chain.energy(state), 1e-12);
   }
 }
@@ -364,6 +368,11 @@ TEST(Training, EndsAsItSays) {
   EXPECT_NE(few.message.find("allow more"), std::string::npos);
   EXPECT_EQ(few.history.size(), 4U);
   EXPECT_NEAR(few.history.back().mse, few.mse, 1e-12 * few.mse);
+  const Trained further = train(*network, data, {.iterations = 5, .begin = few.parameters});
+  EXPECT_LT(further.mse, few.mse);
+  EXPECT_NEAR(further.history.front().mse, few.mse, 1e-12 * few.mse);
+  EXPECT_EQ(train(*network, data, {.iterations = 0, .begin = few.parameters}).parameters, few.parameters);
+  EXPECT_THROW(train(*network, data, {.begin = VectorXd::Zero(3)}), std::invalid_argument);
   const Trained enough = train(*network, data, {.starts = 1, .enough = 1e-6});
   EXPECT_EQ(enough.outcome, Outcome::reached);
   EXPECT_LE(enough.mse, 1e-6);

@@ -1,6 +1,7 @@
 #pragma once
 /// Hamiltonians with parameters on (T*S^2)^k, for those who train, measure and run them.
 
+#include <lagroid/groupoids/spheres.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
 
 #include <Eigen/Core>
@@ -8,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::learning {
@@ -18,6 +20,27 @@ struct Schedule {
   double interval = 0;
   int intervals = 1;
   int substeps = 1;
+};
+
+/// Hamilton's equations of a model with its parameters, to be marched by any Lie group method.
+class Motion {
+ public:
+  using Points = CotangentSpheres<Eigen::Dynamic>::Point;
+
+  virtual ~Motion() = default;
+  /// f <- F[H](z).
+  virtual void field(const Points& z, Points& f) = 0;
+  virtual double energy(const Points& z) = 0;
+};
+
+/// The same as a map to the algebra (AlgebraField).
+class MotionField {
+ public:
+  explicit MotionField(std::unique_ptr<Motion> motion) : motion_(std::move(motion)) {}
+  void operator()(double, const Motion::Points& z, Motion::Points& f) { motion_->field(z, f); }
+
+ private:
+  std::unique_ptr<Motion> motion_;
 };
 
 /// H = 1/2 p^T M(q)^{-1} p + V(q) with parameters theta, the mass matrix's first (ParametricField). States are 6 x k
@@ -36,6 +59,8 @@ class Model {
   virtual double energy(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
   /// F[H], 6k numbers (xi_i, eta_i).
   virtual Eigen::VectorXd field(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
+
+  virtual std::unique_ptr<Motion> motion(const Eigen::VectorXd& theta) const = 0;
 
   /// z <- the wanted states from each column of `starts`, 6k * intervals numbers a column.
   virtual void predict(const Eigen::VectorXd& theta, const Schedule& schedule,

@@ -53,6 +53,10 @@ template <class P, int K> class ParametricModel : public Model {
     return u.reshaped();
   }
 
+  std::unique_ptr<Motion> motion(const Eigen::VectorXd& theta) const override {
+    return std::make_unique<MotionOf>(at(theta));
+  }
+
   void predict(const Eigen::VectorXd& theta, const Schedule& schedule, const Eigen::Ref<const Eigen::MatrixXd>& starts,
                Eigen::Ref<Eigen::MatrixXd> z) const override {
     Field<double> field = at(theta);
@@ -97,6 +101,25 @@ template <class P, int K> class ParametricModel : public Model {
   }
 
  private:
+  class MotionOf final : public Motion {
+   public:
+    explicit MotionOf(Field<double> field)
+        : field_(std::move(field)), z_(field_.space().zero_point()), f_(field_.space().zero_algebra()) {}
+    void field(const Points& z, Points& f) override {
+      z_ = z;
+      field_(0, z_, f_);
+      f = f_;
+    }
+    double energy(const Points& z) override {
+      z_ = z;
+      return field_.energy(z_);
+    }
+
+   private:
+    Field<double> field_;
+    Z<double> z_, f_;
+  };
+
   Field<double> at(const Eigen::VectorXd& theta) const {
     Field<double> field(potential_, bodies_);
     field.set(theta.data());

@@ -200,7 +200,8 @@ class Trainer final : public ceres::IterationCallback {
 std::string message_of(Outcome outcome, const Training& options, double mse) {
   switch (outcome) {
     case Outcome::iteration_limit:
-      return fmt::format("{} iterations did not suffice, the mean squared error {:.1e} still falls; allow more",
+      if (options.iterations == 0) return {};
+      return fmt::format("after {} iterations the mean squared error {:.1e} still falls; allow more to go on",
                          options.iterations, mse);
     case Outcome::time_limit:
       return fmt::format("{:g} s did not suffice, the mean squared error is {:.1e}; allow more", options.seconds, mse);
@@ -252,11 +253,12 @@ double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, cons
 
 Trained train(const Model& model, const Trajectories& data, const Training& options) {
   if (!(options.validation >= 0 && options.validation < 1) || !(options.share > 0 && options.share <= 1) ||
-      !(options.damping_floor > 0) || options.substeps < 1 || options.starts < 1 || options.iterations < 1 ||
-      options.trial < 1 || options.patience < 1 || data.bodies != model.bodies())
+      !(options.damping_floor > 0) || options.substeps < 1 || options.starts < 1 || options.iterations < 0 ||
+      options.trial < 1 || options.patience < 1 || data.bodies != model.bodies() ||
+      (options.begin.size() > 0 && options.begin.size() != model.size()))
     throw std::invalid_argument(
-        "a training has starts, iterations, substeps and patience of one or more, shares between zero and one, a "
-        "positive floor of the damping, and data of as many bodies as the model");
+        "a training has starts, substeps and patience of one or more, shares between zero and one, a positive floor of "
+        "the damping, parameters to begin with as many as the model's, and data of as many bodies");
   Trained out;
   const auto held_out = Eigen::Index(std::ceil(options.validation * double(data.count())));
   const Eigen::Index kept = data.count() - held_out;
@@ -274,7 +276,8 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
   Trainer trainer(model, options, data.part(kept, held_out), schedule);
   Eigen::VectorXd best;
   double least = std::numeric_limits<double>::infinity();
-  if (options.starts > 1) {
+  const bool goes_on = options.begin.size() > 0;
+  if (options.starts > 1 && !goes_on) {
     // Three free numbers for each parameter at least.
     const Eigen::Index few =
         std::max(Eigen::Index(std::ceil(options.share * double(kept))), (3 * model.size() + free - 1) / free);
@@ -289,7 +292,7 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
       }
     }
   } else {
-    best = model.start(options.seed);
+    best = goes_on ? options.begin : model.start(options.seed);
     least = mean_squared_error(model, best, schedule, all);
     out.start = int(options.seed);
   }

@@ -42,7 +42,8 @@ struct Training {
   int starts = 4;     ///< how many are tried
   int trial = 30;     ///< iterations of each, on `share` of the trajectories; the best goes on with all of them
   double share = 0.2;
-  int iterations = 100;  ///< with all trajectories
+  int iterations = 100;        ///< with all trajectories; zero where the parameters are to be measured only
+  Eigen::VectorXd begin = {};  ///< parameters to go on from, in place of starts; empty: Model::start
   /// Of the trajectories, the last ones, that are held out to stop early by; 0: none.
   double validation = 0;
   int patience = 10;             ///< iterations without a lower error on those

@@ -1,0 +1,174 @@
+#include "learn.hpp"
+
+#include "../interrupt.hpp"
+#include "../output_folder.hpp"
+#include "../progress.hpp"
+#include "learn_files.hpp"
+#include "trajectory_files.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+
+namespace lagroid::app {
+
+namespace {
+
+using learning::Outcome;
+
+constexpr double usual_validation = 0.2;
+
+std::string integrator_names() {
+  std::string out;
+  for (const LieGroupMethod& method : lie_group_methods::all) {
+    if (!out.empty()) out += ", ";
+    out += method.name;
+  }
+  return out;
+}
+
+int exit_code(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::interrupted:
+      return exit_interrupted;
+    case Outcome::too_little_data:
+      return exit_bad_input;
+    case Outcome::not_finite:
+      return exit_failed;
+    default:
+      return 0;
+  }
+}
+
+/// Reads what the options name. Throws DataError and ModelError.
+Lesson prepare(const LearnOptions& options) {
+  Lesson lesson;
+  lesson.options = options;
+  lesson.data = read_trajectories(options.data, options.noise);
+  if (options.model.ends_with(".json")) {
+    lesson.learned = read_model(options.model);
+    if (lesson.learned.model->bodies() != lesson.data.bodies)
+      throw DataError(fmt::format("{} is of {} bodies, {} of {}; give data of its system", options.model,
+                                  lesson.learned.model->bodies(), options.data, lesson.data.bodies));
+  } else {
+    lesson.learned.model = named_model(options.model, lesson.data.bodies);
+  }
+  if (options.test) {
+    lesson.test = read_trajectories(*options.test, options.test_noise);
+    if (lesson.test->bodies != lesson.data.bodies)
+      throw DataError(fmt::format("{} is of {} bodies, {} of {}; give data of one system", *options.test,
+                                  lesson.test->bodies, options.data, lesson.data.bodies));
+  }
+  return lesson;
+}
+
+learning::Trained train(const Lesson& lesson, const InterruptGuard& guard) {
+  const LearnOptions& options = lesson.options;
+  learning::Training training;
+  training.method = *lie_group_methods::named(options.integrator);
+  training.substeps = options.substeps;
+  training.seed = options.seed;
+  training.begin = lesson.learned.parameters;
+  training.starts = training.begin.size() > 0 ? 1 : options.starts;
+  training.iterations = options.iterations;
+  training.validation = options.validation.value_or(options.noise > 0 ? usual_validation : 0);
+  training.enough = options.enough;
+  training.seconds = options.seconds;
+  const long trials = training.starts > 1 ? long(training.starts) * training.trial : 0;
+  Progress progress(options.model, trials + options.iterations, !options.json);
+  training.callback = [&](const learning::Stage& now) {
+    const long before = training.starts > 1 ? long(now.start) * training.trial : 0;
+    progress.update(before + now.iteration);
+    return !guard.interrupted();
+  };
+  return learning::train(*lesson.learned.model, lesson.data, training);
+}
+
+int serve(const LearnOptions& options) {
+  if (lie_group_methods::named(options.integrator) == nullptr)
+    return refuse(
+        options.json, exit_bad_input, "invalid_command_line",
+        fmt::format("--integrator {}: there is none; take one of {}", options.integrator, integrator_names()));
+  Lesson lesson;
+  try {
+    lesson = prepare(options);
+    if (options.out) require_writable_lesson(*options.out);
+  } catch (const DataError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_data", error.what());
+  } catch (const ModelError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  } catch (const OutputError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  }
+  const InterruptGuard guard;
+  lesson.trained = train(lesson, guard);
+  const int code = exit_code(lesson.trained.outcome);
+  if (!lesson.trained.usable())
+    return refuse(options.json, code, std::string(to_string(lesson.trained.outcome)),
+                  fmt::format("{}: {}", options.data, lesson.trained.message));
+  lesson.learned.parameters = lesson.trained.parameters;
+  if (lesson.test) lesson.measures = measure(*lesson.learned.model, lesson.learned.parameters, *lesson.test);
+  std::string text = lesson_text(lesson);
+  auto json = lesson_json(lesson);
+  if (options.out) {
+    std::string note;
+    for (const auto& file : write_lesson(lesson, *options.out, note)) {
+      text += fmt::format("  wrote {}\n", file.string());
+      json["files"].push_back(file.string());
+    }
+    if (!note.empty()) {
+      text += fmt::format("  note: no pictures: {}\n", note);
+      json["notes"].push_back("no pictures: " + note);
+    }
+  } else {
+    text += "  (no files written; --out DIR writes model, history, plot and summary)\n";
+  }
+  print(options.json ? json.dump(2) + "\n" : text);
+  if (code != 0) fmt::print(stderr, "lagroid: {}: {}\n", options.data, lesson.trained.message);
+  return code;
+}
+
+}  // namespace
+
+void add_learn_options(CLI::App& command, LearnOptions& options) {
+  const auto share = CLI::Range(0.0, 0.9);
+  command.add_option("data", options.data, "trajectories, a .csv or .h5 file (see docs/learning.md)")->required();
+  command.add_option(
+      "--model", options.model,
+      "of the potential: polynomial:DEGREE, or network:UNITS[,UNITS...] (default network:8); or a model.json to "
+      "go on from");
+  command.add_option("--integrator", options.integrator,
+                     fmt::format("trained through: {} (default commutator-free-4)", integrator_names()));
+  command.add_option("--substeps", options.substeps, "of the integrator between points (default 2)")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--noise", options.noise, "size of the errors in the data (default 0)")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--test", options.test, "held-out trajectories to measure the result on");
+  command.add_option("--test-noise", options.test_noise, "size of the errors in these (default 0)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--validation", options.validation,
+                  "share of the data kept back to stop early by (default 0.2 with noise, else 0)")
+      ->check(share);
+  command.add_option("--starts", options.starts, "tried, of which the best goes on (default 4)")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--iterations", options.iterations, "of the best, at most (default 100)")
+      ->check(CLI::Range(0, 1'000'000));
+  command.add_option("--seed", options.seed, "of the first start (default 1)");
+  command.add_option("--enough", options.enough, "mean squared error in training at which it stops (default 0)")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--seconds", options.seconds, "of the processor, at most")->check(CLI::PositiveNumber);
+  command.add_option("--out", options.out, "write model, history, errors, plot and summary files into this folder");
+  command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
+}
+
+int learn(const LearnOptions& options) {
+  try {
+    return serve(options);
+  } catch (const std::bad_alloc&) {
+    return refuse(options.json, exit_failed, "out_of_memory",
+                  fmt::format("{}: out of memory; give fewer trajectories, or a smaller model", options.data));
+  }
+}
+
+}  // namespace lagroid::app

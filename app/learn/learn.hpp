@@ -1,0 +1,35 @@
+#pragma once
+/// `lagroid learn`: fits a Hamiltonian on (T*S^2)^k to trajectories.
+
+#include "../command.hpp"
+
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace lagroid::app {
+
+struct LearnOptions {
+  std::string data;
+  std::string model = "network:8";
+  std::string integrator = "commutator-free-4";
+  int substeps = 2;
+  double noise = 0;
+  std::optional<std::string> test;
+  double test_noise = 0;
+  std::optional<double> validation;  ///< else a fifth with noise, nothing without
+  int starts = 4;
+  int iterations = 100;
+  unsigned seed = 1;
+  double enough = 0;
+  double seconds = std::numeric_limits<double>::infinity();
+  std::optional<std::string> out;
+  bool json = false;
+};
+
+void add_learn_options(CLI::App& command, LearnOptions& options);
+
+/// Returns the exit code. Throws OutputError.
+int learn(const LearnOptions& options);
+
+}  // namespace lagroid::app

@@ -1,0 +1,166 @@
+#include "learn_files.hpp"
+
+#include "../clock.hpp"
+#include "../output_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using learning::Stage;
+
+constexpr std::array<const char*, 8> files{"model.json",  "history.csv", "errors.csv", "summary.json",
+                                           "summary.txt", "plot.gp",     "plot.svg",   "plot.png"};
+
+std::string history_csv(const Lesson& lesson) {
+  std::string out = "line,start,iteration,training,validation,damping,seconds\n";
+  long line = 0;
+  for (const Stage& now : lesson.trained.history)
+    fmt::format_to(std::back_inserter(out), "{},{},{},{:.6g},{:.6g},{:.3g},{:.3f}\n", line++, now.start + 1,
+                   now.iteration, now.mse, now.validation, now.damping, now.seconds);
+  return out;
+}
+
+std::string errors_csv(const Lesson& lesson) {
+  std::string out = "t,rms\n";
+  for (std::size_t i = 0; i < lesson.measures->times.size(); ++i)
+    fmt::format_to(std::back_inserter(out), "{},{:.6g}\n", lesson.measures->times[i], lesson.measures->rms[i]);
+  return out;
+}
+
+std::string gnuplot_script(const Lesson& lesson) {
+  std::string out =
+      "# Draws history.csv and errors.csv; run by lagroid, or by hand: gnuplot plot.gp\n"
+      "set datafile separator ','\nset datafile missing 'nan'\nset grid\nset logscale y\nset format y '%.0e'\n";
+  for (const auto& [file, terminal] : {std::pair("plot.svg", "svg size 1040,400 background 'white' noenhanced"),
+                                       std::pair("plot.png", "pngcairo size 1040,400 noenhanced")}) {
+    out += fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout 1,{}\n", terminal, file,
+                       lesson.measures ? 2 : 1);
+    out +=
+        "set title 'mean squared error'\nset xlabel 'iteration, of all starts'\nset key\n"
+        "plot 'history.csv' using 'line':'training' with lines linewidth 1.5 title 'training'";
+    if (std::isfinite(lesson.trained.validation))
+      out += ", '' using 'line':'validation' with lines linewidth 1.5 title 'validation'";
+    if (lesson.measures)
+      out +=
+          "\nset title 'held-out trajectories, root of the mean squared error'\nset xlabel 't'\nunset key\n"
+          "plot 'errors.csv' using 't':'rms' with linespoints linewidth 1.5 pointtype 7";
+    out += "\nunset multiplot\nset output\n";
+  }
+  return out;
+}
+
+/// NaN is no JSON.
+nlohmann::ordered_json known(double x) {
+  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
+}
+
+}  // namespace
+
+nlohmann::ordered_json lesson_json(const Lesson& lesson) {
+  const auto& trained = lesson.trained;
+  nlohmann::ordered_json out;
+  out["status"] = to_string(trained.outcome);
+  if (!trained.message.empty()) out["message"] = trained.message;
+  out["model"] = lesson.learned.model->name();
+  out["bodies"] = lesson.data.bodies;
+  out["integrator"] = lesson.options.integrator;
+  out["substeps"] = lesson.options.substeps;
+  out["data"] = {{"file", lesson.options.data},
+                 {"trajectories", lesson.data.count()},
+                 {"points", lesson.data.points},
+                 {"interval", lesson.data.interval},
+                 {"noise", lesson.options.noise}};
+  out["parameters"] = trained.parameters.size();
+  out["training_mse"] = trained.mse;
+  out["validation_mse"] = known(trained.validation);
+  out["iterations"] = trained.iterations;
+  out["best_seed"] = trained.start;
+  out["seconds"] = trained.seconds;
+  const Eigen::MatrixXd mass = lesson.learned.model->mass(trained.parameters);
+  for (Eigen::Index i = 0; i < mass.rows(); ++i) {
+    const Eigen::VectorXd row = mass.row(i);
+    out["mass_matrix"].push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  if (lesson.measures) {
+    const auto& found = *lesson.measures;
+    out["held_out"] = {{"file", *lesson.options.test},
+                       {"trajectories", lesson.test->count()},
+                       {"points", lesson.test->points},
+                       {"duration", found.times.back()},
+                       {"mse", known(found.mse)},
+                       {"rms_at_end", known(found.rms.back())},
+                       {"energy_variation_rms", known(found.energy_rms)},
+                       {"energy_variation_largest", known(found.energy_largest)},
+                       {"momentum_change_learned", known(found.momentum_learned)},
+                       {"momentum_change_data", known(found.momentum_data)},
+                       {"lost", found.lost}};
+  }
+  return out;
+}
+
+std::string lesson_text(const Lesson& lesson) {
+  const auto& trained = lesson.trained;
+  const auto& options = lesson.options;
+  std::string out = fmt::format("{} on (T*S^2)^{}, through {} with {} substeps of {:g}: {}\n",
+                                lesson.learned.model->name(), lesson.data.bodies, options.integrator, options.substeps,
+                                lesson.data.interval / options.substeps, to_string(trained.outcome));
+  out += fmt::format("  data         {}: {} trajectories of {} points, {:g} apart\n", options.data, lesson.data.count(),
+                     lesson.data.points, lesson.data.interval);
+  out += fmt::format("  parameters   {}\n", trained.parameters.size());
+  out += fmt::format("  training     mean squared error {:.2e}\n", trained.mse);
+  if (std::isfinite(trained.validation)) out += fmt::format("  validation   {:.2e}\n", trained.validation);
+  const Eigen::MatrixXd mass = lesson.learned.model->mass(trained.parameters);
+  for (Eigen::Index i = 0; i < mass.rows(); ++i) {
+    out += i == 0 ? "  mass matrix " : "              ";
+    for (Eigen::Index j = 0; j < mass.cols(); ++j) out += fmt::format(" {:12.8f}", mass(i, j));
+    out += "\n";
+  }
+  if (lesson.measures) {
+    const auto& found = *lesson.measures;
+    out += fmt::format("  held out     {}: {} trajectories of {} points, until t = {:g}\n", *options.test,
+                       lesson.test->count(), lesson.test->points, found.times.back());
+    if (found.lost > 0) out += fmt::format("               {} of them could not be followed\n", found.lost);
+    out += fmt::format("               mean squared error {:.2e}, root of it at the end {:.2e}\n", found.mse,
+                       found.rms.back());
+    out += fmt::format("  learned H    varies along them by {:.1e} (rms), {:.1e} at most\n", found.energy_rms,
+                       found.energy_largest);
+    out += fmt::format("  momentum     about the vertical changes by {:.1e} on learned motions, {:.1e} in the data\n",
+                       found.momentum_learned, found.momentum_data);
+  }
+  out += fmt::format("  iterations   {}, {} of the processor", trained.iterations, duration(trained.seconds));
+  out += options.model.ends_with(".json") ? fmt::format("; from {}\n", options.model)
+                                          : fmt::format("; the best start was that of seed {}\n", trained.start);
+  if (!trained.message.empty()) out += fmt::format("  note: {}\n", trained.message);
+  return out;
+}
+
+void require_writable_lesson(const fs::path& folder) { require_writable(folder, files); }
+
+std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder, std::string& note) {
+  return write_whole(folder, files, [&](const fs::path& staging) {
+    std::vector<std::string> names{"model.json", "history.csv", "summary.json", "summary.txt", "plot.gp"};
+    write_text(model_text(lesson.learned), staging / "model.json");
+    write_text(history_csv(lesson), staging / "history.csv");
+    if (lesson.measures) {
+      write_text(errors_csv(lesson), staging / "errors.csv");
+      names.emplace_back("errors.csv");
+    }
+    write_text(lesson_json(lesson).dump(2) + "\n", staging / "summary.json");
+    write_text(lesson_text(lesson), staging / "summary.txt");
+    write_text(gnuplot_script(lesson), staging / "plot.gp");
+    note = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"});
+    if (note.empty()) names.insert(names.end(), {"plot.svg", "plot.png"});
+    return names;
+  });
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,39 @@
+#pragma once
+/// What a training says and leaves.
+
+#include "learn.hpp"
+#include "model_file.hpp"
+
+#include <lagroid/solvers/learning/measures.hpp>
+#include <lagroid/solvers/learning/train.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// All that is known after a training.
+struct Lesson {
+  LearnOptions options;
+  LearnedHamiltonian learned;
+  learning::Trained trained;
+  learning::Trajectories data;
+  std::optional<learning::Trajectories> test;
+  std::optional<learning::Measures> measures;  ///< on the latter
+};
+
+std::string lesson_text(const Lesson& lesson);
+nlohmann::ordered_json lesson_json(const Lesson& lesson);
+
+/// Throws OutputError unless the files can be written there.
+void require_writable_lesson(const std::filesystem::path& folder);
+/// model.json, history.csv, errors.csv (with held-out data), summaries, plots; each whole or not at all. `note` says
+/// why there are no pictures.
+std::vector<std::filesystem::path> write_lesson(const Lesson& lesson, const std::filesystem::path& folder,
+                                                std::string& note);
+
+}  // namespace lagroid::app

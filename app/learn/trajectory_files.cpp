@@ -1,0 +1,215 @@
+#include "trajectory_files.hpp"
+
+#include "../hdf5_file.hpp"
+#include "../output_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string_view>
+
+namespace lagroid::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using learning::Observation;
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> fields(std::string_view line) {
+  std::vector<std::string_view> out;
+  for (std::size_t from = 0; from <= line.size();) {
+    const std::size_t to = std::min(line.find(',', from), line.size());
+    out.push_back(trimmed(line.substr(from, to - from)));
+    from = to + 1;
+  }
+  return out;
+}
+
+/// The name of the i-th number of a state.
+std::string component(std::size_t i) { return fmt::format("{}{}{}", i % 6 < 3 ? 'q' : 'p', i / 6 + 1, "xyz"[i % 3]); }
+
+/// Where the columns stand.
+struct Header {
+  std::size_t width = 0;  ///< of a line
+  std::size_t trajectory = 0;
+  std::size_t time = 0;
+  std::vector<std::size_t> state;
+  std::size_t weight = std::string::npos;
+};
+
+Header read_header(std::string_view line, const std::string& file) {
+  std::map<std::string, std::size_t, std::less<>> at;
+  for (const std::string_view name : fields(line))
+    if (!at.emplace(name, at.size()).second)
+      throw DataError(fmt::format("{}: there are two columns {}; leave one", file, name));
+  Header out;
+  out.width = at.size();
+  const auto take = [&](const std::string& name) {
+    const auto found = at.find(name);
+    if (found == at.end())
+      throw DataError(
+          fmt::format("{}: no column {} in the header; it names trajectory, t, q1x, q1y, q1z, p1x, p1y, p1z, "
+                      "q2x, ...",
+                      file, name));
+    const std::size_t column = found->second;
+    at.erase(found);
+    return column;
+  };
+  out.trajectory = take("trajectory");
+  out.time = take("t");
+  for (std::size_t i = 0; i == 0 || i % 6 != 0 || at.contains(component(i)); ++i)
+    out.state.push_back(take(component(i)));
+  if (at.contains("weight")) out.weight = take("weight");
+  if (!at.empty())
+    throw DataError(fmt::format("{}: nobody knows the column {}; it names trajectory, t, q1x, ..., p{}z and weight",
+                                file, at.begin()->first, out.state.size() / 6));
+  return out;
+}
+
+double number(std::string_view word, const std::string& file, long line) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double x = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+  if (error != std::errc() || end != word.data() + word.size())
+    throw DataError(fmt::format("{}: row {}: \"{}\" is no number", file, line, word));
+  return x;
+}
+
+long label(double x, const std::string& file, long row) {
+  if (x != std::floor(x) || std::abs(x) > 1e15)
+    throw DataError(fmt::format("{}: row {}: trajectory {} is no whole number", file, row, x));
+  return long(x);
+}
+
+std::vector<Observation> read_csv(const fs::path& path) {
+  const std::string file = path.string();
+  std::ifstream in(path);
+  std::vector<Observation> out;
+  Header header;
+  long line_number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++line_number;
+    if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
+    if (header.width == 0) {
+      header = read_header(line, file);
+      continue;
+    }
+    const auto words = fields(line);
+    if (words.size() != header.width)
+      throw DataError(fmt::format("{}: row {}: {} numbers, the header has {} columns; make them equal", file,
+                                  line_number, words.size(), header.width));
+    const auto at = [&](std::size_t column) { return number(words[column], file, line_number); };
+    Observation row;
+    row.row = line_number;
+    row.trajectory = label(at(header.trajectory), file, line_number);
+    row.time = at(header.time);
+    row.z.resize(Eigen::Index(header.state.size()));
+    for (std::size_t i = 0; i < header.state.size(); ++i) row.z(Eigen::Index(i)) = at(header.state[i]);
+    if (header.weight != std::string::npos) row.weight = at(header.weight);
+    out.push_back(std::move(row));
+  }
+  if (header.width == 0)
+    throw DataError(fmt::format("{}: no header; the first line names trajectory, t, q1x, q1y, q1z, p1x, ...", file));
+  return out;
+}
+
+Eigen::MatrixXd dataset(const fs::path& file, const std::string& name) {
+  return dense(read_matrix(file.string() + ":/" + name, "."));
+}
+
+std::vector<Observation> read_hdf5(const fs::path& path) {
+  const std::string file = path.string();
+  bool weighted = false;
+  H5::Exception::dontPrint();
+  try {
+    weighted = H5::H5File(file, H5F_ACC_RDONLY).nameExists("weight");
+  } catch (const H5::Exception&) {
+    throw DataError(fmt::format("{}: HDF5 cannot read it; give an HDF5 file, or one that ends in .csv", file));
+  }
+  const auto z = dataset(path, "z");
+  const auto trajectory = dataset(path, "trajectory");
+  const auto time = dataset(path, "t");
+  const Eigen::MatrixXd weight = weighted ? dataset(path, "weight") : Eigen::MatrixXd::Ones(z.rows(), 1);
+  for (const auto& [name, rows] :
+       {std::pair("trajectory", trajectory.size()), std::pair("t", time.size()), std::pair("weight", weight.size())})
+    if (rows != z.rows())
+      throw DataError(fmt::format("{}: {} has {} rows, z {}; make them equal", file, name, rows, z.rows()));
+  std::vector<Observation> out;
+  for (Eigen::Index i = 0; i < z.rows(); ++i)
+    out.push_back({long(i) + 1, label(trajectory(i), file, long(i) + 1), time(i), z.row(i).transpose(), weight(i)});
+  return out;
+}
+
+void write_csv(std::span<const Observation> rows, const fs::path& file) {
+  std::string out = "trajectory,t";
+  for (Eigen::Index i = 0; i < rows.front().z.size(); ++i) out += "," + component(std::size_t(i));
+  out += "\n";
+  for (const Observation& row : rows) {
+    fmt::format_to(std::back_inserter(out), "{},{}", row.trajectory, row.time);
+    for (const double x : row.z) fmt::format_to(std::back_inserter(out), ",{}", x);
+    out += "\n";
+  }
+  write_text(out, file);
+}
+
+void write_to_hdf5(std::span<const Observation> rows, const fs::path& file) {
+  std::vector<double> trajectory;
+  std::vector<double> time;
+  std::vector<double> z;
+  for (const Observation& row : rows) {
+    trajectory.push_back(double(row.trajectory));
+    time.push_back(row.time);
+    z.insert(z.end(), row.z.begin(), row.z.end());
+  }
+  write_hdf5(file, [&](const H5::H5File& out) {
+    set_attribute(out, "generator", "lagroid");
+    set_attribute(add_dataset(out, "trajectory", trajectory, 1), "meaning", "which trajectory the row belongs to");
+    set_attribute(add_dataset(out, "t", time, 1), "unit", "s");
+    set_attribute(add_dataset(out, "z", z, std::size_t(rows.front().z.size())), "meaning",
+                  "q_1, p_1, q_2, p_2, ..., three numbers each");
+  });
+}
+
+}  // namespace
+
+void require_trajectory_file(const fs::path& file) {
+  if (file.extension() != ".csv" && file.extension() != ".h5")
+    throw DataError(fmt::format("{}: trajectories are in .csv and .h5 (HDF5) files", file.string()));
+}
+
+std::vector<Observation> read_observations(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) throw DataError(fmt::format("{}: there is no such file", file.string()));
+  if (!std::ifstream(file)) throw DataError(fmt::format("{}: cannot be read", file.string()));
+  require_trajectory_file(file);
+  return file.extension() == ".csv" ? read_csv(file) : read_hdf5(file);
+}
+
+learning::Trajectories read_trajectories(const fs::path& file, double noise) {
+  const auto rows = read_observations(file);
+  try {
+    return learning::assemble(rows, noise);
+  } catch (const learning::DataRefused& refused) {
+    throw DataError(fmt::format("{}: {}", file.string(), refused.what()));
+  }
+}
+
+void write_observations(std::span<const Observation> rows, const fs::path& file) {
+  if (file.extension() == ".csv") {
+    write_csv(rows, file);
+  } else {
+    write_to_hdf5(rows, file);
+  }
+}
+
+}  // namespace lagroid::app

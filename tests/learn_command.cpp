@@ -1,0 +1,187 @@
+// `lagroid learn` and `lagroid trajectories`: data, models, endings, files.
+#include "command_line.hpp"
+
+#include <H5Cpp.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+class Learn : public CommandLine {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return path(name);
+  }
+  std::string drawn(const std::string& name, const std::string& options = "") const {
+    const Outcome r =
+        run("trajectories " + (options.find("--count") == std::string::npos ? std::string("--count 60 ") : "") +
+            options + " --out " + path(name));
+    EXPECT_EQ(r.code, 0) << r.err;
+    return path(name);
+  }
+  nlohmann::json summary(const std::string& arguments) const {
+    const Outcome r = run(arguments + " --json");
+    EXPECT_EQ(r.code, 0) << arguments << r.err << r.out;
+    return nlohmann::json::parse(r.out);
+  }
+  static std::string read(const std::string& name) {
+    std::ifstream in(name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
+
+TEST_F(Learn, RecoversWhatWasDrawn) {
+  const std::string data = drawn("data.csv", "--chain 2 --masses 1,0.5 --lengths 1,0.7 --gravity 3");
+  const std::string test =
+      drawn("test.h5", "--chain 2 --masses 1,0.5 --lengths 1,0.7 --gravity 3 --points 21 --duration 2 --seed 5");
+  const auto found = summary("learn " + data + " --model polynomial:1 --test " + test);
+  EXPECT_EQ(found.at("status"), "converged");
+  EXPECT_LT(found.at("held_out").at("mse").get<double>(), 1e-12);
+  EXPECT_LT(found.at("held_out").at("energy_variation_largest").get<double>(), 1e-5);
+  EXPECT_LT(found.at("held_out").at("momentum_change_data").get<double>(), 1e-11);
+  EXPECT_NEAR(found.at("mass_matrix")[0][0].get<double>(), 1.5, 1e-7);
+  EXPECT_NEAR(found.at("mass_matrix")[0][1].get<double>(), 0.35, 1e-7);
+  EXPECT_NEAR(found.at("mass_matrix")[1][1].get<double>(), 0.245, 1e-7);
+}
+
+TEST_F(Learn, ReadsEveryKindOfFile) {
+  const std::string csv = drawn("data.csv");
+  const std::string hdf5 = drawn("data.h5");
+  const auto by = [&](const std::string& data) {
+    return summary("learn " + data + " --model polynomial:1").at("training_mse").get<double>();
+  };
+  EXPECT_EQ(by(csv), by(hdf5));
+  // Columns in another order, comments, and weights.
+  std::ifstream in(csv);
+  std::string line;
+  std::getline(in, line);
+  std::string other = "# a comment\nweight," + line + "\n";
+  for (bool first = true; std::getline(in, line); first = false) other += (first ? "2, +" : " 1,") + line + "\n";
+  EXPECT_LT(by(file("other.csv", other)), 1e-20);
+}
+
+TEST_F(Learn, WritesFilesAndReadsTheModel) {
+  const std::string data = drawn("data.csv");
+  const std::string test = drawn("test.csv", "--points 5 --duration 1 --seed 9");
+  const std::string out = path("out");
+  const Outcome r = run("learn " + data + " --model network:4 --iterations 5 --test " + test + " --out " + out);
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.out.find("iteration_limit"), std::string::npos);
+  EXPECT_NE(r.out.find("allow more"), std::string::npos);
+  for (const char* name :
+       {"model.json", "history.csv", "errors.csv", "summary.json", "summary.txt", "plot.gp", "plot.svg", "plot.png"})
+    EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
+  const auto model = nlohmann::json::parse(read(out + "/model.json"));
+  EXPECT_EQ(model.at("kind"), "learned_hamiltonian");
+  EXPECT_EQ(model.at("model"), "network:4");
+  EXPECT_EQ(model.at("parameters").size(), 21U);
+  // Read again it is the same, and training goes on from it.
+  const auto before = nlohmann::json::parse(read(out + "/summary.json"));
+  const auto same = summary("learn " + data + " --model " + out + "/model.json --iterations 0 --test " + test);
+  for (const char* key : {"training_mse", "mass_matrix", "model"}) EXPECT_EQ(same.at(key), before.at(key)) << key;
+  EXPECT_EQ(same.at("held_out").at("mse"), before.at("held_out").at("mse"));
+  const auto further = summary("learn " + data + " --model " + out + "/model.json --iterations 20");
+  EXPECT_LT(further.at("training_mse"), same.at("training_mse"));
+  EXPECT_LE(further.at("iterations"), 20);
+  // Without held-out data their file goes.
+  EXPECT_EQ(run("learn " + data + " --model polynomial:1 --out " + out).code, 0);
+  EXPECT_FALSE(fs::exists(out + "/errors.csv"));
+}
+
+TEST_F(Learn, GivesTheSameBits) {
+  const std::string data = drawn("data.csv", "--noise 0.01");
+  EXPECT_EQ(read(data), read(drawn("again.csv", "--noise 0.01")));
+  const std::string command = "learn " + data + " --noise 0.01 --model network:4 --iterations 10 --out ";
+  EXPECT_EQ(run(command + path("a")).code, 0);
+  EXPECT_EQ(run(command + path("b")).code, 0);
+  EXPECT_EQ(read(path("a/model.json")), read(path("b/model.json")));
+}
+
+TEST_F(Learn, AnInterruptLeavesTheBestModel) {
+  const std::string data = drawn("data.csv", "--chain 2 --count 3000");
+  const std::string out = path("out");
+  const Outcome r =
+      run("learn " + data + " --model network:12 --starts 1 --iterations 1000000 --out " + out, "timeout -s INT 3 ");
+  EXPECT_TRUE(r.code == 4 || r.code == 124) << r.code << r.err;
+  EXPECT_EQ(nlohmann::json::parse(read(out + "/summary.json")).at("status"), "interrupted");
+  EXPECT_TRUE(fs::exists(out + "/model.json"));
+}
+
+TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
+  const std::string data = drawn("data.csv");
+  const std::string two = drawn("two.csv", "--chain 2");
+  const std::string noisy = drawn("noisy.csv", "--noise 0.01");
+  const std::string header = "trajectory,t,q1x,q1y,q1z,p1x,p1y,p1z\n";
+  const auto rows = [&](const char* name, const std::string& text) { return file(name, header + text); };
+  const std::string good = "1,0,0,0,1,1,0,0\n1,0.1,0,0,1,1,0,0\n";
+  file("broken.h5", "no HDF5");
+  const auto model = [&](const char* name, const std::string& text) {
+    return "learn " + data + " --model " + file(name, text);
+  };
+  const std::string kind = "{\"kind\": \"learned_hamiltonian\"";
+  { const H5::H5File out(path("empty.h5"), H5F_ACC_TRUNC); }
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"learn", "data is required"},
+      {"learn nowhere.csv", "nowhere.csv: there is no such file"},
+      {"learn " + file("a.txt", ""), ".csv and .h5"},
+      {"learn " + file("void.csv", ""), "no header"},
+      {"learn " + file("head.csv", header), "no rows"},
+      {"learn " + file("columns.csv", "trajectory,t,q1x,q1y,q1z,p1x,p1y\n"), "no column p1z"},
+      {"learn " + file("more.csv", "trajectory,t,q1x,q1y,q1z,p1x,p1y,p1z,mass\n"), "nobody knows the column mass"},
+      {"learn " + file("twice.csv", "trajectory,t,t,q1x,q1y,q1z,p1x,p1y,p1z\n"), "two columns t"},
+      {"learn " + rows("nan.csv", good + "2,0,0,0,nan,1,0,0\n"), "row 4 (trajectory 2, t = 0): q_1 is nan"},
+      {"learn " + rows("off.csv", good + "2,0,0,0,1.1,1,0,0\n"), "row 4 (trajectory 2, t = 0): q_1 is off the unit"},
+      {"learn " + rows("along.csv", good + "2,0,0,0,1,1,0,1\n"), "p_1 has a part"},
+      {"learn " + rows("word.csv", good + "2,0,0,0,one,1,0,0\n"), "row 4: \"one\" is no number"},
+      {"learn " + rows("ragged.csv", good + "2,0,0,0,1,1,0\n"), "row 4: 7 numbers, the header has 8"},
+      {"learn " + rows("unequal.csv", good + "2,0,0,0,1,1,0,0\n"), "this trajectory has 1 points, the first one 2"},
+      {"learn " + rows("one.csv", "1,0,0,0,1,1,0,0\n"), "a trajectory of one point"},
+      {"learn " + rows("half.csv", "1.5,0,0,0,1,1,0,0\n"), "trajectory 1.5 is no whole number"},
+      {"learn " + rows("few.csv", good), "the model has 41 parameters"},
+      {"learn " + noisy, "or the size of the noise"},
+      {"learn " + path("broken.h5"), "HDF5 cannot read it"},
+      {"learn " + path("empty.h5"), "no data set"},
+      {"learn " + data + " --test " + two, "give data of one system"},
+      {"learn " + data + " --model forest:3", "polynomial:DEGREE or network:UNITS"},
+      {"learn " + data + " --model network:8,", "polynomial:DEGREE or network:UNITS"},
+      {"learn " + data + " --model polynomial:30", "lower the degree"},
+      {"learn " + data + " --model nowhere.json", "nowhere.json: there is no such file"},
+      {model("a.json", "{"), "no JSON object"},
+      {model("b.json", "{\"kind\": \"scene\"}"), "kind is not"},
+      {model("c.json", kind + ", \"bodies\": 0}"), "bodies is no number of bodies"},
+      {model("d.json", kind + ", \"bodies\": 1, \"model\": 3}"), "model is no name"},
+      {model("e.json", kind + ", \"bodies\": 1, \"model\": \"forest:1\"}"), "e.json: model \"forest:1\" is none"},
+      {model("f.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [1, 2]}"),
+       "parameters are not the 4 numbers of polynomial:1"},
+      {model("g.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [1, 2, 3, \"x\"]}"),
+       "parameters[3] is no number"},
+      {model("h.json", kind + ", \"bodies\": 2, \"model\": \"polynomial:1\", \"parameters\": [0,0,0,0,0,0,0,0,0]}"),
+       "give data of its system"},
+      {"learn " + data + " --integrator leapfrog", "commutator-free-4"},
+      {"learn " + data + " --substeps 0", "--substeps"},
+      {"learn " + data + " --validation 1", "--validation"},
+      {"learn " + data + " --out " + data, "is not a folder"},
+      {"trajectories", "--out is required"},
+      {"trajectories --out a.txt", ".csv and .h5"},
+      {"trajectories --out " + path("a.csv") + " --masses 1,2", "one for each, or one for all"},
+      {"trajectories --out " + path("a.csv") + " --masses -1", "positive"},
+      {"trajectories --out " + path("a.csv") + " --duration 0", "positive time"},
+      {"trajectories --out /proc/a.csv", "choose another place"}};
+  for (const auto& [arguments, words] : cases) {
+    const Outcome r = run(arguments);
+    EXPECT_EQ(r.code, 2) << arguments << r.out << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << arguments << "\n" << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_EQ(nlohmann::json::parse(run(arguments + " --json").out).at("message").get<std::string>() + "\n",
+              r.err.substr(std::string("lagroid: ").size()));
+  }
+  EXPECT_FALSE(fs::exists(path("a.csv")));
+}
+
+}  // namespace
