@@ -52,7 +52,9 @@ template <class H, int K, class S = double> class HamiltonianField {
   }
 
  private:
-  using Seed = std::conditional_t<std::same_as<S, double>, Jet<double, 6>, Dual<S>>;
+  // Eigen aligns arrays of run-time size to 16 bytes: two doubles.
+  static constexpr int lanes = K == Eigen::Dynamic ? 2 : 6;
+  using Seed = std::conditional_t<std::same_as<S, double>, Jet<double, lanes>, Dual<S>>;
   using Seeded = Eigen::Matrix<Seed, 6, K>;
 
   void differentiate(const Z& z) {
@@ -61,11 +63,13 @@ template <class H, int K, class S = double> class HamiltonianField {
     } else if constexpr (std::same_as<S, double>) {
       for (Eigen::Index i = 0; i < z.size(); ++i) seeded_.data()[i] = Seed(z.data()[i]);
       for (int i = 0; i < z.cols(); ++i) {
-        for (int j = 0; j < 6; ++j) seeded_(j, i) = Seed::variable(z(j, i), j);
-        const Seed energy = hamiltonian_.energy(seeded_);
-        for (int j = 0; j < 6; ++j) {
-          gradient_(j, i) = energy.gradient(j);
-          seeded_(j, i) = Seed(z(j, i));
+        for (int first = 0; first < 6; first += lanes) {
+          for (int j = first; j < first + lanes; ++j) seeded_(j, i) = Seed::variable(z(j, i), j - first);
+          const Seed energy = hamiltonian_.energy(seeded_);
+          for (int j = first; j < first + lanes; ++j) {
+            gradient_(j, i) = energy.gradient(j - first);
+            seeded_(j, i) = Seed(z(j, i));
+          }
         }
       }
     } else {

@@ -103,6 +103,29 @@ TEST_F(Learn, GivesTheSameBits) {
   EXPECT_EQ(read(path("a/model.json")), read(path("b/model.json")));
 }
 
+TEST_F(Learn, AModelRunsAsAScene) {
+  const std::string out = path("out");
+  ASSERT_EQ(run("learn " + drawn("data.csv", "--chain 2") + " --model polynomial:1 --out " + out).code, 0);
+  const std::string start = "[initial]\ntheta = [2.0, 2.4]\nphi = [0.1, 1.2]\n";
+  const std::string time = "[time]\nstep = 0.01\nsteps = 200\nmethod = \"munthe-kaas-54\"\nform = \"momenta\"\n";
+  const auto learned =
+      summary("run " + file("learned.toml", "system = \"learned_hamiltonian\"\n[parameters]\nmodel = \"" + out +
+                                                "/model.json\"\n" + start + time));
+  const auto truth = summary("run " + file("chain.toml",
+                                           "system = \"pendulum_chain\"\n[parameters]\nlinks = 2\nmasses = 1.0\n"
+                                           "lengths = 1.0\ngravity = 1.0\n" +
+                                               start + time));
+  for (const char* key : {"position", "momentum"})
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_NEAR(learned.at("final").at(key)[i].get<double>(), truth.at("final").at(key)[i].get<double>(), 1e-7);
+  const Outcome r = run("run " + file("none.toml",
+                                      "system = \"learned_hamiltonian\"\n[parameters]\nmodel = "
+                                      "\"none.json\"\n" +
+                                          start + time));
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("none.json: there is no such file"), std::string::npos) << r.err;
+}
+
 TEST_F(Learn, AnInterruptLeavesTheBestModel) {
   const std::string data = drawn("data.csv", "--chain 2 --count 3000");
   const std::string out = path("out");

@@ -97,6 +97,32 @@ struct Circle : ProjectedHamiltonian<Circle, 3, 2> {
 
 using V = Vector<double, 3>;
 
+/// Pendula that pull on each other, however many.
+struct Coupled {
+  template <class S, int K> S energy(const Eigen::Matrix<S, 6, K>& z) const {
+    S sum(0.0);
+    for (int i = 0; i < z.cols(); ++i) {
+      for (int r = 3; r < 6; ++r) sum += 0.5 * z(r, i) * z(r, i);
+      sum += z(2, i) * 9.81;
+      if (i > 0)
+        for (int r = 0; r < 3; ++r) sum += z(r, i) * z(r, i - 1) * (1.0 + 0.3 * i);
+    }
+    return sum;
+  }
+};
+
+TEST(HamiltonianField, OfFixedAndRunTimeSizeAgree) {
+  CotangentSpheres<3>::Point z;
+  z << 1, 0, 0.6, 0, 1, 0, 0, 0, 0.8, 0, 0.4, 0.8, 0.5, 0, 0.2, 0.7, 1, -0.6;
+  HamiltonianField<Coupled, 3> fixed{Coupled{}};
+  HamiltonianField<Coupled, Eigen::Dynamic> dynamic{Coupled{}, 3};
+  CotangentSpheres<3>::Point u;
+  CotangentSpheres<Eigen::Dynamic>::Point w(6, 3);
+  fixed(0, z, u);
+  dynamic(0, z, w);
+  EXPECT_LT((u - w).norm(), 1e-14);
+}
+
 TEST(ProjectedHamiltonian, OnTheSphereIsItsOwnForm) {
   const Pendulum3 pendulum;
   const auto law = laws::check_law("P, W and the motion on the sphere", 1e-13, [&] {

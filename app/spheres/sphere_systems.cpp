@@ -1,3 +1,4 @@
+#include "../learn/learned_scene.hpp"
 #include "pendulum_chain.hpp"
 #include "sphere_system.hpp"
 
@@ -14,7 +15,14 @@ const std::vector<SphereEntry>& sphere_systems() {
         {"gravity", "m/s^2", "9.81", "acceleration"}},
        {"turning about the vertical"},
        {"vertical angular momentum"},
-       read_pendulum_chain}};
+       read_pendulum_chain},
+      {"learned_hamiltonian",
+       "a Hamiltonian that lagroid learn found",
+       "SE(3)^k acting on (T*S^2)^k",
+       {{"model", "", "", "path of the model.json that lagroid learn --out left"}},
+       {},
+       {},
+       read_learned_hamiltonian}};
   return all;
 }
 

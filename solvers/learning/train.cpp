@@ -107,7 +107,7 @@ class Trainer final : public ceres::IterationCallback {
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
     solver.max_num_iterations = iterations;
-    // Bold first steps saturate a network, or blow masses up: from 1e4 a third of the starts never came back.
+    // Bold first steps saturate a network, or blow masses up: from 1e4 some starts never came back.
     solver.initial_trust_region_radius = 0.1;
     solver.max_trust_region_radius = 1 / options_.damping_floor;
     solver.function_tolerance = 0;

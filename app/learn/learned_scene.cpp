@@ -1,0 +1,58 @@
+#include "learned_scene.hpp"
+
+#include "model_file.hpp"
+
+#include <lagroid/solvers/learning/measures.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+class LearnedSystem final : public SphereSystem {
+ public:
+  explicit LearnedSystem(LearnedHamiltonian learned) : learned_(std::move(learned)) {}
+
+  std::string_view name() const override { return "learned_hamiltonian"; }
+  std::vector<SphereForm> forms() const override { return {SphereForm::momenta}; }
+  Points in_form(const Points& z, SphereForm, SphereForm) const override { return z; }
+  std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const override {
+    return march_on_spheres(learning::MotionField(learned_.model->motion(learned_.parameters)), start, options);
+  }
+
+  std::vector<SphereQuantity> quantities() const override {
+    return {{"learned energy", "energy", "1", Promise::bounded},
+            {"vertical angular momentum", "Jz", "1", Promise::conserved}};
+  }
+  std::vector<Measured> measure(const Points& z, SphereForm) const override {
+    const double energy = learned_.model->energy(learned_.parameters, z.reshaped());
+    double size = 0;
+    for (Eigen::Index i = 0; i < z.cols(); ++i) size += z.col(i).head<3>().norm() * z.col(i).tail<3>().norm();
+    return {{energy, std::max(1.0, std::abs(energy))}, {learning::vertical_momentum(z.reshaped()), size}};
+  }
+
+  // Neither is known: points are shown on unit spheres, one below the other.
+  std::vector<double> rods() const override { return ones(); }
+  std::vector<double> bobs() const override { return ones(); }
+
+ private:
+  std::vector<double> ones() const { return std::vector<double>(std::size_t(learned_.model->bodies()), 1.0); }
+
+  LearnedHamiltonian learned_;
+};
+
+}  // namespace
+
+std::unique_ptr<SphereSystem> read_learned_hamiltonian(const Section& scene) {
+  const Section parameters = scene.section("parameters", "which model");
+  try {
+    return std::make_unique<LearnedSystem>(read_model(parameters.text("model", "the path of a model.json")));
+  } catch (const ModelError& error) {
+    parameters.fail("model", error.what());
+  }
+}
+
+}  // namespace lagroid::app
