@@ -225,7 +225,7 @@ int reproduce_learning(const ReproduceOptions& options, bool json) {
   std::string text =
       fmt::format("{}: {} fits in {:.3g} s\n", learning_name, findings.fits.size(), result["seconds"].get<double>());
   for (const auto& fit : findings.fits) {
-    if (fit.noise != 0 || fit.points != 5 || fit.seed != study.first_seed) continue;
+    if (fit.part != LearningPart::study || fit.noise != 0 || fit.points != 5 || fit.seed != study.first_seed) continue;
     const double test = median_of(findings, fit, &LearningFit::test);
     result["test_mse"][fmt::format("k = {}", fit.bodies)][fit.integrator][fmt::format("N = {}", fit.count)][fit.model] =
         test;

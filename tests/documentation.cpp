@@ -198,7 +198,8 @@ TEST(LieGroupPage, ItsCodeIsThatOfTheExample) {
 }
 
 TEST(LearningPage, WhatItNamesExists) {
-  EXPECT_EQ(unknown_names(prose_of(section(read("docs/learning.md"), "## A potential of your own"))), none);
+  for (const char* heading : {"## How well", "## A potential of your own"})
+    EXPECT_EQ(unknown_names(prose_of(section(read("docs/learning.md"), heading))), none) << heading;
 }
 TEST(LearningPage, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/learning.md"), "cpp", read("examples/my_potential.cpp")), none);

