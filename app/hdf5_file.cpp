@@ -31,6 +31,8 @@ void write_hdf5(const std::filesystem::path& file, const std::function<void(cons
   std::string image;
   try {
     H5::FileAccPropList in_memory;
+    // Attributes above 64 KiB, such as the names of many columns, are stored apart since 1.8.
+    in_memory.setLibverBounds(H5F_LIBVER_V18, H5F_LIBVER_V18);
     in_memory.setCore(/*increment=*/1 << 20, /*backing_store=*/false);
     H5::H5File out(file.string(), H5F_ACC_TRUNC, H5::FileCreatPropList::DEFAULT, in_memory);
     fill(out);

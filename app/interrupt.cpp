@@ -42,6 +42,6 @@ InterruptGuard::~InterruptGuard() {
   sigaction(SIGTERM, &term_before_, nullptr);
 }
 
-bool InterruptGuard::interrupted() const { return signal_seen != 0; }
+bool InterruptGuard::interrupted() { return signal_seen != 0; }
 
 }  // namespace lagroid::app

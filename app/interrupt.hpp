@@ -15,7 +15,7 @@ class InterruptGuard {
   InterruptGuard& operator=(const InterruptGuard&) = delete;
   ~InterruptGuard();
   /// Whether one has come.
-  bool interrupted() const;
+  static bool interrupted();
 
  private:
   struct sigaction int_before_ {};

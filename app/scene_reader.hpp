@@ -82,6 +82,8 @@ class Section {
   /// The same with numbers between two that a user wrote. What must lie on a sphere or have unit norm is then brought
   /// there instead of refused.
   Section between(std::string_view path, const std::vector<double>& values) const;
+  /// The file it was read from.
+  const std::string& file() const { return source_->file; }
   /// The whole scene with its overrides, as TOML.
   std::string whole() const;
   bool interpolated() const { return source_->interpolated; }

@@ -94,7 +94,17 @@ void drive(SteppedRun& run, const Pace& pace, const RunContext& context, RunResu
     Progress progress(result.system, pace.steps, context.progress);
     const InterruptGuard guard;
     for (long k = result.steps + 1; k <= pace.steps; ++k) {
+      const auto interrupt = [&](long done) {
+        result.status = interrupted_status;
+        result.message = fmt::format(
+            "interrupted after step {} of {}; what was computed is kept{}", done, pace.steps,
+            checkpoint ? fmt::format(", and lagroid resume {} goes on", context.folder.string()) : std::string());
+      };
       const StepReport report = run.advance();
+      if (!report.converged() && guard.interrupted()) {  // in the middle of a step, which was not made
+        interrupt(k - 1);
+        break;
+      }
       if (!report.converged()) {
         failed = report;
         whole = false;
@@ -115,10 +125,7 @@ void drive(SteppedRun& run, const Pace& pace, const RunContext& context, RunResu
       }
       progress.update(k);
       if (guard.interrupted() && k < pace.steps) {
-        result.status = interrupted_status;
-        result.message = fmt::format(
-            "interrupted after step {} of {}; what was computed is kept{}", k, pace.steps,
-            checkpoint ? fmt::format(", and lagroid resume {} goes on", context.folder.string()) : std::string());
+        interrupt(k);
         break;
       }
       if (checkpoint && checkpoint->due(k)) keep();

@@ -101,7 +101,6 @@ std::vector<Goal> pendulum_chain_goals() {
   std::vector<Goal> out;
   for (const int links : {1, 10})
     for (const auto& group : {cf4_group(links), rattle_group(links)}) {
-      out.push_back({group, fixed, by_hand, 1.5});
       out.push_back({group, at_run_time, by_hand, 1.5});
     }
   for (const char* group : {growing, growing_rattle}) out.push_back({group, of(1000), of(100), 11});

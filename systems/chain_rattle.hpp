@@ -30,7 +30,7 @@ template <int K> class ChainRattle {
   using V = Vector<double, 3>;
   using Columns = Eigen::Matrix<double, 3, K>;
 
-  /// `start` is (q, w).
+  /// `start` is (q, w). Throws std::invalid_argument unless it has as many columns as the chain has links.
   ChainRattle(const PendulumChain<K>& chain, const Points& start, double h,
               const Composition& composition = compositions::single)
       : chain_(chain),
@@ -43,11 +43,13 @@ template <int K> class ChainRattle {
         tension_(Vector<double, K>::Zero(chain.links())),
         end_(tension_),
         slope_(tension_),
-        lower_(tension_),
+        off_(tension_),
         inverse_mass_(chain.mass.cwiseInverse()),
         share_(inverse_mass_),
         inverse_length_(chain.length.cwiseInverse()),
-        system_(chain.links()) {
+        system_(chain) {
+    if (start.cols() != chain.links())
+      throw std::invalid_argument("a chain starts from as many points as it has links");
     for (int i = 1; i < chain.links(); ++i) share_(i) += inverse_mass_(i - 1);
     restore(start, 0);
   }
@@ -102,6 +104,8 @@ template <int K> class ChainRattle {
   void project_velocities(const Columns& q, const Columns& v, double h);
   /// A step of order two of this size; nothing changes where it does not converge.
   StepReport stage(double h);
+  double drift(double h);
+  bool correct(double h);
   StepReport close(double h);
 
   PendulumChain<K> chain_;
@@ -113,88 +117,108 @@ template <int K> class ChainRattle {
   Vector<double, K> tension_;                                                 ///< over the step, T
   Vector<double, K> end_;                                                     ///< at its end, for the velocities
   Vector<double, K> slope_;  ///< by which tension_ differs from end_ at the start of the step, over h
-  Vector<double, K> lower_;  ///< below the diagonal of the tensions' matrix
+  Vector<double, K> off_;    ///< (|q_i+|^2 - 1) / 2
   Vector<double, K> inverse_mass_;
   Vector<double, K> share_;  ///< d_i
   Vector<double, K> inverse_length_;
-  TridiagonalSystem<K, double> system_;
+  ChainTensions<K, double> system_;
 };
 
 template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v, double h) {
-  const int k = chain_.links();
   const double rate = 2 / h;
-  for (int i = 0; i < k; ++i) {
-    system_.diagonal(i) = share_(i);
-    if (i + 1 < k) system_.upper(i) = -q.col(i).dot(q.col(i + 1)) * inverse_mass_(i);
-    system_.x(i) = chain_.length(i) * q.col(i).dot(v.col(i)) * rate;
-  }
+  for (int i = 0; i < chain_.links(); ++i) system_.x(i) = chain_.length(i) * q.col(i).dot(v.col(i)) * rate;
   system_.x(0) -= chain_.gravity * q(2, 0);
-  system_.solve();
+  system_.solve([&](int i) -> V { return q.col(i); });
 }
 
 template <int K> void ChainRattle<K>::tensions_at_rest() {
   // Those of the continuous motion, l_i |v_i|^2 in place of 2 l_i q.v / h.
-  const int k = chain_.links();
-  for (int i = 0; i < k; ++i) {
-    system_.diagonal(i) = share_(i);
-    if (i + 1 < k) system_.upper(i) = -q_.col(i).dot(q_.col(i + 1)) * inverse_mass_(i);
-    system_.x(i) = chain_.length(i) * v_.col(i).squaredNorm();
-  }
+  for (int i = 0; i < chain_.links(); ++i) system_.x(i) = chain_.length(i) * v_.col(i).squaredNorm();
   system_.x(0) -= chain_.gravity * q_(2, 0);
-  system_.solve();
+  system_.solve([&](int i) -> V { return q_.col(i); });
   end_ = system_.x;
   slope_.setZero();
 }
 
-/// Newton's iteration for the tensions that keep |q+| = 1, from those that stand in tension_; leaves q+ and v*.
+/// v* and q+ of the tensions in tension_; how far the q_i+ are from unit length, over what round-off in the terms that
+/// they are made of would leave, at most.
+template <int K> double ChainRattle<K>::drift(double h) {
+  const int k = chain_.links();
+  double worst = 0;
+  for (int i = 0; i < k; ++i) {
+    V change = pull(q_, tension_, i);
+    if (i == 0) change(2) -= chain_.gravity;
+    const double kick = h / 2 * inverse_length_(i);
+    half_.col(i) = v_.col(i) + change * kick;
+    next_.col(i) = q_.col(i) + h * half_.col(i);
+    off_(i) = 0.5 * (next_.col(i).squaredNorm() - 1);
+    double pulls = std::abs(tension_(i)) * share_(i);
+    if (i > 0) pulls += std::abs(tension_(i - 1)) * inverse_mass_(i - 1);
+    if (i + 1 < k) pulls += std::abs(tension_(i + 1)) * inverse_mass_(i);
+    const double excess = std::abs(off_(i)) / (1 + std::abs(h * kick) * pulls);
+    if (!(excess <= worst)) worst = excess;
+  }
+  return worst;
+}
+
+/// tension_ <- tension_ less Newton's correction. The matrix is not symmetric, but its pivots are positive while no rod
+/// turns by a right angle: n_i.q_i / m_i + e_i, n = q+, with
+///
+///     e_i = ( (n_{i-1} x n_i).(q_{i-1} x q_i) / m_{i-1} + n_i.q_i e_{i-1} ) / (m_{i-1} d_{i-1}),
+///
+/// which is that of ChainTensions where n = q. False where a pivot is not positive.
+template <int K> bool ChainRattle<K>::correct(double h) {
+  const int k = chain_.links();
+  const double unit = 2 / (h * h);
+  Vector<double, K>& x = system_.x;
+  double extra = 0;
+  for (int i = 0; i < k; ++i) {
+    const V here = q_.col(i);
+    const V ahead = next_.col(i);
+    const double along = ahead.dot(here);
+    x(i) = off_(i) * chain_.length(i) * unit;
+    if (i > 0) {
+      const V before = q_.col(i - 1);
+      const V ahead_before = next_.col(i - 1);
+      const double r = inverse_mass_(i - 1);
+      const double over = r / system_.pivot(i - 1);
+      extra = (cross(ahead_before, ahead).dot(cross(before, here)) * r + along * extra) * over;
+      x(i) += ahead.dot(before) * over * x(i - 1);
+    }
+    system_.pivot(i) = along * inverse_mass_(i) + extra;
+    if (!(system_.pivot(i) > 0)) return false;
+    if (i + 1 < k) system_.upper(i) = -ahead.dot(q_.col(i + 1)) * inverse_mass_(i);
+  }
+  for (int i = k; i-- > 0;) {
+    if (i + 1 < k) x(i) -= system_.upper(i) * x(i + 1);
+    x(i) /= system_.pivot(i);
+    tension_(i) += x(i);
+  }
+  return true;
+}
+
+/// Newton's iteration for the tensions that keep |q+| = 1, to round-off, from those that stand in tension_; leaves q+
+/// and v*.
 template <int K> StepReport ChainRattle<K>::close(double h) {
   constexpr int most = 50;
-  constexpr double quadratic = 1e-8;  // an iteration from here ends at round-off
-  const double kick = h / 2;
-  const double unit = 2 / (h * h);
-  const int k = chain_.links();
+  constexpr double round_off = 2 * std::numeric_limits<double>::epsilon();
+  constexpr double close_to_it = 32 * round_off;
   StepReport report;
-  for (report.iterations = 1; report.iterations <= most; ++report.iterations) {
-    double worst = 0;
-    for (int i = 0; i < k; ++i) {
-      V change = pull(q_, tension_, i);
-      if (i == 0) change(2) -= chain_.gravity;
-      half_.col(i) = v_.col(i) + change * (kick * inverse_length_(i));
-      next_.col(i) = q_.col(i) + h * half_.col(i);
-      const double off = 0.5 * (next_.col(i).squaredNorm() - 1);
-      system_.x(i) = off * chain_.length(i) * unit;
-      system_.diagonal(i) = next_.col(i).dot(q_.col(i)) * share_(i);
-      if (i + 1 < k) system_.upper(i) = -next_.col(i).dot(q_.col(i + 1)) * inverse_mass_(i);
-      if (i > 0) lower_(i) = -next_.col(i).dot(q_.col(i - 1)) * inverse_mass_(i - 1);
-      if (!(std::abs(off) <= worst)) worst = std::abs(off);
-    }
-    report.residual = worst;
-    if (!std::isfinite(worst)) {
+  double last = std::numeric_limits<double>::infinity();
+  for (report.iterations = 0; report.iterations <= most; ++report.iterations) {
+    report.residual = drift(h);
+    if (!std::isfinite(report.residual)) {
       report.status = SolveStatus::not_finite;
       return report;
     }
-    // Not symmetric, but its diagonal is positive while no rod turns by a right angle.
-    for (int i = 0; i < k; ++i) {
-      if (!(system_.diagonal(i) > 0)) {
-        report.status = SolveStatus::left_domain;
-        return report;
-      }
-      if (i + 1 == k) break;
-      const double ratio = lower_(i + 1) / system_.diagonal(i);
-      system_.diagonal(i + 1) -= ratio * system_.upper(i);
-      system_.x(i + 1) -= ratio * system_.x(i);
-    }
-    for (int i = k; i-- > 0;) {
-      if (i + 1 < k) system_.x(i) -= system_.upper(i) * system_.x(i + 1);
-      system_.x(i) /= system_.diagonal(i);
-    }
-    for (int i = 0; i < k; ++i) tension_(i) += system_.x(i);
-    if (worst < quadratic) {
-      for (int i = 0; i < k; ++i) {
-        half_.col(i) += pull(q_, system_.x, i) * (kick * inverse_length_(i));
-        next_.col(i) = q_.col(i) + h * half_.col(i);
-      }
+    const bool falls = report.residual < 0.5 * last;
+    if (report.residual <= round_off || (report.residual <= close_to_it && !falls)) {
       report.status = SolveStatus::converged;
+      return report;
+    }
+    last = report.residual;
+    if (!correct(h)) {
+      report.status = SolveStatus::left_domain;
       return report;
     }
   }

@@ -1,7 +1,9 @@
 #include <lagroid/systems/chain_rattle.hpp>
 #include <lagroid/systems/sphere_march.hpp>
 
+#include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace lagroid {
 
@@ -36,8 +38,13 @@ template <int K> class RattleMarch final : public SphereMarch {
 
 std::unique_ptr<SphereMarch> make_chain_march(const Chain& chain, const SphereMarch::Points& start,
                                               const SphereMarchOptions& options) {
+  if (start.cols() != chain.links())
+    throw std::invalid_argument("a chain of " + std::to_string(chain.links()) +
+                                " links starts from as many points, not " + std::to_string(start.cols()));
   if (options.method == "rattle") {
-    if (options.tolerance > 0) throw std::invalid_argument("rattle estimates no error");
+    if (!std::isfinite(options.step) || options.step == 0)
+      throw std::invalid_argument("the steps of rattle are finite and not zero");
+    if (options.tolerance != 0) throw std::invalid_argument("rattle estimates no error");
     if (chain.links() == 1) return std::make_unique<RattleMarch<1>>(chain, start, options);
     return std::make_unique<RattleMarch<Eigen::Dynamic>>(chain, start, options);
   }

@@ -35,10 +35,13 @@ template <int K> struct PendulumChain {
       : mass(std::move(masses)), length(std::move(lengths)), gravity(g), carried(mass) {
     if (mass.size() != length.size() || mass.size() == 0)
       throw std::invalid_argument("a chain has as many masses as lengths, one or more");
+    const auto usable = [](double x) { return x > 0 && std::isfinite(x) && std::isfinite(1 / x); };
     for (Eigen::Index i = 0; i < mass.size(); ++i)
-      if (!(mass(i) > 0 && length(i) > 0) || !std::isfinite(mass(i)) || !std::isfinite(length(i)))
-        throw std::invalid_argument("masses and lengths of a chain are positive; those of link " +
-                                    std::to_string(i + 1) + " are not");
+      if (!usable(mass(i)) || !usable(length(i)))
+        throw std::invalid_argument(
+            "masses and lengths of a chain are positive, and neither they nor their inverses "
+            "overflow; those of link " +
+            std::to_string(i + 1) + " are not");
     if (!std::isfinite(g)) throw std::invalid_argument("the gravity of a chain is not finite");
     for (Eigen::Index i = mass.size() - 1; i-- > 0;) carried(i) += carried(i + 1);
   }
@@ -112,30 +115,50 @@ template <int K> struct PendulumChain {
   }
 };
 
-/// Symmetric positive definite tridiagonal systems, solved in place without pivoting.
-template <int K, class S> struct TridiagonalSystem {
-  Vector<S, K> diagonal, upper, x;
+/// The symmetric positive definite tridiagonal equations of the tensions of rods in the directions q_i,
+///
+///     x_i (1/m_i + 1/m_{i-1}) - x_{i+1} q_i.q_{i+1} / m_i - x_{i-1} q_i.q_{i-1} / m_{i-1} = b_i,      1/m_0 = 0,
+///
+/// by elimination from the top. The pivots are d_i = 1/m_i + e_i with
+///
+///     e_i = ( |q_{i-1} x q_i|^2 / m_{i-1} + e_{i-1} ) / (m_{i-1} d_{i-1}),      e_1 = 0:
+///
+/// sums of what is positive, where 1/m_i + 1/m_{i-1} - (q_i.q_{i-1} / m_{i-1})^2 / d_{i-1} would cancel beside a light
+/// bob on rods that are nearly in line.
+template <int K, class S> struct ChainTensions {
+  Vector<double, K> inverse_mass;
+  Vector<S, K> pivot, upper, x;
 
-  explicit TridiagonalSystem(int size)
-      : diagonal(Vector<S, K>::Zero(size)), upper(Vector<S, K>::Zero(size)), x(Vector<S, K>::Zero(size)) {}
+  explicit ChainTensions(const PendulumChain<K>& chain)
+      : inverse_mass(chain.mass.cwiseInverse()),
+        pivot(Vector<S, K>::Zero(chain.links())),
+        upper(Vector<S, K>::Zero(chain.links())),
+        x(Vector<S, K>::Zero(chain.links())) {}
 
-  /// x <- A^{-1} x; the matrix is lost.
-  void solve() {
+  /// x <- A^{-1} x, q(i) being unit vectors.
+  template <class Q> LAGROID_INLINE void solve(const Q& q) {
+    using V = Vector<S, 3>;
     const int n = int(x.size());
-    for (int i = 0; i + 1 < n; ++i) {
-      const S ratio = upper(i) / diagonal(i);
-      diagonal(i + 1) -= ratio * upper(i);
-      x(i + 1) -= ratio * x(i);
+    pivot(0) = S(inverse_mass(0));
+    S extra(0.0);
+    for (int i = 1; i < n; ++i) {
+      const V before = q(i - 1);
+      const V here = q(i);
+      const double r = inverse_mass(i - 1);
+      const S over = r / pivot(i - 1);
+      upper(i - 1) = before.dot(here) * -r;
+      extra = (cross(before, here).squaredNorm() * r + extra) * over;
+      pivot(i) = extra + inverse_mass(i);
+      x(i) += before.dot(here) * over * x(i - 1);
     }
-    x(n - 1) /= diagonal(n - 1);
-    for (int i = n - 1; i-- > 0;) x(i) = (x(i) - upper(i) * x(i + 1)) / diagonal(i);
+    x(n - 1) /= pivot(n - 1);
+    for (int i = n - 1; i-- > 0;) x(i) = (x(i) - upper(i) * x(i + 1)) / pivot(i);
   }
 };
 
-/// The motion on (TS^2)^k as a map to se(3)^k, in O(k): the tensions T_i of the rods solve
+/// The motion on (TS^2)^k as a map to se(3)^k, in O(k): the tensions T_i of the rods solve their equations
+/// (ChainTensions) with b_i = l_i |w_i|^2 - [i = 1] g e_3.q_1, and
 ///
-///     T_i (1/m_i + 1/m_{i-1}) - T_{i+1} q_i.q_{i+1} / m_i - T_{i-1} q_i.q_{i-1} / m_{i-1}
-///         = l_i |w_i|^2 - [i = 1] g e_3.q_1,      1/m_0 = 0,
 ///     w_i' = q_i x (T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1} - [i = 1] g e_3) / l_i,
 ///     F(q, w) = (w, q x w').
 template <int K, class S = double> class ChainVelocityField {
@@ -143,27 +166,20 @@ template <int K, class S = double> class ChainVelocityField {
   using Space = CotangentSpheres<K, S>;
   using Z = typename Space::Point;
 
-  explicit ChainVelocityField(const PendulumChain<K>& chain) : chain_(chain), tension_(chain.links()) {}
+  explicit ChainVelocityField(const PendulumChain<K>& chain) : chain_(chain), tension_(chain) {}
 
   void operator()(double, const Z& z, Z& f) {
     using V = Vector<S, 3>;
     const int k = chain_.links();
     const double g = chain_.gravity;
-    double above = 0;  // 1 / m_{i-1}
-    for (int i = 0; i < k; ++i) {
-      const double below = 1 / chain_.mass(i);
-      tension_.diagonal(i) = below + above;
-      tension_.x(i) = Space::second(z, i).squaredNorm() * chain_.length(i);
-      if (i + 1 < k) tension_.upper(i) = Space::first(z, i).dot(Space::first(z, i + 1)) * -below;
-      above = below;
-    }
+    for (int i = 0; i < k; ++i) tension_.x(i) = Space::second(z, i).squaredNorm() * chain_.length(i);
     tension_.x(0) -= z(2, 0) * g;
-    tension_.solve();
+    tension_.solve([&](int i) { return Space::first(z, i); });
     for (int i = 0; i < k; ++i) {
       V pull = V::Zero();
       if (i == 0) pull(2) -= g;
-      if (i > 0) pull += Space::first(z, i - 1) * (tension_.x(i - 1) * (1 / chain_.mass(i - 1)));
-      if (i + 1 < k) pull += Space::first(z, i + 1) * (tension_.x(i + 1) * (1 / chain_.mass(i)));
+      if (i > 0) pull += Space::first(z, i - 1) * (tension_.x(i - 1) * tension_.inverse_mass(i - 1));
+      if (i + 1 < k) pull += Space::first(z, i + 1) * (tension_.x(i + 1) * tension_.inverse_mass(i));
       const V q = Space::first(z, i);
       Space::set(f, i, Space::second(z, i), cross(q, V(cross(q, pull) * (1 / chain_.length(i)))));
     }
@@ -171,10 +187,10 @@ template <int K, class S = double> class ChainVelocityField {
 
  private:
   PendulumChain<K> chain_;
-  TridiagonalSystem<K, S> tension_;
+  ChainTensions<K, S> tension_;
 };
 
-/// The motion on (T*S^2)^k as a map to se(3)^k, in O(k): with the matrix of the tensions and the right side
+/// The motion on (T*S^2)^k as a map to se(3)^k, in O(k): with the equations of the tensions (ChainTensions) and b_i =
 /// q_i.p_{i+1} / (l_{i+1} m_i) + q_i.p_{i-1} / (l_{i-1} m_{i-1}), multipliers tau_i such that c_i = p_i / l_i + tau_i
 /// q_i are the momenta of the masses from i on; x_i' = (c_i - c_{i+1}) / m_i, v_i = (x_i' - x_{i-1}') / l_i = q_i',
 ///
@@ -187,7 +203,7 @@ template <int K, class S = double> class ChainMomentumField {
   using Z = typename Space::Point;
   using V = Vector<S, 3>;
 
-  explicit ChainMomentumField(const PendulumChain<K>& chain) : chain_(chain), multiplier_(chain.links()) {}
+  explicit ChainMomentumField(const PendulumChain<K>& chain) : chain_(chain), multiplier_(chain) {}
 
   void operator()(double, const Z& z, Z& f) {
     solve(z);
@@ -196,7 +212,7 @@ template <int K, class S = double> class ChainMomentumField {
     V above = V::Zero();  // x_{i-1}'
     for (int i = 0; i < k; ++i) {
       const V next = i + 1 < k ? carried(z, i + 1) : V(V::Zero());
-      const V velocity = (momentum - next) * (1 / chain_.mass(i));
+      const V velocity = (momentum - next) * multiplier_.inverse_mass(i);
       const V q = Space::first(z, i);
       const V xi = cross(q, V((velocity - above) * (1 / chain_.length(i))));
       const double weight = chain_.gravity * chain_.carried(i) * chain_.length(i);
@@ -212,21 +228,15 @@ template <int K, class S = double> class ChainMomentumField {
  private:
   void solve(const Z& z) {
     const int k = chain_.links();
-    double above = 0;
+    const auto& inverse_mass = multiplier_.inverse_mass;
     for (int i = 0; i < k; ++i) {
-      const double below = 1 / chain_.mass(i);
       const V q = Space::first(z, i);
-      multiplier_.diagonal(i) = below + above;
       S right(0.0);
-      if (i + 1 < k) {
-        multiplier_.upper(i) = q.dot(Space::first(z, i + 1)) * -below;
-        right += q.dot(Space::second(z, i + 1)) * (below / chain_.length(i + 1));
-      }
-      if (i > 0) right += q.dot(Space::second(z, i - 1)) * (above / chain_.length(i - 1));
+      if (i + 1 < k) right += q.dot(Space::second(z, i + 1)) * (inverse_mass(i) / chain_.length(i + 1));
+      if (i > 0) right += q.dot(Space::second(z, i - 1)) * (inverse_mass(i - 1) / chain_.length(i - 1));
       multiplier_.x(i) = right;
-      above = below;
     }
-    multiplier_.solve();
+    multiplier_.solve([&](int i) { return Space::first(z, i); });
   }
   /// c_i.
   V carried(const Z& z, int i) const {
@@ -234,7 +244,7 @@ template <int K, class S = double> class ChainMomentumField {
   }
 
   PendulumChain<K> chain_;
-  TridiagonalSystem<K, S> multiplier_;
+  ChainTensions<K, S> multiplier_;
 };
 
 template <int K> auto PendulumChain<K>::to_velocities(const Points& z) const -> Points {

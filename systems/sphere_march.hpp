@@ -8,7 +8,10 @@
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
+#include <cmath>
+#include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 namespace lagroid {
@@ -22,9 +25,10 @@ enum class SphereForm {
 struct SphereMarchOptions {
   std::string method;  ///< the name of a LieGroupMethod, or one of the system's own
   SphereForm form = SphereForm::velocities;
-  double step = 0.01;           ///< from node to node
-  double tolerance = 0;         ///< of inner steps, which an embedded method then controls; 0: one step a node
-  long most_inner = 1'000'000;  ///< of these, from one node to the next
+  double step = 0.01;                    ///< from node to node
+  double tolerance = 0;                  ///< of inner steps, which an embedded method then controls; 0: one step a node
+  long most_inner = 1'000'000;           ///< of these, from one node to the next
+  std::function<bool()> stop = nullptr;  ///< asked before each of these; true ends the step, which is then not made
   Composition composition = compositions::single;  ///< of a symmetric method of the system's own
 };
 
@@ -70,20 +74,26 @@ template <class F> class ControlledSphereSteps final : public SphereMarch {
  public:
   ControlledSphereSteps(F field, const LieGroupMethod& method, const Points& start, const SphereMarchOptions& options)
       : integrator_({int(start.cols())}, std::move(field), method, start,
-                    {.tolerance = options.tolerance, .first_step = options.step, .most_steps = options.most_inner}),
-        node_(start),
+                    {.tolerance = options.tolerance,
+                     .first_step = options.step,
+                     .most_steps = options.most_inner,
+                     .stop = options.stop}),
+        at_node_(integrator_),
         step_(options.step) {}
 
   StepReport advance() override {
     const long before = tried();
     StepReport report = integrator_.advance_to(double(index_ + 1) * step_);
     report.iterations = int(tried() - before);
-    if (!report.converged()) return report;
-    node_ = integrator_.point();
+    if (!report.converged()) {
+      integrator_ = at_node_;
+      return report;
+    }
+    at_node_ = integrator_;
     ++index_;
     return report;
   }
-  Points point() const override { return node_; }
+  Points point() const override { return integrator_.point(); }
   double time() const override { return double(index_) * step_; }
   MethodTraits traits() const override {
     MethodTraits traits = integrator_.traits();
@@ -93,14 +103,13 @@ template <class F> class ControlledSphereSteps final : public SphereMarch {
   void persist(Tape& tape) override {
     integrator_.persist(tape);
     tape(index_);
-    if (tape.reading()) node_ = integrator_.point();
+    if (tape.reading()) at_node_ = integrator_;
   }
 
  private:
   long tried() const { return integrator_.steps() + integrator_.rejected(); }
 
-  ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F> integrator_;
-  Points node_;
+  ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F> integrator_, at_node_;
   double step_;
   long index_ = 0;
 };
@@ -108,12 +117,15 @@ template <class F> class ControlledSphereSteps final : public SphereMarch {
 }  // namespace detail
 
 /// The march of z' = F(z)_M(z) by the Lie group method of that name. Throws std::invalid_argument where there is none,
-/// and where a tolerance is asked of one that estimates no error.
+/// where a tolerance is asked of one that estimates no error or is negative, and for a composition.
 template <class F>
 std::unique_ptr<SphereMarch> march_on_spheres(F field, const SphereMarch::Points& start,
                                               const SphereMarchOptions& options) {
   const LieGroupMethod* method = lie_group_methods::named(options.method);
   if (method == nullptr) throw std::invalid_argument("no Lie group method is called \"" + options.method + "\"");
+  if (!(options.tolerance >= 0) || !std::isfinite(options.step) || options.step == 0)
+    throw std::invalid_argument("a march on spheres has a finite step and no negative tolerance");
+  if (options.composition.stages() > 1) throw std::invalid_argument("steps of " + options.method + " are not composed");
   if (options.tolerance > 0)
     return std::make_unique<detail::ControlledSphereSteps<F>>(std::move(field), *method, start, options);
   return std::make_unique<detail::EqualSphereSteps<F>>(std::move(field), *method, start, options.step);

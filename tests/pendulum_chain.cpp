@@ -399,6 +399,76 @@ TEST(ChainRattle, AStageThatFailsUndoesTheStep) {
   EXPECT_EQ(largest(march.point() - before), 0);
 }
 
+/// A light bob between the origin and a heavy one, on rods nearly in line.
+Chain light_between() { return Chain(numbers({1e-8, 1}), numbers({1, 1}), 9.81); }
+Points nearly_in_line() {
+  Points z(6, 2);
+  const auto direction = [](double theta, double phi) {
+    return V(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+  };
+  z.col(0) << direction(2.9, 0), V(0, 0.3, 0.1);
+  z.col(1) << direction(2.9001, 0.3), V(0.1, 0.3, 0);
+  light_between().space().project(z);
+  return z;
+}
+
+TEST(PendulumChain, LightBobsOnRodsInLineLoseNoDigits) {
+  // Estimates of the error that are made of cancellation would ask for a million steps.
+  ControlledLieGroupIntegrator march(light_between().space(), ChainVelocityField<any>(light_between()),
+                                     lie_group_methods::munthe_kaas_54, nearly_in_line(),
+                                     {.tolerance = 1e-13, .first_step = 1e-4, .most_steps = 20'000});
+  EXPECT_TRUE(march.advance_to(0.003).converged());
+  EXPECT_LT(march.steps() + march.rejected(), 10'000);
+}
+
+TEST(ChainRattle, StepsAreSolvedToRoundOffBesideLightBobs) {
+  for (const double h : {1e-5, 1e-6}) {
+    const Chain chain = light_between();
+    ChainRattle<any> march(chain, nearly_in_line(), h);
+    const double vertical = chain.vertical_momentum(march.point());
+    StepReport report;
+    double off = 0;
+    for (int n = 0; n < 20'000 && (report = march.advance()).converged(); ++n)
+      for (int i = 0; i < 2; ++i) off = std::max(off, std::abs(march.directions().col(i).squaredNorm() - 1));
+    EXPECT_LT(off, 3e-15) << h;
+    EXPECT_NEAR(chain.vertical_momentum(march.point()), vertical, 1e-10 * std::abs(vertical)) << h;
+  }
+}
+
+TEST(ChainRattle, RandomChainsKeepTheirRodsAndMomentum) {
+  const auto law = laws::check_law("every accepted step keeps |q| = 1 and J_z", 1e-11, [] {
+    const int k = *rc::gen::element(2, 3, 5);
+    Eigen::VectorXd mass(k), length(k);
+    for (double& m : mass) m = std::pow(10.0, 2 * laws::draw_uniform());
+    for (double& l : length) l = std::pow(10.0, 0.5 * laws::draw_uniform());
+    const Chain chain(mass, length, 9.81);
+    const Points start = draw_state(k);
+    ChainRattle<any> march(chain, start, std::pow(10.0, -3 + laws::draw_uniform()));
+    const double vertical = chain.vertical_momentum(start);
+    const double size = chain.momentum_size(start);
+    double worst = 0;
+    for (int n = 0; n < 500 && march.advance().converged(); ++n) {
+      for (int i = 0; i < k; ++i) worst = std::max(worst, 1e3 * std::abs(march.directions().col(i).squaredNorm() - 1));
+      worst = std::max(worst, std::abs(chain.vertical_momentum(march.point()) - vertical) / size);
+    }
+    return worst;
+  });
+  EXPECT_TRUE(law.holds()) << law.worst;
+}
+
+TEST(PendulumChain, RefusesStartsOfAnotherSize) {
+  const Chain chain = light_between();
+  const Points three = Points::Zero(6, 3);
+  EXPECT_THROW(ChainRattle<any>(chain, three, 0.01), std::invalid_argument);
+  EXPECT_THROW(
+      LieGroupIntegrator(chain.space(), ChainVelocityField<any>(chain), lie_group_methods::lie_euler, three, 0.01),
+      std::invalid_argument);
+  ControlledLieGroupIntegrator march(chain.space(), ChainVelocityField<any>(chain), lie_group_methods::munthe_kaas_54,
+                                     nearly_in_line(), {});
+  EXPECT_THROW(march.advance_to(std::nan("")), std::invalid_argument);
+  EXPECT_THROW(march.advance_to(-1), std::invalid_argument);
+}
+
 /// The canonical two-form of (T*S^2)^k on tangent vectors a, b at (q, p).
 double canonical_form(const Points& a, const Points& b) {
   double sum = 0;

@@ -4,8 +4,11 @@
 
 #include <lagroid/solvers/learning/measures.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 namespace lagroid::app {
@@ -14,7 +17,8 @@ namespace {
 
 class LearnedSystem final : public SphereSystem {
  public:
-  explicit LearnedSystem(LearnedHamiltonian learned) : learned_(std::move(learned)) {}
+  LearnedSystem(LearnedHamiltonian learned, std::filesystem::path file)
+      : learned_(std::move(learned)), file_(std::move(file)) {}
 
   std::string_view name() const override { return "learned_hamiltonian"; }
   std::vector<SphereForm> forms() const override { return {SphereForm::momenta}; }
@@ -34,6 +38,10 @@ class LearnedSystem final : public SphereSystem {
     return {{energy, std::max(1.0, std::abs(energy))}, {learning::vertical_momentum(z.reshaped()), size}};
   }
 
+  std::vector<std::string> pinned() const override {
+    return {fmt::format("parameters.model='{}'", std::filesystem::absolute(file_).string())};
+  }
+
   // Neither is known: points are shown on unit spheres, one below the other.
   std::vector<double> rods() const override { return ones(); }
   std::vector<double> bobs() const override { return ones(); }
@@ -42,6 +50,7 @@ class LearnedSystem final : public SphereSystem {
   std::vector<double> ones() const { return std::vector<double>(std::size_t(learned_.model->bodies()), 1.0); }
 
   LearnedHamiltonian learned_;
+  std::filesystem::path file_;
 };
 
 }  // namespace
@@ -49,7 +58,11 @@ class LearnedSystem final : public SphereSystem {
 std::unique_ptr<SphereSystem> read_learned_hamiltonian(const Section& scene) {
   const Section parameters = scene.section("parameters", "which model");
   try {
-    return std::make_unique<LearnedSystem>(read_model(parameters.text("model", "the path of a model.json")));
+    const std::string name = parameters.text("model", "the path of a model.json");
+    std::filesystem::path file = std::filesystem::path(scene.file()).parent_path() / name;
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) file = name;
+    return std::make_unique<LearnedSystem>(read_model(file), file);
   } catch (const ModelError& error) {
     parameters.fail("model", error.what());
   }

@@ -20,7 +20,9 @@ class ChainSystem final : public SphereSystem {
 
   std::string_view name() const override { return "pendulum_chain"; }
   std::vector<SphereForm> forms() const override { return {SphereForm::velocities, SphereForm::momenta}; }
-  std::vector<MethodTraits> own_methods() const override { return {ChainRattle<Eigen::Dynamic>::traits(compositions::single)}; }
+  std::vector<MethodTraits> own_methods() const override {
+    return {ChainRattle<Eigen::Dynamic>::traits(compositions::single)};
+  }
   Points in_form(const Points& z, SphereForm from, SphereForm to) const override {
     if (from == to) return z;
     return to == SphereForm::momenta ? chain_.to_momenta(z) : chain_.to_velocities(z);
@@ -50,15 +52,17 @@ class ChainSystem final : public SphereSystem {
   Chain chain_;
 };
 
+constexpr NumberRule usable{"between 1e-300 and 1e300", [](double x) { return x >= 1e-300 && x <= 1e300; }};
+
 /// One number for each link, or one for all; empty in the latter case.
 std::vector<double> read_each(const Section& parameters, const char* key) {
   if (parameters.is_number(key)) {
-    parameters.number(key, positive);
+    parameters.number(key, usable);
     return {};
   }
   auto each = parameters.list(key, fmt::format("{}, one for each link, or one number for all", key));
   for (const double x : each)
-    if (!(x > 0)) parameters.fail(key, fmt::format("must be positive, got {}", x));
+    if (!usable.holds(x)) parameters.fail(key, fmt::format("must be {}, got {}", usable.words, x));
   return each;
 }
 
@@ -79,8 +83,9 @@ std::unique_ptr<SphereSystem> read_pendulum_chain(const Section& scene) {
   auto masses = read("masses");
   auto lengths = read("lengths");
   if (links == 0) links = parameters.integer("links", 1, most);
+  if (links > most) parameters.fail("masses", fmt::format("are of {} links; a chain has {} at most", links, most));
   const auto numbers = [&](const std::vector<double>& each, const char* key) -> Chain::Numbers {
-    if (each.empty()) return Chain::Numbers::Constant(links, parameters.number(key, positive));
+    if (each.empty()) return Chain::Numbers::Constant(links, parameters.number(key, usable));
     return Eigen::Map<const Chain::Numbers>(each.data(), Eigen::Index(each.size()));
   };
   return std::make_unique<ChainSystem>(

@@ -24,6 +24,7 @@ struct SphereScene {
         options(read_sphere_time(scene, *system)),
         start(read_start(scene, *system, options.form)),
         pace(read_pace(scene, context)) {
+    if (!pace.scene.empty()) pace.scene = parse_scene(pace.scene, scene.file(), system->pinned()).whole();
     scene.choice("system", {std::string(entry.name)});
     scene.finish();
   }
@@ -52,8 +53,9 @@ std::string sphere_failure(const StepReport& report, long step, double time, con
             "time.step",
             where, report.iterations);
       return fmt::format(
-          "{}: no tensions keep the rods' lengths over so long a step (a rod would turn by a right angle, or nearly); "
-          "use a smaller time.step",
+          "{}: no tensions were found that keep the rods' lengths over this step (a rod would turn by a right angle, "
+          "or "
+          "nearly, or a bob is too light for its neighbours); use a smaller time.step",
           where);
   }
 }

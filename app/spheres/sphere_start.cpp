@@ -51,7 +51,7 @@ std::vector<V> read_directions(const Section& scene, const Section& initial, int
   if (initial.has("phi")) initial.fail("phi", "goes with theta");
   if (!initial.has("directions"))
     initial.fail("", "give directions, unit vectors along the rods, or theta and phi, their angles");
-  out = read_vectors(scene, initial, "directions", count, "unit vectors along the rods, z up");
+  out = read_vectors(scene, initial, "directions", count, "unit vectors along the rods, z up (or one for all)");
   for (std::size_t i = 0; i < out.size(); ++i) {
     V& q = out[i];
     const double norm = q.norm();
@@ -82,7 +82,7 @@ Points read_start(const Section& scene, const SphereSystem& system, SphereForm f
     const bool projects = initial.flag_or("project_velocities", false);
     for (std::size_t i = 0; i < moving.size(); ++i) {
       const double along = q[i].dot(moving[i]);
-      if (!projects && !(std::abs(along) <= slack * (1 + moving[i].norm())))
+      if (!projects && !(std::abs(along) <= slack * moving[i].norm()))
         initial.fail(key, fmt::format("that of link {} has a part {:.6g} along its rod, which moves nothing; leave it "
                                       "away, or say initial.project_velocities = true",
                                       i + 1, along));
@@ -92,9 +92,10 @@ Points read_start(const Section& scene, const SphereSystem& system, SphereForm f
   const bool has_momenta = initial.has("momenta");
   if (has_velocities && initial.has("angular_velocities")) {
     if (has_momenta) initial.fail("momenta", "stand there beside angular_velocities: leave one of them out");
-    read("angular_velocities", SphereForm::velocities, "angular velocities of the rods in space, rad/s");
+    read("angular_velocities", SphereForm::velocities,
+         "angular velocities of the rods in space, rad/s (or one for all)");
   } else if (has_momenta) {
-    read("momenta", SphereForm::momenta, "momenta conjugate to the directions, kg m^2/s");
+    read("momenta", SphereForm::momenta, "momenta conjugate to the directions, kg m^2/s (or one for all)");
   } else {
     initial.flag_or("project_velocities", false);
   }

@@ -42,6 +42,9 @@ class SphereSystem {
   virtual Points in_form(const Points& z, SphereForm from, SphereForm to) const = 0;
   virtual std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const = 0;
 
+  /// What a scene of it that is read from elsewhere has to say differently, as "key=value": paths of files.
+  virtual std::vector<std::string> pinned() const { return {}; }
+
   /// The energy first.
   virtual std::vector<SphereQuantity> quantities() const = 0;
   /// In the same order.

@@ -1,5 +1,6 @@
 #include "sphere_time.hpp"
 
+#include "../interrupt.hpp"
 #include "../simulation.hpp"
 
 #include <fmt/format.h>
@@ -46,6 +47,7 @@ SphereMarchOptions read_sphere_time(const Section& scene, const SphereSystem& sy
   if (method == nullptr || !method->embedded())
     time.fail("tolerance", fmt::format("goes with a method that estimates its error: method = \"{}\"",
                                        lie_group_methods::munthe_kaas_54.name));
+  options.stop = InterruptGuard::interrupted;
   options.tolerance = time.number("tolerance", {"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }});
   return options;
 }

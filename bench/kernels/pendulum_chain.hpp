@@ -152,6 +152,7 @@ template <std::size_t K> class PendulumChainRattle {
     for (std::size_t i = 0; i < K; ++i) tension[i] = end_[i] + gap_[i];
     Triples half, next;
     bool close = false;
+    double last = 1;
     for (int iteration = 0; !close; ++iteration) {
       if (iteration == 30) return false;
       Numbers diagonal, above, below, change;
@@ -167,6 +168,9 @@ template <std::size_t K> class PendulumChainRattle {
         if (i + 1 < K) above[i] = -inverse * dot(next[i], q_[i + 1]);
         if (i > 0) below[i] = -inverse * dot(next[i], q_[i - 1]);
       }
+      close = worst <= (worst < 0.5 * last ? 4e-16 : 2e-14);
+      if (close) break;
+      last = worst;
       for (std::size_t i = 0; i + 1 < K; ++i) {
         const double ratio = below[i + 1] / diagonal[i];
         diagonal[i + 1] -= ratio * above[i];
@@ -175,12 +179,6 @@ template <std::size_t K> class PendulumChainRattle {
       change[K - 1] /= diagonal[K - 1];
       for (std::size_t i = K - 1; i-- > 0;) change[i] = (change[i] - above[i] * change[i + 1]) / diagonal[i];
       for (std::size_t i = 0; i < K; ++i) tension[i] += change[i];
-      close = worst < 1e-8;
-      if (!close) continue;
-      for (std::size_t i = 0; i < K; ++i) {
-        half[i] = half[i] + kick * pull(q_, change, i);
-        next[i] = q_[i] + g_.h * half[i];
-      }
     }
     for (std::size_t i = 0; i < K; ++i) gap_[i] = tension[i] - end_[i];
     q_ = next;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,14 +20,28 @@ inline MethodTraits traits_of(const LieGroupMethod& method) {
   return {std::string(method.name), method.order, false, false, true, method.stages - (method.reuses_last ? 1 : 0)};
 }
 
+namespace detail {
+
+template <HomogeneousSpace M> void require_size(const M& space, const typename M::Point& z) {
+  const typename M::Point like = space.zero_point();
+  if (z.rows() != like.rows() || z.cols() != like.cols())
+    throw std::invalid_argument("the start of a march is a point of " + std::to_string(z.cols()) +
+                                " columns, those of its space have " + std::to_string(like.cols()));
+}
+
+}  // namespace detail
+
 /// Equal steps. After each, rounding is kept from M (HomogeneousSpace::project), except by a classical method, which is
 /// not on M to begin with.
 template <HomogeneousSpace M, AlgebraField<M> F> class LieGroupIntegrator {
  public:
   using Point = typename M::Point;
 
+  /// Throws std::invalid_argument for a start of another size than the points of M.
   LieGroupIntegrator(M space, F field, const LieGroupMethod& method, Point start, double h, double time = 0)
-      : step_(std::move(space), method), field_(std::move(field)), point_(start), trial_(start), h_(h), start_(time) {}
+      : step_(std::move(space), method), field_(std::move(field)), point_(start), trial_(start), h_(h), start_(time) {
+    detail::require_size(step_.space(), point_);
+  }
 
   const Point& point() const { return point_; }
   double time() const { return start_ + double(index_) * h_; }
@@ -75,7 +90,8 @@ struct LieGroupControl {
   double tolerance = 1e-10;  ///< of an embedded method's error over a step, in the algebra
   double first_step = 1e-3;
   double largest_step = 1e300;
-  long most_steps = 100'000'000;  ///< tried on the way to one end
+  long most_steps = 100'000'000;         ///< tried on the way to one end
+  std::function<bool()> stop = nullptr;  ///< asked before each; true ends the march as a limit of steps does
 };
 
 /// Steps whose size follows the estimate of an embedded method: h <- h 0.9 (tolerance / error)^(1/order), changed by
@@ -84,7 +100,8 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
  public:
   using Point = typename M::Point;
 
-  /// Throws std::invalid_argument for a method without an embedded one, or control that is not positive.
+  /// Throws std::invalid_argument for a method without an embedded one, control that is not positive, or a start of
+  /// another size than the points of M.
   ControlledLieGroupIntegrator(M space, F field, const LieGroupMethod& method, Point start,
                                const LieGroupControl& control, double time = 0)
       : step_(std::move(space), method),
@@ -94,6 +111,7 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
         control_(control),
         h_(control.first_step),
         time_(time) {
+    detail::require_size(step_.space(), point_);
     if (!method.embedded()) throw std::invalid_argument(std::string(method.name) + " estimates no error");
     if (!(control.tolerance > 0) || !(control.first_step > 0) || !(control.largest_step > 0))
       throw std::invalid_argument("tolerance and steps of a controlled march are positive");
@@ -107,8 +125,9 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
 
   /// Steps until `end`, where the last ends exactly. `no_step`: the error stays above the tolerance however small the
   /// step; `not_finite`: so does a number that is not finite; `not_converged`: the limit of steps is reached. The point
-  /// is the last one accepted.
+  /// is the last one accepted. Throws std::invalid_argument for an end before the present time.
   StepReport advance_to(double end) {
+    if (!(end >= time_)) throw std::invalid_argument("a controlled march goes on to a later time");
     StepReport report;
     const long before = steps_ + rejected_;
     while (time_ < end) {
@@ -116,7 +135,7 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
       double h = std::min({h_, left, control_.largest_step});
       // No crumb is left for the last step.
       if (h < left && left < 2 * h) h = 0.5 * left;
-      const bool too_many = steps_ + rejected_ - before >= control_.most_steps;
+      const bool too_many = steps_ + rejected_ - before >= control_.most_steps || (control_.stop && control_.stop());
       if (!(time_ + h > time_) || too_many) {
         report.status = too_many  ? SolveStatus::not_converged
                         : finite_ ? SolveStatus::no_step
