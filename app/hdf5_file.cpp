@@ -13,6 +13,10 @@ void set_attribute(const H5::H5Object& object, const std::string& name, const st
   object.createAttribute(name, type, H5::DataSpace(H5S_SCALAR)).write(type, value.c_str());
 }
 
+std::string components_attribute(std::size_t part) {
+  return part == 0 ? std::string("components") : fmt::format("components {}", part + 1);
+}
+
 H5::DataSet add_dataset(const H5::H5File& file, const std::string& name, const std::vector<double>& values,
                         std::size_t width) {
   std::string label = name;
@@ -31,8 +35,6 @@ void write_hdf5(const std::filesystem::path& file, const std::function<void(cons
   std::string image;
   try {
     H5::FileAccPropList in_memory;
-    // Attributes above 64 KiB, such as the names of many columns, are stored apart since 1.8.
-    in_memory.setLibverBounds(H5F_LIBVER_V18, H5F_LIBVER_V18);
     in_memory.setCore(/*increment=*/1 << 20, /*backing_store=*/false);
     H5::H5File out(file.string(), H5F_ACC_TRUNC, H5::FileCreatPropList::DEFAULT, in_memory);
     fill(out);

@@ -13,6 +13,9 @@ namespace lagroid::app {
 
 void set_attribute(const H5::H5Object& object, const std::string& name, const std::string& value);
 
+/// The labels of a series' columns stand in attributes: "components", and "components 2", ... where they are many.
+std::string components_attribute(std::size_t part);
+
 /// A data set of doubles, `width` to a row; of one dimension where that is one. Without the time of day, so that equal
 /// runs make equal files.
 H5::DataSet add_dataset(const H5::H5File& file, const std::string& name, const std::vector<double>& values,

@@ -60,6 +60,17 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
   if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
 }
 
+/// Joined by ", ", in as many parts as attributes of 64 KiB have to be.
+std::vector<std::string> joined_in_parts(const std::vector<std::string>& labels) {
+  constexpr std::size_t most = 60'000;
+  std::vector<std::string> parts(1);
+  for (const std::string& label : labels) {
+    if (parts.back().size() + label.size() > most) parts.emplace_back();
+    parts.back() += parts.back().empty() ? label : ", " + label;
+  }
+  return parts;
+}
+
 void write_trajectory(const RunResult& result, const fs::path& file) {
   write_hdf5(file, [&](const H5::H5File& out) {
     set_attribute(out, "system", result.system);
@@ -71,7 +82,9 @@ void write_trajectory(const RunResult& result, const fs::path& file) {
       const H5::DataSet set = add_dataset(out, s.name, s.values, s.width());
       set_attribute(set, "unit", s.unit);
       set_attribute(set, "meaning", s.meaning);
-      set_attribute(set, "components", fmt::format("{}", fmt::join(s.components, ", ")));
+      const auto labels = joined_in_parts(s.components);
+      for (std::size_t part = 0; part < labels.size(); ++part)
+        set_attribute(set, components_attribute(part), labels[part]);
       set_attribute(set, "rows", s.on_arrows ? "one per recorded arrow" : "one per recorded node");
     }
   });

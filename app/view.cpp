@@ -1,5 +1,7 @@
 #include "view.hpp"
 
+#include "hdf5_file.hpp"
+
 #include "output_folder.hpp"
 #include "viewer/assets.hpp"
 
@@ -72,14 +74,16 @@ struct Columns {
   std::size_t recorded = 0;
 };
 
-/// Column labels stand in an attribute, joined by ", ".
+/// Column labels stand in attributes, joined by ", ".
 std::vector<std::string> labels_of(const H5::DataSet& set) {
   std::vector<std::string> labels;
-  const std::string joined = text_attribute(set, "components");
-  for (std::size_t from = 0; from <= joined.size();) {
-    const std::size_t to = std::min(joined.find(", ", from), joined.size());
-    labels.push_back(joined.substr(from, to - from));
-    from = to + 2;
+  for (std::size_t part = 0; part == 0 || set.attrExists(components_attribute(part)); ++part) {
+    const std::string joined = text_attribute(set, components_attribute(part).c_str());
+    for (std::size_t from = 0; from <= joined.size();) {
+      const std::size_t to = std::min(joined.find(", ", from), joined.size());
+      labels.push_back(joined.substr(from, to - from));
+      from = to + 2;
+    }
   }
   return labels;
 }

@@ -78,7 +78,7 @@ template <class F> class ControlledSphereSteps final : public SphereMarch {
                      .first_step = options.step,
                      .most_steps = options.most_inner,
                      .stop = options.stop}),
-        at_node_(integrator_),
+        node_(integrator_.place()),
         step_(options.step) {}
 
   StepReport advance() override {
@@ -86,10 +86,10 @@ template <class F> class ControlledSphereSteps final : public SphereMarch {
     StepReport report = integrator_.advance_to(double(index_ + 1) * step_);
     report.iterations = int(tried() - before);
     if (!report.converged()) {
-      integrator_ = at_node_;
+      integrator_.go_back_to(node_);
       return report;
     }
-    at_node_ = integrator_;
+    integrator_.keep(node_);
     ++index_;
     return report;
   }
@@ -103,13 +103,15 @@ template <class F> class ControlledSphereSteps final : public SphereMarch {
   void persist(Tape& tape) override {
     integrator_.persist(tape);
     tape(index_);
-    if (tape.reading()) at_node_ = integrator_;
+    if (tape.reading()) integrator_.keep(node_);
   }
 
  private:
   long tried() const { return integrator_.steps() + integrator_.rejected(); }
 
-  ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F> integrator_, at_node_;
+  using Integrator = ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F>;
+  Integrator integrator_;
+  typename Integrator::Place node_;
   double step_;
   long index_ = 0;
 };

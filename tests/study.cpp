@@ -97,7 +97,7 @@ TEST(Methods, OfChainsHaveTheirOrders) {
     };
     const double order = laws::measured_order(error, method.order == 1 ? 1000 : method.order == 8 ? 60 : 200);
     EXPECT_GT(order, method.order - 0.15) << method.name;
-    EXPECT_LT(order, method.order + 0.5) << method.name;
+    EXPECT_LT(order, method.order + (method.order == 8 ? 1 : 0.5)) << method.name;
   }
   EXPECT_EQ(equal, 6 + 16) << "rattle and its compositions, and eight methods in two forms";
 }

@@ -38,6 +38,7 @@ class LearnedSystem final : public SphereSystem {
     return {{energy, std::max(1.0, std::abs(energy))}, {learning::vertical_momentum(z.reshaped()), size}};
   }
 
+  std::vector<double> from_files() const override { return {learned_.parameters.begin(), learned_.parameters.end()}; }
   std::vector<std::string> pinned() const override {
     return {fmt::format("parameters.model='{}'", std::filesystem::absolute(file_).string())};
   }

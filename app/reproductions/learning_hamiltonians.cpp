@@ -71,9 +71,12 @@ std::vector<LearningFit> cells(const LearningStudy& study) {
           if (count <= study.largest)
             add({LearningPart::study, 1, noise, integrator, count, points, study.substeps}, models);
   const int usual = std::min(500, study.largest);
-  for (const std::string& integrator : learning_integrators())
-    add({LearningPart::study, 2, 0, integrator, usual, 5, study.substeps}, models);
   constexpr int substeps = 2;
+  for (const double noise : {0.0, 0.01})
+    for (const std::string& integrator : learning_integrators())
+      for (const int count : {50, 500})
+        for (const int points : numbers_of_points)
+          if (count <= study.largest) add({LearningPart::study, 2, noise, integrator, count, points, substeps}, models);
   for (const double noise : {0.0, 0.01})
     for (const int bodies : {1, 2})
       add({LearningPart::models, bodies, noise, "CF4", usual, 5, substeps},

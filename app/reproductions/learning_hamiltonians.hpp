@@ -28,7 +28,7 @@ struct LearningStudy {
   unsigned first_seed = 1;  ///< of the first
   int largest = 1500;       ///< cells with more trajectories are left out
   int units = 8;            ///< of the network's hidden layer
-  int substeps = 1;         ///< of the integrator between two points, in the study; elsewhere two
+  int substeps = 1;         ///< of the integrator between two points, for one pendulum; elsewhere two
   int threads = 2;          ///< cells at a time; nothing but the time depends on it
 };
 

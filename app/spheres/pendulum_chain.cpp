@@ -52,7 +52,7 @@ class ChainSystem final : public SphereSystem {
   Chain chain_;
 };
 
-constexpr NumberRule usable{"between 1e-300 and 1e300", [](double x) { return x >= 1e-300 && x <= 1e300; }};
+constexpr NumberRule usable{"positive, from 1e-300 to 1e300", [](double x) { return x >= 1e-300 && x <= 1e300; }};
 
 /// One number for each link, or one for all; empty in the latter case.
 std::vector<double> read_each(const Section& parameters, const char* key) {

@@ -1,5 +1,6 @@
 #include "sphere_run.hpp"
 
+#include "../output_folder.hpp"
 #include "../simulation.hpp"
 #include "../stepped_run.hpp"
 #include "sphere_record.hpp"
@@ -94,6 +95,10 @@ class SphereRun final : public SteppedRun {
   bool observe(long step) override { return step % scene_.pace.every != 0 || see(step); }
   Trajectory& trajectory() override { return result_.trajectory; }
   void persist(Archive& archive) override {
+    const std::vector<double> now = scene_.system->from_files();
+    std::vector<double> then = now;
+    archive("from files", then);
+    if (then != now) throw RunError("the file that the scene's system is read from has changed; run the scene anew");
     archive.tape("march", [&](Tape& tape) { march_->persist(tape); });
     archive("last observed", last_observed_);
     archive("promises", promises_);

@@ -42,6 +42,8 @@ class SphereSystem {
   virtual Points in_form(const Points& z, SphereForm from, SphereForm to) const = 0;
   virtual std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const = 0;
 
+  /// Numbers from files that it is made of: a run is taken up with the same ones only.
+  virtual std::vector<double> from_files() const { return {}; }
   /// What a scene of it that is read from elsewhere has to say differently, as "key=value": paths of files.
   virtual std::vector<std::string> pinned() const { return {}; }
 

@@ -11,6 +11,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace lagroid {
@@ -151,6 +152,24 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
   void persist(Tape& tape) {
     auto point = numbers_of(point_);
     tape(point, h_, time_, steps_, rejected_, step_);
+  }
+  /// The same, to be gone back to. Nothing is allocated where a place of this march is overwritten.
+  struct Place {
+    LieGroupStep<M> step;
+    Point point;
+    double h, time;
+    long steps, rejected;
+  };
+  Place place() const { return {step_, point_, h_, time_, steps_, rejected_}; }
+  void keep(Place& at) const {
+    at.step = step_;
+    at.point = point_;
+    std::tie(at.h, at.time, at.steps, at.rejected) = std::tie(h_, time_, steps_, rejected_);
+  }
+  void go_back_to(const Place& at) {
+    step_ = at.step;
+    point_ = at.point;
+    std::tie(h_, time_, steps_, rejected_) = std::tie(at.h, at.time, at.steps, at.rejected);
   }
 
  private:
