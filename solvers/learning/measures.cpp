@@ -11,7 +11,8 @@ double vertical_momentum(const Eigen::Ref<const Eigen::VectorXd>& z) {
   return sum;
 }
 
-Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance) {
+Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance,
+                 const std::function<bool()>& stop) {
   Measures out;
   const Eigen::Index later = data.points - 1;
   const Eigen::Index width = data.width();
@@ -22,6 +23,10 @@ Measures measure(const Model& model, const Eigen::VectorXd& theta, const Traject
   double energies = 0;
   Eigen::MatrixXd z;
   for (Eigen::Index n = 0; n < data.count(); ++n) {
+    if (stop && stop()) {
+      out.complete = false;
+      return out;
+    }
     const Eigen::VectorXd start = data.starts.col(n);
     if (!model.follow(theta, start, out.times, tolerance, z)) {
       ++out.lost;

@@ -4,6 +4,7 @@
 #include <lagroid/solvers/learning/model.hpp>
 #include <lagroid/solvers/learning/trajectories.hpp>
 
+#include <functional>
 #include <vector>
 
 namespace lagroid::learning {
@@ -21,10 +22,13 @@ struct Measures {
   /// the learned V has the symmetry; and along the data.
   double momentum_learned = 0;
   double momentum_data = 0;
-  long lost = 0;  ///< trajectories that could not be followed, left out of all
+  long lost = 0;         ///< trajectories that could not be followed, left out of all
+  bool complete = true;  ///< false where it was stopped: then the numbers above mean nothing
 };
 
-Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance = 1e-12);
+/// `stop` is asked before each trajectory; true ends the measurement.
+Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance = 1e-12,
+                 const std::function<bool()>& stop = nullptr);
 
 /// e_3 . sum_i q_i x p_i.
 double vertical_momentum(const Eigen::Ref<const Eigen::VectorXd>& z);

@@ -70,7 +70,7 @@ class Model {
                              const Eigen::Ref<const Eigen::MatrixXd>& starts, Eigen::Ref<Eigen::MatrixXd> z,
                              Eigen::Ref<Eigen::MatrixXd> derivative) const = 0;
   /// The states at rising `times` > 0 under control of the error (Munthe-Kaas on Dormand and Prince's pair); false
-  /// where the motion cannot be followed, and then nothing is known of z.
+  /// where the motion cannot be followed, in 100 000 steps from one time to the next, and then nothing is known of z.
   virtual bool follow(const Eigen::VectorXd& theta, const Eigen::VectorXd& start, std::span<const double> times,
                       double tolerance, Eigen::MatrixXd& z) const = 0;
 };

@@ -15,8 +15,9 @@ namespace lagroid::learning {
 /// nothing. Parameters, layer by layer: for each unit its row of W_l, then its b; at the end w.
 class NetworkPotential {
  public:
-  /// Throws std::invalid_argument unless there are bodies and layers, all with units.
+  /// Throws std::invalid_argument unless there are bodies and layers, all with units, and `most` parameters or fewer.
   NetworkPotential(int bodies, std::vector<int> hidden);
+  static constexpr int most = 5000;
 
   const std::vector<int>& hidden() const { return hidden_; }
   int size() const { return size_; }

@@ -92,7 +92,7 @@ template <class P, int K> class ParametricModel : public Model {
     Field<double> field = at(theta);
     const auto space = field.space();
     ControlledLieGroupIntegrator march(space, std::move(field), lie_group_methods::munthe_kaas_54, state(start),
-                                       LieGroupControl{.tolerance = tolerance, .most_steps = 1'000'000});
+                                       LieGroupControl{.tolerance = tolerance, .most_steps = 100'000});
     for (std::size_t i = 0; i < times.size(); ++i) {
       if (!march.advance_to(times[i]).converged()) return false;
       z.col(Eigen::Index(i)) = march.point().reshaped();

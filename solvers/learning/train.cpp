@@ -4,11 +4,14 @@
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
+#include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <deque>
+#include <optional>
 #include <utility>
 
 namespace lagroid::learning {
@@ -33,12 +36,29 @@ void weigh(const Trajectories& data, Eigen::Index first, Eigen::Ref<Eigen::Matri
       z.col(n).segment(j * data.width(), data.width()) *= std::sqrt(data.weights(j, first + n));
 }
 
+/// The squared errors times their weights, summed; infinite where one is not finite, and where `halted` ends it.
+double squared_error(const Model& model, const Eigen::VectorXd& theta, const Schedule& schedule,
+                     const Trajectories& data, const std::function<bool()>& halted) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const Eigen::Index block = block_of(data);
+  Eigen::MatrixXd z;
+  double sum = 0;
+  for (Eigen::Index first = 0; first < data.count(); first += block) {
+    if (halted && halted()) return none;
+    z.resize(data.ends.rows(), std::min(block, data.count() - first));
+    model.predict(theta, schedule, data.starts.middleCols(first, z.cols()), z);
+    weigh(data, first, z);
+    sum += z.squaredNorm();
+  }
+  return std::isfinite(sum) ? sum : none;
+}
+
 /// The errors of all trajectories as one residual block of Ceres, compressed (Compressed). Where Ceres asks for no
 /// derivatives it wants their norm alone.
 class TrajectoryCost final : public ceres::CostFunction {
  public:
-  TrajectoryCost(const Model& model, const Schedule& schedule, const Trajectories& data)
-      : model_(model), schedule_(schedule), data_(data), compressed_(model.size()) {
+  TrajectoryCost(const Model& model, const Schedule& schedule, const Trajectories& data, std::function<bool()> halted)
+      : model_(model), schedule_(schedule), data_(data), halted_(std::move(halted)), compressed_(model.size()) {
     set_num_residuals(int(model.size()) + 1);
     mutable_parameter_block_sizes()->push_back(int(model.size()));
   }
@@ -48,14 +68,27 @@ class TrajectoryCost final : public ceres::CostFunction {
     const Eigen::VectorXd theta = Eigen::Map<const Eigen::VectorXd>(parameters[0], n);
     Eigen::Map<Eigen::VectorXd> r(residuals, n + 1);
     if (jacobians == nullptr || jacobians[0] == nullptr) {
-      const double mse = mean_squared_error(model_, theta, schedule_, data_);
       r.setZero();
-      r(n) = std::sqrt(mse * double(data_.ends.size()));
-      return std::isfinite(mse);
+      r(n) = std::sqrt(squared_error(model_, theta, schedule_, data_, halted_));
+      return std::isfinite(r(n));
     }
-    compressed_.clear();
+    if (!compress(theta)) return false;
+    r = triangle_.col(n);
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<RowMajor>(jacobians[0], n + 1, n) = triangle_.leftCols(n);
+    return triangle_.allFinite();
+  }
+  /// (R s) where derivatives were last wanted.
+  const Eigen::MatrixXd& triangle() const { return triangle_; }
+
+ private:
+  /// False where it is ended.
+  bool compress(const Eigen::VectorXd& theta) const {
+    const Eigen::Index n = model_.size();
     const Eigen::Index block = block_of(data_);
+    compressed_.clear();
     for (Eigen::Index first = 0; first < data_.count(); first += block) {
+      if (halted_()) return false;
       const Eigen::Index now = std::min(block, data_.count() - first);
       z_.resize(data_.ends.rows(), now);
       rows_.resize(z_.size(), n + 1);
@@ -67,19 +100,41 @@ class TrajectoryCost final : public ceres::CostFunction {
           rows_.block(c * z_.rows() + j * data_.width(), 0, data_.width(), n) *= std::sqrt(data_.weights(j, first + c));
       compressed_.add(rows_);
     }
-    const Eigen::MatrixXd& triangle = compressed_.triangle();
-    r = triangle.col(n);
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Eigen::Map<RowMajor>(jacobians[0], n + 1, n) = triangle.leftCols(n);
-    return triangle.allFinite();
+    triangle_ = compressed_.triangle();
+    return true;
   }
 
- private:
   const Model& model_;
   const Schedule& schedule_;
   const Trajectories& data_;
+  std::function<bool()> halted_;
   mutable Compressed compressed_;
-  mutable Eigen::MatrixXd z_, rows_;
+  mutable Eigen::MatrixXd z_, rows_, triangle_;
+};
+
+/// Trained::mass_determined. `triangle` is (R s), `total` the sum of the weights of all numbers, `masses` how many of
+/// the parameters, the first ones, are the mass matrix's.
+bool determines_mass(const Eigen::MatrixXd& triangle, double total, Eigen::Index masses) {
+  constexpr double dependent = 1e-10;  // a column of the potential, on others
+  constexpr double felt = 1e-8;
+  if (!triangle.allFinite()) return true;
+  const Eigen::Index others = triangle.cols() - 1 - masses;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(triangle.middleCols(masses, others));
+  qr.setThreshold(dependent);
+  const Eigen::MatrixXd turned = qr.householderQ().adjoint() * triangle.leftCols(masses);
+  const Eigen::MatrixXd left = turned.bottomRows(turned.rows() - qr.rank());
+  if (left.rows() < masses) return false;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(left);
+  return svd.singularValues()(masses - 1) > felt * std::sqrt(total);
+}
+
+constexpr double first_radius = 0.1;
+
+/// Where a descent came to.
+struct Found {
+  Eigen::VectorXd theta;
+  double mse = std::numeric_limits<double>::infinity();  ///< on its data; infinite where it has none, or no derivative
+  double validation = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Trainings of one model, one after the other, under common limits.
@@ -88,40 +143,30 @@ class Trainer final : public ceres::IterationCallback {
   Trainer(const Model& model, const Training& options, Trajectories held_out, Schedule schedule)
       : model_(model), options_(options), held_out_(std::move(held_out)), schedule_(std::move(schedule)) {}
 
-  /// Goes on from `theta`, which becomes the best met. Its error on `data`; infinite where it has none.
-  double descend(int start, const Trajectories& data, int iterations, Eigen::VectorXd& theta) {
+  /// Goes on from `theta` to the best that can be met.
+  Found descend(int start, const Trajectories& data, int iterations, const Eigen::VectorXd& theta) {
     start_ = start;
     at_ = theta;
-    best_ = theta;
-    least_validation_ = std::numeric_limits<double>::infinity();
+    best_ = {theta};
     since_ = 0;
     fallen_.clear();
-    scale_ = 2 / double(data.ends.size());
+    scale_ = 2 / data.total_weight();
+    round_off_ = 1e-30 * data.ends.squaredNorm() / double(data.ends.size());
     end_ = Outcome::iteration_limit;
-    TrajectoryCost cost(model_, schedule_, data);
+    TrajectoryCost cost(model_, schedule_, data, [this] { return halted(); });
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ownership);
     problem.AddResidualBlock(&cost, nullptr, at_.data());
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
-    solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-    solver.max_num_iterations = iterations;
-    // Bold first steps saturate a network, or blow masses up: from 1e4 some starts never came back.
-    solver.initial_trust_region_radius = 0.1;
-    solver.max_trust_region_radius = 1 / options_.damping_floor;
-    solver.function_tolerance = 0;
-    solver.gradient_tolerance = 0;
-    solver.parameter_tolerance = 1e-16;
-    solver.logging_type = ceres::SILENT;
-    solver.num_threads = 1;
-    solver.update_state_every_iteration = true;
-    solver.callbacks.push_back(this);
     ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
+    ceres::Solve(settings(iterations), &problem, &summary);
     if (summary.termination_type == ceres::CONVERGENCE) end_ = Outcome::converged;
-    theta = held_out_.count() > 0 ? best_ : at_;
-    return mean_squared_error(model_, theta, schedule_, data);
+    if (!summary.IsSolutionUsable()) end_ = Outcome::not_finite;
+    if (summary.IsSolutionUsable() && !halt_) {
+      const Eigen::Index masses = model_.bodies() * (model_.bodies() + 1) / 2;
+      mass_determined_ = determines_mass(cost.triangle(), data.total_weight(), masses);
+    }
+    return best_;
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
@@ -129,16 +174,19 @@ class Trainer final : public ceres::IterationCallback {
     stage.start = start_;
     stage.iteration = now.iteration;
     // Of a step that is refused Ceres tells what it would have cost.
-    if (now.iteration == 0 || now.step_is_successful) mse_ = scale_ * now.cost;
+    const bool accepted = now.iteration == 0 || now.step_is_successful;
+    if (accepted) mse_ = scale_ * now.cost;
     stage.mse = mse_;
     stage.damping = 1 / now.trust_region_radius;
+    stage.validation = accepted ? validation(at_) : history_.back().validation;
+    keep(stage);
     stage.seconds = seconds();
-    stage.validation = validate(now);
     history_.push_back(stage);
     if (now.iteration > 0) ++iterations_;
-    if (options_.callback && !options_.callback(stage)) return stop(Outcome::interrupted);
-    if (stage.seconds > options_.seconds) return stop(Outcome::time_limit);
-    if (stage.mse <= options_.enough) return stop(Outcome::reached);
+    if (options_.callback && !options_.callback(stage)) halt_ = Outcome::interrupted;
+    if (halted()) return stop(*halt_);
+    if (options_.enough > 0 && stage.mse <= options_.enough) return stop(Outcome::reached);
+    if (stage.mse <= round_off_) return stop(Outcome::converged);
     if (held_out_.count() > 0 && since_ >= options_.patience) return stop(Outcome::early_stopped);
     constexpr std::size_t window = 10;
     fallen_.push_back(stage.mse);
@@ -150,33 +198,52 @@ class Trainer final : public ceres::IterationCallback {
   }
 
   double seconds() const { return processor_seconds() - begun_; }
-  Outcome end() const { return end_; }
+  Outcome end() const { return halt_.value_or(end_); }
   int iterations() const { return iterations_; }
   std::vector<Stage>& history() { return history_; }
-  bool ended() const { return end_ == Outcome::interrupted || end_ == Outcome::time_limit; }
-  double validation(const Eigen::VectorXd& theta) const {
-    return held_out_.count() > 0 ? mean_squared_error(model_, theta, schedule_, held_out_)
-                                 : std::numeric_limits<double>::quiet_NaN();
+  bool mass_determined() const { return mass_determined_; }
+  /// Whether the last iterations lowered the error by more than round-off.
+  bool falls() const {
+    return !fallen_.empty() && fallen_.front() - fallen_.back() > 1e-12 * fallen_.front() + round_off_;
+  }
+  /// Whether an interrupt or the time limit has come.
+  bool halted() {
+    if (!halt_ && options_.stop && options_.stop()) halt_ = Outcome::interrupted;
+    if (!halt_ && seconds() > options_.seconds) halt_ = Outcome::time_limit;
+    return halt_.has_value();
+  }
+  double validation(const Eigen::VectorXd& theta) {
+    if (held_out_.count() == 0) return std::numeric_limits<double>::quiet_NaN();
+    return squared_error(model_, theta, schedule_, held_out_, [this] { return halted(); }) / held_out_.total_weight();
   }
 
  private:
+  ceres::Solver::Options settings(int iterations) {
+    ceres::Solver::Options out;
+    out.linear_solver_type = ceres::DENSE_QR;
+    out.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+    out.max_num_iterations = iterations;
+    // Bold first steps saturate a network, or blow masses up.
+    out.initial_trust_region_radius = first_radius;
+    out.max_trust_region_radius = 1 / options_.damping_floor;
+    out.function_tolerance = 0;
+    out.gradient_tolerance = 0;
+    out.parameter_tolerance = 1e-16;
+    out.logging_type = ceres::SILENT;
+    out.num_threads = 1;
+    out.update_state_every_iteration = true;
+    out.callbacks.push_back(this);
+    return out;
+  }
   ceres::CallbackReturnType stop(Outcome why) {
     end_ = why;
     return ceres::SOLVER_TERMINATE_SUCCESSFULLY;  // after SOLVER_ABORT the parameters would be those of the start
   }
-  double validate(const ceres::IterationSummary& now) {
-    if (now.iteration > 0 && !now.step_is_successful) {
-      ++since_;
-      return history_.back().validation;
-    }
-    const double error = validation(at_);
-    ++since_;
-    if (error < least_validation_) {
-      least_validation_ = error;
-      best_ = at_;
-      since_ = 0;
-    }
-    return error;
+  /// Steps that are accepted lower the training error; of the validation error the least counts.
+  void keep(const Stage& stage) {
+    const bool better = held_out_.count() == 0 || stage.iteration == 0 || stage.validation < best_.validation;
+    since_ = better ? 0 : since_ + 1;
+    if (better) best_ = {at_, stage.mse, stage.validation};
   }
 
   const Model& model_;
@@ -186,30 +253,93 @@ class Trainer final : public ceres::IterationCallback {
   double begun_ = processor_seconds();
   std::vector<Stage> history_;
   int iterations_ = 0;
+  std::optional<Outcome> halt_;
   // Of the descent that goes on:
   int start_ = 0;
-  Eigen::VectorXd at_, best_;
-  double least_validation_ = 0;
+  Eigen::VectorXd at_;
+  Found best_;
   int since_ = 0;
   std::deque<double> fallen_;
   double scale_ = 1;
+  double round_off_ = 0;
   double mse_ = 0;
+  bool mass_determined_ = true;
   Outcome end_ = Outcome::iteration_limit;
 };
 
-std::string message_of(Outcome outcome, const Training& options, double mse) {
+std::string message_of(Outcome outcome, const Training& options, double mse, bool falls) {
   switch (outcome) {
     case Outcome::iteration_limit:
       if (options.iterations == 0) return {};
-      return fmt::format("after {} iterations the mean squared error {:.1e} still falls; allow more to go on",
-                         options.iterations, mse);
+      return fmt::format("after {} iterations the mean squared error {:.1e} {}", options.iterations, mse,
+                         falls ? "still falls; allow more to go on" : "falls no more; try other starts");
     case Outcome::time_limit:
       return fmt::format("{:g} s did not suffice, the mean squared error is {:.1e}; allow more", options.seconds, mse);
     case Outcome::interrupted:
       return fmt::format("interrupted; the best so far has mean squared error {:.1e}", mse);
+    case Outcome::not_finite:
+      return fmt::format(
+          "the error or its derivative was not finite any more; the best so far has mean squared error {:.1e}; take "
+          "more substeps, shorter intervals, or another seed",
+          mse);
     default:
       return {};
   }
+}
+
+/// Where there are no parameters worth keeping.
+std::string message_of_none(Outcome outcome, const Training& options) {
+  switch (outcome) {
+    case Outcome::time_limit:
+      return fmt::format("{:g} s did not suffice to evaluate the error once; allow more", options.seconds);
+    case Outcome::interrupted:
+      return "interrupted before the error was evaluated once";
+    default:
+      break;
+  }
+  if (options.begin.size() > 0)
+    return "the parameters to go on from have no finite error, or none that has a finite derivative; take others, more "
+           "substeps, or shorter intervals";
+  return fmt::format(
+      "none of {} starts has a finite error with a finite derivative; take more substeps, or shorter intervals",
+      options.starts);
+}
+
+void require_training(const Model& model, const Trajectories& data, const Training& options) {
+  if (!(options.validation >= 0 && options.validation < 1) || !(options.share > 0 && options.share <= 1) ||
+      !(options.damping_floor > 0 && options.damping_floor <= 1 / first_radius) || options.substeps < 1 ||
+      options.starts < 1 || options.iterations < 0 || options.trial < 1 || options.patience < 1 ||
+      !(options.enough >= 0) || std::isnan(options.seconds) || data.bodies != model.bodies() ||
+      (options.begin.size() > 0 && options.begin.size() != model.size()))
+    throw std::invalid_argument(fmt::format(
+        "a training has starts, substeps and patience of one or more, shares between zero and one, a floor of the "
+        "damping between zero and {:g}, errors and times that are numbers, parameters to begin with as many as the "
+        "model's, and data of as many bodies",
+        1 / first_radius));
+}
+
+/// Why nothing can be learned from these; empty where something can.
+std::string too_little(const Model& model, const Trajectories& training, const Trajectories& held_out,
+                       const Training& options) {
+  if (held_out.count() > 0 && !(held_out.weights.maxCoeff() > 0))
+    return "all weights of the trajectories held out are zero; weigh more of the data, or hold out more";
+  const Eigen::Index free = training.free_numbers();
+  const bool measured_only = options.begin.size() > 0 && options.iterations == 0;
+  if (free > 0 && (measured_only || free >= model.size())) return {};
+  return fmt::format(
+      "{} trajectories of {} points are {} free numbers, the model has {} parameters; give more data, or take a "
+      "smaller model",
+      training.count(), training.points, free, model.size());
+}
+
+/// As few trajectories, the first ones, as are a share of all and have three free numbers for each parameter.
+Trajectories for_trials(const Trajectories& training, double share, Eigen::Index parameters) {
+  const Eigen::Index each = 4 * training.bodies;
+  auto few = Eigen::Index(std::ceil(share * double(training.count())));
+  Eigen::Index numbers = training.part(0, few).free_numbers();
+  for (; few < training.count() && numbers < 3 * parameters; ++few)
+    numbers += each * (training.weights.col(few).array() > 0).count();
+  return training.part(0, few);
 }
 
 }  // namespace
@@ -238,79 +368,53 @@ std::string_view to_string(Outcome outcome) {
 
 double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, const Schedule& schedule,
                           const Trajectories& data) {
-  const Eigen::Index block = block_of(data);
-  Eigen::MatrixXd z;
-  double sum = 0;
-  for (Eigen::Index first = 0; first < data.count(); first += block) {
-    z.resize(data.ends.rows(), std::min(block, data.count() - first));
-    model.predict(theta, schedule, data.starts.middleCols(first, z.cols()), z);
-    weigh(data, first, z);
-    sum += z.squaredNorm();
-  }
-  const double mse = sum / double(data.ends.size());
-  return std::isfinite(mse) ? mse : std::numeric_limits<double>::infinity();
+  return squared_error(model, theta, schedule, data, nullptr) / data.total_weight();
 }
 
 Trained train(const Model& model, const Trajectories& data, const Training& options) {
-  if (!(options.validation >= 0 && options.validation < 1) || !(options.share > 0 && options.share <= 1) ||
-      !(options.damping_floor > 0) || options.substeps < 1 || options.starts < 1 || options.iterations < 0 ||
-      options.trial < 1 || options.patience < 1 || data.bodies != model.bodies() ||
-      (options.begin.size() > 0 && options.begin.size() != model.size()))
-    throw std::invalid_argument(
-        "a training has starts, substeps and patience of one or more, shares between zero and one, a positive floor of "
-        "the damping, parameters to begin with as many as the model's, and data of as many bodies");
-  Trained out;
+  require_training(model, data, options);
   const auto held_out = Eigen::Index(std::ceil(options.validation * double(data.count())));
-  const Eigen::Index kept = data.count() - held_out;
-  const Eigen::Index free = 4 * data.bodies * Eigen::Index(data.points - 1);  // numbers of a trajectory, on T*S^2
-  if (free * kept < model.size()) {
+  const Trajectories shuffled = data.shuffled(options.seed);
+  const Trajectories all = shuffled.part(held_out, data.count() - held_out);
+  Trained out;
+  out.message = too_little(model, all, shuffled.part(0, held_out), options);
+  if (!out.message.empty()) {
     out.outcome = Outcome::too_little_data;
-    out.message = fmt::format(
-        "{} trajectories of {} points are {} free numbers, the model has {} parameters; give more "
-        "data, or take a smaller model",
-        kept, data.points, free * kept, model.size());
     return out;
   }
-  const Trajectories all = data.part(0, kept);
   const Schedule schedule{options.method, data.interval, data.points - 1, options.substeps};
-  Trainer trainer(model, options, data.part(kept, held_out), schedule);
-  Eigen::VectorXd best;
-  double least = std::numeric_limits<double>::infinity();
-  const bool goes_on = options.begin.size() > 0;
-  if (options.starts > 1 && !goes_on) {
-    // Three free numbers for each parameter at least.
-    const Eigen::Index few =
-        std::max(Eigen::Index(std::ceil(options.share * double(kept))), (3 * model.size() + free - 1) / free);
-    const Trajectories some = all.part(0, std::min(few, kept));
-    for (int s = 0; s < options.starts && !trainer.ended(); ++s) {
-      Eigen::VectorXd theta = model.start(options.seed + unsigned(s));
-      const double mse = trainer.descend(s, some, options.trial, theta);
-      if (mse < least) {
-        least = mse;
-        best = theta;
-        out.start = int(options.seed) + s;
-      }
+  Trainer trainer(model, options, shuffled.part(0, held_out), schedule);
+  Found best;
+  out.start = int(options.seed);
+  const bool tries = options.starts > 1 && options.begin.size() == 0;
+  if (tries) {
+    const Trajectories some = for_trials(all, options.share, model.size());
+    for (int s = 0; s < options.starts && !trainer.halted(); ++s) {
+      Found found = trainer.descend(s, some, options.trial, model.start(options.seed + unsigned(s)));
+      if (!(found.mse < best.mse)) continue;
+      best = std::move(found);
+      out.start = int(options.seed) + s;
     }
   } else {
-    best = goes_on ? options.begin : model.start(options.seed);
-    least = mean_squared_error(model, best, schedule, all);
-    out.start = int(options.seed);
+    best.theta = options.begin.size() > 0 ? options.begin : model.start(options.seed);
   }
-  if (std::isfinite(least) && !trainer.ended()) trainer.descend(options.starts, all, options.iterations, best);
+  if (best.theta.size() > 0 && !trainer.halted()) {
+    Found found = trainer.descend(options.starts, all, options.iterations, best.theta);
+    if (!tries || std::isfinite(found.mse)) best = std::move(found);
+  }
   out.history = std::move(trainer.history());
   out.iterations = trainer.iterations();
   out.seconds = trainer.seconds();
-  if (!std::isfinite(least)) {
-    out.outcome = Outcome::not_finite;
-    out.message =
-        fmt::format("none of {} starts has a finite error; take more substeps, or shorter intervals", options.starts);
+  out.outcome = trainer.end();
+  if (!std::isfinite(best.mse)) {
+    out.message = message_of_none(out.outcome, options);
     return out;
   }
-  out.parameters = best;
-  out.mse = mean_squared_error(model, best, schedule, all);
-  out.validation = trainer.validation(best);
-  out.outcome = std::isfinite(out.mse) ? trainer.end() : Outcome::not_finite;
-  out.message = message_of(out.outcome, options, out.mse);
+  out.parameters = std::move(best.theta);
+  out.mse = best.mse;
+  out.validation = best.validation;
+  out.mass_determined = trainer.mass_determined();
+  out.message = message_of(out.outcome, options, out.mse, trainer.falls());
   return out;
 }
 

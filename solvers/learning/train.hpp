@@ -19,8 +19,8 @@ enum class Outcome {
   iteration_limit,  ///< as many iterations as were allowed
   time_limit,       ///< as long as was allowed
   interrupted,      ///< the callback said so
-  too_little_data,  ///< fewer numbers than parameters
-  not_finite,       ///< no start has a finite error
+  too_little_data,  ///< fewer numbers than parameters, or a part without weight
+  not_finite,       ///< no start has a finite error and derivative, or further on one has none
 };
 std::string_view to_string(Outcome outcome);
 
@@ -44,10 +44,11 @@ struct Training {
   double share = 0.2;
   int iterations = 100;        ///< with all trajectories; zero where the parameters are to be measured only
   Eigen::VectorXd begin = {};  ///< parameters to go on from, in place of starts; empty: Model::start
-  /// Of the trajectories, the last ones, that are held out to stop early by; 0: none.
+  /// Of the trajectories, those that are held out to stop early by; 0: none. Which ones, and which ones starts are
+  /// tried on, the seed says, so that it does not matter in what order they come.
   double validation = 0;
   int patience = 10;             ///< iterations without a lower error on those
-  double enough = 0;             ///< mean squared error at which it stops
+  double enough = 0;             ///< mean squared error at which it stops; 0: none
   double least_progress = 1e-3;  ///< and the relative fall of it over ten iterations below which it does
   /// The floor under the damping of a step, relative to the squared norms of the columns of J: J has no full rank,
   /// because neither the part of V away from the spheres nor symmetries of a network move anything.
@@ -55,14 +56,21 @@ struct Training {
   double seconds = std::numeric_limits<double>::infinity();  ///< of the processor
   /// Sees every iteration; false interrupts.
   std::function<bool(const Stage&)> callback = nullptr;
+  /// Asked after every few trajectories; true interrupts.
+  std::function<bool()> stop = nullptr;
 };
 
 struct Trained {
   Outcome outcome = Outcome::not_finite;
   std::string message;         ///< one line where it did not converge, with the remedy
   Eigen::VectorXd parameters;  ///< the best met; empty where nothing could be evaluated
+  /// Over all trajectories that were not held out; where an interrupt or the time limit ended the trials, over those of
+  /// the trials.
   double mse = std::numeric_limits<double>::quiet_NaN();
   double validation = std::numeric_limits<double>::quiet_NaN();
+  /// Whether, at the end, a change of the mass matrix's parameters of size one moves the predictions by more than 1e-8,
+  /// whatever the potential does to make up for it.
+  bool mass_determined = true;
   int start = 0;       ///< the seed of the start that was best
   int iterations = 0;  ///< of all stages
   double seconds = 0;  ///< of the processor
@@ -71,8 +79,8 @@ struct Trained {
   bool usable() const { return parameters.size() > 0; }
 };
 
-/// The weighted mean of (z - z_data)^2 over all numbers of all points but the first; infinite where the motion is not
-/// finite.
+/// The weighted mean of (z - z_data)^2 over all numbers of all points but the first: the sum over that of the weights.
+/// Infinite where the motion is not finite.
 double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, const Schedule& schedule,
                           const Trajectories& data);
 

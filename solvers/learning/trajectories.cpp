@@ -5,7 +5,11 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numeric>
+#include <random>
 #include <set>
+#include <utility>
 
 namespace lagroid::learning {
 
@@ -13,6 +17,11 @@ namespace {
 
 /// What a text file with seven digits leaves.
 constexpr double written = 1e-6;
+/// Times, of the interval: what a text file leaves of them.
+constexpr double even = 1e-6;
+constexpr double round_off = 8 * std::numeric_limits<double>::epsilon();
+/// Numbers whose squares, and sums of them, are numbers too.
+constexpr double largest_number = 1e100;
 /// Of the noise: beyond so many times its size is a mistake.
 constexpr double spread = 6;
 
@@ -25,6 +34,9 @@ void require_state(const Observation& row, double noise) {
     if (!std::isfinite(row.z(i)))
       throw DataRefused(fmt::format("{}: {}_{} is {}; every number has to be finite", place(row), i % 6 < 3 ? 'q' : 'p',
                                     i / 6 + 1, row.z(i)));
+  if (!(row.z.cwiseAbs().maxCoeff() <= largest_number))
+    throw DataRefused(
+        fmt::format("{}: a number above {:g}; take units in which they are smaller", place(row), largest_number));
   if (!std::isfinite(row.time)) throw DataRefused(fmt::format("row {}: the time is not finite", row.row));
   if (!(row.weight >= 0) || !std::isfinite(row.weight))
     throw DataRefused(fmt::format("{}: weight {}; weights are zero or positive", place(row), row.weight));
@@ -70,6 +82,14 @@ Trajectories Trajectories::part(Eigen::Index first, Eigen::Index number) const {
           starts.middleCols(first, number),
           ends.middleCols(first, number),
           weights.middleCols(first, number)};
+}
+
+Trajectories Trajectories::shuffled(unsigned seed) const {
+  std::mt19937 generator(seed);
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(count()));
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t left = order.size(); left > 1; --left) std::swap(order[left - 1], order[generator() % left]);
+  return {bodies, points, interval, starts(Eigen::all, order), ends(Eigen::all, order), weights(Eigen::all, order)};
 }
 
 Trajectories assemble(std::span<const Observation> rows, double noise) {
@@ -118,7 +138,10 @@ Trajectories assemble(std::span<const Observation> rows, double noise) {
     for (std::size_t j = 0; j < points; ++j) {
       const Observation& row = rows[begin + j];
       const double expected = rows[begin].time + double(j) * out.interval;
-      if (!(std::abs(row.time - expected) <= 1e-6 * out.interval * double(points)))
+      if (j > 0 && !(row.time > rows[begin + j - 1].time))
+        throw DataRefused(
+            fmt::format("{}: the time is not after that of the row before; put rows in the order of time", place(row)));
+      if (!(std::abs(row.time - expected) <= even * out.interval + round_off * std::abs(row.time)))
         throw DataRefused(
             fmt::format("{}: equal intervals would have t = {:g} here; sample all trajectories at equal "
                         "intervals of {:g}",
@@ -132,9 +155,10 @@ Trajectories assemble(std::span<const Observation> rows, double noise) {
       }
     }
   }
-  const double mean = out.weights.mean();
-  if (!(mean > 0)) throw DataRefused("all weights are zero; give some points a positive one");
-  out.weights /= mean;
+  const double largest = out.weights.maxCoeff();
+  if (!(largest > 0)) throw DataRefused("all weights are zero; give some points a positive one");
+  out.weights /= largest;  // their sum might overflow
+  out.weights /= out.weights.mean();
   return out;
 }
 

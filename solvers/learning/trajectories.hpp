@@ -30,12 +30,18 @@ struct Trajectories {
   double interval = 0;      ///< between points
   Eigen::MatrixXd starts;   ///< 6k x N, brought onto (T*S^2)^k
   Eigen::MatrixXd ends;     ///< 6k (M - 1) x N: the later points, one after the other
-  Eigen::MatrixXd weights;  ///< (M - 1) x N, of mean one
+  Eigen::MatrixXd weights;  ///< (M - 1) x N; `assemble` makes their mean one
 
   Eigen::Index count() const { return starts.cols(); }
   Eigen::Index width() const { return starts.rows(); }
+  /// How many numbers there are, each counted by its weight: errors are divided by it.
+  double total_weight() const { return weights.sum() * double(width()); }
+  /// 4k for each later point of positive weight: so much a point of (T*S^2)^k can tell.
+  Eigen::Index free_numbers() const { return 4 * bodies * (weights.array() > 0).count(); }
   /// Those from `first` on, `number` of them.
   Trajectories part(Eigen::Index first, Eigen::Index number) const;
+  /// In an order that belongs to the seed, the same on every machine.
+  Trajectories shuffled(unsigned seed) const;
 };
 
 /// Puts observations together. `noise` is the size of the errors in each number, zero where they are rounding: rows may
@@ -43,9 +49,10 @@ struct Trajectories {
 /// digits leaves). The first point of a trajectory is brought onto (T*S^2)^k and then taken for exact: its noise is not
 /// modelled, and adds to the error of all points that follow.
 ///
-/// Throws DataRefused, naming the row: no rows, unequal numbers of columns, a number that is not finite, q_i off the
-/// sphere, p_i not tangent, a negative weight, times that are not equally spaced or differ between trajectories,
-/// trajectories of unequal length or of one point, or one that is not in one piece.
+/// Throws DataRefused, naming the row: no rows, unequal numbers of columns, a number that is not finite or above 1e100,
+/// q_i off the sphere, p_i not tangent, a negative weight, times that do not rise, are not equally spaced (to 1e-6 of
+/// the interval, and round-off) or differ between trajectories, trajectories of unequal length or of one point, or one
+/// that is not in one piece.
 Trajectories assemble(std::span<const Observation> rows, double noise = 0);
 
 /// z brought onto (T*S^2)^k.
