@@ -385,7 +385,7 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
   const Schedule schedule{options.method, data.interval, data.points - 1, options.substeps};
   Trainer trainer(model, options, shuffled.part(0, held_out), schedule);
   Found best;
-  out.start = int(options.seed);
+  out.start = options.seed;
   const bool tries = options.starts > 1 && options.begin.size() == 0;
   if (tries) {
     const Trajectories some = for_trials(all, options.share, model.size());
@@ -393,7 +393,7 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
       Found found = trainer.descend(s, some, options.trial, model.start(options.seed + unsigned(s)));
       if (!(found.mse < best.mse)) continue;
       best = std::move(found);
-      out.start = int(options.seed) + s;
+      out.start = options.seed + unsigned(s);
     }
   } else {
     best.theta = options.begin.size() > 0 ? options.begin : model.start(options.seed);
