@@ -147,8 +147,7 @@ int serve(const LearnOptions& options) {
   }
   print(options.json ? json.dump(2) + "\n" : text);
   if (code != 0)
-    fmt::print(stderr, "lagroid: {}: {}\n", options.data,
-               lesson.trained.message.empty() ? lesson.notes.back() : lesson.trained.message);
+    fmt::print(stderr, "lagroid: {}: {}\n", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message);
   return code;
 }
 
