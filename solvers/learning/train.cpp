@@ -350,6 +350,24 @@ Trajectories for_trials(const Trajectories& training, double share, Eigen::Index
   return training.part(0, few);
 }
 
+/// The best of the starts, tried on a share of the data, and its seed; without parameters where none can be evaluated,
+/// and without an error where nothing is tried.
+Found first_guess(Trainer& trainer, const Model& model, const Trajectories& training, const Training& options,
+                  unsigned& seed) {
+  seed = options.seed;
+  if (options.begin.size() > 0) return {options.begin};
+  if (options.starts == 1) return {model.start(seed)};
+  const Trajectories some = for_trials(training, options.share, model.size());
+  Found best;
+  for (int s = 0; s < options.starts && !trainer.halted(); ++s) {
+    Found found = trainer.descend(s, some, options.trial, model.start(options.seed + unsigned(s)));
+    if (!(found.mse < best.mse)) continue;
+    best = std::move(found);
+    seed = options.seed + unsigned(s);
+  }
+  return best;
+}
+
 }  // namespace
 
 std::string_view to_string(Outcome outcome) {
@@ -392,23 +410,10 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
   }
   const Schedule schedule{options.method, data.interval, data.points - 1, options.substeps};
   Trainer trainer(model, options, shuffled.part(0, held_out), schedule);
-  Found best;
-  out.start = options.seed;
-  const bool tries = options.starts > 1 && options.begin.size() == 0;
-  if (tries) {
-    const Trajectories some = for_trials(all, options.share, model.size());
-    for (int s = 0; s < options.starts && !trainer.halted(); ++s) {
-      Found found = trainer.descend(s, some, options.trial, model.start(options.seed + unsigned(s)));
-      if (!(found.mse < best.mse)) continue;
-      best = std::move(found);
-      out.start = options.seed + unsigned(s);
-    }
-  } else {
-    best.theta = options.begin.size() > 0 ? options.begin : model.start(options.seed);
-  }
+  Found best = first_guess(trainer, model, all, options, out.start);
   if (best.theta.size() > 0 && !trainer.halted()) {
     Found found = trainer.descend(options.starts, all, options.iterations, best.theta);
-    if (!tries || std::isfinite(found.mse)) best = std::move(found);
+    if (std::isfinite(found.mse)) best = std::move(found);
   }
   out.history = std::move(trainer.history());
   out.iterations = trainer.iterations();
