@@ -33,10 +33,11 @@ class Draw {
 
 std::vector<learning::Observation> draw_trajectories(const PendulumChain<Eigen::Dynamic>& chain,
                                                      const ChainTrajectories& which) {
-  if (which.count < 1 || which.points < 2 || !(which.duration > 0) || !(which.noise >= 0))
+  if (which.count < 1 || which.points < 2 || !(which.duration > 0) || !std::isfinite(which.duration) ||
+      !(which.noise >= 0) || !std::isfinite(which.noise))
     throw std::invalid_argument(
         "trajectories to be drawn are one or more, of two or more points, over a positive time, with noise zero or "
-        "positive");
+        "positive, all finite");
   using Field = ChainMomentumField<Eigen::Dynamic>;
   Draw draw(which.seed);
   const int k = chain.links();
@@ -54,7 +55,10 @@ std::vector<learning::Observation> draw_trajectories(const PendulumChain<Eigen::
     for (int j = 0; j < which.points; ++j) {
       const double time = which.duration * j / (which.points - 1);
       if (j > 0 && !march.advance_to(time).converged())
-        throw std::runtime_error(fmt::format("trajectory {} of the chain cannot be followed", n + 1));
+        throw std::runtime_error(
+            fmt::format("trajectory {} of the chain cannot be followed to t = {:g}; take a shorter duration, or other "
+                        "masses and lengths",
+                        n + 1, time));
       learning::Observation row{long(out.size()) + 1, n + 1, time, march.point().reshaped(), 1};
       if (j > 0)
         for (double& x : row.z) x += which.noise * (2 * draw.uniform() - 1);

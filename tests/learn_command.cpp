@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,19 @@ class Learn : public CommandLine {
     const Outcome r = run(arguments + " --json");
     EXPECT_EQ(r.code, 0) << arguments << r.err << r.out;
     return nlohmann::json::parse(r.out);
+  }
+  /// A trajectory of two points, with so many columns of times, and q_1x of the last one.
+  std::string hdf5(const std::string& name, hsize_t columns, double last) const {
+    const H5::H5File out(path(name), H5F_ACC_TRUNC);
+    const auto add = [&](const char* set, hsize_t width, std::vector<double> numbers) {
+      const hsize_t size[2] = {2, width};
+      out.createDataSet(set, H5::PredType::NATIVE_DOUBLE, H5::DataSpace(2, size))
+          .write(numbers.data(), H5::PredType::NATIVE_DOUBLE);
+    };
+    add("trajectory", 1, {1, 1});
+    add("t", columns, columns == 1 ? std::vector<double>{0, 0.1} : std::vector<double>(2 * columns));
+    add("z", 6, {0, 0, 1, 1, 0, 0, last, 0, 1, 1, 0, 0});
+    return path(name);
   }
   static std::string read(const std::string& name) {
     std::ifstream in(name);
@@ -64,6 +78,7 @@ TEST_F(Learn, ReadsEveryKindOfFile) {
   std::string other = "# a comment\nweight," + line + "\n";
   for (bool first = true; std::getline(in, line); first = false) other += (first ? "2, +" : " 1,") + line + "\n";
   EXPECT_LT(by(file("other.csv", other)), 1e-20);
+  EXPECT_EQ(by(file("marked.csv", "\xEF\xBB\xBF" + read(csv))), by(csv));
 }
 
 TEST_F(Learn, WritesFilesAndReadsTheModel) {
@@ -136,6 +151,37 @@ TEST_F(Learn, AnInterruptLeavesTheBestModel) {
   EXPECT_TRUE(fs::exists(out + "/model.json"));
 }
 
+TEST_F(Learn, AModelThatCannotBeFollowedIsNamed) {
+  const std::string model =
+      file("wild.json",
+           "{\"kind\": \"learned_hamiltonian\", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": "
+           "[0, 1e300, 1e300, 1e300]}");
+  const Outcome r = run("learn " + drawn("data.csv") + " --model " + model);
+  EXPECT_EQ(r.code, 3);
+  EXPECT_NE(r.err.find("wild.json: the parameters to go on from have no finite error"), std::string::npos) << r.err;
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+}
+
+TEST_F(Learn, SaysThatDataAtRestDetermineNoMass) {
+  std::string rows = "trajectory,t,q1x,q1y,q1z,p1x,p1y,p1z\n";
+  for (const char* n : {"1", "2", "3"}) rows += std::string(n) + ",0,0,0,-1,0,0,0\n" + n + ",0.1,0,0,-1,0,0,0\n";
+  const auto found = summary("learn " + file("rest.csv", rows) + " --model polynomial:1");
+  EXPECT_EQ(found.at("status"), "converged");
+  EXPECT_NE(found.at("notes")[0].get<std::string>().find("do not determine the mass matrix"), std::string::npos);
+}
+
+TEST_F(Learn, AnInterruptLeavesTheMeasuresOut) {
+  const std::string data = drawn("data.csv");
+  const std::string test = drawn("test.csv", "--count 20000 --points 10 --duration 4");
+  const std::string out = path("out");
+  const Outcome r =
+      run("learn " + data + " --model polynomial:1 --test " + test + " --out " + out, "timeout -s INT 1.5 ");
+  EXPECT_TRUE(r.code == 4 || r.code == 124) << r.code << r.err;
+  EXPECT_TRUE(fs::exists(out + "/model.json"));
+  EXPECT_FALSE(fs::exists(out + "/errors.csv"));
+  EXPECT_NE(read(out + "/summary.txt").find("nothing was measured"), std::string::npos);
+}
+
 TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
   const std::string data = drawn("data.csv");
   const std::string two = drawn("two.csv", "--chain 2");
@@ -149,6 +195,12 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
   };
   const std::string kind = "{\"kind\": \"learned_hamiltonian\"";
   { const H5::H5File out(path("empty.h5"), H5F_ACC_TRUNC); }
+  fs::create_directory(path("held"));
+  file("held/trajectory.csv", "");
+  std::string network = "network:10000";
+  for (int layer = 0; layer < 22; ++layer) network += ",10000";
+  const std::string wide = hdf5("wide.h5", 2, 0);
+  const std::string unknown = hdf5("unknown.h5", 1, std::nan(""));
   const std::vector<std::pair<std::string, std::string>> cases{
       {"learn", "data is required"},
       {"learn nowhere.csv", "nowhere.csv: there is no such file"},
@@ -184,17 +236,36 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
        "parameters are not the 4 numbers of polynomial:1"},
       {model("g.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [1, 2, 3, \"x\"]}"),
        "parameters[3] is no number"},
+      {model("i.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [1e6, 2, 3, 4]}"),
+       "i.json: the mass matrix of its parameters is not finite and positive"},
       {model("h.json", kind + ", \"bodies\": 2, \"model\": \"polynomial:1\", \"parameters\": [0,0,0,0,0,0,0,0,0]}"),
        "give data of its system"},
       {"learn " + data + " --integrator leapfrog", "commutator-free-4"},
       {"learn " + data + " --substeps 0", "--substeps"},
       {"learn " + data + " --validation 1", "--validation"},
+      {"learn " + data + " --validation nan", "nan is not a share from 0 to 0.9"},
+      {"learn " + data + " --enough nan", "nan is not a finite number"},
+      {"learn " + data + " --seconds nan", "nan is not a positive number"},
+      {"learn " + data + " --noise -1", "--noise: -1 is not a finite number, zero or positive"},
+      {"learn " + data + " --test-noise nan", "nan is not a finite number"},
+      {"learn " + data + " --seed 2147483648", "--seed"},
+      {"learn " + data + " --seed -1", "--seed"},
+      {"learn " + data + " --model " + network, "more than 5000 parameters"},
       {"learn " + data + " --out " + data, "is not a folder"},
+      {"learn " + data + " --out " + path("held"), "it holds a run (trajectory.csv)"},
+      {"learn " + file("semicolons.csv", "trajectory;t;q1x;q1y;q1z;p1x;p1y;p1z\n"), "the character ; in the header"},
+      {"learn " + file("quotes.csv", "\"trajectory\",\"t\"\n"), "the character \" in the header"},
+      {"learn " + wide, "t has 2 columns; give it one"},
+      {"learn " + unknown, "row 2 (trajectory 1, t = 0.1): q_1 is nan"},
       {"trajectories", "--out is required"},
       {"trajectories --out a.txt", ".csv and .h5"},
       {"trajectories --out " + path("a.csv") + " --masses 1,2", "one for each, or one for all"},
       {"trajectories --out " + path("a.csv") + " --masses -1", "positive"},
       {"trajectories --out " + path("a.csv") + " --duration 0", "positive time"},
+      {"trajectories --out " + path("a.csv") + " --duration inf", "inf is not a finite number"},
+      {"trajectories --out " + path("a.csv") + " --gravity inf", "inf is not a finite number"},
+      {"trajectories --out " + path("a.csv") + " --noise nan", "nan is not a finite number"},
+      {"trajectories --out " + path("a.csv") + " --seed -1", "--seed"},
       {"trajectories --out /proc/a.csv", "choose another place"}};
   for (const auto& [arguments, words] : cases) {
     const Outcome r = run(arguments);

@@ -430,7 +430,7 @@ TEST(Training, FollowsWeights) {
 TEST(Training, TellsWhatCannotBeDifferentiated) {
   const Trajectories data = training_data(1, 50);
   const auto model = polynomial_model(1, 1);
-  // Finite errors, derivatives that overflow: a mass of e^-700 under a field as small.
+  // A potential so steep that no prediction is finite.
   VectorXd theta = VectorXd::Zero(4);
   theta << 0, 1e300, 1e300, 1e300;
   const Trained wild = train(*model, data, {.begin = theta});

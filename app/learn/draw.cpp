@@ -1,6 +1,7 @@
 #include "draw.hpp"
 
 #include "../output_folder.hpp"
+#include "numbers.hpp"
 #include "trajectory_files.hpp"
 
 #include <lagroid/systems/chain_trajectories.hpp>
@@ -32,13 +33,15 @@ void add_draw_options(CLI::App& command, DrawOptions& options) {
   command.add_option("--masses", options.masses, "of its bobs, kg: one for each, or one for all (default 1)")
       ->delimiter(',');
   command.add_option("--lengths", options.lengths, "of its rods, m (default 1)")->delimiter(',');
-  command.add_option("--gravity", options.gravity, "m/s^2 (default 1)");
+  command.add_option("--gravity", options.gravity, "m/s^2 (default 1)")->check(finite());
   command.add_option("--count", options.count, "trajectories (default 500)")->check(CLI::Range(1, 1'000'000));
   command.add_option("--points", options.points, "of each, the first included (default 5)")
       ->check(CLI::Range(2, 1'000'000));
-  command.add_option("--duration", options.duration, "from the first point to the last, s (default 0.1)");
-  command.add_option("--noise", options.noise, "uniform errors in [-noise, noise] on all points but the first");
-  command.add_option("--seed", options.seed, "of the draws (default 0)");
+  command.add_option("--duration", options.duration, "from the first point to the last, s (default 0.1)")
+      ->check(finite());
+  command.add_option("--noise", options.noise, "uniform errors in [-noise, noise] on all points but the first")
+      ->check(finite_and_not_negative());
+  command.add_option("--seed", options.seed, "of the draws (default 0)")->check(CLI::Range(0L, largest_seed));
   command.add_option("--out", options.out, "the file, .csv or .h5")->required();
   command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
 }
@@ -68,6 +71,8 @@ int draw(const DrawOptions& options) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const std::invalid_argument& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  } catch (const std::runtime_error& error) {
+    return refuse(options.json, exit_failed, "not_followed", error.what());
   }
   const nlohmann::ordered_json json{{"status", "drawn"},
                                     {"bodies", options.links},

@@ -4,6 +4,7 @@
 #include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "learn_files.hpp"
+#include "numbers.hpp"
 #include "trajectory_files.hpp"
 
 #include <fmt/format.h>
@@ -62,7 +63,7 @@ Lesson prepare(const LearnOptions& options) {
   return lesson;
 }
 
-learning::Trained train(const Lesson& lesson, const InterruptGuard& guard) {
+learning::Trained train(const Lesson& lesson) {
   const LearnOptions& options = lesson.options;
   learning::Training training;
   training.method = *lie_group_methods::named(options.integrator);
@@ -79,9 +80,28 @@ learning::Trained train(const Lesson& lesson, const InterruptGuard& guard) {
   training.callback = [&](const learning::Stage& now) {
     const long before = training.starts > 1 ? long(now.start) * training.trial : 0;
     progress.update(before + now.iteration);
-    return !guard.interrupted();
+    return true;
   };
+  training.stop = InterruptGuard::interrupted;
   return learning::train(*lesson.learned.model, lesson.data, training);
+}
+
+/// On held-out data, unless Ctrl-C comes, or came.
+void measure(Lesson& lesson) {
+  const auto& [model, parameters] = lesson.learned;
+  lesson.measures = learning::measure(*model, parameters, *lesson.test, 1e-12, InterruptGuard::interrupted);
+  if (lesson.measures->complete) return;
+  lesson.measures.reset();
+  lesson.notes.push_back("interrupted, so that nothing was measured on " + *lesson.options.test);
+}
+
+/// Ends a training that left no model.
+int refuse_untrained(const Lesson& lesson) {
+  const auto& trained = lesson.trained;
+  const int code = exit_code(trained.outcome);
+  const bool goes_on = lesson.learned.parameters.size() > 0 && trained.outcome == Outcome::not_finite;
+  return refuse(lesson.options.json, code != 0 ? code : exit_failed, std::string(to_string(trained.outcome)),
+                fmt::format("{}: {}", goes_on ? lesson.options.model : lesson.options.data, trained.message));
 }
 
 int serve(const LearnOptions& options) {
@@ -101,13 +121,15 @@ int serve(const LearnOptions& options) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   }
   const InterruptGuard guard;
-  lesson.trained = train(lesson, guard);
-  const int code = exit_code(lesson.trained.outcome);
-  if (!lesson.trained.usable())
-    return refuse(options.json, code, std::string(to_string(lesson.trained.outcome)),
-                  fmt::format("{}: {}", options.data, lesson.trained.message));
+  lesson.trained = train(lesson);
+  if (!lesson.trained.usable()) return refuse_untrained(lesson);
   lesson.learned.parameters = lesson.trained.parameters;
-  if (lesson.test) lesson.measures = measure(*lesson.learned.model, lesson.learned.parameters, *lesson.test);
+  if (!lesson.trained.mass_determined)
+    lesson.notes.emplace_back(
+        "the data do not determine the mass matrix; give motions that differ more, or go on longer");
+  if (lesson.test) measure(lesson);
+  const bool unmeasured = lesson.test && !lesson.measures;
+  const int code = unmeasured ? exit_interrupted : exit_code(lesson.trained.outcome);
   std::string text = lesson_text(lesson);
   auto json = lesson_json(lesson);
   if (options.out) {
@@ -124,14 +146,15 @@ int serve(const LearnOptions& options) {
     text += "  (no files written; --out DIR writes model, history, plot and summary)\n";
   }
   print(options.json ? json.dump(2) + "\n" : text);
-  if (code != 0) fmt::print(stderr, "lagroid: {}: {}\n", options.data, lesson.trained.message);
+  if (code != 0)
+    fmt::print(stderr, "lagroid: {}: {}\n", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message);
   return code;
 }
 
 }  // namespace
 
 void add_learn_options(CLI::App& command, LearnOptions& options) {
-  const auto share = CLI::Range(0.0, 0.9);
+  const auto share = number_that_is("a share from 0 to 0.9", [](double x) { return x >= 0 && x <= 0.9; });
   command.add_option("data", options.data, "trajectories, a .csv or .h5 file (see docs/learning.md)")->required();
   command.add_option(
       "--model", options.model,
@@ -142,10 +165,10 @@ void add_learn_options(CLI::App& command, LearnOptions& options) {
   command.add_option("--substeps", options.substeps, "of the integrator between points (default 2)")
       ->check(CLI::Range(1, 10000));
   command.add_option("--noise", options.noise, "size of the errors in the data (default 0)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(finite_and_not_negative());
   command.add_option("--test", options.test, "held-out trajectories to measure the result on");
   command.add_option("--test-noise", options.test_noise, "size of the errors in these (default 0)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(finite_and_not_negative());
   command
       .add_option("--validation", options.validation,
                   "share of the data kept back to stop early by (default 0.2 with noise, else 0)")
@@ -154,10 +177,11 @@ void add_learn_options(CLI::App& command, LearnOptions& options) {
       ->check(CLI::Range(1, 10000));
   command.add_option("--iterations", options.iterations, "of the best, at most (default 100)")
       ->check(CLI::Range(0, 1'000'000));
-  command.add_option("--seed", options.seed, "of the first start (default 1)");
+  command.add_option("--seed", options.seed, "of the first start, and of the parts of the data (default 1)")
+      ->check(CLI::Range(0L, largest_seed));
   command.add_option("--enough", options.enough, "mean squared error in training at which it stops (default 0)")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--seconds", options.seconds, "of the processor, at most")->check(CLI::PositiveNumber);
+      ->check(finite_and_not_negative());
+  command.add_option("--seconds", options.seconds, "of the processor, at most")->check(positive());
   command.add_option("--out", options.out, "write model, history, errors, plot and summary files into this folder");
   command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
 }

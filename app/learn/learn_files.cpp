@@ -104,6 +104,7 @@ nlohmann::ordered_json lesson_json(const Lesson& lesson) {
                        {"momentum_change_data", known(found.momentum_data)},
                        {"lost", found.lost}};
   }
+  if (!lesson.notes.empty()) out["notes"] = lesson.notes;
   return out;
 }
 
@@ -140,10 +141,18 @@ std::string lesson_text(const Lesson& lesson) {
   out += options.model.ends_with(".json") ? fmt::format("; from {}\n", options.model)
                                           : fmt::format("; the best start was that of seed {}\n", trained.start);
   if (!trained.message.empty()) out += fmt::format("  note: {}\n", trained.message);
+  for (const std::string& note : lesson.notes) out += fmt::format("  note: {}\n", note);
   return out;
 }
 
-void require_writable_lesson(const fs::path& folder) { require_writable(folder, files); }
+void require_writable_lesson(const fs::path& folder) {
+  require_writable(folder, files);
+  std::error_code ignored;
+  for (const char* name : {"trajectory.csv", "checkpoint"})
+    if (fs::exists(folder / name, ignored))
+      throw OutputError(fmt::format("--out {}: it holds a run ({}), whose summary would be lost; choose another place",
+                                    folder.string(), name));
+}
 
 std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder, std::string& note) {
   return write_whole(folder, files, [&](const fs::path& staging) {

@@ -24,12 +24,13 @@ struct Lesson {
   learning::Trajectories data;
   std::optional<learning::Trajectories> test;
   std::optional<learning::Measures> measures;  ///< on the latter
+  std::vector<std::string> notes;
 };
 
 std::string lesson_text(const Lesson& lesson);
 nlohmann::ordered_json lesson_json(const Lesson& lesson);
 
-/// Throws OutputError unless the files can be written there.
+/// Throws OutputError unless the files can be written there, or where a run has its own.
 void require_writable_lesson(const std::filesystem::path& folder);
 /// model.json, history.csv, errors.csv (with held-out data), summaries, plots; each whole or not at all. `note` says
 /// why there are no pictures.

@@ -85,6 +85,9 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
     if (!parameters[i].is_number()) fail(fmt::format("parameters[{}] is no number", i));
     out.parameters(Eigen::Index(i)) = parameters[i].get<double>();
   }
+  const Eigen::MatrixXd mass = out.model->mass(out.parameters);
+  if (!out.parameters.allFinite() || !mass.allFinite() || !(mass.diagonal().minCoeff() > 0))
+    fail("the mass matrix of its parameters is not finite and positive");
   return out;
 }
 

@@ -20,6 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 using learning::Observation;
 
+/// Of UTF-8, as spreadsheets write it.
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
@@ -76,6 +79,15 @@ Header read_header(std::string_view line, const std::string& file) {
   return out;
 }
 
+/// A header that another program wrote in its own way.
+void require_commas(std::string_view header, const std::string& file) {
+  const auto at = header.find_first_of(";\"\t");
+  if (at == header.npos) return;
+  const std::string found = header[at] == '\t' ? "tabs" : fmt::format("the character {}", header[at]);
+  throw DataError(
+      fmt::format("{}: {} in the header; columns are separated by commas, and names have no quotes", file, found));
+}
+
 double number(std::string_view word, const std::string& file, long line) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double x = 0;
@@ -99,8 +111,10 @@ std::vector<Observation> read_csv(const fs::path& path) {
   long line_number = 0;
   for (std::string line; std::getline(in, line);) {
     ++line_number;
+    if (line_number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
     if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
     if (header.width == 0) {
+      require_commas(line, file);
       header = read_header(line, file);
       continue;
     }
@@ -123,9 +137,7 @@ std::vector<Observation> read_csv(const fs::path& path) {
   return out;
 }
 
-Eigen::MatrixXd dataset(const fs::path& file, const std::string& name) {
-  return dense(read_matrix(file.string() + ":/" + name, "."));
-}
+Eigen::MatrixXd dataset(const fs::path& file, const std::string& name) { return read_hdf5(file, "/" + name); }
 
 std::vector<Observation> read_hdf5(const fs::path& path) {
   const std::string file = path.string();
@@ -140,10 +152,13 @@ std::vector<Observation> read_hdf5(const fs::path& path) {
   const auto trajectory = dataset(path, "trajectory");
   const auto time = dataset(path, "t");
   const Eigen::MatrixXd weight = weighted ? dataset(path, "weight") : Eigen::MatrixXd::Ones(z.rows(), 1);
-  for (const auto& [name, rows] :
-       {std::pair("trajectory", trajectory.size()), std::pair("t", time.size()), std::pair("weight", weight.size())})
-    if (rows != z.rows())
-      throw DataError(fmt::format("{}: {} has {} rows, z {}; make them equal", file, name, rows, z.rows()));
+  for (const auto& [name, column] :
+       {std::pair("trajectory", &trajectory), std::pair("t", &time), std::pair("weight", &weight)}) {
+    if (column->cols() != 1)
+      throw DataError(fmt::format("{}: {} has {} columns; give it one", file, name, column->cols()));
+    if (column->rows() != z.rows())
+      throw DataError(fmt::format("{}: {} has {} rows, z {}; make them equal", file, name, column->rows(), z.rows()));
+  }
   std::vector<Observation> out;
   for (Eigen::Index i = 0; i < z.rows(); ++i)
     out.push_back({long(i) + 1, label(trajectory(i), file, long(i) + 1), time(i), z.row(i).transpose(), weight(i)});

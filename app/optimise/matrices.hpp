@@ -24,6 +24,10 @@ using AnyMatrix = std::variant<Eigen::MatrixXd, Eigen::SparseMatrix<double>>;
 /// that are not finite.
 AnyMatrix read_matrix(const std::string& name, const std::filesystem::path& folder);
 
+/// A data set of an HDF5 file, of one or two dimensions, with what may stand there that is not finite. Throws
+/// DataError.
+Eigen::MatrixXd read_hdf5(const std::filesystem::path& file, const std::string& dataset);
+
 Eigen::MatrixXd dense(const AnyMatrix& matrix);
 Eigen::Index rows(const AnyMatrix& matrix);
 Eigen::Index columns(const AnyMatrix& matrix);

@@ -54,7 +54,9 @@ double squared_error(const Model& model, const Eigen::VectorXd& theta, const Sch
 }
 
 /// The errors of all trajectories as one residual block of Ceres, compressed (Compressed). Where Ceres asks for no
-/// derivatives it wants their norm alone.
+/// derivatives it wants their norm alone. Where derivatives cannot be had, because the training was halted or they are
+/// not finite, Ceres is told of no error at all (of a failure it would write on standard error), and the callback,
+/// which it asks next, sees `failed`.
 class TrajectoryCost final : public ceres::CostFunction {
  public:
   TrajectoryCost(const Model& model, const Schedule& schedule, const Trajectories& data, std::function<bool()> halted)
@@ -63,6 +65,7 @@ class TrajectoryCost final : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(int(model.size()));
   }
 
+  bool failed() const { return failed_; }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const Eigen::Index n = model_.size();
     const Eigen::VectorXd theta = Eigen::Map<const Eigen::VectorXd>(parameters[0], n);
@@ -72,11 +75,12 @@ class TrajectoryCost final : public ceres::CostFunction {
       r(n) = std::sqrt(squared_error(model_, theta, schedule_, data_, halted_));
       return std::isfinite(r(n));
     }
-    if (!compress(theta)) return false;
+    failed_ = !compress(theta) || !triangle_.allFinite();
+    if (failed_) triangle_.setZero(n + 1, n + 1);
     r = triangle_.col(n);
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMajor>(jacobians[0], n + 1, n) = triangle_.leftCols(n);
-    return triangle_.allFinite();
+    return true;
   }
   /// (R s) where derivatives were last wanted.
   const Eigen::MatrixXd& triangle() const { return triangle_; }
@@ -110,6 +114,7 @@ class TrajectoryCost final : public ceres::CostFunction {
   std::function<bool()> halted_;
   mutable Compressed compressed_;
   mutable Eigen::MatrixXd z_, rows_, triangle_;
+  mutable bool failed_ = false;
 };
 
 /// Trained::mass_determined. `triangle` is (R s), `total` the sum of the weights of all numbers, `masses` how many of
@@ -117,7 +122,6 @@ class TrajectoryCost final : public ceres::CostFunction {
 bool determines_mass(const Eigen::MatrixXd& triangle, double total, Eigen::Index masses) {
   constexpr double dependent = 1e-10;  // a column of the potential, on others
   constexpr double felt = 1e-8;
-  if (!triangle.allFinite()) return true;
   const Eigen::Index others = triangle.cols() - 1 - masses;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(triangle.middleCols(masses, others));
   qr.setThreshold(dependent);
@@ -154,6 +158,7 @@ class Trainer final : public ceres::IterationCallback {
     round_off_ = 1e-30 * data.ends.squaredNorm() / double(data.ends.size());
     end_ = Outcome::iteration_limit;
     TrajectoryCost cost(model_, schedule_, data, [this] { return halted(); });
+    cost_ = &cost;
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ownership);
@@ -161,8 +166,9 @@ class Trainer final : public ceres::IterationCallback {
     ceres::Solver::Summary summary;
     ceres::Solve(settings(iterations), &problem, &summary);
     if (summary.termination_type == ceres::CONVERGENCE) end_ = Outcome::converged;
-    if (!summary.IsSolutionUsable()) end_ = Outcome::not_finite;
-    if (summary.IsSolutionUsable() && !halt_) {
+    const bool good = summary.IsSolutionUsable() && !cost.failed();
+    if (!good) end_ = Outcome::not_finite;
+    if (good && !halt_) {
       const Eigen::Index masses = model_.bodies() * (model_.bodies() + 1) / 2;
       mass_determined_ = determines_mass(cost.triangle(), data.total_weight(), masses);
     }
@@ -170,6 +176,7 @@ class Trainer final : public ceres::IterationCallback {
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
+    if (cost_->failed()) return stop(Outcome::not_finite);
     Stage stage;
     stage.start = start_;
     stage.iteration = now.iteration;
@@ -255,6 +262,7 @@ class Trainer final : public ceres::IterationCallback {
   int iterations_ = 0;
   std::optional<Outcome> halt_;
   // Of the descent that goes on:
+  const TrajectoryCost* cost_ = nullptr;
   int start_ = 0;
   Eigen::VectorXd at_;
   Found best_;
@@ -342,6 +350,24 @@ Trajectories for_trials(const Trajectories& training, double share, Eigen::Index
   return training.part(0, few);
 }
 
+/// The best of the starts, tried on a share of the data, and its seed; without parameters where none can be evaluated,
+/// and without an error where nothing is tried.
+Found first_guess(Trainer& trainer, const Model& model, const Trajectories& training, const Training& options,
+                  unsigned& seed) {
+  seed = options.seed;
+  if (options.begin.size() > 0) return {options.begin};
+  if (options.starts == 1) return {model.start(seed)};
+  const Trajectories some = for_trials(training, options.share, model.size());
+  Found best;
+  for (int s = 0; s < options.starts && !trainer.halted(); ++s) {
+    Found found = trainer.descend(s, some, options.trial, model.start(options.seed + unsigned(s)));
+    if (!(found.mse < best.mse)) continue;
+    best = std::move(found);
+    seed = options.seed + unsigned(s);
+  }
+  return best;
+}
+
 }  // namespace
 
 std::string_view to_string(Outcome outcome) {
@@ -384,23 +410,10 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
   }
   const Schedule schedule{options.method, data.interval, data.points - 1, options.substeps};
   Trainer trainer(model, options, shuffled.part(0, held_out), schedule);
-  Found best;
-  out.start = int(options.seed);
-  const bool tries = options.starts > 1 && options.begin.size() == 0;
-  if (tries) {
-    const Trajectories some = for_trials(all, options.share, model.size());
-    for (int s = 0; s < options.starts && !trainer.halted(); ++s) {
-      Found found = trainer.descend(s, some, options.trial, model.start(options.seed + unsigned(s)));
-      if (!(found.mse < best.mse)) continue;
-      best = std::move(found);
-      out.start = int(options.seed) + s;
-    }
-  } else {
-    best.theta = options.begin.size() > 0 ? options.begin : model.start(options.seed);
-  }
+  Found best = first_guess(trainer, model, all, options, out.start);
   if (best.theta.size() > 0 && !trainer.halted()) {
     Found found = trainer.descend(options.starts, all, options.iterations, best.theta);
-    if (!tries || std::isfinite(found.mse)) best = std::move(found);
+    if (std::isfinite(found.mse)) best = std::move(found);
   }
   out.history = std::move(trainer.history());
   out.iterations = trainer.iterations();

@@ -71,7 +71,7 @@ struct Trained {
   /// Whether, at the end, a change of the mass matrix's parameters of size one moves the predictions by more than 1e-8,
   /// whatever the potential does to make up for it.
   bool mass_determined = true;
-  int start = 0;       ///< the seed of the start that was best
+  unsigned start = 0;  ///< the seed of the start that was best
   int iterations = 0;  ///< of all stages
   double seconds = 0;  ///< of the processor
   std::vector<Stage> history;
