@@ -7,6 +7,7 @@
 #include "reproductions/newton_report.hpp"
 #include "reproductions/time_steps.hpp"
 #include "shell.hpp"
+#include "written.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -40,14 +41,7 @@ nlohmann::ordered_json solved(const NewtonFindings& findings) {
 /// Prints what was found, with the files that were written; returns the exit code.
 int conclude(nlohmann::ordered_json result, std::string text, const std::vector<std::filesystem::path>& files,
              const std::string& note, bool json) {
-  for (const auto& file : files) {
-    result["files"].push_back(file.string());
-    text += fmt::format("  wrote {}\n", file.string());
-  }
-  if (!note.empty()) {
-    result["notes"].push_back("no pictures: " + note);
-    text += fmt::format("  note: no pictures: {}\n", note);
-  }
+  tell_written(files, note, text, result);
   print(json ? result.dump(2) + "\n" : text);
   return 0;
 }

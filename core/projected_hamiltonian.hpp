@@ -28,9 +28,8 @@ namespace lagroid {
 ///     P = I - G^T (G G^T)^{-1} G,   Lambda = d(P^T p)/dq,   W = P^T Lambda^T P + Lambda P - P^T Lambda^T,
 ///     q' = P dH/dp,   p' = -P^T dH/dq + W dH/dp,
 ///
-/// which leaves T*Q = {C = 0, G p = 0} invariant. ([H] writes P with the transpose of
-/// this G.) As z = (q, p) it is a
-/// field for LieGroupStep on EuclideanSpace<2 N>.
+/// which leaves T*Q = {C = 0, G p = 0} invariant. ([H] writes P with the transpose of this G.) As z = (q, p)
+/// it is a field for LieGroupStep on EuclideanSpace<2 N>.
 template <class Derived, int N, int M> class ProjectedHamiltonian {
  public:
   static constexpr int dimension = N;

@@ -44,14 +44,14 @@ template <int K> class ChainRattle {
         end_(tension_),
         slope_(tension_),
         off_(tension_),
-        inverse_mass_(chain.mass.cwiseInverse()),
-        share_(inverse_mass_),
+        share_(chain.mass.cwiseInverse()),
         inverse_length_(chain.length.cwiseInverse()),
         system_(chain) {
     if (start.cols() != chain.links())
       throw std::invalid_argument("a chain starts from as many points as it has links");
-    for (int i = 1; i < chain.links(); ++i) share_(i) += inverse_mass_(i - 1);
-    restore(start, 0);
+    for (int i = 1; i < chain.links(); ++i) share_(i) += system_.inverse_mass(i - 1);
+    for (int i = 0; i < chain.links(); ++i) v_.col(i) = PendulumChain<K>::link_velocity(start, i);
+    tensions_at_rest();
   }
 
   static MethodTraits traits(const Composition& composition) {
@@ -75,12 +75,6 @@ template <int K> class ChainRattle {
   /// first advances.
   StepReport advance();
 
-  void restore(const Points& z, long index) {
-    q_ = z.template topRows<3>();
-    for (int i = 0; i < chain_.links(); ++i) v_.col(i) = PendulumChain<K>::link_velocity(z, i);
-    index_ = index;
-    tensions_at_rest();
-  }
   /// Visits all that the next step goes on from, to its last bit.
   void persist(Tape& tape) {
     auto q = numbers_of(q_);
@@ -95,8 +89,8 @@ template <int K> class ChainRattle {
   V pull(const Columns& q, const Vector<double, K>& t, int i) const {
     const int k = chain_.links();
     V out = q.col(i) * (-t(i) * share_(i));
-    if (i + 1 < k) out += q.col(i + 1) * (t(i + 1) * inverse_mass_(i));
-    if (i > 0) out += q.col(i - 1) * (t(i - 1) * inverse_mass_(i - 1));
+    if (i + 1 < k) out += q.col(i + 1) * (t(i + 1) * system_.inverse_mass(i));
+    if (i > 0) out += q.col(i - 1) * (t(i - 1) * system_.inverse_mass(i - 1));
     return out;
   }
   void tensions_at_rest();
@@ -118,7 +112,6 @@ template <int K> class ChainRattle {
   Vector<double, K> end_;                                                     ///< at its end, for the velocities
   Vector<double, K> slope_;  ///< by which tension_ differs from end_ at the start of the step, over h
   Vector<double, K> off_;    ///< (|q_i+|^2 - 1) / 2
-  Vector<double, K> inverse_mass_;
   Vector<double, K> share_;  ///< d_i
   Vector<double, K> inverse_length_;
   ChainTensions<K, double> system_;
@@ -153,8 +146,8 @@ template <int K> double ChainRattle<K>::drift(double h) {
     next_.col(i) = q_.col(i) + h * half_.col(i);
     off_(i) = 0.5 * (next_.col(i).squaredNorm() - 1);
     double pulls = std::abs(tension_(i)) * share_(i);
-    if (i > 0) pulls += std::abs(tension_(i - 1)) * inverse_mass_(i - 1);
-    if (i + 1 < k) pulls += std::abs(tension_(i + 1)) * inverse_mass_(i);
+    if (i > 0) pulls += std::abs(tension_(i - 1)) * system_.inverse_mass(i - 1);
+    if (i + 1 < k) pulls += std::abs(tension_(i + 1)) * system_.inverse_mass(i);
     const double excess = std::abs(off_(i)) / (1 + std::abs(h * kick) * pulls);
     if (!(excess <= worst)) worst = excess;
   }
@@ -180,14 +173,14 @@ template <int K> bool ChainRattle<K>::correct(double h) {
     if (i > 0) {
       const V before = q_.col(i - 1);
       const V ahead_before = next_.col(i - 1);
-      const double r = inverse_mass_(i - 1);
+      const double r = system_.inverse_mass(i - 1);
       const double over = r / system_.pivot(i - 1);
       extra = (cross(ahead_before, ahead).dot(cross(before, here)) * r + along * extra) * over;
       x(i) += ahead.dot(before) * over * x(i - 1);
     }
-    system_.pivot(i) = along * inverse_mass_(i) + extra;
+    system_.pivot(i) = along * system_.inverse_mass(i) + extra;
     if (!(system_.pivot(i) > 0)) return false;
-    if (i + 1 < k) system_.upper(i) = -ahead.dot(q_.col(i + 1)) * inverse_mass_(i);
+    if (i + 1 < k) system_.upper(i) = -ahead.dot(q_.col(i + 1)) * system_.inverse_mass(i);
   }
   for (int i = k; i-- > 0;) {
     if (i + 1 < k) x(i) -= system_.upper(i) * x(i + 1);

@@ -3,6 +3,7 @@
 #include "../interrupt.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
+#include "../written.hpp"
 #include "learn_files.hpp"
 #include "numbers.hpp"
 #include "trajectory_files.hpp"
@@ -134,14 +135,8 @@ int serve(const LearnOptions& options) {
   auto json = lesson_json(lesson);
   if (options.out) {
     std::string note;
-    for (const auto& file : write_lesson(lesson, *options.out, note)) {
-      text += fmt::format("  wrote {}\n", file.string());
-      json["files"].push_back(file.string());
-    }
-    if (!note.empty()) {
-      text += fmt::format("  note: no pictures: {}\n", note);
-      json["notes"].push_back("no pictures: " + note);
-    }
+    const auto files = write_lesson(lesson, *options.out, note);
+    tell_written(files, note, text, json);
   } else {
     text += "  (no files written; --out DIR writes model, history, plot and summary)\n";
   }

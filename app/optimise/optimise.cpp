@@ -3,6 +3,7 @@
 #include "../interrupt.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
+#include "../written.hpp"
 #include "methods.hpp"
 #include "optimisation_files.hpp"
 #include "problems.hpp"
@@ -80,14 +81,8 @@ int run(const OptimiseOptions& options) {
   auto json = optimisation_json(scene, result);
   if (options.out) {
     std::string note;
-    for (const auto& file : write_optimisation(scene, result, *options.out, note)) {
-      text += fmt::format("  wrote {}\n", file.string());
-      json["files"].push_back(file.string());
-    }
-    if (!note.empty()) {
-      text += fmt::format("  note: no pictures: {}\n", note);
-      json["notes"].push_back("no pictures: " + note);
-    }
+    const auto files = write_optimisation(scene, result, *options.out, note);
+    tell_written(files, note, text, json);
   } else {
     text += "  (no files written; --out DIR writes history, point, plot and summary)\n";
   }

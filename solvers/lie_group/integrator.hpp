@@ -66,12 +66,6 @@ template <HomogeneousSpace M, AlgebraField<M> F> class LieGroupIntegrator {
     return report;
   }
 
-  /// To go on from a state that was kept.
-  void restore(const Point& z, long index) {
-    point_ = z;
-    index_ = index;
-    step_.forget();
-  }
   /// Visits all that the next step goes on from, to its last bit.
   void persist(Tape& tape) {
     auto point = numbers_of(point_);
