@@ -18,7 +18,8 @@ class Cite : public CommandLine {
     const Outcome r = run("cite " + arguments + " --json");
     EXPECT_EQ(r.code, 0) << r.err;
     std::vector<std::string> keys;
-    for (const auto& reference : nlohmann::json::parse(r.out).at("references")) {
+    const auto json = nlohmann::json::parse(r.out);
+    for (const auto& reference : json.at("references")) {
       keys.push_back(reference.at("key"));
       EXPECT_FALSE(reference.at("for").get<std::string>().empty());
     }
