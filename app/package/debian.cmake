@@ -15,30 +15,28 @@ set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblagroid-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), libfmt-dev (>= 9), libtbb-dev")
+    "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), libfmt-dev (>= 9), libtbb-dev, libxsimd-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "librapidcheck-dev, cmake, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS lagroid)
-set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "discrete mechanics on Lie groupoids - C++ library
- Write a groupoid, a discrete Lagrangian and constraints, and get a
- structure-preserving integrator, an optimal-control solver and a ledger of
- what was kept and what was not.
- .
- This package holds the static library, its headers, and the files for CMake
- and pkg-config. It runs on every amd64 processor; build from source for the
- vector registers of one of your own.")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Write a groupoid, a discrete Lagrangian and constraints, and get a
+structure-preserving integrator, an optimal-control solver and a ledger of
+what was kept and what was not.
+.
+This package holds the static library, its headers, and the files for CMake
+and pkg-config. It runs on every amd64 processor; build from source for the
+vector registers of one of your own.")
 if(LAGROID_APP)
   list(APPEND CPACK_COMPONENTS_ALL program)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lagroid)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "gnuplot-nox | gnuplot")
-  set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "discrete mechanics on Lie groupoids - program
- Runs scenes: rigid bodies, pendula, orbits, rolling, optimal control, chains of
- bodies with joints and effects, minimisation on manifolds, and the learning of
- Hamiltonians from trajectories. Every run ends with a ledger of what its method
- promises and what was found.
- .
- This package holds the program, its examples and its documentation.")
+  set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "Runs scenes: rigid bodies, pendula, orbits, rolling, optimal control, chains
+of bodies with joints and effects, minimisation on manifolds, and the
+learning of Hamiltonians from trajectories. Every run ends with a ledger of
+what its method promises and what was found.
+.
+This package holds the program, its examples and its documentation.")
 endif()
 if(LAGROID_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -47,19 +45,26 @@ if(LAGROID_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
-  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "discrete mechanics on Lie groupoids - Python module
- Scenes, systems, runs, studies, checks, optimisation and learning from Python,
- with NumPy arrays.")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "Scenes, systems, runs, studies, checks, optimisation and learning from
+Python, with NumPy arrays.
+.
+This package holds the Python module.")
 endif()
 
-# What Debian asks of every package: its licence and what has changed.
-file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/debian)
-configure_file(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_BINARY_DIR}/debian/changelog COPYONLY)
-execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/debian/changelog COMMAND_ERROR_IS_FATAL ANY)
+# What Debian asks of every package: its licence and, in Debian's form, what has changed.
+string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
+set(changelog ${PROJECT_BINARY_DIR}/debian/changelog)
+file(WRITE ${changelog} "lagroid (${PROJECT_VERSION}) bookworm; urgency=medium
+
+  * See /usr/share/doc/lagroid/CHANGELOG.md of the package lagroid.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${now}
+")
+execute_process(COMMAND gzip -9nf ${changelog} COMMAND_ERROR_IS_FATAL ANY)
 foreach(component ${CPACK_COMPONENTS_ALL})
   string(TOUPPER ${component} upper)
   set(folder ${CMAKE_INSTALL_DATAROOTDIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${folder} COMPONENT ${component} RENAME copyright)
-  install(FILES ${PROJECT_BINARY_DIR}/debian/changelog.gz DESTINATION ${folder} COMPONENT ${component})
+  install(FILES ${changelog}.gz DESTINATION ${folder} COMPONENT ${component})
 endforeach()
 include(CPack)

@@ -72,8 +72,12 @@ if(LAGROID_APP)
   install(EXPORT lagroid-program-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT program)
   # Where it was built (the target lagroid_check).
   install(PROGRAMS ${PROJECT_BINARY_DIR}/bin/lagroid-check DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program OPTIONAL)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${documentation} COMPONENT program
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid COMPONENT program
           PATTERN CMakeLists.txt EXCLUDE)
+  # Pages that speak of examples/ find them.
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/links)
+  file(CREATE_LINK ../../lagroid/examples ${PROJECT_BINARY_DIR}/links/examples SYMBOLIC)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/links/ DESTINATION ${documentation} COMPONENT program)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${documentation} COMPONENT program
           FILES_MATCHING PATTERN "*.md" PATTERN "*.svg")
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md
