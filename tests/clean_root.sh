@@ -51,7 +51,7 @@ say "the program runs"
 
 install "$(inside sh -c 'ls /packages/liblagroid-dev_*.deb')"
 install g++ cmake make pkg-config librapidcheck-dev
-inside /tests/installed_package.sh /usr /tmp/consumer laws || fail "the consumer project does not build or run"
+inside /tests/installed_package.sh /usr /tmp/consumer whole || fail "the consumer project does not build or run"
 say "the consumer project runs"
 
 if inside sh -c 'ls /packages/python3-lagroid_*.deb' >/dev/null 2>&1; then

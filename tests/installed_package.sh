@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs a build, and uses the installation as a project of its own does: by CMake, by pkg-config, and wrongly.
-#   installed_package.sh BUILD WORK [laws]   into folders below WORK; laws: builds and runs the law suites too (longer)
+#   installed_package.sh BUILD WORK [whole]   into folders below WORK; whole: also builds and runs the law suites, and
+#                                             compiles every header on its own (minutes)
 # A prefix in place of the build (it has no CMakeCache.txt) is used as it is.
 set -euo pipefail
-build=$1 work=$2 laws=${3:-}
+build=$1 work=$2 whole=${3:-}
 consumer=$(cd "$(dirname "${BASH_SOURCE[0]}")/consumer" && pwd)
 say() { printf 'installed_package: %s\n' "$*" >&2; }
 fail() {
@@ -26,14 +27,14 @@ export PKG_CONFIG_PATH=${pc%/*}
 # By CMake. What takes time is at stake in other tests, hence -O1.
 components="core;solvers;systems"
 [ -x "$prefix/bin/lagroid" ] && components="$components;program"
-[ -n "$laws" ] && components="$components;laws"
+[ -n "$whole" ] && components="$components;laws"
 cmake -S "$consumer" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_FLAGS=-O1 -DCOMPONENTS="$components" \
   >"$work/configure.log" 2>&1 || { cat "$work/configure.log" >&2; fail "find_package(lagroid) does not work"; }
 grep -q "^lagroid_DIR:PATH=$prefix" "$work/cmake/CMakeCache.txt" || fail "another lagroid was found than that below $prefix"
 cmake --build "$work/cmake" >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "the consumer is not built"; }
 "$work/cmake/compose"
 "$work/cmake/spring"
-[ -z "$laws" ] || "$work/cmake/laws" 2>/dev/null
+[ -z "$whole" ] || "$work/cmake/laws" 2>/dev/null
 if [[ $components == *program* ]]; then
   cmake --build "$work/cmake" --target systems >"$work/systems.log" || fail "lagroid::program does not run"
   grep -q rigid_body "$work/systems.log" || fail "lagroid::program lists no rigid_body"
@@ -44,6 +45,16 @@ read -ra flags <<<"$(pkg-config --cflags lagroid)"
 read -ra libraries <<<"$(pkg-config --libs lagroid)"
 ${CXX:-c++} -std=c++20 -O1 -march=native "${flags[@]}" "$consumer/main.cpp" "${libraries[@]}" -o "$work/by_pkg_config"
 "$work/by_pkg_config"
+
+# Every header includes what it needs.
+if [ -n "$whole" ]; then
+  (cd "$prefix/include" && find lagroid -name '*.hpp' | sort) >"$work/headers"
+  while read -r header; do
+    echo "#include <$header>" >"$work/header.cpp"
+    ${CXX:-c++} -std=c++20 -fsyntax-only "${flags[@]}" "$work/header.cpp" 2>"$work/header.log" ||
+      fail "$header does not compile on its own: $(head -n 3 "$work/header.log")"
+  done <"$work/headers"
+fi
 
 # What must be refused, and why.
 refused() { # refused ARGUMENTS-OF-FIND_PACKAGE MESSAGE
