@@ -55,7 +55,7 @@ inside /tests/installed_package.sh /usr /tmp/consumer whole || fail "the consume
 say "the consumer project runs"
 
 if inside sh -c 'ls /packages/python3-lagroid_*.deb' >/dev/null 2>&1; then
-  install "$(inside sh -c 'ls /packages/python3-lagroid_*.deb')"
+  install "$(inside sh -c 'ls /packages/python3-lagroid_*.deb')" python3-matplotlib
   inside python3 -c 'import lagroid; print(lagroid.__version__)' || fail "the Python module is not imported"
   for example in "$root"/usr/share/lagroid/python/*.py; do
     inside python3 "${example#"$root"}" >"$work/python.log" 2>&1 || fail "${example#"$root"}: $(tail -n 5 "$work/python.log")"

@@ -38,7 +38,7 @@ what its method promises and what was found.
 .
 This package holds the program, its examples and its documentation.")
 endif()
-if(LAGROID_PYTHON)
+if(TARGET lagroid_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-lagroid)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

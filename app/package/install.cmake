@@ -1,5 +1,5 @@
-# What `cmake --install` and the Debian packages hold, in components: development (library, headers, how to find them) and
-# program (programs, examples, documentation). docs/install.md is the page on it.
+# What `cmake --install` and the Debian packages hold, in components: development (library, headers, how to find them),
+# program (programs, examples, documentation) and, where it is built, python. docs/install.md is the page on it.
 include(CMakePackageConfigHelpers)
 
 # An installation says which registers it was compiled for; core/lanes.hpp has the rule and obeys.
@@ -83,6 +83,12 @@ if(LAGROID_APP)
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md
                 ${PROJECT_SOURCE_DIR}/CITATION.cff
           DESTINATION ${documentation} COMPONENT program)
+endif()
+
+# python: python/CMakeLists.txt installs the module, its examples follow it.
+if(TARGET lagroid_python)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/notebooks/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid/python
+          COMPONENT python FILES_MATCHING PATTERN "*.py")
 endif()
 
 if(PROJECT_IS_TOP_LEVEL)
