@@ -34,10 +34,16 @@ template <int Width = widest_batch> class Batch {
   static constexpr int lanes = Width;
 
   Batch() = default;
+  // Register by register: a copy in other pieces would wait for the stores before it.
+  LAGROID_INLINE Batch(const Batch& a) : lanes_(a.lanes_) {}
+  LAGROID_INLINE Batch& operator=(const Batch& a) {
+    lanes_ = a.lanes_;
+    return *this;
+  }
   /// The same number in every lane. Implicit, so that formulas may contain plain numbers.
   template <class A>
   requires std::is_arithmetic_v<A> LAGROID_INLINE Batch(A x)
-      : lanes_(Native(double(x)).data) {}  // NOLINT(google-explicit-constructor)
+      : lanes_(Native(double(x)).data) {}                    // NOLINT(google-explicit-constructor)
   LAGROID_INLINE Batch(const Native& x) : lanes_(x.data) {}  // NOLINT(google-explicit-constructor)
 
   LAGROID_INLINE Native native() const { return Native(lanes_); }
@@ -162,12 +168,11 @@ template <class B> LAGROID_INLINE inline B kernel_sine(const B& y, const B& tail
 }
 template <class B> LAGROID_INLINE inline B kernel_cosine(const B& y, const B& tail) {
   const B z = y * y;
-  const B r =
-      z * (4.16666666666666019037e-02 +
-           z * (-1.38888888888741095749e-03 +
-                z * (2.48015872894767294178e-05 +
-                     z * (-2.75573143513906633035e-07 +
-                          z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+  const B r = z * (4.16666666666666019037e-02 +
+                   z * (-1.38888888888741095749e-03 +
+                        z * (2.48015872894767294178e-05 +
+                             z * (-2.75573143513906633035e-07 +
+                                  z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
   const B half = 0.5 * z;
   const B w = 1.0 - half;
   return w + (((1.0 - w) - half) + (z * r - y * tail));
@@ -195,9 +200,9 @@ template <int W> LAGROID_INLINE inline Batch<W> cos(const Batch<W>& x) { return 
 
 // ---- the others, lane by lane as the standard library has them
 
-#define LAGROID_BY_LANE(name)                                                   \
-  template <int W> [[gnu::noinline]] Batch<W> name(const Batch<W>& x) {         \
-    return Batch<W>::by_lane([](double lane) { return std::name(lane); }, x);   \
+#define LAGROID_BY_LANE(name)                                                 \
+  template <int W> [[gnu::noinline]] Batch<W> name(const Batch<W>& x) {       \
+    return Batch<W>::by_lane([](double lane) { return std::name(lane); }, x); \
   }
 LAGROID_BY_LANE(exp)
 LAGROID_BY_LANE(log)
@@ -224,7 +229,7 @@ namespace detail {
 /// needs them all, beyond `narrow` the first Middle, else the first Few. Terms that no lane needs are not evaluated.
 template <int Few, int Middle, std::size_t Terms, int W>
 LAGROID_INLINE inline Batch<W> horner_by_need(const std::array<double, Terms>& c, double narrow, double wide,
-                                       const Batch<W>& x) {
+                                              const Batch<W>& x) {
   using B = Batch<W>;
   B sum = 0.0;
   const auto through = [&](int from, int to) {

@@ -37,7 +37,8 @@ Forces<S, Sys::dimension> impulses(const Sys& system, const ArrowOf<typename Sys
   Forces<S, Sys::dimension> out{V::Zero(), V::Zero()};
   if constexpr (Forced<Sys>) out = system.forces(g);
   if constexpr (Nonholonomic<Sys>)
-    out.source += annihilator<Sys, S>(system, system.groupoid.source(g)) * lambda.template head<Sys::arrow_constraints>();
+    out.source +=
+        annihilator<Sys, S>(system, system.groupoid.source(g)) * lambda.template head<Sys::arrow_constraints>();
   return out;
 }
 

@@ -44,7 +44,9 @@ template <class S> LAGROID_INLINE constexpr S select(bool condition, const S& a,
 template <class S> struct MaskOfScalar { using Type = bool; };
 template <class S>
 requires requires { typename S::Mask; }
-struct MaskOfScalar<S> { using Type = typename S::Mask; };
+struct MaskOfScalar<S> {
+  using Type = typename S::Mask;
+};
 template <class S> using MaskOf = typename MaskOfScalar<S>::Type;
 
 /// f<0>(), f<1>(), ..., f<N - 1>().

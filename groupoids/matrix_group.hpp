@@ -158,19 +158,21 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
   template <class T> LAGROID_INLINE static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
     const auto square = value_of(w.squaredNorm());
+    const auto far = square > T(1e-11);
+    const auto near = square < T(1e-17);
     const Matrix<T, N, N> gw = times_hat(g, w);
     const auto linear = [&]<int R, int C>() { return g(R, C) + gw(R, C); };
     if constexpr (std::same_as<MaskOf<T>, bool>) {
-      if (square > 1e-11) return g * tau(Object<T>{}, w);
-      if (square < 1e-17) return by_entry<T>(linear);
+      if (far) return g * tau(Object<T>{}, w);
+      if (near) return by_entry<T>(linear);
+    } else if (all(near)) {
+      return by_entry<T>(linear);
     }
     const Matrix<T, N, N> gww = times_hat(gw, w);
     const auto quadratic = [&]<int R, int C>() { return g(R, C) + (gw(R, C) + T(0.5) * gww(R, C)); };
     if constexpr (std::same_as<MaskOf<T>, bool>) {
       return by_entry<T>(quadratic);
     } else {
-      const auto far = square > T(1e-11);
-      const auto near = square < T(1e-17);
       const Matrix<T, N, N> out = by_entry<T>([&]<int R, int C>() {
         return select(near, linear.template operator()<R, C>(), quadratic.template operator()<R, C>());
       });

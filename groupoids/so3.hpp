@@ -145,8 +145,8 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     const T xz = s.template operator()<0, 2>();
     const T yz = s.template operator()<1, 2>();
     const Matrix<T, 3, 3> square{{s.template operator()<0, 0>(), xy, xz},
-                                      {xy, s.template operator()<1, 1>(), yz},
-                                      {xz, yz, s.template operator()<2, 2>()}};
+                                 {xy, s.template operator()<1, 1>(), yz},
+                                 {xz, yz, s.template operator()<2, 2>()}};
     Vector<T, 3> out;
     unrolled<3>([&]<int R>() {
       out(R) = (0.5 * square(R, 0) - e(R, 0)) * target_gradient(0) +

@@ -62,7 +62,6 @@ template <int Size, int MaxDegree> class Extrapolation {
   }
 
  private:
-
   const Vector<double, Size>& back(int j) const { return past_[std::size_t(newest_ + j)]; }
 
   void choose_degree() {

@@ -6,9 +6,9 @@
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 
-#define LAGROID_ENSEMBLE(prefix, Sys)              \
-  prefix class BatchNewton<Sys, widest_batch>;     \
-  prefix class BatchMarch<Sys, widest_batch>;      \
+#define LAGROID_ENSEMBLE(prefix, Sys)          \
+  prefix class BatchNewton<Sys, widest_batch>; \
+  prefix class BatchMarch<Sys, widest_batch>;  \
   prefix class Ensemble<Sys, widest_batch>
 
 namespace lagroid {

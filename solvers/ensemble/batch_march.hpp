@@ -54,8 +54,7 @@ template <DiscreteSystem Sys, int W> class BatchMarch {
   }
   /// The arrow of the last step and its multipliers; of no meaning before the first.
   Step<Sys> step(const Sys& system, int lane) const {
-    return {detail::arrow_of_lane<W>(system.groupoid, solution_.step.arrow, lane),
-            detail::lane_of(solution_.step.multipliers, lane)};
+    return {detail::arrow_of_lane<W>(system.groupoid, step_.arrow, lane), detail::lane_of(step_.multipliers, lane)};
   }
 
  private:
@@ -75,23 +74,20 @@ template <DiscreteSystem Sys, int W> class BatchMarch {
     const Fibre apart = solved - predicted;
     return apart.squaredNorm() <= 0.25 * max(solved.squaredNorm(), predicted.squaredNorm());
   }
-  static Unknowns unknowns(const Fibre& chart, const Vector<B, Sys::constraints>& multipliers) {
-    Unknowns out;
-    out << chart, multipliers;
-    return out;
-  }
 
-  void guess(const Sys& system);
-  Mask first_step(const Sys& system, const Mask& wanted);
-  Mask next_step(const Sys& system, const Mask& wanted);
-  void rescue(const Sys& system, int lane, Mask& solved, Mask& anew);
-  void join(const G& groupoid, const Mask& lanes);
+  Step<Sys, B> guess(const Sys& system) const;
+  Step<Sys, B> predicted(const Sys& system) const;
+  Mask first_step(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution);
+  Mask next_step(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution);
+  Mask again(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution);
+  void rescue(const Sys& system, int lane, StepSolution<Sys, B>& solution, Mask& solved, Mask& anew);
+  void join(const G& groupoid, const StepSolution<Sys, B>& solution, const Mask& lanes);
 
   State<G, B> state_;
   ArrowOf<G, B> configuration_;
   Fibre momentum_carry_ = Fibre::Zero();
   Fibre carry_ = Fibre::Zero();
-  StepSolution<Sys, B> solution_;
+  Step<Sys, B> step_;  ///< the last
   BatchNewton<Sys, W> newton_;
   BatchExtrapolation<W, size, 7> past_;
   long index_ = 0;
@@ -100,131 +96,143 @@ template <DiscreteSystem Sys, int W> class BatchMarch {
 };
 
 template <DiscreteSystem Sys, int W> LAGROID_FLATTEN void BatchMarch<Sys, W>::advance(const Sys& system) {
+  const auto& groupoid = system.groupoid;
   const Mask wanted = going();
-  const Step<Sys, B> before = solution_.step;
-  Mask solved = index_ == 0 ? first_step(system, wanted) : next_step(system, wanted);
+  StepSolution<Sys, B> solution;
+  Mask solved = index_ == 0 ? first_step(system, wanted, solution) : next_step(system, wanted, solution);
   Mask anew(index_ == 0);
   if (const Mask lost = wanted && !solved; xsimd::any(lost))
     for (int lane = 0; lane < W; ++lane)
-      if (lost.get(std::size_t(lane))) rescue(system, lane, solved, anew);
-  const Unknowns found = unknowns(system.groupoid.chart(solution_.step.arrow), solution_.step.multipliers);
+      if (lost.get(std::size_t(lane))) rescue(system, lane, solution, solved, anew);
+  Unknowns found;
+  found << groupoid.chart(solution.step.arrow), solution.step.multipliers;
   if (index_ == 0) {
     past_.start(found);
   } else {
     past_.push(found, solved, anew);
   }
-  join(system.groupoid, solved);
-  detail::blend_arrow(system.groupoid, !solved, before.arrow, solution_.step.arrow);
-  detail::blend(!solved, before.multipliers, solution_.step.multipliers);
+  join(groupoid, solution, solved);
   ++index_;
 }
 
 /// The guess of a step without predecessor: the system's own, else the unit arrow.
-template <DiscreteSystem Sys, int W> void BatchMarch<Sys, W>::guess(const Sys& system) {
-  Step<Sys, B>& step = solution_.step;
-  if constexpr (HasFirstGuess<Sys>) {
+template <DiscreteSystem Sys, int W> auto BatchMarch<Sys, W>::guess(const Sys& system) const -> Step<Sys, B> {
+  Step<Sys, B> step{system.groupoid.unit(state_.object), Vector<B, Sys::constraints>::Zero()};
+  if constexpr (HasFirstGuess<Sys>)
     for (int lane = 0; lane < W; ++lane) {
       const Step<Sys> first = system.first_guess(state(system, lane));
       detail::set_arrow_of_lane<W>(system.groupoid, step.arrow, lane, first.arrow);
       detail::set_lane(step.multipliers, lane, typename Sys::Multipliers(first.multipliers));
     }
-  } else {
-    const ArrowOf<G, B> unit = system.groupoid.unit(state_.object);
-    step.arrow = unit;
-    for (int a = 0; a < Sys::constraints; ++a) step.multipliers(a) = B(0.0);
-  }
+  return step;
+}
+/// That of every other: the continuation of those before.
+template <DiscreteSystem Sys, int W> auto BatchMarch<Sys, W>::predicted(const Sys& system) const -> Step<Sys, B> {
+  const Unknowns next = past_.next();
+  return {system.groupoid.arrow_in_chart(state_.object, Fibre(next.template head<n>())),
+          next.template tail<Sys::constraints>()};
 }
 
 /// By doubling the step from a small one, as `Stepper` does.
 template <DiscreteSystem Sys, int W>
-[[gnu::cold, gnu::noinline]] auto BatchMarch<Sys, W>::first_step(const Sys& system, const Mask& wanted) -> Mask {
+[[gnu::cold, gnu::noinline]] auto BatchMarch<Sys, W>::first_step(const Sys& system, const Mask& wanted,
+                                                                 StepSolution<Sys, B>& solution) -> Mask {
   if constexpr (HasTimeStep<Sys>) {
     constexpr double smallest = 1.0 / 64;
     Sys scaled = system;
     scaled.h = smallest * system.h;
-    guess(scaled);
-    Mask solved = newton_.solve_fully(scaled, state_, solution_, wanted);
+    solution.step = guess(scaled);
+    Mask solved = newton_.solve_fully(scaled, state_, solution, wanted);
     for (double fraction = 2 * smallest; fraction <= 1; fraction *= 2) {
       scaled.h = fraction * system.h;
-      const Fibre predicted = system.groupoid.chart(solution_.step.arrow) * 2.0;
-      const ArrowOf<G, B> arrow = system.groupoid.arrow_in_chart(state_.object, predicted);
-      solution_.step.arrow = arrow;
-      solved = newton_.solve_fully(scaled, state_, solution_, solved);
-      solved = solved && near(predicted, system.groupoid.chart(solution_.step.arrow));
+      const Fibre chart = system.groupoid.chart(solution.step.arrow) * 2.0;
+      const ArrowOf<G, B> arrow = system.groupoid.arrow_in_chart(state_.object, chart);
+      solution.step.arrow = arrow;
+      solved = newton_.solve_fully(scaled, state_, solution, solved);
+      solved = solved && near(chart, system.groupoid.chart(solution.step.arrow));
     }
     return solved;
   } else {
-    guess(system);
-    return newton_.solve_fully(system, state_, solution_, wanted);
+    solution.step = guess(system);
+    return newton_.solve_fully(system, state_, solution, wanted);
   }
 }
 
 template <DiscreteSystem Sys, int W>
-auto BatchMarch<Sys, W>::next_step(const Sys& system, const Mask& wanted) -> Mask {
-  const Unknowns predicted = past_.next();
-  const Fibre chart = predicted.template head<n>();
-  const ArrowOf<G, B> arrow = system.groupoid.arrow_in_chart(state_.object, chart);
-  solution_.step.arrow = arrow;
-  solution_.step.multipliers = predicted.template tail<Sys::constraints>();
-  const Mask solved = newton_.solve(system, state_, solution_, wanted);
-  return solved && near(chart, system.groupoid.chart(solution_.step.arrow));
+auto BatchMarch<Sys, W>::next_step(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution) -> Mask {
+  solution.step = predicted(system);
+  const Fibre chart = system.groupoid.chart(solution.step.arrow);
+  Mask solved = newton_.solve(system, state_, solution, wanted, index_);
+  if (const Mask lost = wanted && !solved; xsimd::any(lost)) solved = solved || again(system, lost, solution);
+  return solved && near(chart, system.groupoid.chart(solution.step.arrow));
+}
+
+/// Lanes that the kept matrices did not solve, from the same guess with new ones.
+template <DiscreteSystem Sys, int W>
+[[gnu::cold, gnu::noinline]] auto BatchMarch<Sys, W>::again(const Sys& system, const Mask& wanted,
+                                                            StepSolution<Sys, B>& solution) -> Mask {
+  StepSolution<Sys, B> fresh;
+  fresh.step = predicted(system);
+  const Mask solved = newton_.solve_fully(system, state_, fresh, wanted);
+  detail::blend_arrow(system.groupoid, wanted, fresh.step.arrow, solution.step.arrow);
+  detail::blend(wanted, fresh.step.multipliers, solution.step.multipliers);
+  detail::blend(wanted, fresh.momentum_change, solution.momentum_change);
+  detail::blend(wanted, fresh.remainder, solution.remainder);
+  return solved;
 }
 
 /// A lane that the batch did not solve, by itself: the damped iteration from the same guess and, where that fails or
 /// ends far from it, the solution that is continuous in the step size.
 template <DiscreteSystem Sys, int W>
-[[gnu::cold, gnu::noinline]] void BatchMarch<Sys, W>::rescue(const Sys& system, int lane, Mask& solved, Mask& anew) {
+[[gnu::cold, gnu::noinline]] void BatchMarch<Sys, W>::rescue(const Sys& system, int lane,
+                                                             StepSolution<Sys, B>& solution, Mask& solved, Mask& anew) {
   const auto& groupoid = system.groupoid;
   const State<G> from = state(system, lane);
-  StepSolution<Sys> solution;
-  StepReport before;
-  bool restarted = true;
+  StepSolution<Sys> found;
+  StepReport report;
+  bool near_guess = false;
   if (index_ > 0) {
-    const Unknowns predicted = past_.next();
-    const AlgebroidVector<G> chart = detail::lane_of(predicted, lane).template head<n>();
-    const ArrowOf<G> arrow = groupoid.arrow_in_chart(from.object, chart);
-    solution.step = {arrow, detail::lane_of(predicted, lane).template tail<Sys::constraints>()};
-    before = NewtonStep<Sys>().solve(system, from, solution);
-    if (before.converged()) {
-      const AlgebroidVector<G> found = groupoid.chart(solution.step.arrow);
-      restarted = (found - chart).squaredNorm() > 0.25 * std::max(found.squaredNorm(), chart.squaredNorm());
-    }
+    const Step<Sys, B> guesses = predicted(system);
+    found.step = {detail::arrow_of_lane<W>(groupoid, guesses.arrow, lane), detail::lane_of(guesses.multipliers, lane)};
+    const AlgebroidVector<G> guess = groupoid.chart(found.step.arrow);
+    report = NewtonStep<Sys>().solve(system, from, found);
+    const AlgebroidVector<G> end = groupoid.chart(found.step.arrow);
+    near_guess = (end - guess).squaredNorm() <= 0.25 * std::max(end.squaredNorm(), guess.squaredNorm());
   }
-  StepReport report = before;
-  if (restarted) {
+  if (!report.converged() || !near_guess) {
     StepSolution<Sys> continued;
-    report = Stepper<Sys>(system, std::make_unique<NewtonStep<Sys>>()).solve(from, continued);
-    if (report.converged()) {
-      solution = continued;
-    } else if (before.converged()) {
-      report = before;
-    }
+    const StepReport restarted = Stepper<Sys>(system, std::make_unique<NewtonStep<Sys>>()).solve(from, continued);
+    if (restarted.converged()) found = continued;
+    if (restarted.converged() || !report.converged()) report = restarted;
   }
   if (!report.converged()) {
     status_[std::size_t(lane)] = report.status;
     stopped_at_[std::size_t(lane)] = index_;
     return;
   }
-  detail::set_arrow_of_lane<W>(groupoid, solution_.step.arrow, lane, solution.step.arrow);
-  detail::set_lane(solution_.step.multipliers, lane, solution.step.multipliers);
-  detail::set_lane(solution_.momentum_change, lane, solution.momentum_change);
-  detail::set_lane(solution_.remainder, lane, solution.remainder);
+  detail::set_arrow_of_lane<W>(groupoid, solution.step.arrow, lane, found.step.arrow);
+  detail::set_lane(solution.step.multipliers, lane, found.step.multipliers);
+  detail::set_lane(solution.momentum_change, lane, found.momentum_change);
+  detail::set_lane(solution.remainder, lane, found.remainder);
   B here = 0.0;
   here.set(lane, 1.0);
   const Mask only = here > 0.0;
   newton_.renew(only);
   solved = solved || only;
-  if (restarted) anew = anew || only;
+  if (!near_guess) anew = anew || only;
 }
 
 /// Joins the arrow of the step to the walk of the lanes given (see `Walk`).
-template <DiscreteSystem Sys, int W> void BatchMarch<Sys, W>::join(const G& groupoid, const Mask& lanes) {
-  const Fibre change = momentum_carry_ + solution_.momentum_change;
+template <DiscreteSystem Sys, int W>
+void BatchMarch<Sys, W>::join(const G& groupoid, const StepSolution<Sys, B>& solution, const Mask& lanes) {
+  detail::blend_arrow(groupoid, lanes, solution.step.arrow, step_.arrow);
+  detail::blend(lanes, solution.step.multipliers, step_.multipliers);
+  const Fibre change = momentum_carry_ + solution.momentum_change;
   const Fibre momentum = state_.momentum + change;
   detail::blend(lanes, Fibre(change - (momentum - state_.momentum)), momentum_carry_);
   detail::blend(lanes, momentum, state_.momentum);
-  ArrowOf<G, B> reached = groupoid.multiply(configuration_, solution_.step.arrow);
-  const Fibre carry = groupoid.nudge(reached, Fibre(carry_ + solution_.remainder));
+  ArrowOf<G, B> reached = groupoid.multiply(configuration_, solution.step.arrow);
+  const Fibre carry = groupoid.nudge(reached, Fibre(carry_ + solution.remainder));
   detail::blend(lanes, carry, carry_);
   const ArrowOf<G, B> projected = groupoid.project(reached);
   detail::blend_arrow(groupoid, lanes, projected, configuration_);

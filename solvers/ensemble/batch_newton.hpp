@@ -26,13 +26,17 @@ template <int W, int Size> Vector<double, Size> lane_of(const Vector<Batch<W>, S
 template <int W, int Size> void set_lane(Vector<Batch<W>, Size>& x, int lane, const Vector<double, Size>& y) {
   for (int i = 0; i < Size; ++i) x(i).set(lane, y(i));
 }
-/// x in the lanes of the mask, y elsewhere.
+/// y becomes x in the lanes of the mask.
 template <class Mask, class V> LAGROID_INLINE inline void blend(const Mask& where, const V& x, V& y) {
   for (Eigen::Index i = 0; i < V::SizeAtCompileTime; ++i) y(i) = select(where, x(i), y(i));
 }
 /// The same of arrows.
 template <class G, class Mask, class A>
 LAGROID_INLINE inline void blend_arrow(const G& groupoid, const Mask& where, const A& x, A& y) {
+  if (xsimd::all(where)) {
+    y = x;
+    return;
+  }
   auto c = groupoid.coordinates_of_arrow(y);
   blend(where, groupoid.coordinates_of_arrow(x), c);
   const A out = groupoid.template arrow_at<typename decltype(c)::Scalar>(c);
@@ -60,19 +64,19 @@ template <DiscreteSystem Sys, int W> class BatchNewton {
   using Mask = typename B::Mask;
   using G = typename Sys::GroupoidType;
 
-  /// From the guess in `solution.step` to the solution, in the lanes `wanted`; returns those that reached it.
-  Mask solve(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted) {
-    return iterate</*full=*/false>(system, state, solution, wanted);
-  }
+  /// From the guess in `solution.step` to the solution, in the lanes `wanted`; returns those that reached it. `index`
+  /// counts the steps of the trajectory.
+  Mask solve(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted,
+             long index);
   /// The same with the matrix of every iterate, where the guess may be far, and scales chosen anew.
   Mask solve_fully(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted) {
-    rescale_ = wanted;
-    return iterate</*full=*/true>(system, state, solution, wanted);
+    rescale_ = rescale_ || wanted;
+    return iterate</*full=*/true>(system, state, solution, wanted, wanted);
   }
-  /// A lane was solved otherwise: its matrix and scales are chosen anew at its next step.
+  /// Lanes that were solved otherwise: their matrices and scales are chosen anew at the next step.
   void renew(const Mask& lanes) {
     rescale_ = rescale_ || lanes;
-    age_ = select(lanes, B(oldest), age_);
+    trusted_ = trusted_ && !lanes;
   }
 
  private:
@@ -83,11 +87,11 @@ template <DiscreteSystem Sys, int W> class BatchNewton {
   static constexpr double leftover = 0.1;  ///< of a round-off level: what the iteration may leave
   static constexpr int longest_chord = 12;
   static constexpr double largest_entry = 1e4;  ///< of a scaled inverse that is trusted
-  static constexpr double oldest = 16;          ///< solves for which a matrix serves
-  static constexpr double renewal_price = 2;    ///< iterations more than with a new matrix, beyond which it is renewed
+  static constexpr double longest_period = 64;
 
   template <bool Full>
-  Mask iterate(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted);
+  Mask iterate(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted,
+               const Mask& renewed);
   void renew(const Sys& system, const Step<Sys, B>& step, const Mask& lanes);
   Mask admissible(const Sys& system, const Step<Sys, B>& step, const Mask& lanes) const;
 
@@ -116,19 +120,41 @@ template <DiscreteSystem Sys, int W> class BatchNewton {
   BatchScaling<W, E::size> scaling_;
   Mask trusted_{false};
   Mask rescale_{true};
-  B rate_ = 0.1;  ///< contraction of an iteration, as last seen
-  B age_ = oldest;  ///< solves since the matrix was evaluated
-  B best_ = 0.0;    ///< iterations of the first of them
+  B rate_ = 0.1;        ///< contraction of an iteration, as last seen
+  B period_ = 4.0;      ///< steps from one matrix to the next, a power of two: whole batches are renewed together
+  B best_ = 0.0;        ///< iterations with a new matrix
+  B worst_ = 0.0;       ///< since
+  B iterations_ = 0.0;  ///< of the last solve
 };
+
+/// Every lane's matrix is renewed when the number of the step is a multiple of the lane's period. The period doubles
+/// where iterations did not become more over its length, and is halved where they did by more than one.
+template <DiscreteSystem Sys, int W>
+auto BatchNewton<Sys, W>::solve(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution,
+                                const Mask& wanted, long index) -> Mask {
+  Mask renewed = wanted && !trusted_;
+  if (index % 4 == 0) {
+    Mask over(false);
+    for (long period = 4; period <= long(longest_period); period *= 2)
+      if (index % period == 0) over = over || period_ == B(period);
+    const Mask steady = over && worst_ <= best_;
+    const Mask worse = over && worst_ > best_ + 1.0;
+    period_ = select(steady, min(2.0 * period_, B(longest_period)), select(worse, max(0.5 * period_, B(4.0)), period_));
+    renewed = renewed || (wanted && over);
+  }
+  const Mask done = iterate</*full=*/false>(system, state, solution, wanted, renewed);
+  best_ = select(renewed, iterations_, best_);
+  worst_ = select(renewed, iterations_, max(worst_, iterations_));
+  return done;
+}
 
 template <DiscreteSystem Sys, int W>
 template <bool Full>
 LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State<G, B>& state,
-                                                  StepSolution<Sys, B>& solution, const Mask& wanted) -> Mask {
+                                                  StepSolution<Sys, B>& solution, const Mask& wanted,
+                                                  const Mask& renewed) -> Mask {
   Step<Sys, B>& step = solution.step;
-  const Mask renewed = wanted && (Mask(Full) || age_ >= oldest);
   if (xsimd::any(renewed)) renew(system, step, renewed);
-  age_ += 1.0;
   GradientsOf<Sys, B> d = automatic_gradients<Sys, B>(system, step.arrow, step.multipliers);
   Residual residual = E::residual(d, state.momentum);
   Residual floor = round_off_level<Sys, B>(system, state, step, jacobian_);
@@ -138,7 +164,7 @@ LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State
   B remains = excess;
   Mask open = wanted && trusted_;
   Mask done(false);
-  B iterations = 0.0;
+  iterations_ = B(longest_chord);
   for (int iteration = 1; iteration <= longest_chord && xsimd::any(open); ++iteration) {
     if (Full && iteration > 1) renew(system, step, open);
     const Residual by = correction(residual);
@@ -157,12 +183,10 @@ LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State
     excess = next;
     const Mask finished = open && contracting && excess <= 1.0 && remains <= leftover;
     done = done || finished;
-    iterations = select(finished, B(iteration), iterations);
+    iterations_ = select(finished, B(iteration), iterations_);
     open = open && contracting && !finished;
   }
   rate_ = select(done, rate, rate_);
-  best_ = select(renewed, iterations, best_);
-  age_ = select(iterations > best_ + renewal_price, B(oldest), age_);
   solution.momentum_change = momentum_change(system, step, d);
   solution.remainder = correction(residual).template head<Sys::dimension>();
   return done && admissible(system, step, done);
@@ -193,7 +217,6 @@ template <DiscreteSystem Sys, int W>
       inverse_(i, j) = select(lanes, entry * scaling_.column(i) * scaling_.row(j), inverse_(i, j));
     }
   trusted_ = (trusted_ && !lanes) || (lanes && largest + 0.0 * sum < largest_entry);
-  age_ = select(lanes, B(0.0), age_);
 }
 
 template <DiscreteSystem Sys, int W>

@@ -115,13 +115,12 @@ bool Ensemble<Sys, Width>::advance_to(long index, const EnsembleOptions<Sys>& op
   while (reached < index) {
     if (options.interrupted && options.interrupted()) return false;
     reached = std::min(index, reached + round);
-    for_each_task(
-        (count + batches_per_task - 1) / batches_per_task, options.threads,
-        [&](long task) {
-          const long end = std::min(count, (task + 1) * batches_per_task);
-          for (long batch = task * batches_per_task; batch < end; ++batch) advance(batch, reached, options);
-        },
-        options.interrupted);
+    for_each_task((count + batches_per_task - 1) / batches_per_task, options.threads,
+                  [&](long task) {
+                    const long end = std::min(count, (task + 1) * batches_per_task);
+                    for (long batch = task * batches_per_task; batch < end; ++batch) advance(batch, reached, options);
+                  },
+                  options.interrupted);
   }
   return std::all_of(marches_.begin(), marches_.end(), [&](const March& march) { return march.index() >= index; });
 }
