@@ -98,8 +98,9 @@ template <int Width = widest_batch> class Batch {
   LAGROID_INLINE friend Batch select(const Mask& condition, const Batch& a, const Batch& b) {
     return xsimd::select(condition, a.native(), b.native());
   }
-  LAGROID_INLINE friend Batch max(const Batch& a, const Batch& b) { return select(a < b, b, a); }
-  LAGROID_INLINE friend Batch min(const Batch& a, const Batch& b) { return select(b < a, b, a); }
+  /// Of numbers; what they make of NaN depends on the machine.
+  LAGROID_INLINE friend Batch max(const Batch& a, const Batch& b) { return xsimd::max(a.native(), b.native()); }
+  LAGROID_INLINE friend Batch min(const Batch& a, const Batch& b) { return xsimd::min(a.native(), b.native()); }
   LAGROID_INLINE friend Batch abs(const Batch& a) { return xsimd::abs(a.native()); }
   LAGROID_INLINE friend Batch sqrt(const Batch& a) { return xsimd::sqrt(a.native()); }
 
@@ -286,4 +287,17 @@ template <int W, class Operation> struct Eigen::ScalarBinaryOpTraits<double, lag
 template <int W, int Size>
 requires(Size != Eigen::Dynamic) struct Eigen::internal::compute_default_alignment<lagroid::Batch<W>, Size> {
   enum { value = 0 };
+};
+/// They are copied register by register: the compiler makes calls of memcpy of loops, and these wait for the stores.
+template <int W, int Size, int Options>
+requires(Size > 0) struct Eigen::internal::plain_array<lagroid::Batch<W>, Size, Options, 0> {
+  lagroid::Batch<W> array[Size];
+
+  plain_array() = default;
+  explicit plain_array(constructor_without_unaligned_array_assert) {}
+  LAGROID_INLINE plain_array(const plain_array& a) { *this = a; }
+  LAGROID_INLINE plain_array& operator=(const plain_array& a) {
+    lagroid::unrolled<Size>([&]<int I>() { array[I] = a.array[I]; });
+    return *this;
+  }
 };

@@ -76,7 +76,7 @@ template <DiscreteSystem Sys, int W> class BatchMarch {
   }
 
   Step<Sys, B> guess(const Sys& system) const;
-  Step<Sys, B> predicted(const Sys& system) const;
+  Step<Sys, B> along(const Sys& system, const Unknowns& unknowns) const;
   Mask first_step(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution);
   Mask next_step(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution);
   Mask again(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution);
@@ -126,11 +126,11 @@ template <DiscreteSystem Sys, int W> auto BatchMarch<Sys, W>::guess(const Sys& s
     }
   return step;
 }
-/// That of every other: the continuation of those before.
-template <DiscreteSystem Sys, int W> auto BatchMarch<Sys, W>::predicted(const Sys& system) const -> Step<Sys, B> {
-  const Unknowns next = past_.next();
-  return {system.groupoid.arrow_in_chart(state_.object, Fibre(next.template head<n>())),
-          next.template tail<Sys::constraints>()};
+/// The step with these unknowns.
+template <DiscreteSystem Sys, int W>
+auto BatchMarch<Sys, W>::along(const Sys& system, const Unknowns& unknowns) const -> Step<Sys, B> {
+  return {system.groupoid.arrow_in_chart(state_.object, Fibre(unknowns.template head<n>())),
+          unknowns.template tail<Sys::constraints>()};
 }
 
 /// By doubling the step from a small one, as `Stepper` does.
@@ -160,8 +160,9 @@ template <DiscreteSystem Sys, int W>
 
 template <DiscreteSystem Sys, int W>
 auto BatchMarch<Sys, W>::next_step(const Sys& system, const Mask& wanted, StepSolution<Sys, B>& solution) -> Mask {
-  solution.step = predicted(system);
-  const Fibre chart = system.groupoid.chart(solution.step.arrow);
+  const Unknowns predicted = past_.next();
+  const Fibre chart = predicted.template head<n>();
+  solution.step = along(system, predicted);
   Mask solved = newton_.solve(system, state_, solution, wanted, index_);
   if (const Mask lost = wanted && !solved; xsimd::any(lost)) solved = solved || again(system, lost, solution);
   return solved && near(chart, system.groupoid.chart(solution.step.arrow));
@@ -172,7 +173,7 @@ template <DiscreteSystem Sys, int W>
 [[gnu::cold, gnu::noinline]] auto BatchMarch<Sys, W>::again(const Sys& system, const Mask& wanted,
                                                             StepSolution<Sys, B>& solution) -> Mask {
   StepSolution<Sys, B> fresh;
-  fresh.step = predicted(system);
+  fresh.step = along(system, past_.next());
   const Mask solved = newton_.solve_fully(system, state_, fresh, wanted);
   detail::blend_arrow(system.groupoid, wanted, fresh.step.arrow, solution.step.arrow);
   detail::blend(wanted, fresh.step.multipliers, solution.step.multipliers);
@@ -192,7 +193,7 @@ template <DiscreteSystem Sys, int W>
   StepReport report;
   bool near_guess = false;
   if (index_ > 0) {
-    const Step<Sys, B> guesses = predicted(system);
+    const Step<Sys, B> guesses = along(system, past_.next());
     found.step = {detail::arrow_of_lane<W>(groupoid, guesses.arrow, lane), detail::lane_of(guesses.multipliers, lane)};
     const AlgebroidVector<G> guess = groupoid.chart(found.step.arrow);
     report = NewtonStep<Sys>().solve(system, from, found);
