@@ -12,13 +12,14 @@ namespace lagroid {
 /// The step equations F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0, in the unknowns (w, lambda), g <- g tau(w).
 ///
 /// For object constraints F- contains lambda . dC o rho at the source, the impulse between two arrows.
-template <class Sys> struct StepEquations {
+template <class Sys, class S = double> struct StepEquations {
   static constexpr int size = Sys::dimension + Sys::constraints;
   /// Not aligned, so that Eigen reads it number by number, as it is written.
-  using Residual = Eigen::Matrix<double, size, 1, Eigen::DontAlign>;
-  using Jacobian = Matrix<double, size, size>;
+  using Residual = Eigen::Matrix<S, size, 1, Eigen::DontAlign>;
+  using Jacobian = Matrix<S, size, size>;
 
-  static Residual residual(const GradientsOf<Sys>& d, const AlgebroidVector<typename Sys::GroupoidType>& momentum) {
+  static Residual residual(const GradientsOf<Sys, S>& d,
+                           const AlgebroidVector<typename Sys::GroupoidType, S>& momentum) {
     Residual r;
     r.template head<Sys::dimension>() = -d.source_gradient - momentum;
     r.template tail<Sys::constraints>() = d.constraint;
@@ -26,7 +27,7 @@ template <class Sys> struct StepEquations {
   }
 
   /// [ -d2f/dv dw   -(d(phi, C o alpha)/dv)^T ;  d(phi, C o beta)/dw   0 ].
-  static Jacobian jacobian(const TwoSidedOf<Sys>& d) {
+  static Jacobian jacobian(const TwoSidedOf<Sys, S>& d) {
     Jacobian j;
     j.template topLeftCorner<Sys::dimension, Sys::dimension>() = -d.mixed;
     j.template topRightCorner<Sys::dimension, Sys::constraints>() = -d.constraint_source;
