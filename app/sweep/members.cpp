@@ -135,7 +135,10 @@ std::unique_ptr<MemberRunner> scene_runner(const Section& scene, const Design& d
 
 Part try_scene(const Section& sweep, const Section& scene, const Keep& keep) {
   Section few = recording(scene, keep);
-  if (!few.numbers_at("time.steps").empty()) few = few.with({{"time.steps", {few.has("boundary") ? 2.0 : 1.0}}});
+  if (few.has("boundary"))
+    few = few.with({{"solver.starts", {1}}});
+  else if (!few.numbers_at("time.steps").empty())
+    few = few.with({{"time.steps", {1}}});
   const RunResult result = run_scene(few, {.record = true});
   const std::vector<Series>& recorded = result.trajectory.series;
   Part part(0, 1);

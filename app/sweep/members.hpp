@@ -34,8 +34,8 @@ class MemberRunner {
 /// By `run_scene`, one after the other: any scene. One that fails does so alone: its row has a status and a message.
 std::unique_ptr<MemberRunner> scene_runner(const Section& scene, const Design& design, const Keep& keep);
 
-/// Runs a step or two of the scene as it is written, so that its mistakes, and names of `keep` that it does not record,
-/// are found before all else. Returns what would be kept of it. Throws SceneError.
+/// Runs one step (or, of a boundary value, one start) of the scene as it is written, so that its mistakes, and names of
+/// `keep` that it does not record, are found before all else. Returns what would be kept of it. Throws SceneError.
 Part try_scene(const Section& sweep, const Section& scene, const Keep& keep);
 
 }  // namespace lagroid::app

@@ -19,21 +19,21 @@ namespace fs = std::filesystem;
 /// So many that threads and ranks are kept busy to the end, so few that a folder holds them easily.
 constexpr long most_parts = 512;
 
-fs::path scene_file(const Section& at, const std::string& sweep) {
-  const std::string name = at.text(at.has("file") ? "file" : "scene", "the path of a scene");
+fs::path scene_file(const Section& at, const char* key, const std::string& sweep) {
+  const std::string name = at.text(key, "the path of a scene");
   const fs::path beside = fs::path(sweep).parent_path() / name;
   std::error_code ignored;
   return fs::exists(beside, ignored) ? beside : fs::path(name);
 }
 
 Section read_its_scene(const Section& sweep) {
-  if (!sweep.is_table("scene")) return read_scene(scene_file(sweep, sweep.file()), {});
+  if (!sweep.is_table("scene")) return read_scene(scene_file(sweep, "scene", sweep.file()), {});
   const Section section = sweep.section("scene", "the scene");
   std::vector<std::string> overrides = section.as_overrides();
   try {
     if (!section.has("file")) return parse_scene("", sweep.file(), overrides);
     std::erase_if(overrides, [](const std::string& each) { return each.starts_with("file="); });
-    return read_scene(scene_file(section, sweep.file()), overrides);
+    return read_scene(scene_file(section, "file", sweep.file()), overrides);
   } catch (const SceneError& error) {
     section.fail("", error.problem());
   }
