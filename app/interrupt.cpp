@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <csignal>
 #include <ctime>
+#include <mutex>
 
 namespace lagroid::app {
 
@@ -10,6 +12,11 @@ namespace {
 
 volatile std::sig_atomic_t signal_seen = 0;
 volatile std::sig_atomic_t seen_at = 0;  // s
+
+std::mutex counting;
+long living = 0;  // guards
+struct sigaction int_before {};
+struct sigaction term_before {};
 
 /// Only calls that a signal handler may make.
 extern "C" void note_signal(int signal) {
@@ -27,19 +34,22 @@ extern "C" void note_signal(int signal) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
-  if (interrupted()) return;  // by a guard before: the handlers are still in place
+  const std::lock_guard lock(counting);
+  // After an interrupt the handlers of the guards before are still in place.
+  if (living++ > 0 || interrupted()) return;
   struct sigaction note {};
   note.sa_handler = note_signal;
   note.sa_flags = SA_RESTART;
   sigemptyset(&note.sa_mask);
-  sigaction(SIGINT, &note, &int_before_);
-  sigaction(SIGTERM, &note, &term_before_);
+  sigaction(SIGINT, &note, &int_before);
+  sigaction(SIGTERM, &note, &term_before);
 }
 
 InterruptGuard::~InterruptGuard() {
-  if (interrupted()) return;
-  sigaction(SIGINT, &int_before_, nullptr);
-  sigaction(SIGTERM, &term_before_, nullptr);
+  const std::lock_guard lock(counting);
+  if (--living > 0 || interrupted()) return;
+  sigaction(SIGINT, &int_before, nullptr);
+  sigaction(SIGTERM, &term_before, nullptr);
 }
 
 bool InterruptGuard::interrupted() { return signal_seen != 0; }

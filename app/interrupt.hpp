@@ -1,13 +1,12 @@
 #pragma once
 /// Ctrl-C and SIGTERM while a run goes on.
 
-#include <csignal>
-
 namespace lagroid::app {
 
 /// As long as it lives, the first SIGINT or SIGTERM is noted instead of ending the program, and from then on, so that
 /// what was computed can be written, only one that comes over a second later ends it (a terminal and `timeout` send
-/// theirs to a whole group of processes, so that one may arrive twice). Only one at a time.
+/// theirs to a whole group of processes, so that one may arrive twice). Of several, on any threads, the first sets that
+/// up and the last undoes it.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -16,10 +15,6 @@ class InterruptGuard {
   ~InterruptGuard();
   /// Whether one has come.
   static bool interrupted();
-
- private:
-  struct sigaction int_before_ {};
-  struct sigaction term_before_ {};
 };
 
 }  // namespace lagroid::app

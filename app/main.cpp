@@ -12,6 +12,7 @@
 #include "report.hpp"
 #include "reproduce.hpp"
 #include "study/study.hpp"
+#include "sweep/sweep.hpp"
 #include "view.hpp"
 
 #include <fmt/format.h>
@@ -134,6 +135,10 @@ int main(int argc, char** argv) {
   CLI::App* study_command = app.add_subcommand(
       "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
   add_study_options(*study_command, study_options);
+  SweepOptions sweep_options;
+  CLI::App* sweep_command =
+      app.add_subcommand("sweep", "run many members of one scene, on all threads or under mpirun (see docs/sweeps.md)");
+  add_sweep_options(*sweep_command, sweep_options);
   OptimiseOptions optimise_options;
   CLI::App* optimise_command =
       app.add_subcommand("optimize", "minimise a function on a manifold (see docs/optimisation.md)");
@@ -164,6 +169,10 @@ int main(int argc, char** argv) {
       static_cast<SceneOptions&>(options) = study_options;
       return study(study_options);
     }
+    if (sweep_command->parsed()) {
+      static_cast<SceneOptions&>(options) = sweep_options;
+      return sweep(sweep_options);
+    }
     if (optimise_command->parsed()) {
       static_cast<SceneOptions&>(options) = optimise_options;
       return optimise(optimise_options);
@@ -173,7 +182,7 @@ int main(int argc, char** argv) {
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
     return refuse(
         options.json, exit_bad_input, "invalid_command_line",
-        "name a command: run, resume, view, plot, study, optimize, learn, trajectories, check, list or reproduce; see "
-        "lagroid --help");
+        "name a command: run, resume, view, plot, study, sweep, optimize, learn, trajectories, check, list or reproduce; "
+        "see lagroid --help");
   });
 }
