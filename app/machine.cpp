@@ -1,5 +1,7 @@
 #include "machine.hpp"
 
+#include <lagroid/core/version.hpp>
+
 #include <fmt/format.h>
 #include <Eigen/Core>
 

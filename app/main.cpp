@@ -1,6 +1,7 @@
 /// The program lagroid.
 
 #include "checkpoint.hpp"
+#include "cite/cite.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "learn/draw.hpp"
@@ -14,6 +15,8 @@
 #include "study/study.hpp"
 #include "sweep/sweep.hpp"
 #include "view.hpp"
+
+#include <lagroid/core/version.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -154,6 +157,9 @@ int main(int argc, char** argv) {
   ReproduceOptions papers;
   CLI::App* reproduce_command = app.add_subcommand("reproduce", "carry out the experiments of a paper, and more");
   add_reproductions(*reproduce_command, papers, options.json);
+  CiteOptions cite_options;
+  CLI::App* cite_command = app.add_subcommand("cite", "how to cite the program, and the papers that a scene rests on");
+  add_cite_options(*cite_command, cite_options);
   app.require_subcommand(0, 1);
   return command_line(app, argc, argv, options, [&] {
     if (list_command->parsed()) {
@@ -180,9 +186,12 @@ int main(int argc, char** argv) {
     if (learn_command->parsed()) return learn(learn_options);
     if (draw_command->parsed()) return draw(draw_options);
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
-    return refuse(
-        options.json, exit_bad_input, "invalid_command_line",
-        "name a command: run, resume, view, plot, study, sweep, optimize, learn, trajectories, check, list or reproduce; "
-        "see lagroid --help");
+    if (cite_command->parsed()) {
+      options.json = cite_options.json;
+      return cite(cite_options);
+    }
+    return refuse(options.json, exit_bad_input, "invalid_command_line",
+                  "name a command: run, resume, view, plot, study, sweep, optimize, learn, trajectories, check, list, "
+                  "reproduce or cite; see lagroid --help");
   });
 }

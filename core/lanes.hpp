@@ -13,9 +13,12 @@ namespace lagroid {
 
 namespace detail {
 
-/// How many numbers of type T one register of the target machine holds.
+/// How many numbers of type T one register of the target machine holds. An installed library fixes the registers that it
+/// was compiled for, so that what it shares with its callers has one layout, whatever their own instruction set.
 template <class T> constexpr int register_lanes() {
-#if defined(__AVX512F__)
+#if defined(LAGROID_REGISTER_BYTES)
+  constexpr int bytes = LAGROID_REGISTER_BYTES;
+#elif defined(__AVX512F__)
   constexpr int bytes = 64;
 #elif defined(__AVX__)
   constexpr int bytes = 32;

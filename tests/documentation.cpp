@@ -238,6 +238,18 @@ TEST(Mathematics, ItNamesEveryLaw) {
 
 TEST(Mathematics, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/mathematics.md")), none); }
 
+TEST(StabilityPage, WhatItNamesExists) {
+  const std::string page = read("docs/stability.md");
+  for (const char* heading : {"## Stable", "## Experimental"})
+    EXPECT_EQ(unknown_names(section(page, heading)), none) << heading;
+}
+
+TEST(InstallPage, TheFilesItNamesExist) {
+  const auto names = matches(prose_of(read("docs/install.md")), "`((?:app|bench|core|docs|tests)/[^` ]+)`");
+  EXPECT_GT(names.size(), 3U);
+  for (const auto& name : names) EXPECT_TRUE(exists(root / name)) << name;
+}
+
 TEST(BrokenPage, AFailureOfAnotherLawIsFoundOut) {
   const std::vector<std::string> unfounded{"units", "BrokenGroupoid.WrongInverse"};
   EXPECT_EQ(unfounded_failures("\"units\"\n- Fails: `BrokenGroupoid.WrongInverse`.\n\n"
