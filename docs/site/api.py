@@ -189,7 +189,6 @@ class Api(SphinxDirective):
         headers = sorted(header for header in about if os.path.dirname(header) == folder)
         if not headers:
             raise self.error(f'no headers in "{folder}"')
-        self.env.note_dependency(str(pathlib.Path(self.env.srcdir) / folder))
         self.ids = set()
         return [node for header in headers for node in self.header(header, about[header], entities[header])]
 
