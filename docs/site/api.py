@@ -20,6 +20,8 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
+from links import link_to_source
+
 log = logging.getLogger(__name__)
 
 
@@ -198,7 +200,8 @@ class Api(SphinxDirective):
             log.warning("%s: the header does not say what it is", header)
         section = nodes.section(ids=[nodes.make_id(header)])
         section += nodes.title("", os.path.basename(header))
-        section += self.code(f"#include <lagroid/{header}>")
+        source = link_to_source(self.env.app, self.env.docname, header, nodes.literal("", f"#include <lagroid/{header}>"))
+        section += nodes.paragraph("", "", source)
         section += [node.deepcopy() for node in about]
         for entity in shown:
             section += self.entity(entity)
@@ -215,14 +218,15 @@ class Api(SphinxDirective):
         if target not in self.ids:
             self.ids.add(target)
             block["ids"].append(target)
-            names = getattr(self.env, "lagroid_names", None)
-            names.setdefault(re.sub(r"<.*", "", entity.name), (self.env.docname, target))
+            self.env.lagroid_names.setdefault(re.sub(r"<.*", "", entity.name), (self.env.docname, target))
         block += self.code(entity.declaration)
         block += [node.deepcopy() for node in entity.said]
         fields = [member.declaration + ";" for member in entity.members if not member.said]
         told = [member for member in entity.members if member.said]
         body = nodes.container(classes=["api-members"])
         for member in told:
+            self.env.lagroid_members[member.name].add((self.env.docname, target))
+            body += addnodes.index(entries=[("single", f"{member.name} ({entity.name})", target, "", None)])
             body += self.code(member.declaration)
             body += [node.deepcopy() for node in member.said]
         if fields:
@@ -237,10 +241,14 @@ class LinkNames(SphinxPostTransform):
 
     default_priority = 900
 
+    def place(self, name):
+        """Where an entity is described, or the only class that has a member of that name."""
+        classes = self.env.lagroid_members.get(name, ())
+        return self.env.lagroid_names.get(name) or (next(iter(classes)) if len(classes) == 1 else None)
+
     def run(self, **kwargs):
-        names = self.env.lagroid_names
         for literal in list(self.document.findall(nodes.literal)):
-            found = names.get(literal.astext())
+            found = self.place(literal.astext())
             if found is None or isinstance(literal.parent, nodes.reference):
                 continue
             docname, target = found
@@ -255,6 +263,7 @@ class LinkNames(SphinxPostTransform):
 
 def prepare(app):
     app.env.lagroid_names = {}
+    app.env.lagroid_members = collections.defaultdict(set)
     run_doxygen(app)
 
 
