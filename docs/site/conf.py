@@ -7,7 +7,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 root = pathlib.Path(__file__).parents[2]
 
 project = "Lagroid"
-release = re.search(r"project\(lagroid VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text())[1]
+release = re.search(r"^## ([\d.]+)", (root / "CHANGELOG.md").read_text(), re.M)[1]
 version = release
 language = "en"
 
