@@ -38,12 +38,15 @@ def broken_links(page):
             yield f"{where}: no such heading"
 
 
-def unreachable(address):
+def gone(address):
+    """Why nobody answers there; empty where somebody does, be it with a refusal of programs."""
     try:
         request = urllib.request.Request(address, headers={"User-Agent": "lagroid-links"})
         with urllib.request.urlopen(request, timeout=20):
-            return None
-    except (urllib.error.URLError, OSError) as error:
+            return ""
+    except urllib.error.HTTPError as error:
+        return f"{address}: {error}" if error.code in (404, 410) else ""
+    except OSError as error:
         return f"{address}: {error}"
 
 
@@ -60,7 +63,10 @@ class Links(unittest.TestCase):
     @unittest.skipUnless(network, "without --network")
     def test_to_elsewhere_are_answered(self):
         addresses = {target for page in pages() for _, target in targets(page) if target.startswith("http")}
-        self.assertEqual([why for why in map(unreachable, sorted(addresses)) if why], [])
+        missing = [why for why in map(gone, sorted(addresses)) if why]
+        if addresses and len(missing) == len(addresses):
+            self.skipTest("no network")
+        self.assertEqual(missing, [])
 
 
 if __name__ == "__main__":
