@@ -1,7 +1,7 @@
 """Every block of code in the Markdown pages is compiled, run or read: blocks.py PROGRAM
 
 - C++, CMake and Python are part of a file that CI compiles or runs; a comment of three dots leaves lines out.
-- TOML is a scene that the program runs, for two steps if it has steps; where it opens with `# examples/NAME.toml, with` its
+- TOML is a scene that the program runs, initial values for two steps, or a sweep, of four members if it has a count; where it opens with `# examples/NAME.toml, with` its
   tables take the place of that scene's.
 - Commands name subcommands, options and files that exist; those that take a moment are carried out.
 - Text that follows commands is what they print, numbers to a thousandth and below 1e-8 by their size; a line of three dots leaves
@@ -12,9 +12,11 @@ import functools
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 from pages import Block, Page, flush_left, pages, root
@@ -50,12 +52,25 @@ def foreign(block):
 
 # Scenes.
 
+def command_for(text):
+    """What reads a file of this text, for a moment."""
+    tables = tomllib.loads(text)
+    if "problem" in tables:
+        return "optimize", []
+    if "scene" in tables:
+        return "sweep", ["--out", "out/sweep_of_a_page", *(["--set", "design.count=4"] if "count" in tables.get("design", {}) else [])]
+    short = "steps" in tables.get("time", {}) and "boundary" not in tables
+    return "run", ["--set", "time.steps=2"] if short else []
+
+
 def scene_failures(block, folder):
     over = re.match(r"# (examples/\S+\.toml), with\b", block.text)
-    path = folder / "block.toml"
-    path.write_text(merged((root / over[1]).read_text(), block.text) if over else block.text)
-    reads = "optimize" if re.search(r"^\[problem\]", path.read_text(), re.M) else "run"
-    done = run([reads, path, *(["--set", "time.steps=2"] if re.search(r"^steps *=", block.text, re.M) else [])], folder)
+    text = merged((root / over[1]).read_text(), block.text) if over else block.text
+    path = folder / "examples/block.toml"
+    path.write_text(text)
+    name, options_of_it = command_for(text)
+    done = run([name, path, *options_of_it], folder)
+    shutil.rmtree(folder / "out/sweep_of_a_page", ignore_errors=True)
     if done.returncode != 0:
         yield f"{block}: {(done.stderr or done.stdout).strip()}"
 
@@ -115,7 +130,7 @@ def misused(words):
     return f"no file {missing[0]}" if missing else ""
 
 
-momentary = {"run", "resume", "view", "plot", "list", "optimize", "trajectories", "learn"}
+momentary = {"run", "resume", "view", "plot", "list", "optimize", "trajectories", "learn", "cite"}
 
 
 def examples_named(text):
@@ -199,14 +214,20 @@ def inline_failures(page):
                     yield f"{page.name}:{line}: `{token.content}`: {why}"
 
 
+def furnish(folder):
+    """Makes a folder in which commands find the scenes, and can leave their own beside them."""
+    (folder / "examples").mkdir()
+    for shared in (root / "examples").iterdir():
+        (folder / "examples" / shared.name).symlink_to(shared)
+
+
 class Pages(unittest.TestCase):
     maxDiff = None
 
     def test_what_they_show_works(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            for shared in ("examples", "tests"):
-                (folder / shared).symlink_to(root / shared)
+            furnish(folder)
             found = []
             for page in pages():
                 printed = []  # by the commands of the last block of them
@@ -220,8 +241,9 @@ class Pages(unittest.TestCase):
 
 class BrokenPages(unittest.TestCase):
     def of(self, language, text, printed=()):
-        with tempfile.TemporaryDirectory() as folder:
-            return len(list(failures(Block("page.md", 1, language, text), pathlib.Path(folder), list(printed))))
+        with tempfile.TemporaryDirectory() as name:
+            furnish(pathlib.Path(name))
+            return len(list(failures(Block("page.md", 1, language, text), pathlib.Path(name), list(printed))))
 
     def test_code_of_nowhere(self):
         self.assertEqual(self.of("cpp", "int none_of_ours;\n"), 1)
