@@ -121,10 +121,16 @@ class MatrixGroup:
     def displaced(self, g: tuple[Array, ...], v: Array, w: Array) -> tuple[Array, ...]:
         moved = g[0]
         if v.any():
-            moved = self.exp(-v) @ moved
+            moved = self._near_unit(-v) @ moved
         if w.any():
-            moved = moved @ self.exp(w)
+            moved = moved @ self._near_unit(w)
         return (moved,)
+
+    def _near_unit(self, v: Array) -> Array:
+        """exp(hat(v)), whose square is nothing beside it where v is complex, of vanishing size."""
+        if np.iscomplexobj(v):
+            return np.asarray(np.eye(self.basis.shape[1]) + self.hat(v))
+        return self.exp(v)
 
 
 def _rotations(n: int) -> Array:
@@ -181,10 +187,11 @@ class DiscreteLagrangian:
                 raise TypeError(f"{type(self).__name__} has no parameter {name}")
             setattr(self, name, value)
 
-    def lagrangian(self, *arrow: Any) -> Any:
+    def lagrangian(self, *arrow: Any, **_: Any) -> Any:
+        """L(g), a number; what must be written."""
         raise NotImplementedError("write lagrangian(self, ...) of an arrow")
 
-    def constraint(self, *arrow: Any) -> Any:
+    def constraint(self, *arrow: Any, **_: Any) -> Any:
         """phi, (m,); none by default."""
         return np.zeros(0)
 
@@ -225,10 +232,9 @@ class _Derivatives:
         self.size = 0.0  # of what is differentiated, where differences are
 
     def value(self, g: tuple[Array, ...]) -> Array:
-        out = np.concatenate(
+        return np.concatenate(
             [np.atleast_1d(self.system.lagrangian(*g)).ravel(), np.atleast_1d(self.system.constraint(*g)).ravel()]
         )
-        return out
 
     def _along(self, g: tuple[Array, ...], direction: Array) -> Array:
         n = self.system.groupoid.dimension
@@ -241,15 +247,15 @@ class _Derivatives:
 
     def _difference(self, g: tuple[Array, ...], direction: Array) -> Array:
         n = self.system.groupoid.dimension
-        step = np.finfo(float).eps ** 0.2
+        step = float(np.finfo(float).eps) ** 0.2
 
         def central(h: float) -> Array:
             ends = [
                 self.value(self.system.groupoid.displaced(g, s * direction[:n], s * direction[n:])) for s in (h, -h)
             ]
-            return (ends[0] - ends[1]) / (2 * h)
+            return np.asarray((ends[0] - ends[1]) / (2 * h))
 
-        return (4 * central(step / 2) - central(step)) / 3
+        return np.asarray((4 * central(step / 2) - central(step)) / 3)
 
     def __call__(self, g: tuple[Array, ...]) -> Array:
         """(2 n, 1 + m): a row for each displacement, of the source first."""
@@ -317,15 +323,15 @@ class PrototypeIntegrator:
         if self._object_constraints == 0:
             return np.zeros((self.groupoid.dimension, 0))
         n = self.groupoid.dimension
-        step = np.finfo(float).eps ** 0.2
+        step = float(np.finfo(float).eps) ** 0.2
         unit = self.groupoid.unit(q)
 
         def at(w: Array) -> Array:
-            return np.atleast_1d(self.system.object_constraint(self.groupoid.target(
+            return np.asarray(self.system.object_constraint(self.groupoid.target(
                 self.groupoid.displaced(unit, np.zeros(n), w))))
 
         def central(d: Array, h: float) -> Array:
-            return (at(h * d) - at(-h * d)) / (2 * h)
+            return np.asarray((at(h * d) - at(-h * d)) / (2 * h))
 
         return np.array([(4 * central(d, step / 2) - central(d, step)) / 3 for d in np.eye(n)])
 
@@ -341,7 +347,7 @@ class PrototypeIntegrator:
 
     def _jacobian(self, g: tuple[Array, ...], multipliers: Array, reaction: Array) -> Array:
         n = self.groupoid.dimension
-        step = np.finfo(float).eps ** (1 / 3)
+        step = float(np.finfo(float).eps) ** (1 / 3)
         columns = []
         for d in np.eye(n):
             ends = [
@@ -429,7 +435,7 @@ class PrototypeIntegrator:
         eps = float(np.finfo(float).eps)
         coordinates = max([1.0, *(float(np.abs(each).max(initial=0.0)) for each in g)])
         own = 4 * eps * (float(np.abs(matrix).max()) * coordinates + float(np.abs(self.momentum).max(initial=0.0)))
-        return own if self._derivatives.complex else own + eps**0.8 * 10 * self._derivatives.size
+        return own if self._derivatives.complex else own + 10 * float(eps**0.8) * self._derivatives.size
 
     def march(self, steps: int, every: int = 1) -> PrototypeMarch:
         """So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status."""

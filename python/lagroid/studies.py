@@ -58,9 +58,10 @@ def study(
 
 
 def _checker() -> str:
-    beside = Path(__file__).resolve().parents[2] / "bin" / "lagroid-check"
-    given = os.environ.get("LAGROID_CHECK")
-    found = given or (str(beside) if beside.exists() else shutil.which("lagroid-check"))
+    found = os.environ.get("LAGROID_CHECK") or shutil.which("lagroid-check")
+    if not found and _lagroid.__file__ is not None:
+        beside = Path(_lagroid.__file__).parents[2] / "bin" / "lagroid-check"  # in the build tree
+        found = str(beside) if beside.exists() else None
     if not found:
         raise ProgramError(
             "the program lagroid-check is not there: build its target (ninja lagroid_check), and put it on PATH or "
