@@ -221,6 +221,16 @@ TEST(MultibodyPage, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/multibody.md"), "cpp", read("examples/my_effect.cpp")), none);
 }
 
+TEST(Sweeps, WhatItNamesExists) {
+  const std::string page = read("docs/sweeps.md");
+  const auto laws = matches(page, "`((?:Sweep|Schedule)\\.[A-Za-z]+)`");
+  EXPECT_FALSE(laws.empty());
+  const std::string tests = read("tests/sweep_command.cpp");
+  for (const std::string& law : laws) {
+    const auto dot = law.find('.');
+    EXPECT_NE(tests.find("(" + law.substr(0, dot) + ", " + law.substr(dot + 1) + ")"), std::string::npos) << law;
+  }
+}
 TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time.md"))), none); }
 TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
 

@@ -1,6 +1,7 @@
 // `lagroid sweep`: designs, members, threads, ranks, interrupts, killed ranks, files, refusals.
 #include "command_line.hpp"
 
+#include <lagroid/app/reproductions/sweep_scaling.hpp>
 #include <lagroid/app/sweep/schedule.hpp>
 
 #include <H5Cpp.h>
@@ -575,10 +576,66 @@ void Sweep::kill_ranks(int times) {
 }
 
 #ifdef LAGROID_MANY_KILLS
-TEST_F(Sweep, TwentyKilledRanksLoseNothing) { kill_ranks(20); }
+constexpr int kills = 20;
 #else
-TEST_F(Sweep, AKilledRankLosesNothingAfterTheRerun) { kill_ranks(2); }
+constexpr int kills = 2;
 #endif
+TEST_F(Sweep, AKilledRankLosesNothingAfterTheRerun) { kill_ranks(kills); }
+
+TEST_F(Sweep, EveryExampleRuns) {
+  const auto small = [&](const std::string& name, const std::string& more, long count) {
+    SCOPED_TRACE(name);
+    const Outcome r = sweep(example("sweeps/" + name), name, "--json " + more);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_EQ(nlohmann::json::parse(r.out).at("members"), count);
+  };
+  small("basins", "--set vary.0.count=6 --set vary.1.count=5", 30);
+  small("rigid_bodies", "--set design.count=50", 50);
+  small("kepler", "--set design.count=10 --set scene.time.steps=500", 10);
+  small("plate_ball", "--set vary.0.count=2 --set vary.1.count=2", 4);
+  small("three_bodies", "--set scene.time.steps=1000", 4);
+  // Every angle has come to rest near one of the wells.
+  for (const double q : column("basins", "final/q")) EXPECT_LT(std::abs(std::remainder(q, 2 * M_PI)), 0.6);
+}
+
+TEST_F(Sweep, TheFileOnThePageIsOne) {
+  std::ifstream page(std::string(LAGROID_EXAMPLES) + "/../docs/sweeps.md");
+  std::string text;
+  for (std::string line; std::getline(page, line);)
+    if (line.starts_with("    [scene]") || (!text.empty() && (line.empty() || line.starts_with("    "))))
+      text += line + "\n";
+    else if (!text.empty())
+      break;
+  const std::string path = "../kepler.toml";
+  ASSERT_NE(text.find(path), std::string::npos);
+  text.replace(text.find(path), path.size(), example("kepler"));
+  EXPECT_EQ(sweep(file("page.toml", text), "page", "--set design.count=3 --set scene.time.steps=10").code, 0);
+}
+
+TEST_F(Sweep, WhatItCostsIsMeasuredAndModelled) {
+  if (const std::string why = without_ranks(); !why.empty()) GTEST_SKIP() << why;
+  const Outcome r = run("reproduce sweep-scaling --json --out " + out("scaling"), mpirun(2));
+  ASSERT_EQ(r.code, 0) << r.err;
+  for (const auto& [name, seconds] : nlohmann::json::parse(r.out).at("seconds").items()) {
+    EXPECT_GE(seconds.get<double>(), 0) << name;
+    EXPECT_LT(seconds.get<double>(), 10) << name;
+  }
+  EXPECT_NE(bytes(out("scaling") + "/report.md").find("| 10000 |"), std::string::npos);
+  EXPECT_EQ(run("reproduce sweep-scaling --out " + out("alone")).code, 2);
+}
+
+TEST(SweepModel, LosesWhatItSays) {
+  using lagroid::app::sweep_efficiency;
+  using lagroid::app::sweep_seconds;
+  lagroid::app::SweepCosts free;
+  // The last part alone is lost where nothing costs anything.
+  EXPECT_DOUBLE_EQ(sweep_efficiency(free, {.workers = 100, .work = 600, .parts = 9, .member = 1}), 0.9);
+  // Rank 0 is the bottleneck where parts are shorter than it takes to hand one to every thread.
+  lagroid::app::SweepCosts handing;
+  handing.hand = 1e-3;
+  EXPECT_DOUBLE_EQ(sweep_seconds(handing, {.workers = 10000, .work = 100, .parts = 100, .member = 1}), 1000 + 1);
+  EXPECT_DOUBLE_EQ(sweep_seconds(handing, {.workers = 100, .work = 100, .parts = 100, .member = 1}), 100 + 1);
+}
 
 TEST_F(Sweep, TellsOneJsonObject) {
   const Outcome r = sweep(orbits(square), "json", "--json");

@@ -1,5 +1,7 @@
 #include "schedule.hpp"
 
+#include "../clock.hpp"
+
 #include <lagroid/solvers/ensemble/tasks.hpp>
 
 #include <chrono>
@@ -150,6 +152,7 @@ class Crew {
 /// Rank 0: hands out, and counts.
 ScheduleOutcome hand_out(Ranks& ranks, std::span<const long> parts, const Schedule& schedule, Crew& crew) {
   ScheduleOutcome outcome;
+  const double begun = processor_time();
   std::size_t next = 0;
   long finished = 0;
   int others = ranks.size() - 1;
@@ -190,6 +193,7 @@ ScheduleOutcome hand_out(Ranks& ranks, std::span<const long> parts, const Schedu
     crew.wait(others > 0 ? between_looks : std::chrono::milliseconds(100));
   }
   outcome.seconds_waiting += crew.seconds_waiting();
+  outcome.seconds_handing = processor_time() - begun;
   outcome.finished = finished == long(parts.size());
   for (int rank = 1; rank < ranks.size(); ++rank) ranks.send(rank, {leave, 0, {}});
   return outcome;

@@ -20,6 +20,7 @@ struct ScheduleOutcome {
   std::string failure;         ///< what a part threw
   int failed_rank = 0;         ///< where
   double seconds_waiting = 0;  ///< of all threads of all ranks, between asking for a part and having it
+  double seconds_handing = 0;  ///< processor time that the handing out took
 };
 
 /// Calls work(part) for each of `parts` (known to rank 0) once, on any rank, from several threads at a time. `work`

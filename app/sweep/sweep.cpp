@@ -19,8 +19,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 namespace lagroid::app {
@@ -72,21 +75,14 @@ Plan prepare(const SweepOptions& options) {
   return plan;
 }
 
-/// Runs the missing parts on all ranks.
-ScheduleOutcome run_parts(Ranks& ranks, const SweepScene& sweep, const SweepOptions& options,
-                          const std::vector<long>& missing) {
-  const auto runner = scene_runner(sweep.scene, sweep.design, sweep.keep);
-  const PartFiles files(options.out);
-  Progress progress("sweep", sweep.parts(), ranks.rank() == 0 && !options.json);
-  Schedule schedule;
-  schedule.threads = options.threads;
-  schedule.progress = [&](long done) { progress.update(sweep.parts() - long(missing.size()) + done); };
-  schedule.interrupted = InterruptGuard::interrupted;
-  return for_each_part(ranks, missing, schedule, [&](long p) {
+/// Runs a part of the sweep, and keeps it. False where an interrupt came before it was finished.
+std::function<bool(long)> worker(const SweepScene& sweep, const std::string& out) {
+  return [&sweep, runner = std::shared_ptr<MemberRunner>(scene_runner(sweep.scene, sweep.design, sweep.keep)),
+          files = PartFiles(out)](long p) {
     const auto part = runner->run(sweep.first_of(p), sweep.count_of(p));
     if (part) files.keep(p, *part);
     return part.has_value();
-  });
+  };
 }
 
 int tell_finished(const SweepOptions& options) {
@@ -133,28 +129,46 @@ int lead(Ranks& ranks, const SweepOptions& options) {
   }
   ranks.broadcast(packed(plan->sweep));
   const std::vector<long> missing = plan->folder->missing(plan->sweep);
-  const ScheduleOutcome outcome = run_parts(ranks, plan->sweep, options, missing);
+  const long parts = plan->sweep.parts();
+  ScheduleOutcome outcome;
+  {
+    Progress progress("sweep", parts, !options.json);
+    const Schedule schedule{.threads = options.threads,
+                            .progress = [&](long done) { progress.update(parts - long(missing.size()) + done); },
+                            .interrupted = InterruptGuard::interrupted};
+    outcome = for_each_part(ranks, missing, schedule, worker(plan->sweep, options.out));
+  }
   const long left = long(plan->folder->missing(plan->sweep).size());
   if (!outcome.failure.empty())
     throw OutputError(fmt::format("{}{}; {} of {} parts are kept, and the same command goes on from them",
                                   ranks.size() > 1 ? fmt::format("rank {}: ", outcome.failed_rank) : "",
-                                  outcome.failure, plan->sweep.parts() - left, plan->sweep.parts()));
+                                  outcome.failure, parts - left, parts));
   if (left > 0)
     return refuse(options.json, exit_interrupted, interrupted_status,
                   fmt::format("{}: interrupted; {} of {} parts are kept in {}, and the same command goes on from them",
-                              options.scene, plan->sweep.parts() - left, plan->sweep.parts(), options.out));
+                              options.scene, parts - left, parts, options.out));
   const int threads = options.threads > 0 ? options.threads : available_threads();
   const std::string took =
       fmt::format("  took      {} on {} thread{}{}{}\n", duration(seconds_since(start)), threads,
                   threads == 1 ? "" : "s", ranks.size() > 1 ? fmt::format(" of each of {} ranks", ranks.size()) : "",
-                  long(missing.size()) < plan->sweep.parts() ? ", after what was kept from before" : "");
+                  long(missing.size()) < parts ? ", after what was kept from before" : "");
   return conclude(*plan, options, took);
 }
 
 /// Any other rank.
 int follow(Ranks& ranks, const SweepOptions& options) {
   const std::string text = ranks.broadcast("");
-  if (!text.empty()) run_parts(ranks, unpacked(text), options, {});
+  if (text.empty()) return 0;
+  SweepScene sweep;
+  std::function<bool(long)> work;
+  try {
+    sweep = unpacked(text);
+    work = worker(sweep, options.out);
+  } catch (const std::exception& error) {
+    // Rank 0 tells it.
+    work = [why = std::string(error.what())](long) -> bool { throw std::runtime_error(why); };
+  }
+  for_each_part(ranks, {}, {.threads = options.threads, .interrupted = InterruptGuard::interrupted}, work);
   return 0;
 }
 
