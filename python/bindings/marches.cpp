@@ -173,8 +173,7 @@ class Integrator {
       rows.values.resize(at + rows.field.width());
       read(rows.values.data() + at);
     };
-    for (std::size_t i = 0; i < out.rows.size(); ++i)
-      put(out.rows[i], [&](double* to) { march_->read(i, to); });
+    for (std::size_t i = 0; i < out.rows.size(); ++i) put(out.rows[i], [&](double* to) { march_->read(i, to); });
     for (std::size_t i = 0; i < out.quantities.size(); ++i)
       put(out.quantities[i], [&](double* to) { march_->watch(i, to); });
   }
@@ -251,11 +250,11 @@ void bind_marches(py::module_& module) {
         return fmt::format("<path of cost {:.10g}, {}>", p.cost, p.is_minimum ? "a minimum" : "no minimum");
       });
   bind_fields(path, false);
-  path.def_property_readonly("arrow", [](const py::object& self) {
-        return rows_of(self.cast<const BoundaryPath&>().rows[2], self);
-      }).def_property_readonly("multipliers", [](const py::object& self) {
-    return rows_of(self.cast<const BoundaryPath&>().rows[3], self);
-  });
+  path.def_property_readonly(
+          "arrow", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[2], self); })
+      .def_property_readonly("multipliers", [](const py::object& self) {
+        return rows_of(self.cast<const BoundaryPath&>().rows[3], self);
+      });
 
   py::class_<Integrator> integrator(module, "Integrator",
                                     "A trajectory in the making. A step that fails leaves everything as it was.");
@@ -269,8 +268,7 @@ void bind_marches(py::module_& module) {
       .def_property_readonly(
           "state", [](const Integrator& self) { return py::make_tuple(self.now("object"), self.now("momentum")); },
           "(object, momentum).")
-      .def_property_readonly(
-          "method", [](const Integrator& self) { return app::description(self.march().traits()); })
+      .def_property_readonly("method", [](const Integrator& self) { return app::description(self.march().traits()); })
       .def_property_readonly("ledger", &Integrator::ledger, "What was promised and found, over all steps so far.")
       .def("quantity", &Integrator::quantity, py::arg("name"), "One of the system's quantities at this node.");
   bind_fields(integrator, true);
