@@ -13,6 +13,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -59,7 +60,7 @@ struct Marched {
 
 class Integrator {
  public:
-  Integrator(std::shared_ptr<AnyMarch> march, bool ledger) : march_(std::move(march)) {
+  Integrator(std::shared_ptr<AnyMarch> march, bool ledger) : march_(std::move(march)), ledger_(ledger) {
     for (const Watched& each : march_->watched()) {
       scratch_.emplace_back(each.components.size());
       if (ledger) watches_.emplace_back(each.name, each.promise, each.components.size());
@@ -105,6 +106,7 @@ class Integrator {
 
   std::vector<app::LedgerEntry> ledger() const {
     std::vector<app::LedgerEntry> out;
+    if (ledger_ && march_->constrained()) out.push_back(app::constraint_entry(largest_residual_, residual_size_));
     for (const auto& watch : watches_) out.push_back(watch.entry());
     return out;
   }
@@ -155,9 +157,17 @@ class Integrator {
     return report;
   }
   std::string failure(const StepReport& report) const {
-    return app::step_failure(report, march_->index() + 1, march_->time(), TimeMode::fixed);
+    return app::step_failure(report, march_->index() + 1, march_->time(), march_->mode());
   }
   void observe() {
+    if (ledger_ && march_->constrained() && march_->index() > 0) {
+      const double residual = march_->residual();
+      // The size of the constraints' terms changes slowly: looked at where a residual stands out.
+      if (!(residual <= largest_residual_) || residual_size_ == 0) {
+        residual_size_ = std::max(residual_size_, march_->residual_size());
+        largest_residual_ = residual;
+      }
+    }
     for (std::size_t i = 0; i < watches_.size(); ++i) {
       if (march_->watched()[i].on_arrows && march_->index() == 0) continue;
       const double size = march_->watch(i, scratch_[i].data());
@@ -179,6 +189,9 @@ class Integrator {
   }
 
   std::shared_ptr<AnyMarch> march_;
+  bool ledger_;
+  double largest_residual_ = 0;
+  double residual_size_ = 0;
   std::vector<app::QuantityWatch> watches_;
   std::vector<std::vector<double>> scratch_;
   std::atomic<bool> busy_ = false;
