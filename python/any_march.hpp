@@ -2,6 +2,7 @@
 /// A march of any system, as the Python module sees it: numbers with shapes.
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
@@ -39,12 +40,17 @@ class AnyMarch {
   virtual long index() const = 0;
   virtual double time() const = 0;
   virtual MethodTraits traits() const = 0;
+  virtual TimeMode mode() const = 0;
   virtual const std::vector<Field>& fields() const = 0;
   /// Writes the numbers of a field at the node that was reached.
   virtual void read(std::size_t field, double* out) const = 0;
   virtual const std::vector<Watched>& watched() const = 0;
   /// Evaluates a quantity there. Returns the size of the terms it is made of.
   virtual double watch(std::size_t quantity, double* out) const = 0;
+  virtual bool constrained() const = 0;
+  /// The largest |phi| on the arrows of the last step, and the size of its terms there.
+  virtual double residual() const = 0;
+  virtual double residual_size() const = 0;
 };
 
 /// Rows of numbers of one field, for nodes or arrows.

@@ -8,6 +8,7 @@
 ///
 /// Its march is the class Integrator of the package lagroid.
 
+#include <lagroid/core/stepped.hpp>
 #include <lagroid/core/two_sided.hpp>
 #include <lagroid/python/any_march.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
@@ -134,6 +135,7 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
   MarchOfSystem(const Sys& system, const State<G>& initial, const ArrowOf<G>& configuration,
                 const MarchOptions& options)
       : system_(system),
+        mode_(options.mode),
         march_(make_march(system, initial, configuration, options)),
         fields_{{"object", {std::size_t(G::object_coordinate_count())}},
                 {"momentum", {std::size_t(G::dimension)}},
@@ -146,42 +148,80 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
         watched_.push_back({q.name, q.components, q.promise, q.needs_step});
         quantities_.push_back(std::move(q));
       }
+    see();
   }
 
-  StepReport advance() override { return march_->advance(); }
-  long index() const override { return march_->point().index; }
-  double time() const override { return march_->point().time; }
+  StepReport advance() override {
+    const StepReport report = march_->advance();
+    if (report.converged()) see();
+    return report;
+  }
+  long index() const override { return at_.index; }
+  double time() const override { return at_.time; }
   MethodTraits traits() const override { return march_->traits(); }
+  TimeMode mode() const override { return mode_; }
   const std::vector<Field>& fields() const override { return fields_; }
   void read(std::size_t field, double* out) const override {
-    const TrajectoryPoint<Sys>& at = march_->point();
     const G& groupoid = system_.groupoid;
     switch (field) {
       case 0:
-        return detail::put(groupoid.coordinates_of_object(at.state.object), out);
+        return detail::put(groupoid.coordinates_of_object(at_.state.object), out);
       case 1:
-        return detail::put(tangent_momentum(system_, at.state), out);
+        return detail::put(at_.state.momentum, out);
       case 2:
-        return detail::put(groupoid.coordinates_of_arrow(at.configuration), out);
+        return detail::put(groupoid.coordinates_of_arrow(at_.configuration), out);
       case 3:
-        return detail::put(groupoid.coordinates_of_arrow(at.step.arrow), out);
+        return detail::put(groupoid.coordinates_of_arrow(at_.step.arrow), out);
       case 4:
-        return detail::put(at.step.multipliers, out);
+        return detail::put(at_.step.multipliers, out);
       default:
-        *out = at.step_size;
+        *out = at_.step_size;
     }
   }
   const std::vector<Watched>& watched() const override { return watched_; }
   double watch(std::size_t i, double* out) const override {
-    TrajectoryPoint<Sys> at = march_->point();
-    at.state.momentum = tangent_momentum(system_, at.state);
-    quantities_[i].evaluate(at, out);
-    if (quantities_[i].size) return quantities_[i].size(at);
+    quantities_[i].evaluate(at_, out);
+    if (quantities_[i].size) return quantities_[i].size(at_);
     return std::sqrt(std::inner_product(out, out + watched_[i].components.size(), out, 0.0));
+  }
+  bool constrained() const override { return Sys::constraints > 0; }
+  double residual() const override {
+    double largest = 0;
+    if constexpr (Sys::constraints > 0) {
+      const auto look = [&](const Step<Sys>& step, double start, double over) {
+        const double found = constraint_values(over_step(start, over), step.arrow).cwiseAbs().maxCoeff();
+        if (!(found <= largest)) largest = found;  // a NaN too
+      };
+      march_->for_each_inner_stage(look);
+      look(at_.step, at_.time - at_.step_size, at_.step_size);
+    }
+    return largest;
+  }
+  double residual_size() const override {
+    if constexpr (Sys::constraints > 0) {
+      const Sys system = over_step(at_.time - at_.step_size, at_.step_size);
+      const auto d = two_sided(system, at_.step.arrow, at_.step.multipliers);
+      return (d.constraint_target.cwiseAbs() * system.groupoid.coordinate_scale(at_.step.arrow)).maxCoeff();
+    }
+    return 0;
   }
 
  private:
+  /// The node as it is reported: with its momentum tangent to the object constraints.
+  void see() {
+    at_ = march_->point();
+    at_.state.momentum = tangent_momentum(system_, at_.state);
+  }
+  Sys over_step(double start, double over) const {
+    Sys system = system_;
+    if constexpr (HasTimeStep<Sys>) system.h = over;
+    set_time(system, start);
+    return system;
+  }
+
   Sys system_;
+  TimeMode mode_;
+  TrajectoryPoint<Sys> at_;
   std::unique_ptr<March<Sys>> march_;
   std::vector<Field> fields_;
   std::vector<Watched> watched_;

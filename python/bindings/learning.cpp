@@ -136,9 +136,8 @@ void bind_learning(py::module_& module) {
       .def_static(
           "chain",
           [](const Eigen::VectorXd& masses, const Eigen::VectorXd& lengths, double gravity, int count, int points,
-             double duration, double noise, unsigned seed) {
-            return draw(masses, lengths, gravity, count, points, duration, noise, seed);
-          },
+             double duration, double noise,
+             unsigned seed) { return draw(masses, lengths, gravity, count, points, duration, noise, seed); },
           py::arg("masses"), py::arg("lengths"), py::kw_only(), py::arg("gravity") = 1.0, py::arg("count") = 500,
           py::arg("points") = 5, py::arg("duration") = 0.1, py::arg("noise") = 0.0, py::arg("seed") = 0,
           "Random motions of a pendulum chain: masses (k,), kg, lengths (k,), m.")
@@ -195,8 +194,8 @@ void bind_learning(py::module_& module) {
           },
           "(iterations, 4): start, iteration, mse, validation.")
       .def(
-          "energy",
-          [](const Learned& l, const Eigen::VectorXd& z) { return l.model().energy(usable(l, z), z); }, py::arg("z"))
+          "energy", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().energy(usable(l, z), z); },
+          py::arg("z"))
       .def(
           "field", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().field(usable(l, z), z); },
           py::arg("z"), "The motion as an element of the algebra (xi_i, eta_i), (6k,).")

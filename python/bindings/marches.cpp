@@ -13,6 +13,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -59,7 +60,7 @@ struct Marched {
 
 class Integrator {
  public:
-  Integrator(std::shared_ptr<AnyMarch> march, bool ledger) : march_(std::move(march)) {
+  Integrator(std::shared_ptr<AnyMarch> march, bool ledger) : march_(std::move(march)), ledger_(ledger) {
     for (const Watched& each : march_->watched()) {
       scratch_.emplace_back(each.components.size());
       if (ledger) watches_.emplace_back(each.name, each.promise, each.components.size());
@@ -105,6 +106,7 @@ class Integrator {
 
   std::vector<app::LedgerEntry> ledger() const {
     std::vector<app::LedgerEntry> out;
+    if (ledger_ && march_->constrained()) out.push_back(app::constraint_entry(largest_residual_, residual_size_));
     for (const auto& watch : watches_) out.push_back(watch.entry());
     return out;
   }
@@ -155,9 +157,17 @@ class Integrator {
     return report;
   }
   std::string failure(const StepReport& report) const {
-    return app::step_failure(report, march_->index() + 1, march_->time(), TimeMode::fixed);
+    return app::step_failure(report, march_->index() + 1, march_->time(), march_->mode());
   }
   void observe() {
+    if (ledger_ && march_->constrained() && march_->index() > 0) {
+      const double residual = march_->residual();
+      // The size of the constraints' terms changes slowly: looked at where a residual stands out.
+      if (!(residual <= largest_residual_) || residual_size_ == 0) {
+        residual_size_ = std::max(residual_size_, march_->residual_size());
+        largest_residual_ = residual;
+      }
+    }
     for (std::size_t i = 0; i < watches_.size(); ++i) {
       if (march_->watched()[i].on_arrows && march_->index() == 0) continue;
       const double size = march_->watch(i, scratch_[i].data());
@@ -173,13 +183,15 @@ class Integrator {
       rows.values.resize(at + rows.field.width());
       read(rows.values.data() + at);
     };
-    for (std::size_t i = 0; i < out.rows.size(); ++i)
-      put(out.rows[i], [&](double* to) { march_->read(i, to); });
+    for (std::size_t i = 0; i < out.rows.size(); ++i) put(out.rows[i], [&](double* to) { march_->read(i, to); });
     for (std::size_t i = 0; i < out.quantities.size(); ++i)
       put(out.quantities[i], [&](double* to) { march_->watch(i, to); });
   }
 
   std::shared_ptr<AnyMarch> march_;
+  bool ledger_;
+  double largest_residual_ = 0;
+  double residual_size_ = 0;
   std::vector<app::QuantityWatch> watches_;
   std::vector<std::vector<double>> scratch_;
   std::atomic<bool> busy_ = false;
@@ -251,11 +263,11 @@ void bind_marches(py::module_& module) {
         return fmt::format("<path of cost {:.10g}, {}>", p.cost, p.is_minimum ? "a minimum" : "no minimum");
       });
   bind_fields(path, false);
-  path.def_property_readonly("arrow", [](const py::object& self) {
-        return rows_of(self.cast<const BoundaryPath&>().rows[2], self);
-      }).def_property_readonly("multipliers", [](const py::object& self) {
-    return rows_of(self.cast<const BoundaryPath&>().rows[3], self);
-  });
+  path.def_property_readonly(
+          "arrow", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[2], self); })
+      .def_property_readonly("multipliers", [](const py::object& self) {
+        return rows_of(self.cast<const BoundaryPath&>().rows[3], self);
+      });
 
   py::class_<Integrator> integrator(module, "Integrator",
                                     "A trajectory in the making. A step that fails leaves everything as it was.");
@@ -269,8 +281,7 @@ void bind_marches(py::module_& module) {
       .def_property_readonly(
           "state", [](const Integrator& self) { return py::make_tuple(self.now("object"), self.now("momentum")); },
           "(object, momentum).")
-      .def_property_readonly(
-          "method", [](const Integrator& self) { return app::description(self.march().traits()); })
+      .def_property_readonly("method", [](const Integrator& self) { return app::description(self.march().traits()); })
       .def_property_readonly("ledger", &Integrator::ledger, "What was promised and found, over all steps so far.")
       .def("quantity", &Integrator::quantity, py::arg("name"), "One of the system's quantities at this node.");
   bind_fields(integrator, true);

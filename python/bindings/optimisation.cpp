@@ -105,9 +105,9 @@ Callback watch() {
 }
 
 std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::function& fun,
-                                         const std::optional<Numbers>& start, const std::string& method, const std::optional<py::function>& hessian,
-                                         unsigned seed, double gradient, double relative_gradient, long iterations,
-                                         double seconds, bool history) {
+                                         const std::optional<Numbers>& start, const std::string& method,
+                                         const std::optional<py::function>& hessian, unsigned seed, double gradient,
+                                         double relative_gradient, long iterations, double seconds, bool history) {
   const auto manifold = maker.make();
   const PythonObjective objective(fun, hessian, maker.layout);
   const app::Section keys = app::parse_scene(method, "method", {});
@@ -119,12 +119,12 @@ std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::f
   stopping.relative_gradient = relative_gradient;
   stopping.iterations = iterations;
   stopping.seconds = seconds;
-  return std::make_shared<Optimum>(Optimum{
-      computing([&] {
-        return optimisation::minimise(*manifold, objective, from, *by, stopping, {history, watch()});
-      }),
-      maker.layout,
-      {}});
+  return std::make_shared<Optimum>(
+      Optimum{computing([&] {
+                return optimisation::minimise(*manifold, objective, from, *by, stopping, {history, watch()});
+              }),
+              maker.layout,
+              {}});
 }
 
 std::shared_ptr<Optimum> minimise_scene(const Scene& scene, bool history,
@@ -166,9 +166,7 @@ void bind_optimisation(py::module_& module) {
           "dimension", [](const ManifoldMaker& m) { return m.make()->dimension(); }, "How many of them are free.")
       .def(
           "random",
-          [](const ManifoldMaker& m, unsigned seed) {
-            return m.layout.copy_of(random_start(*m.make(), seed));
-          },
+          [](const ManifoldMaker& m, unsigned seed) { return m.layout.copy_of(random_start(*m.make(), seed)); },
           py::arg("seed") = 1, "The point nearest to a random matrix.")
       .def("__repr__", [](const ManifoldMaker& m) { return fmt::format("<{}>", m.make()->name()); });
   module.def(
@@ -224,11 +222,10 @@ void bind_optimisation(py::module_& module) {
           },
           "Of values alone, of gradients, of Hessians times vectors.")
       .def_property_readonly(
-          "values",
-          [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.value; }); },
+          "values", [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.value; }); },
           "After each iteration, where a history was asked for.")
-      .def_property_readonly(
-          "gradients", [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.gradient; }); })
+      .def_property_readonly("gradients",
+                             [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.gradient; }); })
       .def_readonly("summary", &Optimum::summary, "Of a scene: JSON, as lagroid optimize --json prints it.")
       .def("__repr__", [](const Optimum& o) {
         return fmt::format("<minimum {:.10g}: {} after {} iterations>", o.result.value, to_string(o.result.outcome),

@@ -104,8 +104,8 @@ void bind_scenes(py::module_& module) {
 
   py::class_<Endpoint>(module, "Endpoint", "A state as users see it.")
       .def_readonly("time", &Endpoint::time, "s")
-      .def_property_readonly(
-          "position", [](const py::object& self) { return view(self.cast<const Endpoint&>().position, self); })
+      .def_property_readonly("position",
+                             [](const py::object& self) { return view(self.cast<const Endpoint&>().position, self); })
       .def_readonly("attitude", &Endpoint::attitude, "Unit quaternion w, x, y, z, or None.")
       .def_readonly("body_attitude", &Endpoint::body_attitude,
                     "The same of the body one sees, where that is the transpose.")
@@ -115,15 +115,14 @@ void bind_scenes(py::module_& module) {
   py::class_<LedgerEntry>(module, "LedgerEntry", "What was promised, and what was found.")
       .def_readonly("name", &LedgerEntry::name)
       .def_readonly("promise", &LedgerEntry::promise, "round-off, conserved, bounded, none or counted")
-      .def_property_readonly(
-          "initial", [](const py::object& self) { return view(self.cast<const LedgerEntry&>().initial, self); })
+      .def_property_readonly("initial",
+                             [](const py::object& self) { return view(self.cast<const LedgerEntry&>().initial, self); })
       .def_property_readonly("final",
                              [](const py::object& self) { return view(self.cast<const LedgerEntry&>().final, self); })
       .def_readonly("drift", &LedgerEntry::drift, "Largest deviation from the initial value.")
       .def_readonly("relative_drift", &LedgerEntry::relative_drift)
       .def_readonly("bound", &LedgerEntry::bound, "On the drift; zero where none is promised.")
-      .def_readonly("verdict", &LedgerEntry::verdict,
-                    "kept, BROKEN, bounded, growing, unjudged, watched or counted")
+      .def_readonly("verdict", &LedgerEntry::verdict, "kept, BROKEN, bounded, growing, unjudged, watched or counted")
       .def_property_readonly("broken", &LedgerEntry::broken)
       .def("__repr__", [](const LedgerEntry& e) {
         return fmt::format("<{}: {}, drift {:.2e}: {}>", e.name, e.promise, e.drift, e.verdict);
@@ -157,8 +156,7 @@ void bind_scenes(py::module_& module) {
       .def_readonly("equal_axes", &app::Panel::equal_axes);
 
   py::class_<RunResult, std::shared_ptr<RunResult>>(
-      module, "Run",
-      "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
+      module, "Run", "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
       .def_readonly("system", &RunResult::system)
       .def_readonly("method", &RunResult::method)
       .def_readonly("status", &RunResult::status, "converged, interrupted or why not.")

@@ -47,8 +47,8 @@ using Attitude = Matrix<double, 3, 3>;
 }  // namespace
 
 void bind_systems(py::module_& module) {
-  auto kepler = bind_system<Kepler>(module, "Kepler",
-                                    "The planar Kepler problem: object q (2,), m; momentum p = q' (2,), m/s.");
+  auto kepler =
+      bind_system<Kepler>(module, "Kepler", "The planar Kepler problem: object q (2,), m; momentum p = q' (2,), m/s.");
   kepler.def_readwrite("strength", &Kepler::strength, "Of the attraction, m^3/s^2.");
   bind_choice(kepler, "quadrature", &Kepler::quadrature, quadratures, quadrature_doc);
   bind_boundary(kepler);
@@ -97,13 +97,13 @@ void bind_systems(py::module_& module) {
       .def_readwrite("plate_rate", &PlateBall::plate_rate, "Angular velocity of the plate, rad/s.")
       .def_readwrite("spin", &PlateBall::spin, "Prescribed rate about the vertical, rad/s.");
   bind_choice(ball, "rotation", &PlateBall::rotation, std::array<std::string_view, 3>{"trace", "exp", "cayley"},
-                         "Form of the constraints: trace, exp or cayley.");
+              "Form of the constraints: trace, exp or cayley.");
   ball.def_static(
       "arrow",
       [](const Vector<double, 2>& start, const Vector<double, 2>& end, const Attitude& turn) {
         const PlateBall::GroupoidType groupoid;
-        return array_of(groupoid.coordinates_of_arrow(
-            ArrowOf<PlateBall::GroupoidType>{PairArrow<double, 2>{start, end}, turn}));
+        return array_of(
+            groupoid.coordinates_of_arrow(ArrowOf<PlateBall::GroupoidType>{PairArrow<double, 2>{start, end}, turn}));
       },
       py::arg("start"), py::arg("end"), py::arg("turn"),
       "The arrow from one contact point to another that turns the attitude by `turn` (3, 3), (13,).");

@@ -33,6 +33,23 @@ class Systems(unittest.TestCase):
         for mine, theirs in zip(integrator.ledger, run.ledger):
             self.assertEqual((mine.name, mine.drift, mine.verdict), (theirs.name, theirs.drift, theirs.verdict))
 
+    def test_the_ledger_holds_the_constraints(self) -> None:
+        ball = lagroid.PlateBall(h=0.05, plate_rate=0.3)
+        integrator = ball.integrator([0.5, 0.2, 0.1, 0.2, 0.3], [0.1, 0])
+        integrator.march(200)
+        run = lagroid.run(
+            {
+                "system": "plate_ball",
+                "parameters": {"plate_rate": 0.3},
+                "initial": {"position": [0.1, 0], "momentum": [0.5, 0.2, 0.1, 0.2, 0.3]},
+                "time": {"step": 0.05, "steps": 200},
+            }
+        )
+        told = [(entry.name, entry.drift, entry.bound, entry.verdict) for entry in integrator.ledger]
+        self.assertEqual(told[0][0], "constraint residual")
+        self.assertEqual(told, [(entry.name, entry.drift, entry.bound, entry.verdict) for entry in run.ledger])
+        self.assertEqual(ball.integrator([0.5, 0.2, 0.1, 0.2, 0.3], [0.1, 0], ledger=False).ledger, [])
+
     def test_bodies_are_those_of_scenes(self) -> None:
         angle = 0.3
         scene = {
