@@ -200,7 +200,8 @@ class Api(SphinxDirective):
             log.warning("%s: the header does not say what it is", header)
         section = nodes.section(ids=[nodes.make_id(header)])
         section += nodes.title("", os.path.basename(header))
-        source = link_to_source(self.env.app, self.env.docname, header, nodes.literal("", f"#include <lagroid/{header}>"))
+        included = nodes.literal("", f"#include <lagroid/{header}>")
+        source = link_to_source(self.env.app, self.env.docname, header, included)
         section += nodes.paragraph("", "", source)
         section += [node.deepcopy() for node in about]
         for entity in shown:

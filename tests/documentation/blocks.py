@@ -1,11 +1,11 @@
 """Every block of code in the Markdown pages is compiled, run or read: blocks.py PROGRAM
 
 - C++, CMake and Python are part of a file that CI compiles or runs; a comment of three dots leaves lines out.
-- TOML is a scene that the program runs, initial values for two steps, or a sweep, of four members if it has a count; where it opens with `# examples/NAME.toml, with` its
-  tables take the place of that scene's.
+- TOML is a scene that the program runs, initial values for two steps, or a sweep, of four members if it has a count; where it
+  opens with `# examples/NAME.toml, with` its tables take the place of that scene's.
 - Commands name subcommands, options and files that exist; those that take a moment are carried out.
-- Text that follows commands is what they print, numbers to a thousandth and below 1e-8 by their size; a line of three dots leaves
-  lines out.
+- Text that follows commands is what they print, numbers to a thousandth, those below 1e-8 of that size; a line of three
+  dots leaves lines out.
 - Indented blocks are formulas, trees, output or commands, never code that none of this would ask.
 """
 import functools
@@ -58,7 +58,8 @@ def command_for(text):
     if "problem" in tables:
         return "optimize", []
     if "scene" in tables:
-        return "sweep", ["--out", "out/sweep_of_a_page", *(["--set", "design.count=4"] if "count" in tables.get("design", {}) else [])]
+        few = ["--set", "design.count=4"] if "count" in tables.get("design", {}) else []
+        return "sweep", ["--out", "out/sweep_of_a_page", *few]
     short = "steps" in tables.get("time", {}) and "boundary" not in tables
     return "run", ["--set", "time.steps=2"] if short else []
 
@@ -103,7 +104,8 @@ def options(*path):
     """The options of a subcommand, such as ("run",) or ("reproduce", "time-steps"); None if there is no such one."""
     arm = re.search(rf"^  (?:\w+ \| )*{path[0]}(?: \| \w+)*\)(.*?)^    ;;", script, re.M | re.S)
     if path == ("check",):  # takes minutes to build: its options as its source names them
-        return set(re.findall(r"--[\w-]+", (root / "app/check.cpp").read_text() + (root / "app/command.cpp").read_text()))
+        said = "".join((root / "app" / name).read_text() for name in ("check.cpp", "command.cpp"))
+        return set(re.findall(r"--[\w-]+", said))
     if arm:
         mentions = re.findall(rf"^#.*lagroid {path[0]} .*", script, re.M)
         return set(re.findall(r"--[\w-]+", "\n".join([arm[1], *mentions])))
@@ -117,16 +119,17 @@ def misused(words):
     """Why a command cannot be carried out as it stands; empty if it can."""
     if words is None:
         return "quotes that are not closed"
-    if not words or not re.fullmatch(r"[a-z][a-z-]*", words[0]):
-        return "" if words and (words[0].startswith("--") or words[0].isupper() or "..." in words[0]) else "no subcommand"
+    if not words or words[0].startswith("--") or words[0].isupper() or "..." in words[0]:
+        return ""  # a form, or an option of the program itself
     known = options(*words[:2]) if words[0] == "reproduce" and len(words) > 1 else options(words[0])
     if known is None:
         return f'no subcommand "{words[0]}"'
     unknown = [word for word in words[1:] if re.match(r"--[a-z]", word) and word.split("=")[0] not in known]
     if unknown:
         return f"{words[0]} has no option {unknown[0]}"
-    missing = [word for word in words[1:] if re.match(r"(examples|docs|tests|python)/", word) and not (root / word).exists()
-               and words[max(0, words.index(word) - 1)] != "--out"]
+    named = [word for before, word in zip(words, words[1:])
+             if before != "--out" and re.match(r"(examples|docs|tests|python)/", word)]
+    missing = [word for word in named if not (root / word).exists()]
     return f"no file {missing[0]}" if missing else ""
 
 
@@ -237,6 +240,14 @@ class Pages(unittest.TestCase):
 
     def test_what_they_mention_exists(self):
         self.assertEqual([why for page in pages() for why in inline_failures(page)], [])
+
+
+class Gallery(unittest.TestCase):
+    def test_is_what_its_scenes_say(self):
+        sys.path.insert(0, str(root / "docs/site"))
+        import gallery
+
+        self.assertEqual((root / "docs/gallery.md").read_text(), gallery.page(), "write it: ./lagroid pages gallery")
 
 
 class BrokenPages(unittest.TestCase):
