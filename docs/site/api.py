@@ -42,7 +42,7 @@ def text(element):
 
 def tidy(code):
     """C++ as clang-format would space it."""
-    code = re.sub(r"< ", "<", re.sub(r" >", ">", code))
+    code = re.sub(r"< ", "<", re.sub(r" >", ">", code.replace("lagroid::", "")))
     return re.sub(r"([&*])\b(?!\s)", r"\1 ", code.replace(" &", "&").replace(" *", "*"))
 
 
@@ -134,8 +134,8 @@ def entity_of_compound(compound):
     location = compound.find("location")
     if compound.get("kind") == "concept":
         written = "".join(compound.find("initializer").itertext()).strip()
-        return Entity(name, re.sub(r"concept\s+lagroid::", "concept ", written), said_by(compound),
-                      int(location.get("line")))
+        written = written.replace("template<", "template <", 1).replace("lagroid::", "").replace(" =  ", " = ", 1)
+        return Entity(name, written, said_by(compound), int(location.get("line")))
     bases = ", ".join(tidy(text(base)) for base in compound.findall("basecompoundref") if base.get("prot") == "public")
     head = f"{template_of(compound)}{compound.get('kind')} {name}{' : ' + bases if bases else ''}"
     members = sorted((entity_of_member(member) for member in public_members(compound)), key=lambda it: it.line)
@@ -219,7 +219,8 @@ class Api(SphinxDirective):
         if target not in self.ids:
             self.ids.add(target)
             block["ids"].append(target)
-            self.env.lagroid_names.setdefault(re.sub(r"<.*", "", entity.name), (self.env.docname, target))
+            short = re.sub(r"^(?:[a-z_]+::)+|<.*", "", entity.name)  # without namespaces and arguments
+            self.env.lagroid_names.setdefault(short, (self.env.docname, target))
         block += self.code(entity.declaration)
         block += [node.deepcopy() for node in entity.said]
         fields = [member.declaration + ";" for member in entity.members if not member.said]
