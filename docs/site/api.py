@@ -41,9 +41,17 @@ def text(element):
 
 
 def tidy(code):
-    """C++ as clang-format would space it."""
-    code = re.sub(r"< ", "<", re.sub(r" >", ">", code.replace("lagroid::", "")))
-    return re.sub(r"([&*])\b(?!\s)", r"\1 ", code.replace(" &", "&").replace(" *", "*"))
+    """C++ as clang-format would space it: Doxygen writes A< B > and A &a."""
+    code = re.sub(r" +", " ", code.replace("lagroid::", ""))
+    code = re.sub(r"(?<=[\w>\]]) (&&|[&*])(?=[\w.])", r"\1 ", code)
+    code = re.sub(r"(?<=[\w>]) ([&*]+)(?=$|[,)>]| operator)", r"\1", code)
+    code = re.sub(r" ?=(default|delete|0)$", r" = \1", code)
+    out, depth = "", 0
+    for part in re.split(r"((?<=\w)< | >)", code):
+        opens, closes = part == "< ", part == " >" and depth > 0
+        depth += opens - closes
+        out += "<" if opens else ">" if closes else part
+    return out
 
 
 def prose(element):
@@ -92,7 +100,8 @@ def template_of(element):
         words = [text(parameter.find("type")), text(parameter.find("declname"))]
         default = text(parameter.find("defval"))
         out.append(" ".join(filter(None, words)) + (f" = {default}" if default else ""))
-    return f"template <{', '.join(out)}> "
+    clause = text(element.find("requiresclause"))
+    return f"template <{', '.join(out)}> {'requires ' + clause.removeprefix('requires ') + ' ' if clause else ''}"
 
 
 def declaration_of(member):

@@ -33,7 +33,9 @@ concept Halved = requires(X x) { x / 2; };
 template <Halved X, int N = 2> class Half : public X {
  public:
   /// The whole.
-  template <class Y> Y whole(const Y& y) const requires Halved<Y> { return y; }
+  template <class Y>
+  requires Halved<Y>
+  Y whole(const Y& y) const { return y; }
   double size = 1;
 
  private:
@@ -80,7 +82,7 @@ class Reference(unittest.TestCase):
     def test_writes_declarations_as_we_do(self):
         self.assertEqual(self.entities["Half"].declaration, "template <Halved X, int N = 2> class Half : X")
         whole, size = self.entities["Half"].members
-        self.assertEqual(whole.declaration, "template <class Y> Y whole(const Y& y) const requires Halved<Y>")
+        self.assertEqual(whole.declaration, "template <class Y> requires Halved<Y> Y whole(const Y& y) const")
         self.assertEqual(size.declaration, "double size = 1")
         self.assertTrue(self.entities["Halved"].declaration.startswith("template <class X>\nconcept Halved = requires"))
 
