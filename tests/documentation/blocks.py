@@ -1,7 +1,8 @@
 """Every block of code in the Markdown pages is compiled, run or read: blocks.py PROGRAM
 
-- C++, CMake and Python are part of a file that CI compiles or runs; a comment of three dots leaves lines out.
-- TOML is a scene that the program runs, initial values for two steps, or a sweep, of four members if it has a count; where it
+- C++, CMake and Python are part of a file that CI compiles or runs; a comment of three dots leaves lines out. Python may also be
+  that of a page which the module's tests run.
+- TOML is a scene that the program runs, initial values for two steps, or a sweep, of two members along each axis; where it
   opens with `# examples/NAME.toml, with` its tables take the place of that scene's.
 - Commands name subcommands, options and files that exist; those that take a moment are carried out.
 - Text that follows commands is what they print, numbers to a thousandth, those below 1e-8 of that size; a line of three
@@ -44,7 +45,15 @@ def source(language):
                      for file in sorted(folder.rglob(pattern)) if here not in file.parents)
 
 
+def run_as_a_whole(page):
+    """Whether the module's own test runs the Python of the page, from its first block to its last."""
+    test = root / "python/tests/test_documentation.py"
+    return test.exists() and f'"{pathlib.Path(page).name}"' in test.read_text()
+
+
 def foreign(block):
+    if block.language == "python" and run_as_a_whole(block.page):
+        return
     for part in re.split(r"^ *(?://|#) \.\.\.\n", block.text, flags=re.M):
         if flush_left(part) not in source(block.language):
             yield f"{block}: {block.language} that is part of no file which CI compiles or runs:\n{part}"
@@ -52,24 +61,24 @@ def foreign(block):
 
 # Scenes.
 
-def command_for(text):
-    """What reads a file of this text, for a moment."""
-    tables = tomllib.loads(text)
+def command_for(tables):
+    """What reads a file of these tables, for a moment."""
     if "problem" in tables:
-        return "optimize", []
+        return ["optimize"]
     if "scene" in tables:
-        few = ["--set", "design.count=4"] if "count" in tables.get("design", {}) else []
-        return "sweep", ["--out", "out/sweep_of_a_page", *few]
+        return ["sweep", "--out", "out/sweep_of_a_page"]
     short = "steps" in tables.get("time", {}) and "boundary" not in tables
-    return "run", ["--set", "time.steps=2"] if short else []
+    return ["run", *(["--set", "time.steps=2"] if short else [])]
 
 
 def scene_failures(block, folder):
     over = re.match(r"# (examples/\S+\.toml), with\b", block.text)
     text = merged((root / over[1]).read_text(), block.text) if over else block.text
-    path = folder / "examples/block.toml"
-    path.write_text(text)
-    name, options_of_it = command_for(text)
+    name, *options_of_it = command_for(tomllib.loads(text))
+    place = pathlib.Path(over[1]).parent if over else "examples/sweeps" if name == "sweep" else "examples"
+    path = folder / place / "block.toml"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(re.sub(r"^count *= *\d+", "count = 2", text, flags=re.M) if name == "sweep" else text)
     done = run([name, path, *options_of_it], folder)
     shutil.rmtree(folder / "out/sweep_of_a_page", ignore_errors=True)
     if done.returncode != 0:
@@ -79,8 +88,11 @@ def scene_failures(block, folder):
 def merged(base, changes):
     """The scene `base`, with the tables of `changes` in the place of its own."""
     def tables(text):
-        parts = re.split(r"^(?=\[)", text, flags=re.M)
-        return {part.split("]")[0] if part.startswith("[") else "": part for part in parts}
+        out = {}
+        for part in re.split(r"^(?=\[)", text, flags=re.M):
+            name = part.split("]")[0] if part.startswith("[") else ""
+            out[name] = out.get(name, "") + part
+        return out
 
     return "\n".join({**tables(base), **{name: text for name, text in tables(changes).items() if name}}.values())
 
@@ -219,9 +231,11 @@ def inline_failures(page):
 
 def furnish(folder):
     """Makes a folder in which commands find the scenes, and can leave their own beside them."""
-    (folder / "examples").mkdir()
-    for shared in (root / "examples").iterdir():
-        (folder / "examples" / shared.name).symlink_to(shared)
+    for file in (root / "examples").rglob("*"):
+        if file.is_file():
+            place = folder / file.relative_to(root)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.symlink_to(file)
 
 
 class Pages(unittest.TestCase):
