@@ -41,9 +41,17 @@ def text(element):
 
 
 def tidy(code):
-    """C++ as clang-format would space it."""
-    code = re.sub(r"< ", "<", re.sub(r" >", ">", code))
-    return re.sub(r"([&*])\b(?!\s)", r"\1 ", code.replace(" &", "&").replace(" *", "*"))
+    """C++ as clang-format would space it: Doxygen writes A< B > and A &a."""
+    code = re.sub(r" +", " ", code.replace("lagroid::", ""))
+    code = re.sub(r"(?<=[\w>\]]) (&&|[&*])(?=[\w.])", r"\1 ", code)
+    code = re.sub(r"(?<=[\w>]) ([&*]+)(?=$|[,)>]| operator)", r"\1", code)
+    code = re.sub(r" ?=(default|delete|0)$", r" = \1", code)
+    out, depth = "", 0
+    for part in re.split(r"((?<=\w)< | >)", code):
+        opens, closes = part == "< ", part == " >" and depth > 0
+        depth += opens - closes
+        out += "<" if opens else ">" if closes else part
+    return out
 
 
 def prose(element):
@@ -92,7 +100,8 @@ def template_of(element):
         words = [text(parameter.find("type")), text(parameter.find("declname"))]
         default = text(parameter.find("defval"))
         out.append(" ".join(filter(None, words)) + (f" = {default}" if default else ""))
-    return f"template <{', '.join(out)}> "
+    clause = text(element.find("requiresclause"))
+    return f"template <{', '.join(out)}> {'requires ' + clause.removeprefix('requires ') + ' ' if clause else ''}"
 
 
 def declaration_of(member):
@@ -134,8 +143,8 @@ def entity_of_compound(compound):
     location = compound.find("location")
     if compound.get("kind") == "concept":
         written = "".join(compound.find("initializer").itertext()).strip()
-        return Entity(name, re.sub(r"concept\s+lagroid::", "concept ", written), said_by(compound),
-                      int(location.get("line")))
+        written = written.replace("template<", "template <", 1).replace("lagroid::", "").replace(" =  ", " = ", 1)
+        return Entity(name, written, said_by(compound), int(location.get("line")))
     bases = ", ".join(tidy(text(base)) for base in compound.findall("basecompoundref") if base.get("prot") == "public")
     head = f"{template_of(compound)}{compound.get('kind')} {name}{' : ' + bases if bases else ''}"
     members = sorted((entity_of_member(member) for member in public_members(compound)), key=lambda it: it.line)
@@ -200,7 +209,8 @@ class Api(SphinxDirective):
             log.warning("%s: the header does not say what it is", header)
         section = nodes.section(ids=[nodes.make_id(header)])
         section += nodes.title("", os.path.basename(header))
-        source = link_to_source(self.env.app, self.env.docname, header, nodes.literal("", f"#include <lagroid/{header}>"))
+        included = nodes.literal("", f"#include <lagroid/{header}>")
+        source = link_to_source(self.env.app, self.env.docname, header, included)
         section += nodes.paragraph("", "", source)
         section += [node.deepcopy() for node in about]
         for entity in shown:
@@ -218,7 +228,8 @@ class Api(SphinxDirective):
         if target not in self.ids:
             self.ids.add(target)
             block["ids"].append(target)
-            self.env.lagroid_names.setdefault(re.sub(r"<.*", "", entity.name), (self.env.docname, target))
+            short = re.sub(r"^(?:[a-z_]+::)+|<.*", "", entity.name)  # without namespaces and arguments
+            self.env.lagroid_names.setdefault(short, (self.env.docname, target))
         block += self.code(entity.declaration)
         block += [node.deepcopy() for node in entity.said]
         fields = [member.declaration + ";" for member in entity.members if not member.said]

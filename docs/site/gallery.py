@@ -1,4 +1,4 @@
-"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below and takes what each says of itself."""
+"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below and takes what they say of themselves."""
 import os
 import pathlib
 import re
@@ -20,7 +20,8 @@ gallery = {
         "rigid_body": ["time.steps=1000"], "heavy_top": ["time.steps=1000"], "tops": ["output.every=20"],
         "tumbling_book": ["output.every=10"]},
     "Pendula": {
-        "spherical_pendulum": ["output.every=2"], "spring_pendulum": ["output.every=30"], "foucault": ["output.every=12"],
+        "spherical_pendulum": ["output.every=2"], "spring_pendulum": ["output.every=30"],
+        "foucault": ["output.every=12"],
         "upside_down": ["output.every=45"], "pendulum_chain": ["output.every=10"]},
     "Rolling and sliding": {
         "rolling_ball": ["output.every=3"], "rolling_disk": ["output.every=2"], "chaplygin_sleigh": ["output.every=2"],
@@ -43,37 +44,51 @@ def caption(scene):
     return re.sub(r"(?=[*_\[\]<])", r"\\", said)
 
 
+def command(name, settings):
+    return ["run", f"examples/{name}.toml", *(word for setting in settings for word in ("--set", setting))]
+
+
+def page():
+    """The text of docs/gallery.md."""
+    lines = ["# Gallery", "",
+             "Every picture is the `plot.svg` of a run: the command above it draws it again, `./lagroid view` of the same",
+             "folder moves it. `./lagroid pages gallery` writes this page."]
+    for subject, scenes in gallery.items():
+        lines += ["", f"## {subject}"]
+        for name, settings in scenes.items():
+            lines += ["", f"### {name.replace('_', ' ').capitalize()}", "", caption(root / f"examples/{name}.toml"),
+                      f"([scene](../examples/{name}.toml))", "",
+                      f"    ./lagroid {' '.join(command(name, settings))} --out out/{name}", "",
+                      f"![{name}](gallery/{name}.svg)"]
+    return "\n".join(lines) + "\n"
+
+
 def draw(program, name, settings, pictures):
-    """Runs the scene; its command and the place of its picture."""
+    """Runs the scene and keeps its picture."""
     with tempfile.TemporaryDirectory() as folder:
-        command = ["run", f"examples/{name}.toml", *(word for setting in settings for word in ("--set", setting))]
-        done = subprocess.run([program, *command, "--out", folder], cwd=root, capture_output=True, text=True)
+        arguments = command(name, settings)
+        done = subprocess.run([program, *arguments, "--out", folder], cwd=root, capture_output=True, text=True)
         if done.returncode != 0:
-            sys.exit(f"gallery: lagroid {' '.join(command)}: {done.stderr.strip()}")
+            sys.exit(f"gallery: lagroid {' '.join(arguments)}: {done.stderr.strip()}")
         shutil.copy(pathlib.Path(folder) / "plot.svg", pictures / f"{name}.svg")
-    return f"./lagroid {' '.join(command)} --out out/{name}"
 
 
 def main():
     if len(sys.argv) != 2:
         sys.exit("usage: gallery.py PROGRAM")
-    page = ["# Gallery", "",
-            "Every picture is the `plot.svg` of a run: the command below it draws it again, `./lagroid view` of the same folder moves "
-            "it. `./lagroid pages gallery` writes this page."]
+    program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory(dir=root / "docs") as drawn:
         pictures = pathlib.Path(drawn)
-        for subject, scenes in gallery.items():
-            page += ["", f"## {subject}"]
+        for scenes in gallery.values():
             for name, settings in scenes.items():
-                command = draw(pathlib.Path(sys.argv[1]).resolve(), name, settings, pictures)
-                page += ["", f"### {name.replace('_', ' ').capitalize()}", "", caption(root / f"examples/{name}.toml"),
-                         f"([scene](../examples/{name}.toml))", "", f"    {command}", "", f"![{name}](gallery/{name}.svg)"]
-        (pictures / "gallery.md").write_text("\n".join(page) + "\n")
+                draw(program, name, settings, pictures)
         shutil.rmtree(root / "docs/gallery", ignore_errors=True)
         (root / "docs/gallery").mkdir()
         for picture in pictures.glob("*.svg"):
             shutil.move(picture, root / "docs/gallery" / picture.name)
+        (pictures / "gallery.md").write_text(page())
         os.replace(pictures / "gallery.md", root / "docs/gallery.md")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -12,7 +12,8 @@ languages = {".hpp": "cpp", ".cpp": "cpp", ".toml": "toml", ".py": "python", ".t
 def link_to_source(app, docname, path, *children):
     """A reference to the page of a source file, named from the root; the page is made at the end."""
     app.env.lagroid_sources.add(path)
-    return nodes.reference("", "", *children, internal=True, refuri=app.builder.get_relative_uri(docname, f"source/{path}"))
+    uri = app.builder.get_relative_uri(docname, f"source/{path}")
+    return nodes.reference("", "", *children, internal=True, refuri=uri)
 
 
 class Sources(SphinxTransform):

@@ -1,11 +1,12 @@
 """Every block of code in the Markdown pages is compiled, run or read: blocks.py PROGRAM
 
-- C++, CMake and Python are part of a file that CI compiles or runs; a comment of three dots leaves lines out.
-- TOML is a scene that the program runs, initial values for two steps, or a sweep, of four members if it has a count; where it opens with `# examples/NAME.toml, with` its
-  tables take the place of that scene's.
+- C++, CMake and Python are part of a file that CI compiles or runs; a comment of three dots leaves lines out. Python may also be
+  that of a page which the module's tests run.
+- TOML is a scene that the program runs, initial values for two steps, or a sweep, of two members along each axis; where it
+  opens with `# examples/NAME.toml, with` its tables take the place of that scene's.
 - Commands name subcommands, options and files that exist; those that take a moment are carried out.
-- Text that follows commands is what they print, numbers to a thousandth and below 1e-8 by their size; a line of three dots leaves
-  lines out.
+- Text that follows commands is what they print, numbers to a thousandth, those below 1e-8 of that size; a line of three
+  dots leaves lines out.
 - Indented blocks are formulas, trees, output or commands, never code that none of this would ask.
 """
 import functools
@@ -44,7 +45,15 @@ def source(language):
                      for file in sorted(folder.rglob(pattern)) if here not in file.parents)
 
 
+def run_as_a_whole(page):
+    """Whether the module's own test runs the Python of the page, from its first block to its last."""
+    test = root / "python/tests/test_documentation.py"
+    return test.exists() and f'"{pathlib.Path(page).name}"' in test.read_text()
+
+
 def foreign(block):
+    if block.language == "python" and run_as_a_whole(block.page):
+        return
     for part in re.split(r"^ *(?://|#) \.\.\.\n", block.text, flags=re.M):
         if flush_left(part) not in source(block.language):
             yield f"{block}: {block.language} that is part of no file which CI compiles or runs:\n{part}"
@@ -52,23 +61,24 @@ def foreign(block):
 
 # Scenes.
 
-def command_for(text):
-    """What reads a file of this text, for a moment."""
-    tables = tomllib.loads(text)
+def command_for(tables):
+    """What reads a file of these tables, for a moment."""
     if "problem" in tables:
-        return "optimize", []
+        return ["optimize"]
     if "scene" in tables:
-        return "sweep", ["--out", "out/sweep_of_a_page", *(["--set", "design.count=4"] if "count" in tables.get("design", {}) else [])]
+        return ["sweep", "--out", "out/sweep_of_a_page"]
     short = "steps" in tables.get("time", {}) and "boundary" not in tables
-    return "run", ["--set", "time.steps=2"] if short else []
+    return ["run", *(["--set", "time.steps=2"] if short else [])]
 
 
 def scene_failures(block, folder):
     over = re.match(r"# (examples/\S+\.toml), with\b", block.text)
     text = merged((root / over[1]).read_text(), block.text) if over else block.text
-    path = folder / "examples/block.toml"
-    path.write_text(text)
-    name, options_of_it = command_for(text)
+    name, *options_of_it = command_for(tomllib.loads(text))
+    place = pathlib.Path(over[1]).parent if over else "examples/sweeps" if name == "sweep" else "examples"
+    path = folder / place / "block.toml"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(re.sub(r"^count *= *\d+", "count = 2", text, flags=re.M) if name == "sweep" else text)
     done = run([name, path, *options_of_it], folder)
     shutil.rmtree(folder / "out/sweep_of_a_page", ignore_errors=True)
     if done.returncode != 0:
@@ -78,8 +88,11 @@ def scene_failures(block, folder):
 def merged(base, changes):
     """The scene `base`, with the tables of `changes` in the place of its own."""
     def tables(text):
-        parts = re.split(r"^(?=\[)", text, flags=re.M)
-        return {part.split("]")[0] if part.startswith("[") else "": part for part in parts}
+        out = {}
+        for part in re.split(r"^(?=\[)", text, flags=re.M):
+            name = part.split("]")[0] if part.startswith("[") else ""
+            out[name] = out.get(name, "") + part
+        return out
 
     return "\n".join({**tables(base), **{name: text for name, text in tables(changes).items() if name}}.values())
 
@@ -103,7 +116,8 @@ def options(*path):
     """The options of a subcommand, such as ("run",) or ("reproduce", "time-steps"); None if there is no such one."""
     arm = re.search(rf"^  (?:\w+ \| )*{path[0]}(?: \| \w+)*\)(.*?)^    ;;", script, re.M | re.S)
     if path == ("check",):  # takes minutes to build: its options as its source names them
-        return set(re.findall(r"--[\w-]+", (root / "app/check.cpp").read_text() + (root / "app/command.cpp").read_text()))
+        said = "".join((root / "app" / name).read_text() for name in ("check.cpp", "command.cpp"))
+        return set(re.findall(r"--[\w-]+", said))
     if arm:
         mentions = re.findall(rf"^#.*lagroid {path[0]} .*", script, re.M)
         return set(re.findall(r"--[\w-]+", "\n".join([arm[1], *mentions])))
@@ -117,16 +131,17 @@ def misused(words):
     """Why a command cannot be carried out as it stands; empty if it can."""
     if words is None:
         return "quotes that are not closed"
-    if not words or not re.fullmatch(r"[a-z][a-z-]*", words[0]):
-        return "" if words and (words[0].startswith("--") or words[0].isupper() or "..." in words[0]) else "no subcommand"
+    if not words or words[0].startswith("--") or words[0].isupper() or "..." in words[0]:
+        return ""  # a form, or an option of the program itself
     known = options(*words[:2]) if words[0] == "reproduce" and len(words) > 1 else options(words[0])
     if known is None:
         return f'no subcommand "{words[0]}"'
     unknown = [word for word in words[1:] if re.match(r"--[a-z]", word) and word.split("=")[0] not in known]
     if unknown:
         return f"{words[0]} has no option {unknown[0]}"
-    missing = [word for word in words[1:] if re.match(r"(examples|docs|tests|python)/", word) and not (root / word).exists()
-               and words[max(0, words.index(word) - 1)] != "--out"]
+    named = [word for before, word in zip(words, words[1:])
+             if before != "--out" and re.match(r"(examples|docs|tests|python)/", word)]
+    missing = [word for word in named if not (root / word).exists()]
     return f"no file {missing[0]}" if missing else ""
 
 
@@ -216,9 +231,11 @@ def inline_failures(page):
 
 def furnish(folder):
     """Makes a folder in which commands find the scenes, and can leave their own beside them."""
-    (folder / "examples").mkdir()
-    for shared in (root / "examples").iterdir():
-        (folder / "examples" / shared.name).symlink_to(shared)
+    for file in (root / "examples").rglob("*"):
+        if file.is_file():
+            place = folder / file.relative_to(root)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.symlink_to(file)
 
 
 class Pages(unittest.TestCase):
@@ -237,6 +254,14 @@ class Pages(unittest.TestCase):
 
     def test_what_they_mention_exists(self):
         self.assertEqual([why for page in pages() for why in inline_failures(page)], [])
+
+
+class Gallery(unittest.TestCase):
+    def test_is_what_its_scenes_say(self):
+        sys.path.insert(0, str(root / "docs/site"))
+        import gallery
+
+        self.assertEqual((root / "docs/gallery.md").read_text(), gallery.page(), "write it: ./lagroid pages gallery")
 
 
 class BrokenPages(unittest.TestCase):

@@ -1,4 +1,4 @@
-"""Links of all Markdown pages lead to files, folders and headings that exist. With --network also those to elsewhere."""
+"""Links of all Markdown pages lead to files, folders and headings that exist; with --network, somebody answers elsewhere."""
 import re
 import sys
 import unittest

@@ -61,7 +61,8 @@ def pages():
     """All pages, those of builds and runs apart."""
     folders = [path for path in root.iterdir() if path.is_dir() and path.name not in ("build", "out")]
     files = [*root.glob("*.md"), *(file for folder in folders for file in folder.rglob("*.md"))]
-    return [Page(path, path.read_text()) for path in sorted(files) if not any(part.startswith(".") for part in path.parts)]
+    return [Page(path, path.read_text()) for path in sorted(files)
+            if not any(part.startswith(".") for part in path.relative_to(root).parts)]
 
 
 def flush_left(text):
