@@ -13,6 +13,7 @@
 #include "report.hpp"
 #include "reproduce.hpp"
 #include "study/study.hpp"
+#include "sweep/sweep.hpp"
 #include "view.hpp"
 
 #include <lagroid/core/version.hpp>
@@ -137,6 +138,10 @@ int main(int argc, char** argv) {
   CLI::App* study_command = app.add_subcommand(
       "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
   add_study_options(*study_command, study_options);
+  SweepOptions sweep_options;
+  CLI::App* sweep_command =
+      app.add_subcommand("sweep", "run many members of one scene, on all threads or under mpirun (see docs/sweeps.md)");
+  add_sweep_options(*sweep_command, sweep_options);
   OptimiseOptions optimise_options;
   CLI::App* optimise_command =
       app.add_subcommand("optimize", "minimise a function on a manifold (see docs/optimisation.md)");
@@ -170,6 +175,10 @@ int main(int argc, char** argv) {
       static_cast<SceneOptions&>(options) = study_options;
       return study(study_options);
     }
+    if (sweep_command->parsed()) {
+      static_cast<SceneOptions&>(options) = sweep_options;
+      return sweep(sweep_options);
+    }
     if (optimise_command->parsed()) {
       static_cast<SceneOptions&>(options) = optimise_options;
       return optimise(optimise_options);
@@ -182,7 +191,7 @@ int main(int argc, char** argv) {
       return cite(cite_options);
     }
     return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  "name a command: run, resume, view, plot, study, optimize, learn, trajectories, check, list, "
+                  "name a command: run, resume, view, plot, study, sweep, optimize, learn, trajectories, check, list, "
                   "reproduce or cite; see lagroid --help");
   });
 }
