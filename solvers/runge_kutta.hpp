@@ -1,6 +1,7 @@
 #pragma once
 /// The classical Runge-Kutta method, as most people would use it: to see what a method that keeps nothing does.
 
+#include <lagroid/core/quantity.hpp>
 #include <lagroid/core/rates.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/method.hpp>
