@@ -1,5 +1,7 @@
 // The documentation keeps up with the code: its C++ is that of the examples, what it quotes is printed, what it names
 // exists.
+#include <lagroid/core/version.hpp>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -280,6 +282,11 @@ TEST(StabilityPage, WhatItNamesExists) {
   const std::string page = read("docs/stability.md");
   for (const char* heading : {"## Stable", "## Experimental"})
     EXPECT_EQ(unknown_names(section(page, heading)), none) << heading;
+}
+
+TEST(InstallPage, TheVersionIsThatOfTheLibrary) {
+  EXPECT_NE(read("pyproject.toml").find("\nversion = \"" LAGROID_VERSION "\"\n"), std::string::npos);
+  EXPECT_NE(read("CHANGELOG.md").find("\n## " LAGROID_VERSION), std::string::npos);
 }
 
 TEST(InstallPage, TheFilesItNamesExist) {

@@ -46,9 +46,9 @@ read -ra libraries <<<"$(pkg-config --libs lagroid)"
 ${CXX:-c++} -std=c++20 -O1 -march=native "${flags[@]}" "$consumer/main.cpp" "${libraries[@]}" -o "$work/by_pkg_config"
 "$work/by_pkg_config"
 
-# Every header includes what it needs.
+# Every header includes what it needs; those of lagroid/python need Python's too.
 if [ -n "$whole" ]; then
-  (cd "$prefix/include" && find lagroid -name '*.hpp' | sort) >"$work/headers"
+  (cd "$prefix/include" && find lagroid -name '*.hpp' -not -path 'lagroid/python/*' | sort) >"$work/headers"
   while read -r header; do
     echo "#include <$header>" >"$work/header.cpp"
     ${CXX:-c++} -std=c++20 -fsyntax-only "${flags[@]}" "$work/header.cpp" 2>"$work/header.log" ||

@@ -3,6 +3,7 @@
 #include "../checkpoint.hpp"
 #include "../command.hpp"
 #include "../output_folder.hpp"
+#include "../sweep/sweep_scene.hpp"
 #include "references.hpp"
 
 #include <lagroid/core/version.hpp>
@@ -29,7 +30,10 @@ std::vector<Use> uses_in(const CiteOptions& options) {
     for (const Reference& reference : references()) all.push_back({&reference, ""});
     return all;
   }
-  if (!fs::is_directory(options.subject)) return uses_of(read_scene(options.subject, options.overrides));
+  if (!fs::is_directory(options.subject)) {
+    const Section scene = read_scene(options.subject, options.overrides);
+    return uses_of(scene.has("scene") ? read_sweep(options.subject, options.overrides).scene : scene);
+  }
   if (fs::exists(fs::path(options.subject) / "model.json")) return uses_of_learning();
   if (!fs::exists(fs::path(options.subject) / "checkpoint" / "scene.toml"))
     throw RunError(fmt::format("\"{}\" holds neither the scene of a run nor a learned model; name the scene's file",

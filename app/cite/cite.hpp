@@ -9,7 +9,7 @@
 namespace lagroid::app {
 
 struct CiteOptions {
-  std::string subject;  ///< a scene, or the folder of a run or of what was learned; empty: everything
+  std::string subject;  ///< a scene, a sweep, or the folder of a run or of what was learned; empty: all
   std::vector<std::string> overrides;
   bool bibtex = false;
   bool json = false;

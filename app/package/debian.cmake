@@ -36,6 +36,7 @@ if(LAGROID_APP)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "gnuplot-nox | gnuplot")
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS openmpi-bin)
   set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "Runs scenes: rigid bodies, pendula, orbits, rolling, optimal control, chains
 of bodies with joints and effects, minimisation on manifolds, and the
 learning of Hamiltonians from trajectories. Every run ends with a ledger of
@@ -49,7 +50,8 @@ if(TARGET lagroid_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, lagroid")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "liblagroid-dev, pybind11-dev")
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "Scenes, systems, runs, studies, checks, optimisation and learning from
 Python, with NumPy arrays.
 .
