@@ -13,8 +13,8 @@ namespace lagroid {
 
 namespace detail {
 
-/// How many numbers of type T one register of the target machine holds. An installed library fixes the registers that it
-/// was compiled for, so that what it shares with its callers has one layout, whatever their own instruction set.
+/// How many numbers of type T one register of the target machine holds. An installed library fixes the registers it was
+/// compiled for, so that what it shares with its callers has one layout, whatever their own instruction set.
 template <class T> constexpr int register_lanes() {
 #if defined(LAGROID_REGISTER_BYTES)
   constexpr int bytes = LAGROID_REGISTER_BYTES;
