@@ -13,7 +13,8 @@ set(CPACK_PACKAGING_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
 set(runs_on "It runs on every amd64 processor; build from source for the
 vector registers of one of your own.")
 if(LAGROID_ARCH)
-  set(runs_on "It was compiled with -march=${LAGROID_ARCH}, and runs on no lesser processor.")
+  set(runs_on "It was compiled
+with -march=${LAGROID_ARCH}, and runs on no lesser processor.")
 endif()
 
 set(CPACK_COMPONENTS_ALL development)
