@@ -2,20 +2,10 @@
 
 #include "output_folder.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <functional>
-#include <iterator>
-#include <optional>
-#include <string_view>
+#include <utility>
 
 namespace lagroid::app {
 
@@ -24,71 +14,16 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// The file as a whole, on the disk, or the one that was there before.
-void replace(const fs::path& file, std::string_view bytes) {
-  fs::path partial = file;
-  partial += ".partial";
-  write_text(bytes, partial);
-  if (const int descriptor = ::open(partial.c_str(), O_RDONLY); descriptor >= 0) {
-    ::fsync(descriptor);
-    ::close(descriptor);
-  }
-  std::error_code error;
-  fs::rename(partial, file, error);
-  if (error) throw OutputError(fmt::format("{}: could not be written ({})", file.string(), error.message()));
-}
-
-/// What bytes amount to: enough to notice that they are others.
-std::size_t sum_of(std::string_view bytes) { return std::hash<std::string_view>{}(bytes); }
-
-/// CBOR after the sum of its bytes.
-void replace_by_cbor(const fs::path& file, const Json& json) {
-  const std::vector<std::uint8_t> cbor = Json::to_cbor(json);
-  const std::string_view body(reinterpret_cast<const char*>(cbor.data()), cbor.size());
-  const std::size_t sum = sum_of(body);
-  std::string bytes(sizeof sum, '\0');
-  std::memcpy(bytes.data(), &sum, sizeof sum);
-  replace(file, bytes.append(body));
-}
-
-std::optional<std::string> contents(const fs::path& file) {
-  if (!fs::is_regular_file(file)) return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return std::nullopt;
-  return bytes;
-}
-
 Json read(const fs::path& file) {
-  const auto bytes = contents(file);
-  std::size_t sum = 0;
-  if (bytes && bytes->size() > sizeof sum) {
-    std::memcpy(&sum, bytes->data(), sizeof sum);
-    const auto body = std::string_view(*bytes).substr(sizeof sum);
-    if (sum_of(body) == sum) {
-      Json json = Json::from_cbor(body, /*strict=*/true, /*allow_exceptions=*/false);
-      if (!json.is_discarded()) return json;
-    }
-  }
+  if (auto json = read_cbor(file)) return std::move(*json);
   throw RunError(fmt::format("{}: is missing or damaged; run the scene again", file.string()));
 }
 
 }  // namespace
 
-Checkpoint::Checkpoint(const fs::path& run, long steps) : folder_(run / "checkpoint"), steps_(steps) {
-  std::error_code error;
-  fs::create_directories(run, error);
-  const fs::path file = run / ".lock";
-  lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-  const bool busy = lock_ >= 0 && errno == EWOULDBLOCK;
-  if (lock_ >= 0) ::close(lock_);
-  throw OutputError(
-      busy ? fmt::format("{}: another run is at work there; wait for it, or choose another folder", run.string())
-           : fmt::format("{}: cannot be written; choose another place", file.string()));
-}
+Checkpoint::Checkpoint(const fs::path& run, long steps) : folder_(run / "checkpoint"), lock_(run), steps_(steps) {}
 
-Checkpoint::~Checkpoint() { ::close(lock_); }
+Checkpoint::~Checkpoint() = default;
 
 fs::path Checkpoint::part(long k) const { return folder_ / fmt::format("rows-{:06}.cbor", k); }
 
@@ -107,7 +42,7 @@ void Checkpoint::begin(const std::string& scene) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw OutputError(fmt::format("{}: cannot be made ({})", folder_.string(), error.message()));
-  replace(folder_ / "scene.toml", scene);
+  replace_file(folder_ / "scene.toml", scene);
   scene_ = sum_of(scene);
 }
 

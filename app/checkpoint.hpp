@@ -2,6 +2,7 @@
 /// What a run leaves behind so that it can be taken up again.
 
 #include "archive.hpp"
+#include "kept_file.hpp"
 #include "run_result.hpp"
 
 #include <chrono>
@@ -42,7 +43,7 @@ class Checkpoint {
   std::filesystem::path part(long k) const;
 
   std::filesystem::path folder_;
-  int lock_ = -1;
+  FolderLock lock_;
   long steps_;
   long parts_ = 0;
   std::size_t rows_ = 0;             ///< of the nodes, kept so far

@@ -17,16 +17,40 @@ std::string components_attribute(std::size_t part) {
   return part == 0 ? std::string("components") : fmt::format("components {}", part + 1);
 }
 
-H5::DataSet add_dataset(const H5::H5File& file, const std::string& name, const std::vector<double>& values,
+namespace {
+
+H5::DSetCreatPropList timeless() {
+  H5::DSetCreatPropList out;
+  H5Pset_obj_track_times(out.getId(), false);
+  return out;
+}
+
+/// A name in which no group is seen.
+std::string label_of(std::string name) {
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+
+}  // namespace
+
+H5::DataSet add_dataset(const H5::Group& group, const std::string& name, const std::vector<double>& values,
                         std::size_t width) {
-  std::string label = name;
-  std::replace(label.begin(), label.end(), '/', '_');
   const hsize_t dimensions[2] = {width > 0 ? values.size() / width : 0, width};
   const H5::DataSpace space(width == 1 ? 1 : 2, dimensions);
-  H5::DSetCreatPropList timeless;
-  H5Pset_obj_track_times(timeless.getId(), false);
-  H5::DataSet set = file.createDataSet(label, H5::PredType::NATIVE_DOUBLE, space, timeless);
+  H5::DataSet set = group.createDataSet(label_of(name), H5::PredType::NATIVE_DOUBLE, space, timeless());
   if (!values.empty()) set.write(values.data(), H5::PredType::NATIVE_DOUBLE);
+  return set;
+}
+
+H5::DataSet add_texts(const H5::Group& group, const std::string& name, const std::vector<std::string>& texts) {
+  std::size_t longest = 1;
+  for (const std::string& text : texts) longest = std::max(longest, text.size());
+  std::string bytes(texts.size() * longest, '\0');
+  for (std::size_t i = 0; i < texts.size(); ++i) texts[i].copy(&bytes[i * longest], longest);
+  const H5::StrType type(H5::PredType::C_S1, longest);
+  const hsize_t size = texts.size();
+  H5::DataSet set = group.createDataSet(label_of(name), type, H5::DataSpace(1, &size), timeless());
+  if (!texts.empty()) set.write(bytes.data(), type);
   return set;
 }
 

@@ -18,8 +18,11 @@ std::string components_attribute(std::size_t part);
 
 /// A data set of doubles, `width` to a row; of one dimension where that is one. Without the time of day, so that equal
 /// runs make equal files.
-H5::DataSet add_dataset(const H5::H5File& file, const std::string& name, const std::vector<double>& values,
+H5::DataSet add_dataset(const H5::Group& group, const std::string& name, const std::vector<double>& values,
                         std::size_t width);
+
+/// A data set of texts, all as long as the longest of them and filled up with zeros.
+H5::DataSet add_texts(const H5::Group& group, const std::string& name, const std::vector<std::string>& texts);
 
 /// What `fill` puts into it. Throws OutputError.
 void write_hdf5(const std::filesystem::path& file, const std::function<void(const H5::H5File&)>& fill);

@@ -1,5 +1,7 @@
 #include "machine.hpp"
 
+#include <lagroid/core/version.hpp>
+
 #include <fmt/format.h>
 #include <Eigen/Core>
 
@@ -7,17 +9,19 @@
 
 namespace lagroid::app {
 
+std::string program() {
+  const std::string arch = LAGROID_ARCH;
+  return fmt::format("{}{}, lagroid {}, Eigen {}.{}.{}", LAGROID_COMPILER, arch.empty() ? "" : " -march=" + arch,
+                     LAGROID_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+}
+
 std::string machine() {
   std::ifstream cpu("/proc/cpuinfo");
   std::string line;
   while (std::getline(cpu, line))
     if (line.starts_with("model name")) break;
   const auto colon = line.find(": ");
-  const std::string arch = LAGROID_ARCH;
-  return fmt::format("{}, {}{}, lagroid {}, Eigen {}.{}.{}",
-                     colon == std::string::npos ? "unknown processor" : line.substr(colon + 2), LAGROID_COMPILER,
-                     arch.empty() ? "" : " -march=" + arch, LAGROID_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                     EIGEN_MINOR_VERSION);
+  return fmt::format("{}, {}", colon == std::string::npos ? "unknown processor" : line.substr(colon + 2), program());
 }
 
 }  // namespace lagroid::app

@@ -1,6 +1,7 @@
 /// The program lagroid.
 
 #include "checkpoint.hpp"
+#include "cite/cite.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "learn/draw.hpp"
@@ -12,7 +13,10 @@
 #include "report.hpp"
 #include "reproduce.hpp"
 #include "study/study.hpp"
+#include "sweep/sweep.hpp"
 #include "view.hpp"
+
+#include <lagroid/core/version.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -134,6 +138,10 @@ int main(int argc, char** argv) {
   CLI::App* study_command = app.add_subcommand(
       "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
   add_study_options(*study_command, study_options);
+  SweepOptions sweep_options;
+  CLI::App* sweep_command =
+      app.add_subcommand("sweep", "run many members of one scene, on all threads or under mpirun (see docs/sweeps.md)");
+  add_sweep_options(*sweep_command, sweep_options);
   OptimiseOptions optimise_options;
   CLI::App* optimise_command =
       app.add_subcommand("optimize", "minimise a function on a manifold (see docs/optimisation.md)");
@@ -149,6 +157,9 @@ int main(int argc, char** argv) {
   ReproduceOptions papers;
   CLI::App* reproduce_command = app.add_subcommand("reproduce", "carry out the experiments of a paper, and more");
   add_reproductions(*reproduce_command, papers, options.json);
+  CiteOptions cite_options;
+  CLI::App* cite_command = app.add_subcommand("cite", "how to cite the program, and the papers that a scene rests on");
+  add_cite_options(*cite_command, cite_options);
   app.require_subcommand(0, 1);
   return command_line(app, argc, argv, options, [&] {
     if (list_command->parsed()) {
@@ -164,6 +175,10 @@ int main(int argc, char** argv) {
       static_cast<SceneOptions&>(options) = study_options;
       return study(study_options);
     }
+    if (sweep_command->parsed()) {
+      static_cast<SceneOptions&>(options) = sweep_options;
+      return sweep(sweep_options);
+    }
     if (optimise_command->parsed()) {
       static_cast<SceneOptions&>(options) = optimise_options;
       return optimise(optimise_options);
@@ -171,9 +186,12 @@ int main(int argc, char** argv) {
     if (learn_command->parsed()) return learn(learn_options);
     if (draw_command->parsed()) return draw(draw_options);
     if (reproduce_command->parsed()) return reproduce(papers, options.json);
-    return refuse(
-        options.json, exit_bad_input, "invalid_command_line",
-        "name a command: run, resume, view, plot, study, optimize, learn, trajectories, check, list or reproduce; see "
-        "lagroid --help");
+    if (cite_command->parsed()) {
+      options.json = cite_options.json;
+      return cite(cite_options);
+    }
+    return refuse(options.json, exit_bad_input, "invalid_command_line",
+                  "name a command: run, resume, view, plot, study, sweep, optimize, learn, trajectories, check, list, "
+                  "reproduce or cite; see lagroid --help");
   });
 }

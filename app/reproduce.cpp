@@ -1,10 +1,12 @@
 #include "reproduce.hpp"
 
+#include "clock.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "reproductions/accelerated_report.hpp"
 #include "reproductions/constrained_maps.hpp"
 #include "reproductions/newton_report.hpp"
+#include "reproductions/sweep_scaling.hpp"
 #include "reproductions/time_steps.hpp"
 #include "shell.hpp"
 #include "written.hpp"
@@ -28,6 +30,7 @@ constexpr const char* time_name = "time-steps";
 constexpr const char* accelerated_name = "accelerated-optimization";
 constexpr const char* maps_name = "constrained-maps";
 constexpr const char* learning_name = "learning-hamiltonians";
+constexpr const char* scaling_name = "sweep-scaling";
 
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {
@@ -229,6 +232,40 @@ int reproduce_learning(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
+int reproduce_scaling(const ReproduceOptions& options, bool json) {
+  const double start = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  try {
+    require_writable(options.scaling_out, sweep_scaling_files);
+    const auto ranks = join_ranks();
+    if (ranks->size() == 1)
+      return refuse(
+          json, exit_bad_input, "invalid_command_line",
+          fmt::format("one process has nobody to hand parts to: mpirun -n 4 lagroid reproduce {}", scaling_name));
+    const SweepCosts costs = measure_sweep(*ranks, start, options.scaling_out);
+    if (ranks->rank() != 0) return 0;
+    std::string note;
+    const auto files = write_sweep_scaling(costs,
+                                           fmt::format("mpirun --oversubscribe -n {} lagroid reproduce {} --out {}",
+                                                       costs.ranks, scaling_name, quoted(options.scaling_out)),
+                                           options.scaling_out, note);
+    nlohmann::ordered_json result;
+    result["status"] = "done";
+    result["ranks"] = costs.ranks;
+    for (const auto& [name, seconds] :
+         {std::pair("start", costs.start), std::pair("wait", costs.wait), std::pair("hand", costs.hand),
+          std::pair("write_part", costs.write_part), std::pair("join_part", costs.join_part)})
+      result["seconds"][name] = seconds;
+    std::string text = fmt::format("{}: {} ranks\n", scaling_name, costs.ranks);
+    for (const auto& [name, seconds] : result["seconds"].items())
+      text += fmt::format("  {:<12} {}\n", name, duration(seconds.get<double>()));
+    return conclude(std::move(result), std::move(text), files, note, json);
+  } catch (const OutputError& error) {
+    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
+  } catch (const RunError& error) {
+    return refuse(json, exit_bad_input, "invalid_run", error.what());
+  }
+}
+
 void newton_options(CLI::App& command, ReproduceOptions& options) {
   command.add_option("--out", options.newton_out, "the folder for report.md, tables, CSV and figures")
       ->capture_default_str();
@@ -297,6 +334,11 @@ void learning_options(CLI::App& command, ReproduceOptions& options) {
   command.add_option("--threads", study.threads, "fits at a time")->check(CLI::Range(1, 256))->capture_default_str();
 }
 
+void scaling_options(CLI::App& command, ReproduceOptions& options) {
+  command.add_option("--out", options.scaling_out, "the folder for report.md, CSV and the figure")
+      ->capture_default_str();
+}
+
 struct Reproduction {
   const char* name;
   const char* summary;
@@ -313,7 +355,9 @@ constexpr Reproduction reproductions[] = {
     {maps_name, "Duruisseaux and Leok, sections 2 to 5.4.1: orders of constrained maps of types I, II and III",
      map_options, reproduce_maps},
     {accelerated_name, "Duruisseaux and Leok, Figure 1: accelerated optimisation on manifolds, and the competition",
-     accelerated_options, reproduce_accelerated}};
+     accelerated_options, reproduce_accelerated},
+    {scaling_name, "what lagroid sweep costs besides its members, and its efficiency on many machines (under mpirun)",
+     scaling_options, reproduce_scaling}};
 
 }  // namespace
 

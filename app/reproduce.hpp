@@ -22,6 +22,7 @@ struct ReproduceOptions {
   std::string maps_out = "out/constrained-maps";
   LearningStudy learning;
   std::string learning_out = "out/learning-hamiltonians";
+  std::string scaling_out = "out/sweep-scaling";
 };
 
 /// The subcommands of `reproduce`.

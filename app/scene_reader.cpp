@@ -56,12 +56,43 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// Puts a value at a dotted path; what is missing on the way becomes a table, a number counts in an array.
-void override_at(toml::table& root, const std::string& path, const toml::node& value) {
-  toml::node* at = &root;
+std::vector<std::string> steps_of(const std::string& path) {
   std::istringstream parts(path);
   std::vector<std::string> names;
   for (std::string part; std::getline(parts, part, '.');) names.push_back(part);
+  return names;
+}
+
+/// The place in an array that a step of a path names, if it is one.
+std::optional<std::size_t> place_in(const toml::array& array, const std::string& name) {
+  std::size_t index = 0;
+  const char* end = name.data() + name.size();
+  const auto [rest, error] = std::from_chars(name.data(), end, index);
+  if (error != std::errc{} || rest != end || index >= array.size()) return std::nullopt;
+  return index;
+}
+
+/// What stands at a dotted path, or null.
+const toml::node* node_at(const toml::table& root, const std::string& path) {
+  const toml::node* at = &root;
+  for (const std::string& name : steps_of(path)) {
+    if (const toml::table* table = at->as_table()) {
+      at = table->get(name);
+    } else if (const toml::array* array = at->as_array()) {
+      const auto index = place_in(*array, name);
+      at = index ? array->get(*index) : nullptr;
+    } else {
+      at = nullptr;
+    }
+    if (at == nullptr) return nullptr;
+  }
+  return at;
+}
+
+/// Puts a value at a dotted path; what is missing on the way becomes a table, a number counts in an array.
+void override_at(toml::table& root, const std::string& path, const toml::node& value) {
+  toml::node* at = &root;
+  const std::vector<std::string> names = steps_of(path);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool last = i + 1 == names.size();
     if (toml::table* table = at->as_table()) {
@@ -74,18 +105,29 @@ void override_at(toml::table& root, const std::string& path, const toml::node& v
       continue;
     }
     toml::array* array = at->as_array();
-    std::size_t index = 0;
-    const char* end = names[i].data() + names[i].size();
     if (array == nullptr) throw SceneError(fmt::format("--set {}: \"{}\" is not a table", path, names[i - 1]));
-    if (const auto [rest, error] = std::from_chars(names[i].data(), end, index);
-        error != std::errc{} || rest != end || index >= array->size())
+    const auto index = place_in(*array, names[i]);
+    if (!index)
       throw SceneError(fmt::format("--set {}: \"{}\" is no place in the array \"{}\" of {}, counted from 0", path,
                                    names[i], names[i - 1], array->size()));
     if (last) {
-      array->replace(array->cbegin() + std::ptrdiff_t(index), value);
+      array->replace(array->cbegin() + std::ptrdiff_t(*index), value);
       return;
     }
-    at = array->get(index);
+    at = array->get(*index);
+  }
+}
+
+void list_leaves(const toml::table& table, const std::string& prefix, std::vector<std::string>& out) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix + std::string(key.str());
+    if (const toml::table* inner = node.as_table(); inner != nullptr && !inner->empty()) {
+      list_leaves(*inner, path + ".", out);
+      continue;
+    }
+    std::ostringstream text;
+    text << toml::toml_formatter(node);
+    out.push_back(path + "=" + text.str());
   }
 }
 
@@ -239,47 +281,67 @@ bool Section::is_table(std::string_view key) const {
 
 std::vector<double> Section::numbers_at(std::string_view path) const {
   std::vector<double> out;
-  if (path.find('[') != std::string_view::npos) return out;
-  const auto node = source_->root.at_path(path);
+  const toml::node* node = node_at(source_->root, std::string(path));
+  if (node == nullptr) return out;
   const auto take = [&](const toml::node& entry) {
     const auto value = entry.value<double>();
     if (entry.is_number() && value && std::isfinite(*value)) out.push_back(*value);
   };
-  if (node.is_number()) take(*node.node());
-  if (const toml::array* array = node.as_array()) {
+  take(*node);
+  if (const toml::array* array = node->as_array()) {
     for (const auto& entry : *array) take(entry);
     if (out.size() != array->size()) out.clear();
   }
   return out;
 }
 
-std::pair<toml::table*, std::string_view> Section::copied(std::string_view path, Section& copy) const {
-  copy = *this;
+Section Section::copied() const {
+  Section copy = *this;
   copy.source_ = std::make_shared<Source>(*source_);
-  toml::table& root = copy.source_->root;
-  copy.table_ = &root;
-  const auto dot = path.rfind('.');
-  if (dot == std::string_view::npos) return {&root, path};
-  return {root.at_path(path.substr(0, dot)).as_table(), path.substr(dot + 1)};
+  copy.table_ = &copy.source_->root;
+  return copy;
 }
 
 Section Section::with(std::string_view path, const std::vector<double>& values) const {
-  Section out;
-  const auto [table, key] = copied(path, out);
-  if (table->get_as<toml::array>(key) != nullptr) {
-    toml::array array;
-    for (const double x : values) array.push_back(x);
-    table->insert_or_assign(key, array);
-  } else {
-    table->insert_or_assign(key, values.front());
+  Section out = copied();
+  const toml::node* before = node_at(source_->root, std::string(path));
+  toml::array array;
+  for (const double x : values) array.push_back(x);
+  if (before != nullptr && before->is_array())
+    override_at(out.source_->root, std::string(path), array);
+  else
+    override_at(out.source_->root, std::string(path), toml::value<double>(values.front()));
+  return out;
+}
+
+Section Section::with(const std::vector<Change>& changes) const {
+  Section out = copied();
+  toml::table& root = out.source_->root;
+  for (const auto& [path, values] : changes) {
+    const toml::node* before = node_at(source_->root, path);
+    if (before != nullptr && before->is_array()) {
+      toml::array array;
+      for (const double x : values) array.push_back(x);
+      override_at(root, path, array);
+      continue;
+    }
+    const double x = values.front();
+    constexpr double largest_whole = 9007199254740992;  // of a double
+    const bool may_be_whole = before == nullptr || before->is_integer();
+    if (may_be_whole && x == std::floor(x) && std::abs(x) <= largest_whole)
+      override_at(root, path, toml::value<std::int64_t>(std::int64_t(x)));
+    else
+      override_at(root, path, toml::value<double>(x));
   }
   return out;
 }
 
 Section Section::without(std::string_view path) const {
-  Section out;
-  const auto [table, key] = copied(path, out);
-  if (table != nullptr) table->erase(key);
+  Section out = copied();
+  const auto dot = path.rfind('.');
+  toml::table& root = out.source_->root;
+  toml::table* table = dot == std::string_view::npos ? &root : root.at_path(path.substr(0, dot)).as_table();
+  if (table != nullptr) table->erase(dot == std::string_view::npos ? path : path.substr(dot + 1));
   return out;
 }
 
@@ -388,6 +450,19 @@ void Section::finish() const {
     if (node.is_array_of_tables())
       for (const Section& table : tables(key.str())) table.finish();
   }
+}
+
+std::vector<std::string> Section::as_overrides() const {
+  std::vector<std::string> out;
+  if (table_ == nullptr) return out;
+  list_leaves(*table_, "", out);
+  for (const auto& [key, node] : *table_) {
+    source_->known.insert(full(key.str()));
+    if (node.is_table()) section_or_empty(key.str()).as_overrides();
+    if (node.is_array_of_tables())
+      for (const Section& table : tables(key.str())) table.as_overrides();
+  }
+  return out;
 }
 
 std::string Section::whole() const {

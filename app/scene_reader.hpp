@@ -39,6 +39,12 @@ inline constexpr NumberRule any_number{"a finite number", [](double) { return tr
 inline constexpr NumberRule positive{"positive", [](double x) { return x > 0; }};
 inline constexpr NumberRule nonnegative{"zero or positive", [](double x) { return x >= 0; }};
 
+/// Numbers that take the place of others in a scene: at a dotted path, one or an array of them.
+struct Change {
+  std::string path;
+  std::vector<double> values;
+};
+
 /// One table of a scene. Every key that is read is remembered; `finish` refuses those that were not.
 class Section {
  public:
@@ -76,9 +82,12 @@ class Section {
                                           std::string_view meaning) const;
 
   /// Of a whole scene: the finite numbers at a dotted path, one or an array of them; none if something else is there.
+  /// In a path a number counts in an array, from 0.
   std::vector<double> numbers_at(std::string_view path) const;
   /// A copy of a whole scene with other numbers at such a path, to be read like any scene.
   Section with(std::string_view path, const std::vector<double>& values) const;
+  /// The same at several paths. Whole numbers are whole there, but in place of one that is not.
+  Section with(const std::vector<Change>& changes) const;
   /// The same with numbers between two that a user wrote. What must lie on a sphere or have unit norm is then brought
   /// there instead of refused.
   Section between(std::string_view path, const std::vector<double>& values) const;
@@ -92,6 +101,9 @@ class Section {
 
   /// A copy of a whole scene without the key at such a path.
   Section without(std::string_view path) const;
+
+  /// What stands in this table and below, as overrides "path=value" of a scene; all of it counts as read.
+  std::vector<std::string> as_overrides() const;
 
   /// Refuses every key that nobody asked for, in this table and the tables below it.
   void finish() const;
@@ -110,8 +122,8 @@ class Section {
     bool interpolated = false;
   };
 
-  /// A copy of the whole scene; where in it the path's last key is, or null and that key.
-  std::pair<toml::table*, std::string_view> copied(std::string_view path, Section& copy) const;
+  /// A copy of the whole scene that shares nothing with it.
+  Section copied() const;
   const toml::node* find(std::string_view key) const;
   const toml::node& require(std::string_view key, std::string_view what) const;
   double checked(std::string_view key, const toml::node& node, const NumberRule& rule) const;

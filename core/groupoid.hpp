@@ -214,8 +214,10 @@ template <class Derived, int Dimension> class LieGroupoid {
 
   /// For each direction of the alpha-fibre, the size of the coordinates that move along it: round-off in the arrow is
   /// this times the unit round-off. The largest coordinate by default; products answer factor by factor.
-  template <class A> Vector<double, Dimension> coordinate_scale(const A& g) const {
-    return Vector<double, Dimension>::Constant(coordinates_of_arrow(g).cwiseAbs().maxCoeff());
+  template <class A> auto coordinate_scale(const A& g) const {
+    const auto x = coordinates_of_arrow(g);
+    using V = Vector<typename decltype(x)::Scalar, Dimension>;
+    return V(V::Constant(x.cwiseAbs().maxCoeff()));
   }
 
   /// Number of coordinates of an arrow (ambient: nine for a rotation matrix) and of an object.
@@ -267,9 +269,9 @@ template <class G> constexpr int object_dimension_of() {
   }
 }
 
-template <class G> using ArrowOf = typename G::template Arrow<double>;
-template <class G> using ObjectOf = typename G::template Object<double>;
-template <class G> using AlgebroidVector = Vector<double, G::dimension>;
+template <class G, class S = double> using ArrowOf = typename G::template Arrow<S>;
+template <class G, class S = double> using ObjectOf = typename G::template Object<S>;
+template <class G, class S = double> using AlgebroidVector = Vector<S, G::dimension>;
 
 /// What every algorithm of Lagroid requires of a groupoid.
 ///

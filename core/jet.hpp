@@ -30,9 +30,12 @@ template <class T, int N> class Jet : public ScalarOperators<Jet<T, N>, T> {
 
   /// The i-th variable, of value x.
   LAGROID_INLINE static Jet variable(T x, int i) { return {x, Left::unit(i)}; }
-  static Left unit(int i) { return Left::unit(i); }
-  static Left left_unit(int i) { return Left::unit(i); }
-  static Right right_unit(int i) { return Right::unit(i); }
+  LAGROID_INLINE static Left left_unit(int i) { return Left::unit(i); }
+  LAGROID_INLINE static Right right_unit(int i) { return Right::unit(i); }
+  /// x times one of these.
+  LAGROID_INLINE static Left along(int i, const T& x) { return Left::along(i, x); }
+  LAGROID_INLINE static Left left_along(int i, const T& x) { return Left::along(i, x); }
+  LAGROID_INLINE static Right right_along(int i, const T& x) { return Right::along(i, x); }
 
   T gradient(int i) const { return gradient_[i]; }
   Vector<T, N> gradient() const { return gradient_.vector(); }
@@ -42,6 +45,9 @@ template <class T, int N> class Jet : public ScalarOperators<Jet<T, N>, T> {
   /// The composition with a function of one variable, given its value and derivatives at `value`.
   LAGROID_INLINE Jet chain(T f, T f1, T /*f2*/) const { return {f, f1 * gradient_}; }
 
+  LAGROID_INLINE friend Jet select(const MaskOf<T>& condition, const Jet& a, const Jet& b) {
+    return {select(condition, a.value, b.value), select(condition, a.gradient_, b.gradient_)};
+  }
   LAGROID_INLINE friend Jet operator-(const Jet& a) { return {-a.value, -a.gradient_}; }
   LAGROID_INLINE friend Jet operator+(const Jet& a, const Jet& b) {
     return {a.value + b.value, a.gradient_ + b.gradient_};

@@ -13,9 +13,12 @@ namespace lagroid {
 
 namespace detail {
 
-/// How many numbers of type T one register of the target machine holds.
+/// How many numbers of type T one register of the target machine holds. An installed library fixes the registers that it
+/// was compiled for, so that what it shares with its callers has one layout, whatever their own instruction set.
 template <class T> constexpr int register_lanes() {
-#if defined(__AVX512F__)
+#if defined(LAGROID_REGISTER_BYTES)
+  constexpr int bytes = LAGROID_REGISTER_BYTES;
+#elif defined(__AVX512F__)
   constexpr int bytes = 64;
 #elif defined(__AVX__)
   constexpr int bytes = 32;
@@ -83,9 +86,23 @@ template <class T, int N> class Lanes {
   LAGROID_INLINE void store(T* x) const { std::memcpy(x, &part_, N * sizeof(T)); }
   /// One in place i, zero elsewhere.
   LAGROID_INLINE static Lanes unit(int i) {
-    Lanes out;
-    std::memcpy(&out.part_, &units[i], sizeof out.part_);
-    return out;
+    if constexpr (std::is_arithmetic_v<T>) {
+      Lanes out;
+      std::memcpy(&out.part_, &units[i], sizeof out.part_);
+      return out;
+    } else {
+      return along(i, T(1));
+    }
+  }
+  /// x in place i, zero elsewhere: one that adds without a trace.
+  LAGROID_INLINE static Lanes along(int i, const T& x) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      return x * unit(i);
+    } else {
+      Lanes out;
+      unrolled<count>([&]<int K>() { out.part_[K] = K == i ? x : -T(0); });
+      return out;
+    }
   }
 
   LAGROID_INLINE friend Lanes operator+(const Lanes& a, const Lanes& b) {
@@ -99,6 +116,13 @@ template <class T, int N> class Lanes {
   }
   LAGROID_INLINE friend Lanes operator*(T s, const Lanes& a) {
     return each([&](int k) -> Register { return s * a.part_[k]; });
+  }
+  LAGROID_INLINE friend Lanes select(const MaskOf<T>& condition, const Lanes& a, const Lanes& b) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      return condition ? a : b;
+    } else {
+      return each([&](int k) { return select(condition, a.part_[k], b.part_[k]); });
+    }
   }
 
  private:

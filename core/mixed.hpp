@@ -32,8 +32,11 @@ template <class T, int L, int R> class Mixed : public ScalarOperators<Mixed<T, L
       : value(T(x)), left_{}, right_{}, row_{} {}  // NOLINT(google-explicit-constructor)
   LAGROID_INLINE Mixed(T x, const Left& v, const Right& w) : value(x), left_(v), right_(w), row_{} {}
 
-  static Left left_unit(int i) { return Left::unit(i); }
-  static Right right_unit(int j) { return Right::unit(j); }
+  LAGROID_INLINE static Left left_unit(int i) { return Left::unit(i); }
+  LAGROID_INLINE static Right right_unit(int j) { return Right::unit(j); }
+  /// x times one of these.
+  LAGROID_INLINE static Left left_along(int i, const T& x) { return Left::along(i, x); }
+  LAGROID_INLINE static Right right_along(int j, const T& x) { return Right::along(j, x); }
 
   T left(int i) const { return left_[i]; }
   T right(int j) const { return right_[j]; }
@@ -57,6 +60,11 @@ template <class T, int L, int R> class Mixed : public ScalarOperators<Mixed<T, L
     return with_rows(f, f1 * left_, f1 * right_, [&](int i) { return f1 * row_[i] + curved[i] * right_; });
   }
 
+  LAGROID_INLINE friend Mixed select(const MaskOf<T>& condition, const Mixed& a, const Mixed& b) {
+    return with_rows(select(condition, a.value, b.value), select(condition, a.left_, b.left_),
+                     select(condition, a.right_, b.right_),
+                     [&](int i) { return select(condition, a.row_[i], b.row_[i]); });
+  }
   LAGROID_INLINE friend Mixed operator-(const Mixed& a) {
     return with_rows(-a.value, -a.left_, -a.right_, [&](int i) { return -a.row_[i]; });
   }

@@ -4,6 +4,7 @@
 #include <lagroid/core/elementary.hpp>
 
 #include <ostream>
+#include <type_traits>
 
 namespace lagroid {
 
@@ -24,6 +25,16 @@ template <class X, class T> class ScalarOperators {
   LAGROID_INLINE friend X operator-(T a, const X& b) { return -b + a; }
   LAGROID_INLINE friend X operator*(T a, const X& b) { return b * a; }
   LAGROID_INLINE friend X operator/(const X& a, T b) { return a * (1 / b); }
+
+  // Over scalars that are no plain numbers themselves, plain numbers are still constants.
+  LAGROID_INLINE friend X operator+(const X& a, double b) requires(!std::is_arithmetic_v<T>) { return a + T(b); }
+  LAGROID_INLINE friend X operator-(const X& a, double b) requires(!std::is_arithmetic_v<T>) { return a + T(-b); }
+  LAGROID_INLINE friend X operator*(const X& a, double b) requires(!std::is_arithmetic_v<T>) { return a * T(b); }
+  LAGROID_INLINE friend X operator/(const X& a, double b) requires(!std::is_arithmetic_v<T>) { return a * T(1 / b); }
+  LAGROID_INLINE friend X operator+(double a, const X& b) requires(!std::is_arithmetic_v<T>) { return b + T(a); }
+  LAGROID_INLINE friend X operator-(double a, const X& b) requires(!std::is_arithmetic_v<T>) { return -b + T(a); }
+  LAGROID_INLINE friend X operator*(double a, const X& b) requires(!std::is_arithmetic_v<T>) { return b * T(a); }
+  LAGROID_INLINE friend X operator/(double a, const X& b) requires(!std::is_arithmetic_v<T>) { return T(a) / b; }
 
   friend bool operator==(const X& a, const X& b) { return a.value == b.value; }
   friend auto operator<=>(const X& a, const X& b) { return a.value <=> b.value; }
@@ -46,6 +57,15 @@ struct Eigen::ScalarBinaryOpTraits<X, typename X::Real, Operation> {
 };
 template <lagroid::Differentiated X, class Operation>
 struct Eigen::ScalarBinaryOpTraits<typename X::Real, X, Operation> {
+  using ReturnType = X;
+};
+/// Plain numbers beside scalars whose reals are none.
+template <lagroid::Differentiated X, class Operation>
+requires(!std::is_arithmetic_v<typename X::Real>) struct Eigen::ScalarBinaryOpTraits<X, double, Operation> {
+  using ReturnType = X;
+};
+template <lagroid::Differentiated X, class Operation>
+requires(!std::is_arithmetic_v<typename X::Real>) struct Eigen::ScalarBinaryOpTraits<double, X, Operation> {
   using ReturnType = X;
 };
 

@@ -29,7 +29,8 @@ template <class T, int N> class SecondJet : public ScalarOperators<SecondJet<T, 
 
   /// The i-th variable, of value x.
   static SecondJet variable(T x, int i) { return {x, Row::unit(i)}; }
-  static Row unit(int i) { return Row::unit(i); }
+  /// x times the i-th infinitesimal.
+  static Row along(int i, const T& x) { return Row::along(i, x); }
 
   T gradient(int i) const { return gradient_[i]; }
   T hessian(int i, int j) const { return rows_[i][j]; }
@@ -48,6 +49,10 @@ template <class T, int N> class SecondJet : public ScalarOperators<SecondJet<T, 
     return with_rows(f, f1 * gradient_, [&](int i) { return f1 * rows_[i] + curved[i] * gradient_; });
   }
 
+  LAGROID_INLINE friend SecondJet select(const MaskOf<T>& condition, const SecondJet& a, const SecondJet& b) {
+    return with_rows(select(condition, a.value, b.value), select(condition, a.gradient_, b.gradient_),
+                     [&](int i) { return select(condition, a.rows_[i], b.rows_[i]); });
+  }
   LAGROID_INLINE friend SecondJet operator-(const SecondJet& a) {
     return with_rows(-a.value, -a.gradient_, [&](int i) { return -a.rows_[i]; });
   }

@@ -12,13 +12,14 @@ namespace lagroid {
 /// The step equations F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0, in the unknowns (w, lambda), g <- g tau(w).
 ///
 /// For object constraints F- contains lambda . dC o rho at the source, the impulse between two arrows.
-template <class Sys> struct StepEquations {
+template <class Sys, class S = double> struct StepEquations {
   static constexpr int size = Sys::dimension + Sys::constraints;
   /// Not aligned, so that Eigen reads it number by number, as it is written.
-  using Residual = Eigen::Matrix<double, size, 1, Eigen::DontAlign>;
-  using Jacobian = Matrix<double, size, size>;
+  using Residual = Eigen::Matrix<S, size, 1, Eigen::DontAlign>;
+  using Jacobian = Matrix<S, size, size>;
 
-  static Residual residual(const GradientsOf<Sys>& d, const AlgebroidVector<typename Sys::GroupoidType>& momentum) {
+  static Residual residual(const GradientsOf<Sys, S>& d,
+                           const AlgebroidVector<typename Sys::GroupoidType, S>& momentum) {
     Residual r;
     r.template head<Sys::dimension>() = -d.source_gradient - momentum;
     r.template tail<Sys::constraints>() = d.constraint;

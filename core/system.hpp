@@ -75,16 +75,16 @@ template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraint
 
 /// A point (q, mu) of A*G: an object and a momentum in the dual of the fibre A_qG, in the basis fixed by the
 /// retraction.
-template <class G> struct State {
-  ObjectOf<G> object;
-  AlgebroidVector<G> momentum;
+template <class G, class S = double> struct State {
+  ObjectOf<G, S> object;
+  AlgebroidVector<G, S> momentum;
 };
 
 /// An arrow and its multipliers: first those of the arrow constraints, then those of the object constraints at the
 /// arrow's source. For arrow constraints alone, a point of Sigma_L ([G] 3.3).
-template <class System> struct Step {
-  ArrowOf<typename System::GroupoidType> arrow;
-  typename System::Multipliers multipliers;
+template <class System, class S = double> struct Step {
+  ArrowOf<typename System::GroupoidType, S> arrow;
+  Vector<S, System::constraints> multipliers;
 };
 
 /// Gradients of the augmented function f = L + <lambda, phi> + <lambda, C o alpha> in the two-sided displacement
@@ -93,11 +93,11 @@ template <class System> struct Step {
 /// The discrete Legendre transforms are F- = -source_gradient and F+ = target_gradient ([G] Def. 3.3). Discrete forces
 /// are part of both gradients. The reaction of nonholonomic constraints, <lambda, omega(alpha(g))>, is part of
 /// source_gradient in place of what <lambda, phi> adds to f, as that of object constraints is.
-template <int N, int M> struct Gradients {
-  double value;                       ///< f(g), which is L(g) where the constraints hold
-  Vector<double, N> source_gradient;  ///< df/dv
-  Vector<double, N> target_gradient;  ///< df/dw
-  Vector<double, M> constraint;       ///< (phi(g), C(beta(g)))
+template <int N, int M, class S = double> struct Gradients {
+  S value;                       ///< f(g), which is L(g) where the constraints hold
+  Vector<S, N> source_gradient;  ///< df/dv
+  Vector<S, N> target_gradient;  ///< df/dw
+  Vector<S, M> constraint;       ///< (phi(g), C(beta(g)))
 };
 
 /// The gradients with the mixed second derivative: the derivative of F- along the alpha-fibre is -mixed.
@@ -107,7 +107,7 @@ template <int N, int M> struct TwoSided : Gradients<N, M> {
   Matrix<double, M, N> constraint_target;  ///< d(phi, C o beta)/dw, row by row
 };
 
-template <class Sys> using GradientsOf = Gradients<Sys::dimension, Sys::constraints>;
+template <class Sys, class S = double> using GradientsOf = Gradients<Sys::dimension, Sys::constraints, S>;
 template <class Sys> using TwoSidedOf = TwoSided<Sys::dimension, Sys::constraints>;
 
 /// What the solvers require of a system. Build one by deriving from `System`.

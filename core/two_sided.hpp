@@ -30,25 +30,27 @@ template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimensio
 
 /// What acts on the two ends of g beside the Lagrangian: discrete forces, and at the source the reaction
 /// <lambda, omega>.
-template <DiscreteSystem Sys>
-Forces<double, Sys::dimension> impulses(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
-                                        const typename Sys::Multipliers& lambda) {
-  using V = Vector<double, Sys::dimension>;
-  Forces<double, Sys::dimension> out{V::Zero(), V::Zero()};
+template <DiscreteSystem Sys, class S = double>
+Forces<S, Sys::dimension> impulses(const Sys& system, const ArrowOf<typename Sys::GroupoidType, S>& g,
+                                   const Vector<S, Sys::constraints>& lambda) {
+  using V = Vector<S, Sys::dimension>;
+  Forces<S, Sys::dimension> out{V::Zero(), V::Zero()};
   if constexpr (Forced<Sys>) out = system.forces(g);
   if constexpr (Nonholonomic<Sys>)
-    out.source += annihilator(system, system.groupoid.source(g)) * lambda.template head<Sys::arrow_constraints>();
+    out.source +=
+        annihilator<Sys, S>(system, system.groupoid.source(g)) * lambda.template head<Sys::arrow_constraints>();
   return out;
 }
 
 /// The gradients by first-order dual numbers: one pass through L, phi and C, along the arrow's frame or, where the
-/// groupoid supplies none, along the displacements of both ends.
-template <DiscreteSystem Sys>
-LAGROID_FLATTEN GradientsOf<Sys> automatic_gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
-                                                     const typename Sys::Multipliers& lambda) {
+/// groupoid supplies none, along the displacements of both ends. S: double, or a batch of them.
+template <DiscreteSystem Sys, class S = double>
+LAGROID_FLATTEN GradientsOf<Sys, S> automatic_gradients(const Sys& system,
+                                                        const ArrowOf<typename Sys::GroupoidType, S>& g,
+                                                        const Vector<S, Sys::constraints>& lambda) {
   constexpr int n = Sys::dimension;
   constexpr bool framed = HasArrowFrame<typename Sys::GroupoidType>;
-  using J = Jet<double, framed ? arrow_dimension_of<typename Sys::GroupoidType>() : 2 * n>;
+  using J = Jet<S, framed ? arrow_dimension_of<typename Sys::GroupoidType>() : 2 * n>;
   const auto& groupoid = system.groupoid;
   const auto gj = [&] {
     if constexpr (framed) {
@@ -57,7 +59,7 @@ LAGROID_FLATTEN GradientsOf<Sys> automatic_gradients(const Sys& system, const Ar
       return groupoid.template seed<J, End::source, End::target, 0, n>(g);
     }
   }();
-  GradientsOf<Sys> out;
+  GradientsOf<Sys, S> out;
   J f = system.lagrangian(gj);
   if constexpr (Nonholonomic<Sys>) {
     out.constraint.template head<Sys::arrow_constraints>() = system.constraint(g);
@@ -86,7 +88,7 @@ LAGROID_FLATTEN GradientsOf<Sys> automatic_gradients(const Sys& system, const Ar
     out.target_gradient = gradient.template tail<n>();
   }
   if constexpr (!Variational<Sys>) {
-    const Forces<double, n> acting = impulses(system, g, lambda);
+    const Forces<S, n> acting = impulses<Sys, S>(system, g, lambda);
     out.source_gradient += acting.source;
     out.target_gradient += acting.target;
   }
@@ -204,14 +206,14 @@ State<typename Sys::GroupoidType> legendre_plus(const Sys& system, const Step<Sy
 
 /// F+ - F-, the change of the momentum over a step with gradients d. The part that is due to the Lagrangian is the
 /// groupoid's `momentum_change`, which may know it without cancellation; impulses are added.
-template <DiscreteSystem Sys>
-AlgebroidVector<typename Sys::GroupoidType> momentum_change(const Sys& system, const Step<Sys>& step,
-                                                            const GradientsOf<Sys>& d) {
-  using V = AlgebroidVector<typename Sys::GroupoidType>;
+template <DiscreteSystem Sys, class S>
+AlgebroidVector<typename Sys::GroupoidType, S> momentum_change(const Sys& system, const Step<Sys, S>& step,
+                                                               const GradientsOf<Sys, S>& d) {
+  using V = AlgebroidVector<typename Sys::GroupoidType, S>;
   if constexpr (Variational<Sys>) {
     return system.groupoid.momentum_change(step.arrow, d.source_gradient, d.target_gradient);
   } else {
-    const auto acting = impulses(system, step.arrow, step.multipliers);
+    const auto acting = impulses<Sys, S>(system, step.arrow, step.multipliers);
     const V change = system.groupoid.momentum_change(step.arrow, V(d.source_gradient - acting.source),
                                                      V(d.target_gradient - acting.target));
     return change + acting.source + acting.target;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include <type_traits>
 #include <utility>
 
 // Operations on derivatives must be inlined to stay in registers, and all that a step calls with them. Instrumented or
@@ -32,6 +33,21 @@ template <class S, int Rows, int Columns> using Matrix = Eigen::Matrix<S, Rows, 
 constexpr double value_of(double x) { return x; }
 constexpr float value_of(float x) { return x; }
 constexpr long double value_of(long double x) { return x; }
+
+/// a where the condition holds, b elsewhere: what formulas write in place of a branch, so that they serve scalars with
+/// lanes (core/batch.hpp) too, lane by lane. Both are evaluated.
+template <class S> LAGROID_INLINE constexpr S select(bool condition, const S& a, const std::type_identity_t<S>& b) {
+  return condition ? a : b;
+}
+
+/// What a comparison of two S yields: bool, or one of each lane.
+template <class S> struct MaskOfScalar { using Type = bool; };
+template <class S>
+requires requires { typename S::Mask; }
+struct MaskOfScalar<S> {
+  using Type = typename S::Mask;
+};
+template <class S> using MaskOf = typename MaskOfScalar<S>::Type;
 
 /// f<0>(), f<1>(), ..., f<N - 1>().
 template <int N, class F> LAGROID_INLINE constexpr void unrolled(const F& f) {

@@ -104,7 +104,7 @@ template <class Group, class Space> struct Action : LieGroupoid<Action<Group, Sp
   template <class S, class V> Arrow<S> arrow_in_chart(const Vector<S, object_size>& m, const V& v) const {
     return {group.arrow_in_chart(Vector<S, 0>(), v), m};
   }
-  template <class E, class P> Vector<double, rank> coordinate_scale(const ActionArrow<E, P>& g) const {
+  template <class E, class P> auto coordinate_scale(const ActionArrow<E, P>& g) const {
     return group.coordinate_scale(g.element);
   }
 

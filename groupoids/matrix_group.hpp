@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include <array>
+#include <concepts>
 
 namespace lagroid {
 
@@ -108,10 +109,10 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     Matrix<J, N, N> out;
     unrolled<N>([&]<int C>() {
       unrolled<N>([&]<int R>() {
-        const auto unit = [](int i) { return J::unit(Offset + i); };
-        out(R, C) = J(g(R, C), side_by_side<End::target, R, C>(g, unit));
+        const auto along = [](int i, const T& x) { return J::along(Offset + i, x); };
+        out(R, C) = J(g(R, C), side_by_side<End::target, R, C>(g, along));
         if constexpr (J::order == 2)
-          unrolled<Dimension>([&]<int I>() { out(R, C).set_row(Offset + I, squares<R, C, I>(g, unit)); });
+          unrolled<Dimension>([&]<int I>() { out(R, C).set_row(Offset + I, squares<R, C, I>(g, along)); });
       });
     });
     return out;
@@ -139,8 +140,10 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     Matrix<M, N, N> out;
     unrolled<N>([&]<int C>() {
       unrolled<N>([&]<int R>() {
-        const auto left = side_by_side<First, R, C>(g, [](int i) { return M::left_unit(LeftOffset + i); });
-        const auto right = side_by_side<Second, R, C>(g, [](int j) { return M::right_unit(RightOffset + j); });
+        const auto left =
+            side_by_side<First, R, C>(g, [](int i, const T& x) { return M::left_along(LeftOffset + i, x); });
+        const auto right =
+            side_by_side<Second, R, C>(g, [](int j, const T& x) { return M::right_along(RightOffset + j, x); });
         out(R, C) = M(g(R, C), left, right);
         if constexpr (M::order == 2 && First == Second)
           for (int i = 0; i < Dimension; ++i)
@@ -155,11 +158,28 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
   template <class T> LAGROID_INLINE static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
     const auto square = value_of(w.squaredNorm());
-    if (square > 1e-11) return g * tau(Object<T>{}, w);
+    const auto far = square > T(1e-11);
+    const auto near = square < T(1e-17);
     const Matrix<T, N, N> gw = times_hat(g, w);
-    if (square < 1e-17) return by_entry<T>([&]<int R, int C>() { return g(R, C) + gw(R, C); });
+    const auto linear = [&]<int R, int C>() { return g(R, C) + gw(R, C); };
+    if constexpr (std::same_as<MaskOf<T>, bool>) {
+      if (far) return g * tau(Object<T>{}, w);
+      if (near) return by_entry<T>(linear);
+    } else if (all(near)) {
+      return by_entry<T>(linear);
+    }
     const Matrix<T, N, N> gww = times_hat(gw, w);
-    return by_entry<T>([&]<int R, int C>() { return g(R, C) + (gw(R, C) + T(0.5) * gww(R, C)); });
+    const auto quadratic = [&]<int R, int C>() { return g(R, C) + (gw(R, C) + T(0.5) * gww(R, C)); };
+    if constexpr (std::same_as<MaskOf<T>, bool>) {
+      return by_entry<T>(quadratic);
+    } else {
+      const Matrix<T, N, N> out = by_entry<T>([&]<int R, int C>() {
+        return select(near, linear.template operator()<R, C>(), quadratic.template operator()<R, C>());
+      });
+      if (!any(far)) return out;
+      const Matrix<T, N, N> turned = multiply(g, tau(Object<T>{}, w));
+      return by_entry<T>([&]<int R, int C>() { return select(far, turned(R, C), out(R, C)); });
+    }
   }
   template <class T> static Algebra<T> nudge(Matrix<T, N, N>& g, const Algebra<T>& w) {
     const Matrix<T, N, N> gw = times_hat(g, w);
@@ -206,11 +226,11 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   }
 
   /// These derivatives over i, each along its unit.
-  template <End Which, int R, int C, class T, class Unit>
-  LAGROID_INLINE static auto side_by_side(const Matrix<T, N, N>& g, const Unit& unit) {
-    decltype(unit(0)) sum{};
+  template <End Which, int R, int C, class T, class Along>
+  LAGROID_INLINE static auto side_by_side(const Matrix<T, N, N>& g, const Along& along) {
+    decltype(along(0, g(R, C))) sum{};
     unrolled<Dimension>([&]<int I>() {
-      if constexpr (moves<Which>(R, C, I)) sum = sum + displaced<Which, R, C, I>(g) * unit(I);
+      if constexpr (moves<Which>(R, C, I)) sum = sum + along(I, displaced<Which, R, C, I>(g));
     });
     return sum;
   }
@@ -220,10 +240,10 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
   template <End Second, int C, int LeftOffset, int RightOffset, class M, class T>
   LAGROID_INLINE static void seed_mixed(const Matrix<T, N, N>& g, Matrix<M, N, N>& out) {
     using Right = typename M::Right;
-    const auto unit = [](int j) { return M::right_unit(RightOffset + j); };
+    const auto along_right = [](int j, const T& x) { return M::right_along(RightOffset + j, x); };
     if constexpr (Second == End::target) {
       std::array<Right, N> along;
-      unrolled<N>([&]<int S>() { along[S] = side_by_side<End::target, S, C>(g, unit); });
+      unrolled<N>([&]<int S>() { along[S] = side_by_side<End::target, S, C>(g, along_right); });
       unrolled<N>([&]<int R>() {
         unrolled<Dimension>([&]<int I>() {
           Right row{};
@@ -239,7 +259,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
           Right row{};
           unrolled<N>([&]<int S>() {
             if constexpr (Derived::basis(I, S, C) != 0)
-              row = row + T(Derived::basis(I, S, C)) * side_by_side<End::source, R, S>(g, unit);
+              row = row + T(Derived::basis(I, S, C)) * side_by_side<End::source, R, S>(g, along_right);
           });
           out(R, C).set_row(LeftOffset + I, row);
         });
@@ -264,13 +284,13 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return sum;
   }
   /// Entry (r, c) of g (E_i E_j + E_j E_i) / 2 over j, each along its unit.
-  template <int R, int C, int I, class T, class Unit>
-  LAGROID_INLINE static auto squares(const Matrix<T, N, N>& g, const Unit& unit) {
-    decltype(unit(0)) sum{};
+  template <int R, int C, int I, class T, class Along>
+  LAGROID_INLINE static auto squares(const Matrix<T, N, N>& g, const Along& along) {
+    decltype(along(0, g(R, C))) sum{};
     unrolled<Dimension>([&]<int J>() {
       unrolled<N>([&]<int S>() {
         if constexpr (doubled_square(I, J, S, C) != 0)
-          sum = sum + (g(R, S) * (T(doubled_square(I, J, S, C)) / T(2))) * unit(J);
+          sum = sum + along(J, g(R, S) * (T(doubled_square(I, J, S, C)) / T(2)));
       });
     });
     return sum;

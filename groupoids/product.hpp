@@ -93,7 +93,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
         map([](const auto& f, const auto& qi, const auto& ri) { return f.object_displacement(qi, ri); }, q, r));
   }
 
-  template <class... As> Vector<double, rank> coordinate_scale(const std::tuple<As...>& g) const {
+  template <class... As> auto coordinate_scale(const std::tuple<As...>& g) const {
     return concatenate<rank>(map([](const auto& f, const auto& gi) { return f.coordinate_scale(gi); }, g));
   }
 

@@ -51,7 +51,7 @@ struct SpecialEuclidean3 : MatrixGroup<SpecialEuclidean3<Tau>, 4, 6, Tau> {
     return over_dual_numbers(xi, [](const auto& w) { return SO3::dexp_inverse(w); });
   }
   static Matrix<double, 4, 4> project(const Matrix<double, 4, 4>& g) {
-    return homogeneous<double>(SO3::project(g.topLeftCorner<3, 3>()), g.topRightCorner<3, 1>());
+    return homogeneous<double>(SO3::project(Matrix<double, 3, 3>(g.topLeftCorner<3, 3>())), g.topRightCorner<3, 1>());
   }
   static std::string name() { return "SE(3)"; }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 
 namespace lagroid {
 
@@ -36,27 +37,27 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   /// The unit quaternion (w, x, y, z) with w >= 0 of a rotation matrix, from its largest component (stable at every
   /// angle; at angle pi one of the two is chosen).
   template <class S> static Vector<S, 4> quaternion(const Matrix<S, 3, 3>& g) {
-    using std::sqrt;
-    const double d0 = double(value_of(g(0, 0)));
-    const double d1 = double(value_of(g(1, 1)));
-    const double d2 = double(value_of(g(2, 2)));
-    const double trace = d0 + d1 + d2;
+    const auto d0 = value_of(g(0, 0));
+    const auto d1 = value_of(g(1, 1));
+    const auto d2 = value_of(g(2, 2));
+    const auto by_trace = d0 + d1 + d2 >= d0 && d0 + d1 + d2 >= d1 && d0 + d1 + d2 >= d2;
+    const auto by_first = d0 >= d1 && d0 >= d2;
     Vector<S, 4> q;
-    if (trace >= std::max({d0, d1, d2})) {
-      const S s = sqrt(g(0, 0) + g(1, 1) + g(2, 2) + 1.0) * 2.0;
-      const S inverse = 1.0 / s;
-      q << s * 0.25, (g(2, 1) - g(1, 2)) * inverse, (g(0, 2) - g(2, 0)) * inverse, (g(1, 0) - g(0, 1)) * inverse;
+    if constexpr (std::same_as<std::remove_const_t<decltype(by_trace)>, bool>) {
+      q = by_trace ? quaternion_by_trace(g) : quaternion_by_axis(g, by_first ? 0 : (d1 >= d2 ? 1 : 2));
     } else {
-      const int i = d0 >= d1 && d0 >= d2 ? 0 : (d1 >= d2 ? 1 : 2);
-      const int j = (i + 1) % 3;
-      const int k = (i + 2) % 3;
-      const S s = sqrt(g(i, i) - g(j, j) - g(k, k) + 1.0) * 2.0;
-      q(0) = (g(k, j) - g(j, k)) / s;
-      q(1 + i) = s * 0.25;
-      q(1 + j) = (g(j, i) + g(i, j)) / s;
-      q(1 + k) = (g(k, i) + g(i, k)) / s;
+      q = quaternion_by_trace(g);
+      if (!all(by_trace)) {
+        const Vector<S, 4> first = quaternion_by_axis(g, 0);
+        const Vector<S, 4> second = quaternion_by_axis(g, 1);
+        const Vector<S, 4> third = quaternion_by_axis(g, 2);
+        for (int i = 0; i < 4; ++i)
+          q(i) = select(by_trace, q(i), select(by_first, first(i), select(d1 >= d2, second(i), third(i))));
+      }
     }
-    return value_of(q(0)) < 0 ? Vector<S, 4>(-q) : q;
+    const auto negative = value_of(q(0)) < 0;
+    for (int i = 0; i < 4; ++i) q(i) = select(negative, -q(i), q(i));
+    return q;
   }
   /// The rotation matrix of a quaternion (w, x, y, z), which need not be normalised.
   static Matrix<double, 3, 3> from_quaternion(const Vector<double, 4>& q) {
@@ -101,15 +102,15 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   }
 
   /// The nearest rotation matrix to first order in the defect: one Newton-Schulz step g (3 I - g^T g) / 2.
-  static Matrix<double, 3, 3> project(const Matrix<double, 3, 3>& g) {
+  template <class T> static Matrix<T, 3, 3> project(const Matrix<T, 3, 3>& g) {
     const auto square = [&](int i, int j) { return g(0, i) * g(0, j) + g(1, i) * g(1, j) + g(2, i) * g(2, j); };
-    const double xx = 1.5 - 0.5 * square(0, 0);
-    const double yy = 1.5 - 0.5 * square(1, 1);
-    const double zz = 1.5 - 0.5 * square(2, 2);
-    const double xy = -0.5 * square(0, 1);
-    const double xz = -0.5 * square(0, 2);
-    const double yz = -0.5 * square(1, 2);
-    Matrix<double, 3, 3> out;
+    const T xx = 1.5 - 0.5 * square(0, 0);
+    const T yy = 1.5 - 0.5 * square(1, 1);
+    const T zz = 1.5 - 0.5 * square(2, 2);
+    const T xy = -0.5 * square(0, 1);
+    const T xz = -0.5 * square(0, 2);
+    const T yz = -0.5 * square(1, 2);
+    Matrix<T, 3, 3> out;
     unrolled<3>([&]<int R>() {
       out(R, 0) = g(R, 0) * xx + g(R, 1) * xy + g(R, 2) * xz;
       out(R, 1) = g(R, 0) * xy + g(R, 1) * yy + g(R, 2) * yz;
@@ -131,21 +132,22 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   /// (I - g') F+ with g' = g (3 I - g^T g) / 2, the rotation nearest to g to first order: from E = g - I, whose entries
   /// are small and exact. With g itself |mu| would change by the round-off of g, the same way at every step of a smooth
   /// trajectory.
-  static Vector<double, 3> momentum_change(const Matrix<double, 3, 3>& g, const Vector<double, 3>&,
-                                           const Vector<double, 3>& target_gradient) {
-    Matrix<double, 3, 3> e = g;
+  template <class T>
+  static Vector<T, 3> momentum_change(const Matrix<T, 3, 3>& g, const Vector<T, 3>&,
+                                      const Vector<T, 3>& target_gradient) {
+    Matrix<T, 3, 3> e = g;
     unrolled<3>([&]<int I>() { e(I, I) -= 1; });
     // S = g^T g - I
     const auto s = [&]<int I, int J>() {
       return (e(I, J) + e(J, I)) + (e(0, I) * e(0, J) + e(1, I) * e(1, J) + e(2, I) * e(2, J));
     };
-    const double xy = s.template operator()<0, 1>();
-    const double xz = s.template operator()<0, 2>();
-    const double yz = s.template operator()<1, 2>();
-    const Matrix<double, 3, 3> square{{s.template operator()<0, 0>(), xy, xz},
-                                      {xy, s.template operator()<1, 1>(), yz},
-                                      {xz, yz, s.template operator()<2, 2>()}};
-    Vector<double, 3> out;
+    const T xy = s.template operator()<0, 1>();
+    const T xz = s.template operator()<0, 2>();
+    const T yz = s.template operator()<1, 2>();
+    const Matrix<T, 3, 3> square{{s.template operator()<0, 0>(), xy, xz},
+                                 {xy, s.template operator()<1, 1>(), yz},
+                                 {xz, yz, s.template operator()<2, 2>()}};
+    Vector<T, 3> out;
     unrolled<3>([&]<int R>() {
       out(R) = (0.5 * square(R, 0) - e(R, 0)) * target_gradient(0) +
                (0.5 * square(R, 1) - e(R, 1)) * target_gradient(1) +
@@ -160,6 +162,26 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     return cayley(v);
   }
   static std::string name() { return "SO(3)"; }
+
+ private:
+  template <class S> static Vector<S, 4> quaternion_by_trace(const Matrix<S, 3, 3>& g) {
+    using std::sqrt;
+    const S s = sqrt(g(0, 0) + g(1, 1) + g(2, 2) + 1.0) * 2.0;
+    const S inverse = 1.0 / s;
+    return {s * 0.25, (g(2, 1) - g(1, 2)) * inverse, (g(0, 2) - g(2, 0)) * inverse, (g(1, 0) - g(0, 1)) * inverse};
+  }
+  template <class S> static Vector<S, 4> quaternion_by_axis(const Matrix<S, 3, 3>& g, int i) {
+    using std::sqrt;
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    const S s = sqrt(g(i, i) - g(j, j) - g(k, k) + 1.0) * 2.0;
+    Vector<S, 4> q;
+    q(0) = (g(k, j) - g(j, k)) / s;
+    q(1 + i) = s * 0.25;
+    q(1 + j) = (g(j, i) + g(i, j)) / s;
+    q(1 + k) = (g(k, i) + g(i, k)) / s;
+    return q;
+  }
 };
 
 using SO3 = SpecialOrthogonal3<>;

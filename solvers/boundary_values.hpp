@@ -18,6 +18,7 @@ struct MultistartOptions {
   double amplitude = 0;           ///< their size, in coordinates of AG; 0: the length of the geodesic, or one
   std::size_t coarse_steps = 20;  ///< arrows of the first stage
   std::function<void(int)> report = [](int) {};  ///< called with the number of starts done
+  int threads = 0;                               ///< solves at a time; 0: as many as there are processors
 };
 
 /// The path through tau_q(k v / N), tau_q(v) the boundary arrow: the straight line from one end to the other.
@@ -72,10 +73,11 @@ MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>& solver, const Bo
                        1.0);
     };
   };
-  auto result = multistart(solver, stages, options.starts, guess(stages.front()), options.report);
+  auto result = multistart(solver, stages, options.starts, guess(stages.front()), options.report, options.threads);
   if (result.solutions.empty() && stages.size() > 1) {
     const int spent = result.iterations;
-    result = multistart(solver, std::vector{stages.back()}, options.starts, guess(stages.back()), options.report);
+    result = multistart(solver, std::vector{stages.back()}, options.starts, guess(stages.back()), options.report,
+                        options.threads);
     result.iterations += spent;
   }
   return result;

@@ -15,6 +15,23 @@ namespace lagroid {
 /// difference is no smaller than the last, it stops, so that neither round-off nor a kink is amplified.
 template <int Size, int MaxDegree> class Extrapolation {
  public:
+  static constexpr int length = MaxDegree + 1;  ///< vectors that are remembered
+  static constexpr int review = 16;             ///< steps from one choice of the degree to the next
+
+  using Weights = std::array<double, std::size_t(length)>;
+  /// Of the newest vector, the one before, ..., by degree.
+  static constexpr std::array<Weights, std::size_t(length)> weights = [] {
+    std::array<Weights, std::size_t(length)> w{};
+    for (std::size_t degree = 0; degree < std::size_t(length); ++degree) {
+      double binomial = 1;
+      for (std::size_t j = 0; j <= degree; ++j) {
+        binomial = binomial * double(degree + 1 - j) / double(j + 1);
+        w[degree][j] = j % 2 == 0 ? binomial : -binomial;
+      }
+    }
+    return w;
+  }();
+
   void clear() { known_ = 0; }
   bool empty() const { return known_ == 0; }
 
@@ -45,22 +62,6 @@ template <int Size, int MaxDegree> class Extrapolation {
   }
 
  private:
-  static constexpr int length = MaxDegree + 1;
-  static constexpr int review = 16;  ///< steps from one choice of the degree to the next
-  using Weights = std::array<double, std::size_t(length)>;
-
-  static constexpr std::array<Weights, std::size_t(length)> weights = [] {
-    std::array<Weights, std::size_t(length)> w{};
-    for (std::size_t degree = 0; degree < std::size_t(length); ++degree) {
-      double binomial = 1;
-      for (std::size_t j = 0; j <= degree; ++j) {
-        binomial = binomial * double(degree + 1 - j) / double(j + 1);
-        w[degree][j] = j % 2 == 0 ? binomial : -binomial;
-      }
-    }
-    return w;
-  }();
-
   const Vector<double, Size>& back(int j) const { return past_[std::size_t(newest_ + j)]; }
 
   void choose_degree() {

@@ -2,6 +2,7 @@
 /// Many starts, then continuation: how local minima of a boundary-value problem are found.
 
 #include <lagroid/solvers/continuation.hpp>
+#include <lagroid/solvers/ensemble/tasks.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -49,32 +50,38 @@ void keep_if_new(std::vector<BoundarySolution<Sys>>& found, const Sys& system, B
 
 /// A saddle has a way down: solves again from paths bent a little away from each, and keeps what is new.
 template <DiscreteSystem Sys>
-void descend_from_saddles(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem,
+void descend_from_saddles(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem, int threads,
                           std::vector<BoundarySolution<Sys>>& found, MultistartResult<Sys>& result) {
+  constexpr long attempts = 4;
   std::vector<Path<Sys>> saddles;
   for (const auto& solution : found)
     if (!solution.kind.is_minimum) saddles.push_back(solution.path);
-  for (const auto& path : saddles)
-    for (int attempt = 1; attempt <= 4; ++attempt) {
-      auto next = solver.solve(problem, bent(problem, path, attempt), /*keep_multipliers=*/false);
-      result.iterations += next.iterations;
-      if (next.converged()) keep_if_new(found, problem.system, std::move(next));
-    }
+  const auto descend = [&](long i) {
+    const auto& path = saddles[std::size_t(i / attempts)];
+    return solver.solve(problem, bent(problem, path, int(1 + i % attempts)), /*keep_multipliers=*/false);
+  };
+  for (auto& next : results_of_tasks(attempts * long(saddles.size()), threads, descend, [](int) {})) {
+    result.iterations += next.iterations;
+    if (next.converged()) keep_if_new(found, problem.system, std::move(next));
+  }
 }
 
 }  // namespace detail
 
 /// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
 /// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
-/// `solver.seek()`; `guess(i)` is
-/// the i-th starting path of the first stage; `report(i)` is called after each start.
+/// `solver.seek()`; `guess(i)` is the i-th starting path of the first stage; `report(i)` is called after each start.
+/// Solves go on `threads` threads at once (0: all there are), and so do calls of `guess`; what is found does not depend
+/// on their number.
 template <DiscreteSystem Sys, class Guess, class Report>
 MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
-                                 int starts, const Guess& guess, const Report& report) {
+                                 int starts, const Guess& guess, const Report& report, int threads = 0) {
   MultistartResult<Sys> result;
   std::vector<BoundarySolution<Sys>> found;
-  for (int i = 0; i < starts; ++i) {
-    auto solution = solver.solve(stages.front().problem, guess(i), /*keep_multipliers=*/false);
+  const auto start = [&](long i) {
+    return solver.solve(stages.front().problem, guess(int(i)), /*keep_multipliers=*/false);
+  };
+  for (auto& solution : results_of_tasks(starts, threads, start, report)) {
     result.start_iterations += solution.iterations;
     result.iterations += solution.iterations;
     result.most_iterations = std::max(result.most_iterations, solution.iterations);
@@ -84,15 +91,17 @@ MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::v
     } else {
       detail::note_failure(result, std::move(solution));
     }
-    report(i + 1);
   }
   const bool minima = solver.seek() == Seek::minima;
-  if (minima) detail::descend_from_saddles(solver, stages.front().problem, found, result);
+  if (minima) detail::descend_from_saddles(solver, stages.front().problem, threads, found, result);
   for (std::size_t s = 1; s < stages.size(); ++s) {
     const BoundaryProblem<Sys>& problem = stages[s].problem;
     std::vector<BoundarySolution<Sys>> carried;
-    for (const auto& solution : found) {
-      auto next = carry(solver, stages[s], solution, solution.path);
+    const auto carried_on = [&](long i) {
+      const auto& solution = found[std::size_t(i)];
+      return carry(solver, stages[s], solution, solution.path);
+    };
+    for (auto& next : results_of_tasks(long(found.size()), threads, carried_on, [](int) {})) {
       result.iterations += next.iterations;
       if (next.converged()) {
         detail::keep_if_new(carried, problem.system, std::move(next));
@@ -103,7 +112,7 @@ MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::v
     }
     found = std::move(carried);
   }
-  if (minima && stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, found, result);
+  if (minima && stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, threads, found, result);
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   result.solutions = std::move(found);
   return result;

@@ -21,12 +21,13 @@ struct StepReport {
 };
 
 /// A step with what the solver knows about it.
-template <DiscreteSystem Sys> struct StepSolution {
-  Step<Sys> step;
-  AlgebroidVector<typename Sys::GroupoidType> momentum_change;  ///< (F+ - F-)(g, lambda)
+template <DiscreteSystem Sys, class S = double> struct StepSolution {
+  using Fibre = AlgebroidVector<typename Sys::GroupoidType, S>;
+  Step<Sys, S> step;
+  Fibre momentum_change;  ///< (F+ - F-)(g, lambda)
   /// The correction w in A_{beta(g)}G, g tau(w), that the next iteration would make: below the spacing of the numbers
   /// the arrow is stored in, but a bias when it is lost step after step.
-  AlgebroidVector<typename Sys::GroupoidType> remainder = AlgebroidVector<typename Sys::GroupoidType>::Zero();
+  Fibre remainder = Fibre::Zero();
 };
 
 /// Solves F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0 for the arrow g with source q and its multipliers.
@@ -55,12 +56,13 @@ template <DiscreteSystem Sys>
 std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys& system, StepMethod method, StepOptions options = {});
 
 /// What round-off in mu, in the products J_ij lambda_j and in the arrow puts into each step equation.
-template <DiscreteSystem Sys>
-typename StepEquations<Sys>::Residual round_off_level(const Sys& system, const State<typename Sys::GroupoidType>& state,
-                                                      const Step<Sys>& step,
-                                                      const typename StepEquations<Sys>::Jacobian& jacobian) {
+template <DiscreteSystem Sys, class S = double>
+typename StepEquations<Sys, S>::Residual round_off_level(const Sys& system,
+                                                         const State<typename Sys::GroupoidType, S>& state,
+                                                         const Step<Sys, S>& step,
+                                                         const typename StepEquations<Sys, S>::Jacobian& jacobian) {
   constexpr int n = Sys::dimension;
-  typename StepEquations<Sys>::Residual size =
+  typename StepEquations<Sys, S>::Residual size =
       jacobian.template leftCols<n>().cwiseAbs() * system.groupoid.coordinate_scale(step.arrow);
   size.template head<n>() += state.momentum.cwiseAbs();
   if constexpr (Sys::constraints > 0)

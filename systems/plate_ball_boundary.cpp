@@ -59,15 +59,16 @@ MultistartResult<PlateBall> run(const BoundarySolver<PlateBall>& solver, const P
   }
   if (first_form != system.rotation) stages.push_back(stage(steps, system.rotation));
 
-  auto result = multistart(solver, stages, options.starts,
-                           guess(long(stages.front().steps), stages.front().problem.system), options.report);
+  auto result =
+      multistart(solver, stages, options.starts, guess(long(stages.front().steps), stages.front().problem.system),
+                 options.report, options.threads);
   // Where the grid cannot be refined towards agreement of the forms, or the easier problem led nowhere, the problem
   // asked for gets starts of its own.
   const bool forms_far_apart = first_form != system.rotation && options.steps <= coarse_steps;
   if (stages.size() > 1 && (forms_far_apart || result.solutions.empty())) {
     const auto direct = stage(options.steps, system.rotation);
     auto more = multistart(solver, std::vector{direct}, options.starts, guess(options.steps, direct.problem.system),
-                           options.report);
+                           options.report, options.threads);
     more.iterations += result.iterations;
     for (auto& solution : result.solutions)
       detail::keep_if_new(more.solutions, direct.problem.system, std::move(solution));

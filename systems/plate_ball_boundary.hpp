@@ -14,6 +14,7 @@ struct PlateBallBoundaryOptions {
   int starts = 40;                               ///< the straight line, then straight lines with random sine modes
   std::uint64_t seed = 1;                        ///< of the random modes
   std::function<void(int)> report = [](int) {};  ///< called with the number of starts done
+  int threads = 0;                               ///< solves at a time; 0: as many as there are processors
 };
 
 /// Why no trajectory of N arrows can exist, or nothing (decidable cases only).

@@ -221,8 +221,46 @@ TEST(MultibodyPage, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/multibody.md"), "cpp", read("examples/my_effect.cpp")), none);
 }
 
+TEST(Sweeps, WhatItNamesExists) {
+  const std::string page = read("docs/sweeps.md");
+  const auto laws = matches(page, "`((?:Sweep|Schedule)\\.[A-Za-z]+)`");
+  EXPECT_FALSE(laws.empty());
+  const std::string tests = read("tests/sweep_command.cpp");
+  for (const std::string& law : laws) {
+    const auto dot = law.find('.');
+    EXPECT_NE(tests.find("(" + law.substr(0, dot) + ", " + law.substr(dot + 1) + ")"), std::string::npos) << law;
+  }
+}
 TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time.md"))), none); }
 TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
+
+TEST(TheoryPages, WhatTheyNameExists) {
+  for (const char* paper : {"G", "N", "V", "H"})
+    EXPECT_EQ(unknown_names(prose_of(read(std::string("docs/theory/") + paper + ".md"))), none) << paper;
+}
+
+/// What looks like the name of a test, Suite.Name, in `backquotes`.
+std::vector<std::string> unknown_tests(const std::string& page) {
+  const std::string tests = text_of({"tests"}, ".cpp");
+  std::vector<std::string> out;
+  for (const auto& name : matches(prose_of(page), "`([A-Z]\\w+\\.[A-Z]\\w+)`"))
+    if (body_of(name, tests).empty()) out.push_back(name);
+  return out;
+}
+
+TEST(Questions, AreAnsweredByTestsThatExist) {
+  const std::string page = read("docs/faq.md");
+  EXPECT_EQ(unknown_tests(page), none);
+  for (auto at = page.find("\n## "); at != std::string::npos; at = page.find("\n## ", at + 1)) {
+    const std::string answer = page.substr(at, page.find("\n## ", at + 1) - at);
+    EXPECT_FALSE(matches(answer, "`([A-Z]\\w+\\.[A-Z]\\w+)`").empty()) << answer.substr(0, 80);
+  }
+}
+
+TEST(BrokenPage, ATestOfNothingIsFoundOut) {
+  EXPECT_EQ(unknown_tests("`Nothing.IsTested`, `NewtonStep.ReportsNotFinite`"),
+            std::vector<std::string>{"Nothing.IsTested"});
+}
 
 TEST(Mathematics, ItNamesEveryLaw) {
   const auto named =
@@ -237,6 +275,18 @@ TEST(Mathematics, ItNamesEveryLaw) {
 }
 
 TEST(Mathematics, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/mathematics.md")), none); }
+
+TEST(StabilityPage, WhatItNamesExists) {
+  const std::string page = read("docs/stability.md");
+  for (const char* heading : {"## Stable", "## Experimental"})
+    EXPECT_EQ(unknown_names(section(page, heading)), none) << heading;
+}
+
+TEST(InstallPage, TheFilesItNamesExist) {
+  const auto names = matches(prose_of(read("docs/install.md")), "`((?:app|bench|core|docs|tests)/[^` ]+)`");
+  EXPECT_GT(names.size(), 3U);
+  for (const auto& name : names) EXPECT_TRUE(exists(root / name)) << name;
+}
 
 TEST(BrokenPage, AFailureOfAnotherLawIsFoundOut) {
   const std::vector<std::string> unfounded{"units", "BrokenGroupoid.WrongInverse"};

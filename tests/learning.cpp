@@ -382,11 +382,24 @@ TEST(Training, EndsAsItSays) {
   const Trained late = train(*network, data, {.seconds = 0});
   EXPECT_EQ(late.outcome, Outcome::time_limit);
   int seen = 0;
-  const Trained stopped = train(*network, data, {.callback = [&](const Stage&) { return ++seen < 6; }});
+  const Trained stopped = train(*network, data, {.threads = 1, .callback = [&](const Stage&) { return ++seen < 6; }});
   EXPECT_EQ(stopped.outcome, Outcome::interrupted);
   EXPECT_EQ(seen, 6);
   EXPECT_TRUE(stopped.usable());
   EXPECT_LT(stopped.mse, stopped.history.front().mse);
+  // Starts that are tried at the same time end where they would alone.
+  const Training tried{.starts = 5, .threads = 1, .trial = 4, .iterations = 3};
+  Training together = tried;
+  together.threads = 3;
+  const Trained one = train(*network, data, tried);
+  const Trained three = train(*network, data, together);
+  EXPECT_EQ(one.parameters, three.parameters);
+  EXPECT_EQ(one.start, three.start);
+  ASSERT_EQ(one.history.size(), three.history.size());
+  for (std::size_t i = 0; i < one.history.size(); ++i) {
+    EXPECT_EQ(one.history[i].start, three.history[i].start);
+    EXPECT_EQ(one.history[i].mse, three.history[i].mse);
+  }
   const Trained small = train(*network, data.part(0, 2), {});
   EXPECT_EQ(small.outcome, Outcome::too_little_data);
   EXPECT_FALSE(small.usable());

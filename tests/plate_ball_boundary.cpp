@@ -95,15 +95,26 @@ INSTANTIATE_TEST_SUITE_P(Seeds, LocalMinima,
                          ::testing::Combine(::testing::Values("P2-bvp-elastica", "P3-bvp-rotating"),
                                             ::testing::Values(1, 2, 3)));
 
-TEST(Multistart, IsReproducible) {
+TEST(Multistart, IsReproducibleWhateverTheThreads) {
   PlateBall system;
   system.rotation = RotationForm::exponential;
   system.h = 0.1;
   const auto ends = boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9});
-  const auto a = solve(system, ends, 10, false, 7);
-  const auto b = solve(system, ends, 10, false, 7);
-  ASSERT_EQ(a.solutions.size(), b.solutions.size());
-  for (std::size_t i = 0; i < a.solutions.size(); ++i) EXPECT_EQ(a.solutions[i].cost, b.solutions[i].cost);
+  const auto on = [&](int threads) {
+    PlateBallBoundaryOptions options;
+    options.steps = 10;
+    options.seed = 7;
+    options.threads = threads;
+    return solve_plate_ball(*make_boundary_solver<PlateBall>(), system, ends, options);
+  };
+  const auto a = on(1);
+  for (const int threads : {1, 2, 5}) {
+    const auto b = on(threads);
+    EXPECT_EQ(a.iterations, b.iterations);
+    EXPECT_EQ(a.outcomes, b.outcomes);
+    ASSERT_EQ(a.solutions.size(), b.solutions.size());
+    for (std::size_t i = 0; i < a.solutions.size(); ++i) EXPECT_EQ(a.solutions[i].cost, b.solutions[i].cost);
+  }
 }
 
 TEST(Boundary, AngleNearPiFewStepsFastPlateSmallBall) {

@@ -78,9 +78,9 @@ learning::Trained train(const Lesson& lesson) {
   training.seconds = options.seconds;
   const long trials = training.starts > 1 ? long(training.starts) * training.trial : 0;
   Progress progress(options.model, trials + options.iterations, !options.json);
+  long tried = 0;
   training.callback = [&](const learning::Stage& now) {
-    const long before = training.starts > 1 ? long(now.start) * training.trial : 0;
-    progress.update(before + now.iteration);
+    progress.update(now.start < training.starts && trials > 0 ? ++tried : trials + now.iteration);
     return true;
   };
   training.stop = InterruptGuard::interrupted;

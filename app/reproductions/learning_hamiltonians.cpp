@@ -1,5 +1,6 @@
 #include "learning_hamiltonians.hpp"
 
+#include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/measures.hpp>
 #include <lagroid/solvers/learning/train.hpp>
 #include <lagroid/systems/chain_trajectories.hpp>
@@ -7,13 +8,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
 namespace lagroid::app {
 
@@ -95,6 +93,7 @@ void fit(LearningFit& cell, const Trajectories& test) {
                              {.method = method_of(cell.integrator),
                               .substeps = cell.substeps,
                               .seed = cell.seed,
+                              .threads = 1,
                               .validation = cell.noise > 0 ? 0.2 : 0});
   cell.outcome = std::string(to_string(trained.outcome));
   cell.training = trained.mse;
@@ -119,31 +118,14 @@ std::vector<std::string> learning_models(const LearningStudy& study) {
 LearningFindings run_learning_study(const LearningStudy& study, const std::function<void(long, long)>& report) {
   LearningFindings findings{study, cells(study)};
   const Trajectories tests[] = {test_data(1), test_data(2)};
-  std::atomic<std::size_t> next = 0;
   std::mutex reporting;
   long done = 0;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < findings.fits.size(); i = next++) {
-      LearningFit& cell = findings.fits[i];
-      try {
-        fit(cell, tests[cell.bodies - 1]);
-      } catch (...) {
-        const std::lock_guard guard(reporting);
-        failure = std::current_exception();
-        next = findings.fits.size();
-        return;
-      }
-      const std::lock_guard guard(reporting);
-      report(++done, long(findings.fits.size()));
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (int t = 1; t < study.threads; ++t) threads.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  for_each_task(long(findings.fits.size()), study.threads, [&](long i) {
+    LearningFit& cell = findings.fits[std::size_t(i)];
+    fit(cell, tests[cell.bodies - 1]);
+    const std::lock_guard guard(reporting);
+    report(++done, long(findings.fits.size()));
+  });
   return findings;
 }
 

@@ -2,12 +2,16 @@
 
 #include "../clock.hpp"
 
+#include <lagroid/solvers/ensemble/tasks.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -97,7 +101,7 @@ class Extrapolated final : public Reference {
     description = fmt::format("{} with {} halved steps from {:.4g}, extrapolated", method_.name, rows_, first_step_);
   }
 
-  std::vector<Block> at(double time) override {
+  std::vector<Block> at(double time) const override {
     if (time == experiment_.end) return best_;
     std::vector<std::vector<Block>> table;
     for (int row = std::max(0, rows_ - 3); row < rows_; ++row) add_row(table, row, time);
@@ -106,7 +110,7 @@ class Extrapolated final : public Reference {
 
  private:
   /// Replaces the last row of the table by the next. The table holds one row: extrapolations of growing order.
-  bool add_row(std::vector<std::vector<Block>>& row, int level, double end) {
+  bool add_row(std::vector<std::vector<Block>>& row, int level, double end) const {
     const auto reached = reach(experiment_, method_, end, steps_within(end, first_step_ * std::pow(0.5, level)));
     if (!reached) return false;
     std::vector<std::vector<Block>> next{reached->state};
@@ -143,7 +147,7 @@ class ByMethod final : public Reference {
     description = fmt::format("{} with steps of {:.6g}", method.name, h);
   }
 
-  std::vector<Block> at(double time) override {
+  std::vector<Block> at(double time) const override {
     if (time == experiment_.end && !end_.empty()) return end_;
     auto reached = reach(experiment_, method_, time, steps_within(time, h_));
     return reached ? std::move(reached->state) : std::vector<Block>();
@@ -159,7 +163,7 @@ class ByMethod final : public Reference {
 class Known final : public Reference {
  public:
   Known(const Experiment& experiment, std::vector<Block> state) : end_(experiment.end), state_(std::move(state)) {}
-  std::vector<Block> at(double time) override { return time == end_ ? state_ : std::vector<Block>(); }
+  std::vector<Block> at(double time) const override { return time == end_ ? state_ : std::vector<Block>(); }
 
  private:
   double end_;
@@ -284,7 +288,7 @@ double time_once(const Experiment& experiment, const Method& method, double h) {
 }
 
 /// First steps from a large one down, until errors are round-off's or runs take too long.
-void refine(const Experiment& experiment, const Method& method, double longest, Reference& reference,
+void refine(const Experiment& experiment, const Method& method, double longest, const Reference& reference,
             std::vector<Measurement>& out) {
   const double coarse = std::min(16 * experiment.step * std::sqrt(double(method.stages)), experiment.end / 4);
   double least = std::numeric_limits<double>::infinity();
@@ -385,7 +389,7 @@ std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::ve
   return known;
 }
 
-Measurement measure_once(const Experiment& experiment, const Method& method, double h, Reference* reference,
+Measurement measure_once(const Experiment& experiment, const Method& method, double h, const Reference* reference,
                          double longest) {
   Measurement out;
   out.method = method.name;
@@ -397,7 +401,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
     watch.see(trial->see(), 0);
     StepReport report;
     report.status = SolveStatus::converged;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_time();
     // Varying steps are first ones: the last node may lie anywhere within half a step of the end.
     double last_step = h;
     Looks looks(experiment.end / h);
@@ -408,12 +412,12 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       last_step = trial->time() - before;
       if (looks.at(out.work.steps)) watch.see(trial->see(), trial->time());
       if (out.work.steps % 64 != 0) continue;
-      if (seconds_since(start) > 8 * longest || experiment.stopped()) {
+      if (processor_time() - start > 8 * longest || experiment.stopped()) {
         out.status = experiment.stopped() ? "interrupted" : "too slow";
         return out;
       }
     }
-    out.seconds = {seconds_since(start)};
+    out.seconds = {processor_time() - start};
     out.reached = trial->time();
     watch.finish();
     if (!report.converged()) {
@@ -436,26 +440,34 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
 }
 
 std::vector<Measurement> measure(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
-                                 Reference& reference, int repetitions,
+                                 const Reference& reference, int repetitions,
                                  const std::function<bool(double done)>& report) {
-  std::vector<Measurement> out;
   const auto method_of = [&](const Measurement& m) -> const Method& {
     return *std::find_if(methods.begin(), methods.end(), [&](const Method& each) { return each.name == m.method; });
   };
   constexpr double share_of_looking = 0.4;
-  for (std::size_t i = 0; i < methods.size(); ++i) {
+  std::atomic<bool> stopped = false;
+  const auto look = [&](long i) {
+    std::vector<Measurement> seen;
+    if (stopped) return seen;
+    const Method& method = methods[std::size_t(i)];
     if (steps.sizes.empty()) {
-      refine(experiment, methods[i], steps.longest, reference, out);
+      refine(experiment, method, steps.longest, reference, seen);
     } else {
       for (const double h : steps.sizes) {
         if (experiment.stopped()) break;
         const double divides = experiment.end / std::max(1.0, std::round(experiment.end / h));
-        out.push_back(
-            measure_once(experiment, methods[i], divides, &reference, std::numeric_limits<double>::infinity()));
+        seen.push_back(measure_once(experiment, method, divides, &reference, std::numeric_limits<double>::infinity()));
       }
     }
-    if (!report(share_of_looking * double(i + 1) / double(methods.size()))) return out;
-  }
+    return seen;
+  };
+  std::vector<Measurement> out;
+  for (auto& seen : results_of_tasks(long(methods.size()), 0, look, [&](int done) {
+         if (!report(share_of_looking * double(done) / double(methods.size()))) stopped = true;
+       }))
+    out.insert(out.end(), std::make_move_iterator(seen.begin()), std::make_move_iterator(seen.end()));
+  if (stopped) return out;
   for (Measurement& m : out)
     if (m.converged()) m.seconds.clear();
   for (int r = 0; r < repetitions; ++r) {

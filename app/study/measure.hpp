@@ -17,8 +17,8 @@ namespace lagroid::app {
 class Reference {
  public:
   virtual ~Reference() = default;
-  /// At that time.
-  virtual std::vector<Block> at(double time) = 0;
+  /// At that time. Several threads may ask at once.
+  virtual std::vector<Block> at(double time) const = 0;
   /// Of the state at the end, in the measure of `distance`: errors below a few times this are not told apart.
   double uncertainty = 0;
   std::string description;
@@ -75,13 +75,15 @@ struct Steps {
   double longest = 0.25;
 };
 
-/// Runs the methods, first with a look at every node (of long runs, 1e5 of them), then, interleaved, `repetitions`
-/// times with none. `report` hears what part is done, and says whether to go on.
+/// Runs the methods, first with a look at every node (of long runs, 1e5 of them), as many at a time as there are
+/// processors, then, one after the other and interleaved, `repetitions` times with none. `report` hears what part is
+/// done, and says whether to go on.
 std::vector<Measurement> measure(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
-                                 Reference& reference, int repetitions, const std::function<bool(double done)>& report);
+                                 const Reference& reference, int repetitions,
+                                 const std::function<bool(double done)>& report);
 
 /// One run with a look at every node, or at 1e5 of them where there are more.
-Measurement measure_once(const Experiment& experiment, const Method& method, double h, Reference* reference,
+Measurement measure_once(const Experiment& experiment, const Method& method, double h, const Reference* reference,
                          double longest);
 
 }  // namespace lagroid::app

@@ -1,7 +1,13 @@
 #pragma once
 /// Independent pieces of work on the threads of one machine.
 
+#include <cstddef>
 #include <functional>
+#include <mutex>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace lagroid {
 
@@ -15,5 +21,23 @@ int available_threads();
 /// are begun.
 void for_each_task(long count, int threads, const std::function<void(long)>& work,
                    const std::function<bool()>& interrupted = nullptr);
+
+/// What work(i) returns, in order of i. After each piece `report` hears, never twice at once, how many are done.
+template <class Work, class Report>
+auto results_of_tasks(long count, int threads, const Work& work, const Report& report) {
+  using Result = std::invoke_result_t<Work, long>;
+  std::vector<std::optional<Result>> found(static_cast<std::size_t>(count));
+  std::mutex reporting;
+  int done = 0;
+  for_each_task(count, threads, [&](long i) {
+    found[std::size_t(i)].emplace(work(i));
+    const std::lock_guard lock(reporting);
+    report(++done);
+  });
+  std::vector<Result> out;
+  out.reserve(found.size());
+  for (auto& each : found) out.push_back(std::move(*each));
+  return out;
+}
 
 }  // namespace lagroid

@@ -1,5 +1,6 @@
 #include <lagroid/solvers/learning/train.hpp>
 
+#include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/compressed.hpp>
 
 #include <ceres/ceres.h>
@@ -8,9 +9,12 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <ctime>
 #include <deque>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -141,22 +145,61 @@ struct Found {
   double validation = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Trainings of one model, one after the other, under common limits.
+/// A descent, when it is over.
+struct Descent {
+  Found found;
+  Outcome end = Outcome::not_finite;
+  std::vector<Stage> history;
+  int iterations = 0;
+  bool mass_determined = true;
+  bool falls = false;  ///< the last iterations lowered the error by more than round-off
+};
+
+/// What trainings that go on at the same time have in common: their limits and whom they tell.
+class Session {
+ public:
+  explicit Session(const Training& options) : options_(options) {}
+
+  /// Adds processor time that one of them took.
+  void spend(double seconds) { spent_ += seconds; }
+  double seconds() const { return spent_; }
+  /// Whether an interrupt or the time limit has come, and which was first.
+  bool halted() {
+    const std::lock_guard lock(asking_);
+    if (!halt_ && options_.stop && options_.stop()) halt_ = Outcome::interrupted;
+    if (!halt_ && seconds() > options_.seconds) halt_ = Outcome::time_limit;
+    return halt_.has_value();
+  }
+  void tell(const Stage& stage) {
+    const std::lock_guard lock(asking_);
+    if (!halt_ && options_.callback && !options_.callback(stage)) halt_ = Outcome::interrupted;
+  }
+  std::optional<Outcome> halt() {
+    const std::lock_guard lock(asking_);
+    return halt_;
+  }
+
+ private:
+  const Training& options_;
+  std::atomic<double> spent_ = 0;
+  std::mutex asking_;
+  std::optional<Outcome> halt_;
+};
+
+/// Carries out one descent, on one thread.
 class Trainer final : public ceres::IterationCallback {
  public:
-  Trainer(const Model& model, const Training& options, Trajectories held_out, Schedule schedule)
-      : model_(model), options_(options), held_out_(std::move(held_out)), schedule_(std::move(schedule)) {}
+  Trainer(const Model& model, const Training& options, Session& session, const Trajectories& held_out,
+          const Schedule& schedule, int start)
+      : model_(model), options_(options), session_(session), held_out_(held_out), schedule_(schedule), start_(start) {}
 
   /// Goes on from `theta` to the best that can be met.
-  Found descend(int start, const Trajectories& data, int iterations, const Eigen::VectorXd& theta) {
-    start_ = start;
+  Descent descend(const Trajectories& data, int iterations, const Eigen::VectorXd& theta) {
     at_ = theta;
-    best_ = {theta};
-    since_ = 0;
-    fallen_.clear();
+    out_.found = {theta};
     scale_ = 2 / data.total_weight();
     round_off_ = 1e-30 * data.ends.squaredNorm() / double(data.ends.size());
-    end_ = Outcome::iteration_limit;
+    out_.end = Outcome::iteration_limit;
     TrajectoryCost cost(model_, schedule_, data, [this] { return halted(); });
     cost_ = &cost;
     ceres::Problem::Options ownership;
@@ -165,14 +208,17 @@ class Trainer final : public ceres::IterationCallback {
     problem.AddResidualBlock(&cost, nullptr, at_.data());
     ceres::Solver::Summary summary;
     ceres::Solve(settings(iterations), &problem, &summary);
-    if (summary.termination_type == ceres::CONVERGENCE) end_ = Outcome::converged;
+    if (summary.termination_type == ceres::CONVERGENCE) out_.end = Outcome::converged;
     const bool good = summary.IsSolutionUsable() && !cost.failed();
-    if (!good) end_ = Outcome::not_finite;
-    if (good && !halt_) {
+    if (!good) out_.end = Outcome::not_finite;
+    if (good && !session_.halt()) {
       const Eigen::Index masses = model_.bodies() * (model_.bodies() + 1) / 2;
-      mass_determined_ = determines_mass(cost.triangle(), data.total_weight(), masses);
+      out_.mass_determined = determines_mass(cost.triangle(), data.total_weight(), masses);
     }
-    return best_;
+    // Whether the last iterations lowered the error by more than round-off.
+    out_.falls = !fallen_.empty() && fallen_.front() - fallen_.back() > 1e-12 * fallen_.front() + round_off_;
+    spend();
+    return std::move(out_);
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
@@ -185,13 +231,14 @@ class Trainer final : public ceres::IterationCallback {
     if (accepted) mse_ = scale_ * now.cost;
     stage.mse = mse_;
     stage.damping = 1 / now.trust_region_radius;
-    stage.validation = accepted ? validation(at_) : history_.back().validation;
+    stage.validation = accepted ? validation(at_) : out_.history.back().validation;
     keep(stage);
-    stage.seconds = seconds();
-    history_.push_back(stage);
-    if (now.iteration > 0) ++iterations_;
-    if (options_.callback && !options_.callback(stage)) halt_ = Outcome::interrupted;
-    if (halted()) return stop(*halt_);
+    spend();
+    stage.seconds = session_.seconds();
+    out_.history.push_back(stage);
+    if (now.iteration > 0) ++out_.iterations;
+    session_.tell(stage);
+    if (halted()) return stop(*session_.halt());
     if (options_.enough > 0 && stage.mse <= options_.enough) return stop(Outcome::reached);
     if (stage.mse <= round_off_) return stop(Outcome::converged);
     if (held_out_.count() > 0 && since_ >= options_.patience) return stop(Outcome::early_stopped);
@@ -204,27 +251,20 @@ class Trainer final : public ceres::IterationCallback {
     return ceres::SOLVER_CONTINUE;
   }
 
-  double seconds() const { return processor_seconds() - begun_; }
-  Outcome end() const { return halt_.value_or(end_); }
-  int iterations() const { return iterations_; }
-  std::vector<Stage>& history() { return history_; }
-  bool mass_determined() const { return mass_determined_; }
-  /// Whether the last iterations lowered the error by more than round-off.
-  bool falls() const {
-    return !fallen_.empty() && fallen_.front() - fallen_.back() > 1e-12 * fallen_.front() + round_off_;
-  }
-  /// Whether an interrupt or the time limit has come.
+ private:
   bool halted() {
-    if (!halt_ && options_.stop && options_.stop()) halt_ = Outcome::interrupted;
-    if (!halt_ && seconds() > options_.seconds) halt_ = Outcome::time_limit;
-    return halt_.has_value();
+    spend();
+    return session_.halted();
+  }
+  void spend() {
+    const double now = processor_seconds();
+    session_.spend(now - until_);
+    until_ = now;
   }
   double validation(const Eigen::VectorXd& theta) {
     if (held_out_.count() == 0) return std::numeric_limits<double>::quiet_NaN();
     return squared_error(model_, theta, schedule_, held_out_, [this] { return halted(); }) / held_out_.total_weight();
   }
-
- private:
   ceres::Solver::Options settings(int iterations) {
     ceres::Solver::Options out;
     out.linear_solver_type = ceres::DENSE_QR;
@@ -243,36 +283,31 @@ class Trainer final : public ceres::IterationCallback {
     return out;
   }
   ceres::CallbackReturnType stop(Outcome why) {
-    end_ = why;
+    out_.end = why;
     return ceres::SOLVER_TERMINATE_SUCCESSFULLY;  // after SOLVER_ABORT the parameters would be those of the start
   }
   /// Steps that are accepted lower the training error; of the validation error the least counts.
   void keep(const Stage& stage) {
-    const bool better = held_out_.count() == 0 || stage.iteration == 0 || stage.validation < best_.validation;
+    const bool better = held_out_.count() == 0 || stage.iteration == 0 || stage.validation < out_.found.validation;
     since_ = better ? 0 : since_ + 1;
-    if (better) best_ = {at_, stage.mse, stage.validation};
+    if (better) out_.found = {at_, stage.mse, stage.validation};
   }
 
   const Model& model_;
   const Training& options_;
-  Trajectories held_out_;
-  Schedule schedule_;
-  double begun_ = processor_seconds();
-  std::vector<Stage> history_;
-  int iterations_ = 0;
-  std::optional<Outcome> halt_;
-  // Of the descent that goes on:
+  Session& session_;
+  const Trajectories& held_out_;
+  const Schedule& schedule_;
+  int start_;
+  double until_ = processor_seconds();
   const TrajectoryCost* cost_ = nullptr;
-  int start_ = 0;
   Eigen::VectorXd at_;
-  Found best_;
+  Descent out_;
   int since_ = 0;
   std::deque<double> fallen_;
   double scale_ = 1;
   double round_off_ = 0;
   double mse_ = 0;
-  bool mass_determined_ = true;
-  Outcome end_ = Outcome::iteration_limit;
 };
 
 std::string message_of(Outcome outcome, const Training& options, double mse, bool falls) {
@@ -350,24 +385,6 @@ Trajectories for_trials(const Trajectories& training, double share, Eigen::Index
   return training.part(0, few);
 }
 
-/// The best of the starts, tried on a share of the data, and its seed; without parameters where none can be evaluated,
-/// and without an error where nothing is tried.
-Found first_guess(Trainer& trainer, const Model& model, const Trajectories& training, const Training& options,
-                  unsigned& seed) {
-  seed = options.seed;
-  if (options.begin.size() > 0) return {options.begin};
-  if (options.starts == 1) return {model.start(seed)};
-  const Trajectories some = for_trials(training, options.share, model.size());
-  Found best;
-  for (int s = 0; s < options.starts && !trainer.halted(); ++s) {
-    Found found = trainer.descend(s, some, options.trial, model.start(options.seed + unsigned(s)));
-    if (!(found.mse < best.mse)) continue;
-    best = std::move(found);
-    seed = options.seed + unsigned(s);
-  }
-  return best;
-}
-
 }  // namespace
 
 std::string_view to_string(Outcome outcome) {
@@ -399,35 +416,65 @@ double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, cons
 
 Trained train(const Model& model, const Trajectories& data, const Training& options) {
   require_training(model, data, options);
-  const auto held_out = Eigen::Index(std::ceil(options.validation * double(data.count())));
+  const auto count_held_out = Eigen::Index(std::ceil(options.validation * double(data.count())));
   const Trajectories shuffled = data.shuffled(options.seed);
-  const Trajectories all = shuffled.part(held_out, data.count() - held_out);
+  const Trajectories held_out = shuffled.part(0, count_held_out);
+  const Trajectories all = shuffled.part(count_held_out, data.count() - count_held_out);
   Trained out;
-  out.message = too_little(model, all, shuffled.part(0, held_out), options);
+  out.start = options.seed;
+  out.message = too_little(model, all, held_out, options);
   if (!out.message.empty()) {
     out.outcome = Outcome::too_little_data;
     return out;
   }
   const Schedule schedule{options.method, data.interval, data.points - 1, options.substeps};
-  Trainer trainer(model, options, shuffled.part(0, held_out), schedule);
-  Found best = first_guess(trainer, model, all, options, out.start);
-  if (best.theta.size() > 0 && !trainer.halted()) {
-    Found found = trainer.descend(options.starts, all, options.iterations, best.theta);
-    if (std::isfinite(found.mse)) best = std::move(found);
+  Session session(options);
+  const auto descend = [&](int start, const Trajectories& some, int iterations, const Eigen::VectorXd& theta) {
+    return Trainer(model, options, session, held_out, schedule, start).descend(some, iterations, theta);
+  };
+  Descent best;
+  if (options.begin.size() > 0) {
+    best.found = {options.begin};
+  } else if (options.starts == 1) {
+    best.found = {model.start(options.seed)};
+  } else {
+    const Trajectories some = for_trials(all, options.share, model.size());
+    const auto trial = [&](long s) {
+      return session.halted() ? Descent{}
+                              : descend(int(s), some, options.trial, model.start(options.seed + unsigned(s)));
+    };
+    auto trials = results_of_tasks(options.starts, options.threads, trial, [](int) {});
+    std::size_t first = 0;
+    for (std::size_t s = 0; s < trials.size(); ++s) {
+      out.history.insert(out.history.end(), trials[s].history.begin(), trials[s].history.end());
+      out.iterations += trials[s].iterations;
+      if (trials[s].found.mse < trials[first].found.mse) first = s;
+    }
+    best = std::move(trials[first]);
+    if (std::isfinite(best.found.mse)) {
+      out.start = options.seed + unsigned(first);
+    } else {
+      best.found.theta.resize(0);
+    }
   }
-  out.history = std::move(trainer.history());
-  out.iterations = trainer.iterations();
-  out.seconds = trainer.seconds();
-  out.outcome = trainer.end();
-  if (!std::isfinite(best.mse)) {
+  if (best.found.theta.size() > 0 && !session.halted()) {
+    Descent last = descend(options.starts, all, options.iterations, best.found.theta);
+    out.history.insert(out.history.end(), last.history.begin(), last.history.end());
+    out.iterations += last.iterations;
+    if (!std::isfinite(last.found.mse)) last.found = std::move(best.found);
+    best = std::move(last);
+  }
+  out.seconds = session.seconds();
+  out.outcome = session.halt().value_or(best.end);
+  if (!std::isfinite(best.found.mse)) {
     out.message = message_of_none(out.outcome, options);
     return out;
   }
-  out.parameters = std::move(best.theta);
-  out.mse = best.mse;
-  out.validation = best.validation;
-  out.mass_determined = trainer.mass_determined();
-  out.message = message_of(out.outcome, options, out.mse, trainer.falls());
+  out.parameters = std::move(best.found.theta);
+  out.mse = best.found.mse;
+  out.validation = best.found.validation;
+  out.mass_determined = best.mass_determined;
+  out.message = message_of(out.outcome, options, out.mse, best.falls);
   return out;
 }
 

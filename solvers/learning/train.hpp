@@ -31,7 +31,7 @@ struct Stage {
   double mse = 0;         ///< on the trajectories it trains on
   double validation = 0;  ///< on those held out; not a number where there are none
   double damping = 0;     ///< one over the radius of the trust region
-  double seconds = 0;     ///< of the processor, since the beginning
+  double seconds = 0;     ///< of processors, since the beginning
 };
 
 /// How to train.
@@ -40,6 +40,7 @@ struct Training {
   int substeps = 2;   ///< in each interval of the data
   unsigned seed = 1;  ///< of the first start; the others are the following ones
   int starts = 4;     ///< how many are tried
+  int threads = 0;    ///< starts tried at a time; 0: as many as there are processors
   int trial = 30;     ///< iterations of each, on `share` of the trajectories; the best goes on with all of them
   double share = 0.2;
   int iterations = 100;        ///< with all trajectories; zero where the parameters are to be measured only
@@ -53,10 +54,11 @@ struct Training {
   /// The floor under the damping of a step, relative to the squared norms of the columns of J: J has no full rank,
   /// because neither the part of V away from the spheres nor symmetries of a network move anything.
   double damping_floor = 1e-14;
-  double seconds = std::numeric_limits<double>::infinity();  ///< of the processor
-  /// Sees every iteration; false interrupts.
+  double seconds = std::numeric_limits<double>::infinity();  ///< of processors, at most
+  /// Sees every iteration, of starts that are tried at the same time in any order, but never two at once; false
+  /// interrupts.
   std::function<bool(const Stage&)> callback = nullptr;
-  /// Asked after every few trajectories; true interrupts.
+  /// Asked after every few trajectories, never twice at once; true interrupts.
   std::function<bool()> stop = nullptr;
 };
 
@@ -71,10 +73,10 @@ struct Trained {
   /// Whether, at the end, a change of the mass matrix's parameters of size one moves the predictions by more than 1e-8,
   /// whatever the potential does to make up for it.
   bool mass_determined = true;
-  unsigned start = 0;  ///< the seed of the start that was best
-  int iterations = 0;  ///< of all stages
-  double seconds = 0;  ///< of the processor
-  std::vector<Stage> history;
+  unsigned start = 0;          ///< the seed of the start that was best
+  int iterations = 0;          ///< of all stages
+  double seconds = 0;          ///< of processors
+  std::vector<Stage> history;  ///< start after start
 
   bool usable() const { return parameters.size() > 0; }
 };
@@ -86,7 +88,7 @@ double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, cons
 
 /// Minimises the mean squared error of the integrator's trajectories by Ceres' Levenberg-Marquardt method with exact
 /// derivatives (ParametricModel), from several starts. Never throws for numbers: the outcome tells. Equal data and
-/// options give equal bits, unless the time limit or the callback ends it.
+/// options give equal bits, whatever the threads, unless the time limit or the callback ends it.
 Trained train(const Model& model, const Trajectories& data, const Training& options);
 
 }  // namespace lagroid::learning

@@ -1,0 +1,24 @@
+#pragma once
+/// `lagroid cite`: how to cite the program and the papers behind a run.
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+struct CiteOptions {
+  std::string subject;  ///< a scene, or the folder of a run or of what was learned; empty: everything
+  std::vector<std::string> overrides;
+  bool bibtex = false;
+  bool json = false;
+  bool cff = false;
+};
+
+void add_cite_options(CLI::App& command, CiteOptions& options);
+
+/// Prints the citations. Throws SceneError. Returns the exit code.
+int cite(const CiteOptions& options);
+
+}  // namespace lagroid::app

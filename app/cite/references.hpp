@@ -1,0 +1,50 @@
+#pragma once
+/// The papers behind the program: the one place where they stand. CITATION.cff is written from here.
+
+#include "../scene_reader.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::app {
+
+struct Author {
+  std::string_view given;
+  std::string_view family;
+};
+
+/// An article in a journal.
+struct Reference {
+  std::string_view key;     ///< of BibTeX, and in --json
+  std::string_view letter;  ///< [G], [N], [V] and [H] of this project's documentation; empty for the others
+  std::vector<Author> authors;
+  std::string_view title;
+  std::string_view journal;
+  int volume = 0;
+  int number = 0;  ///< of the issue; 0: the journal counts none
+  std::string_view first_page;
+  std::string_view last_page;  ///< empty: `first_page` is the number of the article
+  int year = 0;
+  std::string_view doi;
+  std::string_view arxiv;  ///< empty where there is none
+};
+
+/// All of them, [G], [N], [V] and [H] first.
+std::span<const Reference> references();
+
+/// A reference, and what it stands behind.
+struct Use {
+  const Reference* reference;
+  std::string what;
+};
+
+/// What a scene's system and method rest on, a scene of minimisation (`lagroid optimize`) among them; nothing where
+/// that is by a classical method. No more is read than says so. Throws SceneError where there is no such system or
+/// method.
+std::vector<Use> uses_of(const Section& scene);
+/// What a learned Hamiltonian rests on (`lagroid learn`).
+std::vector<Use> uses_of_learning();
+
+}  // namespace lagroid::app

@@ -1,0 +1,83 @@
+#include "kept_file.hpp"
+
+#include "output_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+void replace_file(const fs::path& file, std::string_view bytes) {
+  fs::path partial = file;
+  partial += ".partial";
+  write_text(bytes, partial);
+  if (const int descriptor = ::open(partial.c_str(), O_RDONLY); descriptor >= 0) {
+    ::fsync(descriptor);
+    ::close(descriptor);
+  }
+  std::error_code error;
+  fs::rename(partial, file, error);
+  if (error) throw OutputError(fmt::format("{}: could not be written ({})", file.string(), error.message()));
+}
+
+std::size_t sum_of(std::string_view bytes) { return std::hash<std::string_view>{}(bytes); }
+
+void replace_by_cbor(const fs::path& file, const Json& json) {
+  const std::vector<std::uint8_t> cbor = Json::to_cbor(json);
+  const std::string_view body(reinterpret_cast<const char*>(cbor.data()), cbor.size());
+  const std::size_t sum = sum_of(body);
+  std::string bytes(sizeof sum, '\0');
+  std::memcpy(bytes.data(), &sum, sizeof sum);
+  replace_file(file, bytes.append(body));
+}
+
+std::optional<std::string> contents(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return std::nullopt;
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!in) return std::nullopt;
+  return bytes;
+}
+
+std::optional<Json> read_cbor(const fs::path& file) {
+  const auto bytes = contents(file);
+  std::size_t sum = 0;
+  if (!bytes || bytes->size() <= sizeof sum) return std::nullopt;
+  std::memcpy(&sum, bytes->data(), sizeof sum);
+  const auto body = std::string_view(*bytes).substr(sizeof sum);
+  if (sum_of(body) != sum) return std::nullopt;
+  Json json = Json::from_cbor(body, /*strict=*/true, /*allow_exceptions=*/false);
+  if (json.is_discarded()) return std::nullopt;
+  return json;
+}
+
+FolderLock::FolderLock(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const fs::path file = folder / ".lock";
+  lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+  const bool busy = lock_ >= 0 && errno == EWOULDBLOCK;
+  if (lock_ >= 0) ::close(lock_);
+  throw OutputError(
+      busy ? fmt::format("{}: another run is at work there; wait for it, or choose another folder", folder.string())
+           : fmt::format("{}: cannot be written; choose another place", file.string()));
+}
+
+FolderLock::~FolderLock() { ::close(lock_); }
+
+}  // namespace lagroid::app

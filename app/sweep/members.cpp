@@ -1,0 +1,165 @@
+#include "members.hpp"
+
+#include "../interrupt.hpp"
+#include "../registry.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <new>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+constexpr long most_apart = 1'000'000'000;  // [output] every
+
+/// What a series is called in a list of names: by itself, or by single columns.
+bool named_in(const std::vector<std::string>& names, const Series& series, std::size_t component) {
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return name == series.name || name == series.components[component];
+  });
+}
+
+bool is_drift(const Series& series) { return series.name.starts_with("drift of "); }
+
+/// The row that belongs to a node; null where there is none.
+const double* row_of(const Series& series, std::size_t node) {
+  if (series.on_arrows && node == 0) return nullptr;
+  const std::size_t row = series.on_arrows ? node - 1 : node;
+  return (row + 1) * series.width() <= series.values.size() ? &series.values[row * series.width()] : nullptr;
+}
+
+void keep_node(const Trajectory& t, std::size_t node, const std::string& group, const std::vector<std::string>* names,
+               long at, Part& part) {
+  for (const Series& s : t.series) {
+    const double* row = row_of(s, node);
+    for (std::size_t i = 0; row != nullptr && i < s.width(); ++i)
+      if (names != nullptr ? named_in(*names, s, i) : !is_drift(s))
+        part.set(at, group + "/" + s.components[i], s.unit, s.meaning, row[i]);
+  }
+}
+
+void keep_series(const Trajectory& t, const std::vector<std::string>& names, long at, Part& part) {
+  part.set_series(at, "series/t", "s", "time", t.time);
+  for (const Series& s : t.series)
+    for (std::size_t i = 0; i < s.width(); ++i) {
+      if (!named_in(names, s, i)) continue;
+      std::vector<double> values;
+      if (s.on_arrows) values.push_back(std::numeric_limits<double>::quiet_NaN());
+      for (std::size_t row = i; row < s.values.size(); row += s.width()) values.push_back(s.values[row]);
+      part.set_series(at, "series/" + s.components[i], s.unit, s.meaning, std::move(values));
+    }
+}
+
+void keep_result(const RunResult& r, const Keep& keep, long at, Part& part) {
+  part.end(at, r.status, r.converged() ? std::string() : r.message);
+  part.set(at, "run/steps", "1", "arrows computed", double(r.steps));
+  part.set(at, "run/iterations", "1", "of the solver, all together", double(r.iterations));
+  if (r.cost) part.set(at, "run/cost", "action", "of the path", *r.cost);
+  if (!r.minima.empty()) part.set(at, "run/stationary_paths", "1", "found", double(r.minima.size()));
+  const auto broken = std::count_if(r.ledger.entries.begin(), r.ledger.entries.end(),
+                                    [](const LedgerEntry& entry) { return entry.broken(); });
+  part.set(at, "run/broken", "1", "promises of the ledger that were broken", double(broken));
+  if (keep.ledger)
+    for (const LedgerEntry& entry : r.ledger.entries)
+      part.set(at, "ledger/" + entry.name, entry.promise == "counted" ? "1" : "unit of the quantity",
+               entry.promise == "counted" ? "how often" : "largest deviation from the initial value", entry.drift);
+  const Trajectory& t = r.trajectory;
+  if (t.time.empty()) return;
+  keep_node(t, 0, "initial", &keep.initial, at, part);
+  part.set(at, "final/t", "s", "time", t.time.back());
+  keep_node(t, t.time.size() - 1, "final", keep.final ? &*keep.final : nullptr, at, part);
+  if (!keep.series.empty()) keep_series(t, keep.series, at, part);
+}
+
+/// A scene that records what is kept, and no more.
+Section recording(const Section& scene, const Keep& keep) {
+  return scene.with({{"output.every", {double(keep.series.empty() ? most_apart : keep.every)}}});
+}
+
+class SceneRunner final : public MemberRunner {
+ public:
+  SceneRunner(const Section& scene, const Design& design, const Keep& keep)
+      : scene_(recording(scene, keep)), design_(design), keep_(keep) {}
+
+  std::string_view name() const override { return "scenes"; }
+
+  std::optional<Part> run(long first, long count) const override {
+    Part part(first, count);
+    for (long at = 0; at < count; ++at) {
+      if (InterruptGuard::interrupted()) return std::nullopt;
+      try {
+        const RunResult result = run_scene(scene_.with(design_.member(first + at)), {.record = true});
+        if (result.interrupted()) return std::nullopt;
+        keep_result(result, keep_, at, part);
+      } catch (const SceneError& error) {
+        part.end(at, "invalid_scene", error.problem());
+      } catch (const std::bad_alloc&) {
+        part.end(at, "out_of_memory", "out of memory; lower time.steps, or raise keep.every");
+      } catch (const std::exception& error) {
+        part.end(at, "internal_error", fmt::format("internal error: {}; please report it", error.what()));
+      }
+    }
+    return part;
+  }
+
+ private:
+  Section scene_;
+  const Design& design_;
+  const Keep& keep_;
+};
+
+}  // namespace
+
+Keep read_keep(const Section& sweep) {
+  const Section section = sweep.section_or_empty("keep");
+  constexpr std::string_view what = "names of recorded quantities or columns";
+  Keep keep;
+  if (section.has("final")) keep.final = section.texts_or_none("final", what);
+  keep.initial = section.texts_or_none("initial", what);
+  keep.series = section.texts_or_none("series", what);
+  if (section.has("every") && keep.series.empty()) section.fail("every", "goes with series");
+  keep.every = section.integer_or("every", 1, 1, most_apart);
+  keep.ledger = section.flag_or("ledger", true);
+  return keep;
+}
+
+std::unique_ptr<MemberRunner> scene_runner(const Section& scene, const Design& design, const Keep& keep) {
+  return std::make_unique<SceneRunner>(scene, design, keep);
+}
+
+Part try_scene(const Section& sweep, const Section& scene, const Keep& keep) {
+  Section few = recording(scene, keep);
+  if (few.has("boundary"))
+    few = few.with({{"solver.starts", {1}}});
+  else if (!few.numbers_at("time.steps").empty())
+    few = few.with({{"time.steps", {1}}});
+  const RunResult result = run_scene(few, {.record = true});
+  const std::vector<Series>& recorded = result.trajectory.series;
+  Part part(0, 1);
+  keep_result(result, keep, 0, part);
+  if (recorded.empty()) return part;
+  std::vector<std::string> known;
+  for (const Series& s : recorded) {
+    known.push_back(s.name);
+    if (s.width() > 1 || s.components[0] != s.name) known.insert(known.end(), s.components.begin(), s.components.end());
+  }
+  const auto check = [&](const char* key, const std::vector<std::string>& names) {
+    for (const std::string& name : names)
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        sweep.section("keep", "")
+            .fail(key,
+                  fmt::format("\"{}\" is not recorded by this scene; these are: {}", name, fmt::join(known, ", ")));
+  };
+  if (keep.final) check("final", *keep.final);
+  check("initial", keep.initial);
+  check("series", keep.series);
+  return part;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,13 @@
+#include "../output_folder.hpp"
+#include "ranks.hpp"
+
+namespace lagroid::app {
+
+std::unique_ptr<Ranks> join_mpi() {
+  throw RunError(
+      "started by mpirun or srun, but this lagroid was built without MPI: install libopenmpi-dev and build it again, "
+      "or "
+      "start one process");
+}
+
+}  // namespace lagroid::app

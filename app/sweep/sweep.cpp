@@ -1,0 +1,200 @@
+#include "sweep.hpp"
+
+#include "../clock.hpp"
+#include "../interrupt.hpp"
+#include "../output_folder.hpp"
+#include "../progress.hpp"
+#include "../run_result.hpp"
+#include "../scene_reader.hpp"
+#include "../study/accuracy.hpp"
+#include "../written.hpp"
+#include "ranks.hpp"
+#include "schedule.hpp"
+#include "sweep_files.hpp"
+#include "sweep_folder.hpp"
+
+#include <lagroid/solvers/ensemble/tasks.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// What rank 0 knows before all else.
+struct Plan {
+  SweepScene sweep;
+  std::unique_ptr<SweepFolder> folder;
+};
+
+/// Runs a little of the scene as it is written: what is wrong with it, and names that it does not know, are told now.
+void try_out(const SweepScene& sweep, const SweepOptions& options) {
+  const Section file = read_scene(options.scene, options.overrides);
+  const Part tried = try_scene(file, sweep.scene, sweep.keep);
+  if (tried.find("final/t") == nullptr) return;
+  const std::vector<std::string> keys = sweep.design.columns();
+  for (const auto& [key, column] :
+       {std::pair("x", sweep.plot.x), std::pair("y", sweep.plot.y), std::pair("quantity", sweep.plot.quantity)})
+    if (!column.empty() && column != "run/cost" && tried.find(column) == nullptr &&
+        std::find(keys.begin(), keys.end(), column) == keys.end())
+      file.section("plot", "").fail(key, fmt::format("there is no column \"{}\" in members.csv", column));
+}
+
+/// Reads everything and makes sure that it can be run and written.
+Plan prepare(const SweepOptions& options) {
+  Plan plan{read_sweep(options.scene, options.overrides), nullptr};
+  SweepScene& sweep = plan.sweep;
+  require_writable(options.out, sweep_files);
+  const bool accurate = sweep.scene.has("accuracy");
+  if (!accurate) try_out(sweep, options);
+  plan.folder = std::make_unique<SweepFolder>(options.out, sweep);
+  if (plan.folder->finished()) return plan;
+  if (plan.folder->begun()) {
+    plan.folder->restore(sweep);
+  } else if (accurate) {
+    // Chosen once, for the scene as it is written, and kept: all members have the same method and step.
+    AccuracyChoice choice = choose_by_accuracy(sweep.scene);
+    sweep.scene = std::move(choice.scene);
+    sweep.notes = std::move(choice.notes);
+    try_out(sweep, options);
+  }
+  plan.folder->begin(sweep);
+  return plan;
+}
+
+/// Runs a part of the sweep, and keeps it. False where an interrupt came before it was finished.
+std::function<bool(long)> worker(const SweepScene& sweep, const std::string& out) {
+  return [&sweep, runner = std::shared_ptr<MemberRunner>(scene_runner(sweep.scene, sweep.design, sweep.keep)),
+          files = PartFiles(out)](long p) {
+    const auto part = runner->run(sweep.first_of(p), sweep.count_of(p));
+    if (part) files.keep(p, *part);
+    return part.has_value();
+  };
+}
+
+int tell_finished(const SweepOptions& options) {
+  const std::filesystem::path folder = options.out;
+  const std::string text = contents(folder / (options.json ? "summary.json" : "summary.txt")).value_or("");
+  print(options.json ? text : text + fmt::format("  (finished before; the files are in {})\n", options.out));
+  const auto json = nlohmann::json::parse(contents(folder / "summary.json").value_or("{}"), nullptr, false);
+  return json.is_object() && json.value("failed", 0L) == 0 ? 0 : exit_failed;
+}
+
+/// Joins the parts, writes the files, tells what was found. Returns the exit code.
+int conclude(Plan& plan, const SweepOptions& options, const std::string& took) {
+  const SweepResult result{"scenes", plan.folder->joined(plan.sweep)};
+  std::string note;
+  std::string text = sweep_text(plan.sweep, result);
+  auto json = sweep_json(plan.sweep, result);
+  const auto files = write_sweep(plan.sweep, result, options.out, note);
+  plan.folder->finish();
+  text += took;
+  tell_written(files, note, text, json);
+  print(options.json ? json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n" : text);
+  if (result.failed() == 0) return 0;
+  fmt::print(stderr, "lagroid: {}: {} of {} members failed; their rows say why\n", options.scene, result.failed(),
+             result.members.count());
+  return exit_failed;
+}
+
+/// Rank 0.
+int lead(Ranks& ranks, const SweepOptions& options) {
+  const auto start = Clock::now();
+  std::optional<Plan> plan;
+  try {
+    plan.emplace(prepare(options));
+  } catch (const OutputError& error) {
+    ranks.broadcast("");
+    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  } catch (...) {
+    ranks.broadcast("");
+    throw;
+  }
+  if (plan->folder->finished()) {
+    ranks.broadcast("");
+    return tell_finished(options);
+  }
+  ranks.broadcast(packed(plan->sweep));
+  const std::vector<long> missing = plan->folder->missing(plan->sweep);
+  const long parts = plan->sweep.parts();
+  ScheduleOutcome outcome;
+  {
+    Progress progress("sweep", parts, !options.json);
+    const Schedule schedule{.threads = options.threads,
+                            .progress = [&](long done) { progress.update(parts - long(missing.size()) + done); },
+                            .interrupted = InterruptGuard::interrupted};
+    outcome = for_each_part(ranks, missing, schedule, worker(plan->sweep, options.out));
+  }
+  const long left = long(plan->folder->missing(plan->sweep).size());
+  if (!outcome.failure.empty())
+    throw OutputError(fmt::format("{}{}; {} of {} parts are kept, and the same command goes on from them",
+                                  ranks.size() > 1 ? fmt::format("rank {}: ", outcome.failed_rank) : "",
+                                  outcome.failure, parts - left, parts));
+  if (left > 0)
+    return refuse(options.json, exit_interrupted, interrupted_status,
+                  fmt::format("{}: interrupted; {} of {} parts are kept in {}, and the same command goes on from them",
+                              options.scene, parts - left, parts, options.out));
+  const int threads = options.threads > 0 ? options.threads : available_threads();
+  const std::string took =
+      fmt::format("  took      {} on {} thread{}{}{}\n", duration(seconds_since(start)), threads,
+                  threads == 1 ? "" : "s", ranks.size() > 1 ? fmt::format(" of each of {} ranks", ranks.size()) : "",
+                  long(missing.size()) < parts ? ", after what was kept from before" : "");
+  return conclude(*plan, options, took);
+}
+
+/// Any other rank.
+int follow(Ranks& ranks, const SweepOptions& options) {
+  const std::string text = ranks.broadcast("");
+  if (text.empty()) return 0;
+  SweepScene sweep;
+  std::function<bool(long)> work;
+  try {
+    sweep = unpacked(text);
+    work = worker(sweep, options.out);
+  } catch (const std::exception& error) {
+    // Rank 0 tells it.
+    work = [why = std::string(error.what())](long) -> bool { throw std::runtime_error(why); };
+  }
+  for_each_part(ranks, {}, {.threads = options.threads, .interrupted = InterruptGuard::interrupted}, work);
+  return 0;
+}
+
+}  // namespace
+
+void add_sweep_options(CLI::App& command, SweepOptions& options) {
+  command.add_option("sweep", options.scene, "what varies, and what is kept: a TOML file")->required();
+  command.add_option("--out", options.out, "write results into this folder; go on there if they were broken off")
+      ->required();
+  command.add_option("--threads", options.threads, "of each process; all that are available by default")
+      ->check(CLI::Range(1, 4096));
+  command.add_option("--set", options.overrides, "override a key: --set design.count=100 (repeatable)")
+      ->allow_extra_args(false);
+  command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
+}
+
+int sweep(const SweepOptions& options) {
+  try {
+    const auto ranks = join_ranks();
+    const InterruptGuard guard;
+    return ranks->rank() == 0 ? lead(*ranks, options) : follow(*ranks, options);
+  } catch (const OutputError& error) {
+    return refuse(options.json, exit_failed, "output_failed", error.what());
+  } catch (const RunError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_run", error.what());
+  }
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,65 @@
+#pragma once
+/// The folder of a sweep while it goes on: what is finished is there, and stays when all else is lost.
+
+#include "../kept_file.hpp"
+#include "part.hpp"
+#include "sweep_scene.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace lagroid::app {
+
+/// The parts in it. Any process may keep parts of its own.
+class PartFiles {
+ public:
+  explicit PartFiles(const std::filesystem::path& folder) : folder_(folder / "parts") {}
+
+  /// Throws OutputError.
+  void keep(long part, const Part& members) const;
+  /// None where there is none, or a damaged one.
+  std::optional<Part> read(long part) const;
+  bool has(long part) const;
+  void remove(long part) const;
+  void remove_all() const;
+
+ private:
+  std::filesystem::path file(long part) const;
+
+  std::filesystem::path folder_;
+};
+
+/// The folder as a whole, which one process holds.
+class SweepFolder {
+ public:
+  /// Throws OutputError where it cannot be used, RunError where it holds another sweep.
+  SweepFolder(const std::filesystem::path& folder, const SweepScene& sweep);
+
+  /// Whether an earlier command began this sweep, and whether one finished it.
+  bool begun() const { return kept_.has_value(); }
+  bool finished() const;
+  /// Sets the scene that the command which began ran, and its notes.
+  void restore(SweepScene& sweep) const;
+  /// Throws OutputError.
+  void begin(const SweepScene& sweep);
+  /// Which parts are still to be run.
+  std::vector<long> missing(const SweepScene& sweep) const;
+  /// All parts, one after the other; takes a damaged one away and throws RunError.
+  Part joined(const SweepScene& sweep) const;
+  /// To be called when the results are written.
+  void finish();
+
+ private:
+  std::filesystem::path file() const { return folder_ / "sweep.cbor"; }
+
+  std::filesystem::path folder_;
+  FolderLock lock_;
+  PartFiles parts_;
+  nlohmann::json identity_;
+  std::optional<nlohmann::json> kept_;
+};
+
+}  // namespace lagroid::app

@@ -1,0 +1,142 @@
+#pragma once
+/// Very many members of one system: a member in each lane of a batch, batches on threads.
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/solvers/ensemble/batch_march.hpp>
+#include <lagroid/solvers/ensemble/tasks.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// What an advance of an ensemble may be told.
+template <DiscreteSystem Sys> struct EnsembleOptions {
+  int threads = 1;  ///< 0: all available ones
+  /// Called with every member that goes on, at every step whose number is a multiple of `every`: in order for one
+  /// member, from all threads at once for several. It may write to places of that member's own.
+  std::function<void(long member, const TrajectoryPoint<Sys>& point)> observe = nullptr;
+  long every = 1;
+  /// Asked now and then; once it is true the advance ends, and another one goes on from there.
+  std::function<bool()> interrupted = nullptr;
+};
+
+/// Members of one system that differ in their initial states, marched by `Sys`'s implicit step with momenta by
+/// increments, as `Integrator` marches one.
+///
+/// **What becomes of a member depends on nothing but its initial state and the system**: to the bit not on the other
+/// members, their order or number, nor on threads, interrupts and how steps are grouped into advances; to round-off not
+/// on `Width`, and of a single `Integrator` it differs by round-off. A member whose step can not be solved fails alone,
+/// with a typed status, and keeps its last state.
+///
+/// A batch of members goes through all the steps of an advance, up to `round` of them, before the next is loaded: what
+/// it needs stays in the first cache. Include `systems/ensembles.hpp` for the library's systems, compiled. No
+/// allocation in a step, except for a member that needs another solver's help.
+template <DiscreteSystem Sys, int Width = widest_batch> class Ensemble {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// Configurations are the unit arrows, unless given: the arrows whose targets are the initial objects, one for every
+  /// member (see TrajectoryPoint). Throws std::invalid_argument where their number is another.
+  Ensemble(Sys system, std::span<const State<G>> initial, std::span<const ArrowOf<G>> configurations = {});
+
+  const Sys& system() const { return system_; }
+  long size() const { return size_; }
+
+  /// Takes all members that have not failed to step `index`, counted from the start. False if interrupted.
+  bool advance_to(long index, const EnsembleOptions<Sys>& options = {});
+
+  State<G> state(long member) const { return march(member).state(system_, lane(member)); }
+  /// Step, state, configuration and time that a member has reached.
+  TrajectoryPoint<Sys> point(long member) const { return point(march(member), system_, lane(member)); }
+  /// Converged, or why the step after the member's last one could not be solved.
+  SolveStatus status(long member) const { return march(member).status(lane(member)); }
+  /// Members that have failed.
+  long failures() const {
+    long count = 0;
+    for (long i = 0; i < size_; ++i) count += status(i) != SolveStatus::converged;
+    return count;
+  }
+
+ private:
+  using March = BatchMarch<Sys, Width>;
+  static constexpr long round = 256;
+
+  static int lane(long member) { return int(member % Width); }
+  const March& march(long member) const { return marches_[std::size_t(member / Width)]; }
+  static TrajectoryPoint<Sys> point(const March& march, const Sys& system, int lane);
+  void advance(long batch, long index, const EnsembleOptions<Sys>& options);
+
+  Sys system_;
+  long size_;
+  std::vector<March> marches_;
+};
+
+template <DiscreteSystem Sys, int Width>
+Ensemble<Sys, Width>::Ensemble(Sys system, std::span<const State<G>> initial,
+                               std::span<const ArrowOf<G>> configurations)
+    : system_(std::move(system)), size_(long(initial.size())), marches_((initial.size() + Width - 1) / Width) {
+  if (!configurations.empty() && configurations.size() != initial.size())
+    throw std::invalid_argument("an ensemble takes one configuration for every member, or none");
+  for (long i = 0; i < long(marches_.size()) * Width; ++i) {
+    const auto member = std::size_t(std::min(i, size_ - 1));
+    const State<G>& state = initial[member];
+    marches_[std::size_t(i / Width)].start(
+        system_, lane(i), state,
+        configurations.empty() ? ArrowOf<G>(system_.groupoid.unit(state.object)) : configurations[member], i < size_);
+  }
+}
+
+template <DiscreteSystem Sys, int Width>
+TrajectoryPoint<Sys> Ensemble<Sys, Width>::point(const March& march, const Sys& system, int lane) {
+  TrajectoryPoint<Sys> out;
+  out.index = march.index(lane);
+  if constexpr (HasTimeStep<Sys>) {
+    out.step_size = system.h;
+    out.time = start_time(system) + double(out.index) * system.h;
+  }
+  out.state = march.state(system, lane);
+  out.configuration = march.configuration(system, lane);
+  out.step = out.index == 0 ? Step<Sys>{system.groupoid.unit(out.state.object), Sys::Multipliers::Zero()}
+                            : march.step(system, lane);
+  return out;
+}
+
+template <DiscreteSystem Sys, int Width>
+bool Ensemble<Sys, Width>::advance_to(long index, const EnsembleOptions<Sys>& options) {
+  constexpr long batches_per_task = 4;
+  const long count = long(marches_.size());
+  long reached = index;
+  for (const March& march : marches_) reached = std::min(reached, march.index());
+  while (reached < index) {
+    if (options.interrupted && options.interrupted()) return false;
+    reached = std::min(index, reached + round);
+    for_each_task((count + batches_per_task - 1) / batches_per_task, options.threads,
+                  [&](long task) {
+                    const long end = std::min(count, (task + 1) * batches_per_task);
+                    for (long batch = task * batches_per_task; batch < end; ++batch) advance(batch, reached, options);
+                  },
+                  options.interrupted);
+  }
+  return std::all_of(marches_.begin(), marches_.end(), [&](const March& march) { return march.index() >= index; });
+}
+
+template <DiscreteSystem Sys, int Width>
+void Ensemble<Sys, Width>::advance(long batch, long index, const EnsembleOptions<Sys>& options) {
+  March& march = marches_[std::size_t(batch)];
+  Sys system = system_;
+  while (march.index() < index) {
+    if constexpr (TimeDependent<Sys>) system.time = system_.time + double(march.index()) * system_.h;
+    march.advance(system);
+    if (!options.observe || march.index() % options.every != 0) continue;
+    for (int lane = 0; lane < Width; ++lane)
+      if (march.status(lane) == SolveStatus::converged)
+        options.observe(batch * Width + lane, point(march, system_, lane));
+  }
+}
+
+}  // namespace lagroid

@@ -1,0 +1,20 @@
+#pragma once
+/// Ensembles of the library's systems, compiled.
+
+#include <lagroid/solvers/ensemble/ensemble.hpp>
+#include <lagroid/systems/pendulum.hpp>
+#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/rigid_body.hpp>
+
+#define LAGROID_ENSEMBLE(prefix, Sys)          \
+  prefix class BatchNewton<Sys, widest_batch>; \
+  prefix class BatchMarch<Sys, widest_batch>;  \
+  prefix class Ensemble<Sys, widest_batch>
+
+namespace lagroid {
+
+LAGROID_ENSEMBLE(extern template, Pendulum);
+LAGROID_ENSEMBLE(extern template, PlateBall);
+LAGROID_ENSEMBLE(extern template, RigidBody);
+
+}  // namespace lagroid

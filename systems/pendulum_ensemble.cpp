@@ -1,0 +1,7 @@
+#include <lagroid/systems/ensembles.hpp>
+
+namespace lagroid {
+
+LAGROID_ENSEMBLE(template, Pendulum);
+
+}  // namespace lagroid

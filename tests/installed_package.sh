@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# Installs a build, and uses the installation as a project of its own does: by CMake, by pkg-config, and wrongly.
+#   installed_package.sh BUILD WORK [whole]   into folders below WORK; whole: also builds and runs the law suites, and
+#                                             compiles every header on its own (minutes)
+# A prefix in place of the build (it has no CMakeCache.txt) is used as it is.
+set -euo pipefail
+build=$1 work=$2 whole=${3:-}
+consumer=$(cd "$(dirname "${BASH_SOURCE[0]}")/consumer" && pwd)
+say() { printf 'installed_package: %s\n' "$*" >&2; }
+fail() {
+  say "$*"
+  exit 1
+}
+
+rm -rf "$work"
+mkdir -p "$work"
+if [ -e "$build/CMakeCache.txt" ]; then
+  prefix=$work/prefix
+  cmake --install "$build" --prefix "$prefix" >"$work/install.log" || fail "not installed; see $work/install.log"
+else
+  prefix=$build
+fi
+pc=$(find "$prefix" -name lagroid.pc -not -path '*/_CPack_Packages/*' | head -1)
+[ -n "$pc" ] || fail "no lagroid.pc below $prefix"
+export PKG_CONFIG_PATH=${pc%/*}
+
+# By CMake. What takes time is at stake in other tests, hence -O1.
+cmake -S "$consumer" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_FLAGS=-O1 \
+  >"$work/configure.log" 2>&1 || { cat "$work/configure.log" >&2; fail "find_package(lagroid) does not work"; }
+grep -q "^lagroid_DIR:PATH=$prefix" "$work/cmake/CMakeCache.txt" || fail "another lagroid was found than that below $prefix"
+cmake --build "$work/cmake" >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "the consumer is not built"; }
+"$work/cmake/compose"
+"$work/cmake/spring"
+if [ -n "$whole" ]; then
+  cmake --build "$work/cmake" --target laws >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "no laws"; }
+  "$work/cmake/laws" 2>/dev/null
+fi
+if [ -x "$prefix/bin/lagroid" ]; then
+  cmake --build "$work/cmake" --target systems >"$work/systems.log" || fail "lagroid::program does not run"
+  grep -q rigid_body "$work/systems.log" || fail "lagroid::program lists no rigid_body"
+fi
+
+# By pkg-config, with the instruction set of this machine: what the library shares with its callers has one layout.
+read -ra flags <<<"$(pkg-config --cflags lagroid)"
+read -ra libraries <<<"$(pkg-config --libs lagroid)"
+${CXX:-c++} -std=c++20 -O1 -march=native "${flags[@]}" "$consumer/main.cpp" "${libraries[@]}" -o "$work/by_pkg_config"
+"$work/by_pkg_config"
+
+# Every header includes what it needs.
+if [ -n "$whole" ]; then
+  (cd "$prefix/include" && find lagroid -name '*.hpp' | sort) >"$work/headers"
+  while read -r header; do
+    echo "#include <$header>" >"$work/header.cpp"
+    ${CXX:-c++} -std=c++20 -fsyntax-only "${flags[@]}" "$work/header.cpp" 2>"$work/header.log" ||
+      fail "$header does not compile on its own: $(head -n 3 "$work/header.log")"
+  done <"$work/headers"
+fi
+
+# What must be refused, and why.
+refused() { # refused ARGUMENTS-OF-FIND_PACKAGE MESSAGE
+  mkdir -p "$work/refused"
+  printf 'cmake_minimum_required(VERSION 3.25)\nproject(refused LANGUAGES CXX)\nfind_package(lagroid %s REQUIRED)\n' "$1" \
+    >"$work/refused/CMakeLists.txt"
+  if cmake -S "$work/refused" -B "$work/refused/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER_WORKS=1 \
+    >"$work/refused.log" 2>&1; then
+    fail "find_package(lagroid $1) should have been refused"
+  fi
+  tr -s ' \n' ' ' <"$work/refused.log" | grep -qF "$2" || { cat "$work/refused.log" >&2; fail "refused without: $2"; }
+}
+refused "COMPONENTS cores" 'lagroid has no component "cores"; it has core, solvers, systems, laws and program'
+refused "9.0" 'compatible with requested version "9.0"'
+refused "0.1" 'compatible with requested version "0.1"'
+say "holds"
