@@ -7,6 +7,7 @@ compiles the library."""
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -19,7 +20,8 @@ from wheel.wheelfile import WheelFile
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-NAME = f"{PROJECT['name']}-{PROJECT['version']}"
+VERSION = ".".join(re.findall(r"define LAGROID_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", (ROOT / "core/version.hpp").read_text()))
+NAME = f"{PROJECT['name']}-{VERSION}"
 PYTHON = f"cp{sys.version_info.major}{sys.version_info.minor}"
 PLATFORM = sysconfig.get_platform().replace("-", "_").replace(".", "_")
 TAG = f"{PYTHON}-{PYTHON}-{PLATFORM}"
@@ -44,7 +46,7 @@ def _metadata() -> str:
     lines = [
         "Metadata-Version: 2.1",
         f"Name: {PROJECT['name']}",
-        f"Version: {PROJECT['version']}",
+        f"Version: {VERSION}",
         f"Summary: {PROJECT['description']}",
         f"Requires-Python: {PROJECT['requires-python']}",
         *(f"Requires-Dist: {each}" for each in PROJECT["dependencies"]),

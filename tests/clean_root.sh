@@ -57,7 +57,7 @@ say "the consumer project runs"
 if inside sh -c 'ls /packages/python3-lagroid_*.deb' >/dev/null 2>&1; then
   install "$(inside sh -c 'ls /packages/python3-lagroid_*.deb')" python3-matplotlib
   inside python3 -c 'import lagroid; print(lagroid.__version__)' || fail "the Python module is not imported"
-  for example in "$root"/usr/share/lagroid/python/*.py; do
+  for example in "$root"/usr/share/lagroid/python/notebooks/*.py; do
     inside python3 "${example#"$root"}" >"$work/python.log" 2>&1 || fail "${example#"$root"}: $(tail -n 5 "$work/python.log")"
   done
   say "the Python examples run"

@@ -87,7 +87,7 @@ endif()
 
 # python: python/CMakeLists.txt installs the module, its examples follow it.
 if(TARGET lagroid_python)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/notebooks/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid/python
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/notebooks DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid/python
           COMPONENT python FILES_MATCHING PATTERN "*.py")
 endif()
 

@@ -209,7 +209,7 @@ void bind_learning(py::module_& module) {
           "(iterations, 4): start, iteration, mse, validation.")
       .def(
           "energy", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().energy(usable(l, z), z); },
-          py::arg("z"))
+          py::arg("z"), "H(z).")
       .def(
           "field", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().field(usable(l, z), z); },
           py::arg("z"), "The motion as an element of the algebra (xi_i, eta_i), (6k,).")

@@ -265,7 +265,8 @@ void bind_marches(py::module_& module) {
       });
   bind_fields(path, false);
   path.def_property_readonly(
-          "arrow", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[2], self); })
+          "arrow", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[2], self); },
+          "The arrows, (steps, ...).")
       .def_property_readonly(
           "multipliers", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[3], self); },
           "Their multipliers, (steps, m).");

@@ -10,6 +10,8 @@
 #include <scene_reader.hpp>
 #include <study/methods.hpp>
 
+#include <lagroid/core/version.hpp>
+
 #include <glog/logging.h>
 
 #include <pybind11/stl/filesystem.h>

@@ -104,8 +104,9 @@ void bind_scenes(py::module_& module) {
 
   py::class_<Endpoint>(module, "Endpoint", "A state as users see it.")
       .def_readonly("time", &Endpoint::time, "s")
-      .def_property_readonly("position",
-                             [](const py::object& self) { return view(self.cast<const Endpoint&>().position, self); })
+      .def_property_readonly(
+          "position", [](const py::object& self) { return view(self.cast<const Endpoint&>().position, self); },
+          "The object, as its columns; empty on a group.")
       .def_readonly("attitude", &Endpoint::attitude, "Unit quaternion w, x, y, z, or None.")
       .def_readonly("body_attitude", &Endpoint::body_attitude,
                     "The same of the body one sees, where that is the transpose.")
