@@ -64,7 +64,7 @@ def build_wheel(
     name = f"{NAME}-{TAG}.whl"
     with tempfile.TemporaryDirectory() as prefix:
         _run("cmake", "--install", build, "--component", "python", "--prefix", prefix)
-        (package,) = Path(prefix).glob("**/lagroid")
+        (package,) = (init.parent for init in Path(prefix).glob("**/lagroid/__init__.py"))
         module = package / f"_lagroid{sysconfig.get_config_var('EXT_SUFFIX')}"
         if not module.exists():
             raise SystemExit(f"{build}: holds no module for {sys.executable}; configure it with its Python_EXECUTABLE")
