@@ -1,5 +1,5 @@
-"""Builds the wheel of the package lagroid by CMake: what `pip install .` calls (PEP 517). Needs the Debian packages that
-the script `lagroid` lists, and python3-wheel.
+"""Builds the wheel of the package lagroid by CMake: what `pip install .` calls (PEP 517). Needs the Debian packages
+that the script `lagroid` lists, and python3-wheel.
 
 LAGROID_BUILD names a build tree to take the module from, for which CMake has been run; else build/python is made, which
 compiles the library."""
@@ -20,7 +20,8 @@ from wheel.wheelfile import WheelFile
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-VERSION = ".".join(re.findall(r"define LAGROID_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", (ROOT / "core/version.hpp").read_text()))
+HEADER = (ROOT / "core" / "version.hpp").read_text()
+VERSION = ".".join(re.findall(r"define LAGROID_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", HEADER))
 NAME = f"{PROJECT['name']}-{VERSION}"
 PYTHON = f"cp{sys.version_info.major}{sys.version_info.minor}"
 PLATFORM = sysconfig.get_platform().replace("-", "_").replace(".", "_")

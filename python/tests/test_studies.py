@@ -39,7 +39,8 @@ class Studies(unittest.TestCase):
 
     def test_check_by_the_program_itself(self) -> None:
         try:
-            certificate = lagroid.check(EXAMPLES / "pendulum.toml", set={"time.steps": 50}, arguments=["--samples", "5"])
+            short = {"time.steps": 50}
+            certificate = lagroid.check(EXAMPLES / "pendulum.toml", set=short, arguments=["--samples", "5"])
         except lagroid.ProgramError as error:
             self.skipTest(str(error))
         self.assertEqual(certificate["status"], "certified")
