@@ -1,4 +1,4 @@
-"""What Python adds to a run: ratios, printed, held to a bound (--most), written into a page (--page).
+"""What Python adds to a run: ratios, printed, held to a bound (--most), or written into a page (--page).
 
 A run's seconds are those of the C++ loop (Run.seconds, March.seconds); the wall clock in Python holds reading the scene,
 the arrays and the call besides. Repetitions are interleaved, medians compared."""
@@ -103,7 +103,7 @@ def main() -> int:
         worst = max(worst, overhead)
         wall, own = (statistics.median(column) for column in zip(*pairs))
         lines.append(f"| {name} | {1e3 * own:.1f} | {1e3 * wall:.1f} | {100 * overhead:.1f} % |")
-    steps = {
+    steps: dict[str, Callable[[], float]] = {
         "`march`, a step, ledger and record included": lambda: marched().seconds / STEPS,
         "`advance()` in a loop": lambda: advanced(20_000),
         "`advance()` and a look at `.object`": lambda: looped(20_000),
@@ -111,8 +111,8 @@ def main() -> int:
     }
     costs: dict[str, list[float]] = {name: [] for name in steps}
     for _ in range(5):
-        for name, call in steps.items():
-            costs[name].append(call())
+        for name, cost in steps.items():
+            costs[name].append(cost())
     lines += ["", "| a step of Kepler's problem, where nothing else is said | microseconds |", "|---|---|"]
     lines += [f"| {name} | {1e6 * statistics.median(values):.3g} |" for name, values in costs.items()]
     table = "\n".join(lines)

@@ -14,7 +14,7 @@ from ._lagroid import March, Run
 from .errors import Interrupted, SceneError, SolveError
 
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
-_Result = TypeVar("_Result", Run, March)
+_Result = TypeVar("_Result", bound=Union[Run, March])
 
 __all__ = ["SceneLike", "require", "resume", "run", "scene_text", "systems"]
 

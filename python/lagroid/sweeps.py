@@ -62,8 +62,8 @@ def sweep(
     ranks: int = 1,
 ) -> Sweep:
     """Runs a sweep file (docs/sweeps.md) into the folder `out`, where the same call goes on after an interrupt.
-    `threads` of each process, all by default; more than one of `ranks` are started by mpirun. Members that failed are NaN: see
-    `summary`. Raises SceneError, OutputError, and KeyboardInterrupt after Ctrl-C."""
+    `threads` of each process, all by default; more than one of `ranks` are started by mpirun. Members that failed are
+    NaN: see `summary`. Raises SceneError, OutputError, and KeyboardInterrupt after Ctrl-C."""
     name = os.fspath(file)
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command += [program("lagroid", "LAGROID_PROGRAM", "lagroid_cli"), "sweep", name, "--out", os.fspath(out), "--json"]
