@@ -1,5 +1,5 @@
-"""Builds the wheel of the package lagroid by CMake: what `pip install .` calls (PEP 517). Needs the Debian packages that
-the script `lagroid` lists, and python3-wheel.
+"""Builds the wheel of the package lagroid by CMake: what `pip install .` calls (PEP 517). Needs the Debian packages
+that the script `lagroid` lists, and python3-wheel.
 
 LAGROID_BUILD names a build tree to take the module from, for which CMake has been run; else build/python is made, which
 compiles the library."""
@@ -7,6 +7,7 @@ compiles the library."""
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -19,7 +20,9 @@ from wheel.wheelfile import WheelFile
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-NAME = f"{PROJECT['name']}-{PROJECT['version']}"
+HEADER = (ROOT / "core" / "version.hpp").read_text()
+VERSION = ".".join(re.findall(r"define LAGROID_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", HEADER))
+NAME = f"{PROJECT['name']}-{VERSION}"
 PYTHON = f"cp{sys.version_info.major}{sys.version_info.minor}"
 PLATFORM = sysconfig.get_platform().replace("-", "_").replace(".", "_")
 TAG = f"{PYTHON}-{PYTHON}-{PLATFORM}"
@@ -44,7 +47,7 @@ def _metadata() -> str:
     lines = [
         "Metadata-Version: 2.1",
         f"Name: {PROJECT['name']}",
-        f"Version: {PROJECT['version']}",
+        f"Version: {VERSION}",
         f"Summary: {PROJECT['description']}",
         f"Requires-Python: {PROJECT['requires-python']}",
         *(f"Requires-Dist: {each}" for each in PROJECT["dependencies"]),
@@ -62,7 +65,7 @@ def build_wheel(
     name = f"{NAME}-{TAG}.whl"
     with tempfile.TemporaryDirectory() as prefix:
         _run("cmake", "--install", build, "--component", "python", "--prefix", prefix)
-        (package,) = Path(prefix).glob("**/lagroid")
+        (package,) = (init.parent for init in Path(prefix).glob("**/lagroid/__init__.py"))
         module = package / f"_lagroid{sysconfig.get_config_var('EXT_SUFFIX')}"
         if not module.exists():
             raise SystemExit(f"{build}: holds no module for {sys.executable}; configure it with its Python_EXECUTABLE")

@@ -85,10 +85,10 @@ if(LAGROID_APP)
           DESTINATION ${documentation} COMPONENT program)
 endif()
 
-# python: python/CMakeLists.txt installs the module; examples and the project for systems of one's own follow it.
+# python: python/CMakeLists.txt installs the module, its examples follow it.
 if(TARGET lagroid_python)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/notebooks ${PROJECT_SOURCE_DIR}/python/template
-          DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid/python COMPONENT python PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/notebooks DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid/python
+          COMPONENT python FILES_MATCHING PATTERN "*.py")
 endif()
 
 if(PROJECT_IS_TOP_LEVEL)

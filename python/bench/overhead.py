@@ -1,4 +1,4 @@
-"""What Python adds to a run: prints ratios, and holds them to a bound with --most, or writes them into a page with --page.
+"""What Python adds to a run: ratios, printed, held to a bound (--most), or written into a page (--page).
 
 A run's seconds are those of the C++ loop (Run.seconds, March.seconds); the wall clock in Python holds reading the scene,
 the arrays and the call besides. Repetitions are interleaved, medians compared."""
@@ -8,6 +8,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import lagroid
@@ -36,22 +37,16 @@ def scenes() -> dict[str, dict[str, object]]:
     }
 
 
-def timed(call: Callable[[], float]) -> tuple[float, float]:
-    """Seconds by the wall, and those that the call says of itself."""
+def timed(call: Callable[[], lagroid.Run | lagroid.March]) -> tuple[float, float]:
+    """Seconds by the wall, and those that the result says of itself. It is let go when the clock has stopped."""
     start = time.perf_counter()
-    own = call()
-    return time.perf_counter() - start, own
+    result = call()
+    assert len(result.momentum if isinstance(result, lagroid.March) else result["momentum"]) == STEPS + 1
+    return time.perf_counter() - start, lagroid.require(result).seconds
 
 
-def run_seconds(scene: dict[str, object]) -> float:
-    run = lagroid.require(lagroid.run(scene))
-    assert len(run["momentum"]) == STEPS + 1
-    return run.seconds
-
-
-def marched(ledger: bool) -> float:
-    integrator = lagroid.Kepler(h=0.01).integrator([0, 1.2], [1, 0], ledger=ledger)
-    return lagroid.require(integrator.march(STEPS)).seconds
+def marched() -> lagroid.March:
+    return lagroid.Kepler(h=0.01).integrator([0, 1.2], [1, 0]).march(STEPS)
 
 
 def looped(count: int) -> float:
@@ -93,31 +88,31 @@ def main() -> int:
     parser.add_argument("--most", type=float, help="fail where a run takes longer than this share beyond its C++ loop")
     parser.add_argument("--page", type=Path, help="write the numbers between the marks of this page")
     options = parser.parse_args()
-    subjects: dict[str, Callable[[], float]] = {
-        f"`lagroid.run` of {name}": (lambda scene=scene: run_seconds(scene)) for name, scene in scenes().items()  # type: ignore[misc]
+    subjects: dict[str, Callable[[], lagroid.Run | lagroid.March]] = {
+        f"`lagroid.run` of {name}": partial(lagroid.run, scene) for name, scene in scenes().items()
     }
-    subjects["`Integrator.march` of Kepler"] = lambda: marched(True)
+    subjects["`Integrator.march` of Kepler"] = marched
     found: dict[str, list[tuple[float, float]]] = {name: [] for name in subjects}
     for _ in range(REPETITIONS):
         for name, call in subjects.items():
             found[name].append(timed(call))
-    lines = [f"| 1e5 steps, recorded | C++ loop, ms | in Python, ms | overhead |", "|---|---|---|---|"]
+    lines = ["| 1e5 steps, recorded | C++ loop, ms | in Python, ms | overhead |", "|---|---|---|---|"]
     worst = 0.0
     for name, pairs in found.items():
         overhead = statistics.median(wall / own for wall, own in pairs) - 1
         worst = max(worst, overhead)
         wall, own = (statistics.median(column) for column in zip(*pairs))
         lines.append(f"| {name} | {1e3 * own:.1f} | {1e3 * wall:.1f} | {100 * overhead:.1f} % |")
-    steps = {
-        "`march`, a step, ledger and record included": lambda: marched(True) / STEPS,
+    steps: dict[str, Callable[[], float]] = {
+        "`march`, a step, ledger and record included": lambda: marched().seconds / STEPS,
         "`advance()` in a loop": lambda: advanced(20_000),
         "`advance()` and a look at `.object`": lambda: looped(20_000),
         "a step of a prototype in Python (one degree of freedom)": lambda: prototyped(200),
     }
     costs: dict[str, list[float]] = {name: [] for name in steps}
     for _ in range(5):
-        for name, call in steps.items():
-            costs[name].append(call())
+        for name, cost in steps.items():
+            costs[name].append(cost())
     lines += ["", "| a step of Kepler's problem, where nothing else is said | microseconds |", "|---|---|"]
     lines += [f"| {name} | {1e6 * statistics.median(values):.3g} |" for name, values in costs.items()]
     table = "\n".join(lines)

@@ -148,14 +148,15 @@ void bind_learning(py::module_& module) {
       .def("__len__", &Trajectories::count);
 
   py::class_<learning::Measures>(module, "Measures", "How good a learned Hamiltonian is on data.")
-      .def_readonly("mse", &learning::Measures::mse)
-      .def_readonly("times", &learning::Measures::times)
+      .def_readonly("mse", &learning::Measures::mse, "Mean squared error of all points but the first.")
+      .def_readonly("times", &learning::Measures::times, "Of the points, s.")
       .def_readonly("rms", &learning::Measures::rms, "The root of the mean squared error at each of them.")
-      .def_readonly("energy_largest", &learning::Measures::energy_largest)
-      .def_readonly("energy_rms", &learning::Measures::energy_rms)
-      .def_readonly("momentum_learned", &learning::Measures::momentum_learned)
-      .def_readonly("momentum_data", &learning::Measures::momentum_data)
-      .def_readonly("lost", &learning::Measures::lost);
+      .def_readonly("energy_largest", &learning::Measures::energy_largest, "The most that H varies by along the data.")
+      .def_readonly("energy_rms", &learning::Measures::energy_rms, "The root of the mean square of that.")
+      .def_readonly("momentum_learned", &learning::Measures::momentum_learned,
+                    "Largest change of the vertical momentum along learned motions.")
+      .def_readonly("momentum_data", &learning::Measures::momentum_data, "The same along the data.")
+      .def_readonly("lost", &learning::Measures::lost, "Trajectories that could not be followed.");
 
   py::class_<Learned, std::shared_ptr<Learned>>(module, "LearnedHamiltonian",
                                                 "H = p^T M(q)^{-1} p / 2 + V(q) on (T*S^2)^k; states z are (6k,).")
@@ -164,22 +165,35 @@ void bind_learning(py::module_& module) {
           "write",
           [](const Learned& l, const fs::path& file) { app::write_text(app::model_text(l.hamiltonian), file); },
           py::arg("file"), "Writes a model.json, which a scene can run.")
-      .def_property_readonly("name", [](const Learned& l) { return l.model().name(); })
-      .def_property_readonly("bodies", [](const Learned& l) { return l.model().bodies(); })
-      .def_property_readonly("parameters",
-                             [](const py::object& self) {
-                               const auto& theta = self.cast<const Learned&>().theta();
-                               return view(theta.data(), {theta.size()}, {1}, self);
-                             })
+      .def_property_readonly(
+          "name", [](const Learned& l) { return l.model().name(); }, "Of the potential.")
+      .def_property_readonly(
+          "bodies", [](const Learned& l) { return l.model().bodies(); }, "k")
+      .def_property_readonly(
+          "parameters",
+          [](const py::object& self) {
+            const auto& theta = self.cast<const Learned&>().theta();
+            return view(theta.data(), {theta.size()}, {1}, self);
+          },
+          "theta, the mass matrix's first.")
       .def_property_readonly(
           "mass", [](const Learned& l) { return l.model().mass(l.theta()); }, "m, (k, k).")
-      .def_property_readonly("status", [](const Learned& l) { return std::string(to_string(l.trained.outcome)); })
-      .def_property_readonly("message", [](const Learned& l) { return l.trained.message; })
-      .def_property_readonly("usable", [](const Learned& l) { return l.theta().size() > 0; })
-      .def_property_readonly("mse", [](const Learned& l) { return l.trained.mse; })
-      .def_property_readonly("validation", [](const Learned& l) { return l.trained.validation; })
-      .def_property_readonly("mass_determined", [](const Learned& l) { return l.trained.mass_determined; })
-      .def_property_readonly("iterations", [](const Learned& l) { return l.trained.iterations; })
+      .def_property_readonly(
+          "status", [](const Learned& l) { return std::string(to_string(l.trained.outcome)); },
+          "How the training ended.")
+      .def_property_readonly(
+          "message", [](const Learned& l) { return l.trained.message; }, "Why, and what to do.")
+      .def_property_readonly(
+          "usable", [](const Learned& l) { return l.theta().size() > 0; }, "Whether there are parameters.")
+      .def_property_readonly(
+          "mse", [](const Learned& l) { return l.trained.mse; }, "Mean squared error in training.")
+      .def_property_readonly(
+          "validation", [](const Learned& l) { return l.trained.validation; }, "That on the data held out.")
+      .def_property_readonly(
+          "mass_determined", [](const Learned& l) { return l.trained.mass_determined; },
+          "Whether the data determine the mass matrix.")
+      .def_property_readonly(
+          "iterations", [](const Learned& l) { return l.trained.iterations; }, "Of all stages.")
       .def_property_readonly(
           "seconds", [](const Learned& l) { return l.trained.seconds; }, "Of the processor.")
       .def_property_readonly(
@@ -195,7 +209,7 @@ void bind_learning(py::module_& module) {
           "(iterations, 4): start, iteration, mse, validation.")
       .def(
           "energy", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().energy(usable(l, z), z); },
-          py::arg("z"))
+          py::arg("z"), "H(z).")
       .def(
           "field", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().field(usable(l, z), z); },
           py::arg("z"), "The motion as an element of the algebra (xi_i, eta_i), (6k,).")

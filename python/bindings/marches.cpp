@@ -234,8 +234,9 @@ void bind_marches(py::module_& module) {
   marched.def_readonly("status", &Marched::status, "converged, or why the last step was not made.")
       .def_readonly("message", &Marched::message, "Which step, and what to do.")
       .def_readonly("steps", &Marched::steps, "Steps made.")
-      .def_readonly("seconds", &Marched::seconds)
-      .def_property_readonly("converged", [](const Marched& m) { return m.status == "converged"; })
+      .def_readonly("seconds", &Marched::seconds, "Of the steps.")
+      .def_property_readonly(
+          "converged", [](const Marched& m) { return m.status == "converged"; }, "Whether every step was made.")
       .def_property_readonly(
           "time", [](const py::object& self) { return view(self.cast<const Marched&>().time, self); },
           "(nodes,), s; the first is where the march began.")
@@ -255,19 +256,20 @@ void bind_marches(py::module_& module) {
 
   py::class_<BoundaryPath> path(module, "BoundaryPath", "A stationary path between two ends.");
   path.def_readonly("cost", &BoundaryPath::cost, "The sum of the Lagrangian over its arrows.")
-      .def_readonly("is_minimum", &BoundaryPath::is_minimum)
-      .def_readonly("isolated", &BoundaryPath::isolated)
-      .def_readonly("normal", &BoundaryPath::normal)
-      .def_readonly("negative_directions", &BoundaryPath::negative_directions)
+      .def_readonly("is_minimum", &BoundaryPath::is_minimum, "Whether its second variation is positive.")
+      .def_readonly("isolated", &BoundaryPath::isolated, "False: one of a continuous family.")
+      .def_readonly("normal", &BoundaryPath::normal, "False: abnormal, its multipliers are not unique.")
+      .def_readonly("negative_directions", &BoundaryPath::negative_directions, "Directions that lower the action.")
       .def("__repr__", [](const BoundaryPath& p) {
         return fmt::format("<path of cost {:.10g}, {}>", p.cost, p.is_minimum ? "a minimum" : "no minimum");
       });
   bind_fields(path, false);
   path.def_property_readonly(
-          "arrow", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[2], self); })
-      .def_property_readonly("multipliers", [](const py::object& self) {
-        return rows_of(self.cast<const BoundaryPath&>().rows[3], self);
-      });
+          "arrow", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[2], self); },
+          "The arrows, (steps, ...).")
+      .def_property_readonly(
+          "multipliers", [](const py::object& self) { return rows_of(self.cast<const BoundaryPath&>().rows[3], self); },
+          "Their multipliers, (steps, m).");
 
   py::class_<Integrator> integrator(module, "Integrator",
                                     "A trajectory in the making. A step that fails leaves everything as it was.");
@@ -275,13 +277,16 @@ void bind_marches(py::module_& module) {
       .def("advance", &Integrator::advance, "One step. Raises SolveError, with its status.")
       .def("march", &Integrator::steps, py::arg("steps"), py::arg("every") = 1,
            "So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status.")
-      .def_property_readonly("index", [](const Integrator& self) { return self.march().index(); })
+      .def_property_readonly(
+          "index", [](const Integrator& self) { return self.march().index(); }, "Steps made.")
       .def_property_readonly(
           "time", [](const Integrator& self) { return self.march().time(); }, "s")
       .def_property_readonly(
           "state", [](const Integrator& self) { return py::make_tuple(self.now("object"), self.now("momentum")); },
           "(object, momentum).")
-      .def_property_readonly("method", [](const Integrator& self) { return app::description(self.march().traits()); })
+      .def_property_readonly(
+          "method", [](const Integrator& self) { return app::description(self.march().traits()); },
+          "What the steps declare of themselves.")
       .def_property_readonly("ledger", &Integrator::ledger, "What was promised and found, over all steps so far.")
       .def("quantity", &Integrator::quantity, py::arg("name"), "One of the system's quantities at this node.");
   bind_fields(integrator, true);

@@ -1,8 +1,8 @@
 /// The extension module lagroid._lagroid.
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 
-#include <archive.hpp>
 #include <learn/model_file.hpp>
 #include <listing.hpp>
 #include <optimise/matrices.hpp>
@@ -10,15 +10,19 @@
 #include <scene_reader.hpp>
 #include <study/methods.hpp>
 
+#include <lagroid/core/version.hpp>
+
 #include <glog/logging.h>
 
+#include <pybind11/stl/filesystem.h>
+
 #include <exception>
+#include <filesystem>
+#include <string>
 
 namespace lagroid::python {
 
 namespace {
-
-namespace py = pybind11;
 
 void raise(const char* name, const char* what) {
   const py::object type = py::module_::import("lagroid.errors").attr(name);
@@ -53,6 +57,12 @@ PYBIND11_MODULE(_lagroid, module) {
   py::register_exception_translator(translate);
   module.attr("__version__") = LAGROID_VERSION;
   module.def("listing", app::json_listing, "The systems a scene can name, as JSON.");
+  module.def(
+      "read_hdf5",
+      [](const std::filesystem::path& file, const std::string& dataset) {
+        return owned(app::read_hdf5(file, dataset));
+      },
+      py::arg("file"), py::arg("dataset"), "A data set of one or two dimensions, (rows, columns). Raises DataError.");
   bind_scenes(module);
   bind_marches(module);
   bind_systems(module);

@@ -159,7 +159,8 @@ template <class F> py::array column(const Optimum& optimum, const F& of) {
 
 void bind_optimisation(py::module_& module) {
   py::class_<ManifoldMaker>(module, "Manifold", "A manifold on which functions are minimised.")
-      .def_property_readonly("name", [](const ManifoldMaker& m) { return m.make()->name(); })
+      .def_property_readonly(
+          "name", [](const ManifoldMaker& m) { return m.make()->name(); }, "In words.")
       .def_property_readonly(
           "size", [](const ManifoldMaker& m) { return m.make()->size(); }, "How many numbers a point has.")
       .def_property_readonly(
@@ -204,16 +205,24 @@ void bind_optimisation(py::module_& module) {
             return o.layout.view_of(o.result.x.data(), self);
           },
           "The point: (n,) or (rows, columns).")
-      .def_property_readonly("value", [](const Optimum& o) { return o.result.value; })
+      .def_property_readonly(
+          "value", [](const Optimum& o) { return o.result.value; }, "Of the function there.")
       .def_property_readonly(
           "gradient", [](const Optimum& o) { return o.result.gradient; }, "The norm of the Riemannian gradient.")
       .def_property_readonly(
           "residual", [](const Optimum& o) { return o.result.residual; }, "Of the constraints.")
-      .def_property_readonly("status", [](const Optimum& o) { return std::string(to_string(o.result.outcome)); })
-      .def_property_readonly("message", [](const Optimum& o) { return o.result.message; })
-      .def_property_readonly("converged", [](const Optimum& o) { return o.result.converged(); })
-      .def_property_readonly("iterations", [](const Optimum& o) { return o.result.iterations; })
-      .def_property_readonly("seconds", [](const Optimum& o) { return o.result.seconds; })
+      .def_property_readonly(
+          "status", [](const Optimum& o) { return std::string(to_string(o.result.outcome)); }, "converged, or why not.")
+      .def_property_readonly(
+          "message", [](const Optimum& o) { return o.result.message; },
+          "Where it did not converge: why, and what to do.")
+      .def_property_readonly(
+          "converged", [](const Optimum& o) { return o.result.converged(); },
+          "Whether it stopped where it was asked to.")
+      .def_property_readonly(
+          "iterations", [](const Optimum& o) { return o.result.iterations; }, "Made.")
+      .def_property_readonly(
+          "seconds", [](const Optimum& o) { return o.result.seconds; }, "By the clock.")
       .def_property_readonly(
           "evaluations",
           [](const Optimum& o) {
@@ -224,8 +233,9 @@ void bind_optimisation(py::module_& module) {
       .def_property_readonly(
           "values", [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.value; }); },
           "After each iteration, where a history was asked for.")
-      .def_property_readonly("gradients",
-                             [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.gradient; }); })
+      .def_property_readonly(
+          "gradients", [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.gradient; }); },
+          "The norms of the Riemannian gradient after each iteration.")
       .def_readonly("summary", &Optimum::summary, "Of a scene: JSON, as lagroid optimize --json prints it.")
       .def("__repr__", [](const Optimum& o) {
         return fmt::format("<minimum {:.10g}: {} after {} iterations>", o.result.value, to_string(o.result.outcome),

@@ -91,100 +91,109 @@ void bind_scenes(py::module_& module) {
           [](const fs::path& file, const std::vector<std::string>& overrides) {
             return Scene{file, {}, file.string(), overrides};
           },
-          py::arg("file"), py::arg("overrides"))
+          py::arg("file"), py::arg("overrides"), "That of a file, with overrides key=value.")
       .def_static(
           "text",
           [](const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
             return Scene{std::nullopt, text, name, overrides};
           },
-          py::arg("text"), py::arg("name"), py::arg("overrides"))
+          py::arg("text"), py::arg("name"), py::arg("overrides"), "That of a TOML text.")
       .def_readonly("name", &Scene::name, "The file, or what messages call the text.")
       .def(
           "toml", [](const Scene& self) { return self.read().whole(); }, "The whole scene with its overrides.");
 
   py::class_<Endpoint>(module, "Endpoint", "A state as users see it.")
       .def_readonly("time", &Endpoint::time, "s")
-      .def_property_readonly("position",
-                             [](const py::object& self) { return view(self.cast<const Endpoint&>().position, self); })
+      .def_property_readonly(
+          "position", [](const py::object& self) { return view(self.cast<const Endpoint&>().position, self); },
+          "The object, as its columns; empty on a group.")
       .def_readonly("attitude", &Endpoint::attitude, "Unit quaternion w, x, y, z, or None.")
       .def_readonly("body_attitude", &Endpoint::body_attitude,
                     "The same of the body one sees, where that is the transpose.")
-      .def_property_readonly("momentum",
-                             [](const py::object& self) { return view(self.cast<const Endpoint&>().momentum, self); });
+      .def_property_readonly(
+          "momentum", [](const py::object& self) { return view(self.cast<const Endpoint&>().momentum, self); },
+          "In A*G, as its columns.");
 
   py::class_<LedgerEntry>(module, "LedgerEntry", "What was promised, and what was found.")
-      .def_readonly("name", &LedgerEntry::name)
+      .def_readonly("name", &LedgerEntry::name, "Of the quantity.")
       .def_readonly("promise", &LedgerEntry::promise, "round-off, conserved, bounded, none or counted")
-      .def_property_readonly("initial",
-                             [](const py::object& self) { return view(self.cast<const LedgerEntry&>().initial, self); })
-      .def_property_readonly("final",
-                             [](const py::object& self) { return view(self.cast<const LedgerEntry&>().final, self); })
+      .def_property_readonly(
+          "initial", [](const py::object& self) { return view(self.cast<const LedgerEntry&>().initial, self); },
+          "Its first value.")
+      .def_property_readonly(
+          "final", [](const py::object& self) { return view(self.cast<const LedgerEntry&>().final, self); },
+          "Its last value.")
       .def_readonly("drift", &LedgerEntry::drift, "Largest deviation from the initial value.")
-      .def_readonly("relative_drift", &LedgerEntry::relative_drift)
+      .def_readonly("relative_drift", &LedgerEntry::relative_drift, "The same over the size of the initial value.")
       .def_readonly("bound", &LedgerEntry::bound, "On the drift; zero where none is promised.")
       .def_readonly("verdict", &LedgerEntry::verdict, "kept, BROKEN, bounded, growing, unjudged, watched or counted")
-      .def_property_readonly("broken", &LedgerEntry::broken)
+      .def_property_readonly("broken", &LedgerEntry::broken, "Whether the promise was.")
       .def("__repr__", [](const LedgerEntry& e) {
         return fmt::format("<{}: {}, drift {:.2e}: {}>", e.name, e.promise, e.drift, e.verdict);
       });
 
   py::class_<Minimum>(module, "Minimum", "A stationary path of a boundary value.")
-      .def_readonly("cost", &Minimum::cost)
-      .def_property_readonly("momentum",
-                             [](const py::object& self) { return view(self.cast<const Minimum&>().momentum, self); })
-      .def_readonly("is_minimum", &Minimum::is_minimum)
-      .def_readonly("isolated", &Minimum::isolated)
-      .def_readonly("normal", &Minimum::normal)
-      .def_readonly("negative_directions", &Minimum::negative_directions);
+      .def_readonly("cost", &Minimum::cost, "The sum of the Lagrangian over its arrows.")
+      .def_property_readonly(
+          "momentum", [](const py::object& self) { return view(self.cast<const Minimum&>().momentum, self); },
+          "At its start.")
+      .def_readonly("is_minimum", &Minimum::is_minimum, "Whether its second variation is positive.")
+      .def_readonly("isolated", &Minimum::isolated, "False: one of a continuous family.")
+      .def_readonly("normal", &Minimum::normal, "False: abnormal, its multipliers are not unique.")
+      .def_readonly("negative_directions", &Minimum::negative_directions, "Directions that lower the action.");
 
   py::class_<Series>(module, "Series", "A recorded quantity: a row for each node, or for each arrow.")
-      .def_readonly("name", &Series::name)
+      .def_readonly("name", &Series::name, "Of the data set in files.")
       .def_readonly("components", &Series::components, "The labels of its columns.")
-      .def_readonly("unit", &Series::unit)
-      .def_readonly("meaning", &Series::meaning)
+      .def_readonly("unit", &Series::unit, "Of its numbers.")
+      .def_readonly("meaning", &Series::meaning, "In words.")
       .def_readonly("on_arrows", &Series::on_arrows, "A row for each arrow: one fewer than there are nodes.")
       .def_property_readonly(
           "values", [](const py::object& self) { return values(self.cast<const Series&>(), self); },
           "(rows,) or (rows, width); the run's own numbers.");
 
   py::class_<app::Panel>(module, "Panel", "Curves that belong in one picture.")
-      .def_readonly("title", &app::Panel::title)
-      .def_readonly("x_label", &app::Panel::x_label)
-      .def_readonly("y_label", &app::Panel::y_label)
+      .def_readonly("title", &app::Panel::title, "Above it.")
+      .def_readonly("x_label", &app::Panel::x_label, "Below the x axis.")
+      .def_readonly("y_label", &app::Panel::y_label, "Beside the y axis.")
       .def_readonly("x", &app::Panel::x, "The column on the x axis.")
       .def_readonly("curves", &app::Panel::curves, "Columns.")
-      .def_readonly("equal_axes", &app::Panel::equal_axes);
+      .def_readonly("equal_axes", &app::Panel::equal_axes, "Whether both have one scale.");
 
   py::class_<RunResult, std::shared_ptr<RunResult>>(
       module, "Run", "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
-      .def_readonly("system", &RunResult::system)
-      .def_readonly("method", &RunResult::method)
+      .def_readonly("system", &RunResult::system, "Its name.")
+      .def_readonly("method", &RunResult::method, "Of an initial value, and what it declares of itself.")
       .def_readonly("status", &RunResult::status, "converged, interrupted or why not.")
       .def_readonly("message", &RunResult::message, "Why, at which step, what to do.")
       .def_readonly("steps", &RunResult::steps, "Arrows computed.")
-      .def_readonly("steps_asked", &RunResult::steps_asked)
+      .def_readonly("steps_asked", &RunResult::steps_asked, "Arrows asked for.")
       .def_readonly("seconds", &RunResult::seconds, "Of the computation alone.")
-      .def_readonly("iterations", &RunResult::iterations)
+      .def_readonly("iterations", &RunResult::iterations, "Of all solves.")
       .def_readonly("cost", &RunResult::cost, "Of a boundary value.")
       .def_readonly("residual", &RunResult::residual, "Of a solve that failed.")
       .def_property_readonly(
-          "initial", [](const RunResult& r) -> const Endpoint& { return r.initial; },
+          "initial", [](const RunResult& r) -> const Endpoint& { return r.initial; }, "The first state.",
           py::return_value_policy::reference_internal)
       .def_property_readonly(
-          "final", [](const RunResult& r) -> const Endpoint& { return r.final; },
+          "final", [](const RunResult& r) -> const Endpoint& { return r.final; }, "The last state.",
           py::return_value_policy::reference_internal)
       .def_property_readonly(
           "first_multipliers",
-          [](const py::object& self) { return view(self.cast<const RunResult&>().first_multipliers, self); })
+          [](const py::object& self) { return view(self.cast<const RunResult&>().first_multipliers, self); },
+          "Of the first arrow.")
       .def_property_readonly(
           "last_multipliers",
-          [](const py::object& self) { return view(self.cast<const RunResult&>().last_multipliers, self); })
+          [](const py::object& self) { return view(self.cast<const RunResult&>().last_multipliers, self); },
+          "Of the last arrow.")
       .def_readonly("minima", &RunResult::minima, "Of a boundary value: all stationary paths, cheapest first.")
-      .def_readonly("notes", &RunResult::notes)
+      .def_readonly("notes", &RunResult::notes, "What else there is to say.")
       .def_property_readonly(
           "ledger", [](const RunResult& r) { return r.ledger.entries; }, "What was promised and found.")
-      .def_property_readonly("mean_iterations", [](const RunResult& r) { return r.ledger.mean_iterations; })
-      .def_property_readonly("most_iterations", [](const RunResult& r) { return r.ledger.most_iterations; })
+      .def_property_readonly(
+          "mean_iterations", [](const RunResult& r) { return r.ledger.mean_iterations; }, "Of a solve.")
+      .def_property_readonly(
+          "most_iterations", [](const RunResult& r) { return r.ledger.most_iterations; }, "Of one solve.")
       .def_property_readonly(
           "time", [](const py::object& self) { return view(self.cast<const RunResult&>().trajectory.time, self); },
           "(nodes,), s.")
@@ -209,8 +218,8 @@ void bind_scenes(py::module_& module) {
              const auto all = columns(r);
              return std::find(all.begin(), all.end(), label) != all.end();
            })
-      .def_property_readonly("converged", &RunResult::converged)
-      .def_property_readonly("interrupted", &RunResult::interrupted)
+      .def_property_readonly("converged", &RunResult::converged, "Whether all was solved.")
+      .def_property_readonly("interrupted", &RunResult::interrupted, "Whether Ctrl-C or SIGTERM ended it.")
       .def("text", app::text_report, "The report, as lagroid run prints it.")
       .def("json", app::json_report, "The summary, as lagroid run --json prints it.")
       .def(

@@ -40,6 +40,7 @@ from .prototype import (
 )
 from .scenes import require, resume, run, scene_text, systems
 from .studies import Method, check, methods, study
+from .sweeps import Sweep, sweep
 
 __all__ = [
     "BoundaryPath",
@@ -81,6 +82,7 @@ __all__ = [
     "Sphere",
     "SphericalPendulum",
     "Stiefel",
+    "Sweep",
     "Trajectories",
     "__version__",
     "check",
@@ -94,6 +96,7 @@ __all__ = [
     "run",
     "scene_text",
     "study",
+    "sweep",
     "systems",
     "trajectories",
 ]

@@ -13,6 +13,7 @@ _Path = str | os.PathLike[str]
 __version__: str
 
 def listing() -> str: ...
+def read_hdf5(file: _Path, dataset: str) -> _Array: ...
 
 # Scenes and their runs.
 

@@ -14,7 +14,7 @@ from ._lagroid import March, Run
 from .errors import Interrupted, SceneError, SolveError
 
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
-_Result = TypeVar("_Result", Run, March)
+_Result = TypeVar("_Result", bound=Union[Run, March])
 
 __all__ = ["SceneLike", "require", "resume", "run", "scene_text", "systems"]
 
@@ -46,9 +46,14 @@ def scene_text(scene: Mapping[str, Any]) -> str:
     return "".join(f"{json.dumps(str(key))} = {_toml(value, str(key))}\n" for key, value in scene.items())
 
 
-def made(scene: SceneLike, settings: Optional[Mapping[str, Any]]) -> _lagroid.Scene:
+def settings(given: Optional[Mapping[str, Any]]) -> list[str]:
+    """Values at dotted keys as key=value."""
+    return [f"{key}={_toml(value, key)}" for key, value in (given or {}).items()]
+
+
+def made(scene: SceneLike, given: Optional[Mapping[str, Any]]) -> _lagroid.Scene:
     """The scene of a file, a text or a dict, with other values at dotted keys."""
-    overrides = [f"{key}={_toml(value, key)}" for key, value in (settings or {}).items()]
+    overrides = settings(given)
     if isinstance(scene, Mapping):
         return _lagroid.Scene.text(scene_text(scene), "<dict>", overrides)
     if isinstance(scene, str) and "\n" in scene:

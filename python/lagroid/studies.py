@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple, Optional
 
 from . import _lagroid
-from .errors import ProgramError, SceneError
+from .programs import output_of, program
 from .scenes import SceneLike, made
 
 __all__ = ["Method", "check", "methods", "study"]
@@ -57,19 +54,6 @@ def study(
     return found
 
 
-def _checker() -> str:
-    found = os.environ.get("LAGROID_CHECK") or shutil.which("lagroid-check")
-    if not found and _lagroid.__file__ is not None:
-        beside = Path(_lagroid.__file__).parents[2] / "bin" / "lagroid-check"  # in the build tree
-        found = str(beside) if beside.exists() else None
-    if not found:
-        raise ProgramError(
-            "the program lagroid-check is not there: build its target (ninja lagroid_check), and put it on PATH or "
-            "name it in LAGROID_CHECK"
-        )
-    return found
-
-
 def check(
     scene: SceneLike, *, set: Optional[Mapping[str, Any]] = None, arguments: Sequence[str] = ()
 ) -> dict[str, Any]:
@@ -80,14 +64,6 @@ def check(
     with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
         file.write(asked.toml())
         file.flush()
-        program = subprocess.run(
-            [_checker(), file.name, "--json", *arguments], capture_output=True, text=True, check=False
-        )
-    complaint = program.stderr.strip().removeprefix("lagroid: ").replace(file.name, asked.name)
-    if program.returncode == 2:
-        raise SceneError(complaint)
-    try:
-        certificate: dict[str, Any] = json.loads(program.stdout)
-    except json.JSONDecodeError:
-        raise ProgramError(f"lagroid-check ended with {program.returncode}: {complaint}") from None
+        command = [program("lagroid-check", "LAGROID_CHECK", "lagroid_check"), file.name, "--json", *arguments]
+        certificate: dict[str, Any] = json.loads(output_of(command, asked.name, file.name))
     return certificate

@@ -1,12 +1,14 @@
 # %% [markdown]
 # # Many runs at once
 # Runs release the interpreter's lock: threads of Python run them side by side. Here, where a damped, driven pendulum
-# ends for a grid of starts. (Sweeps from the command line: docs/python.md.)
+# ends for a grid of starts.
 
 # %%
 import itertools
 import os
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import lagroid
 import numpy as np
@@ -43,3 +45,16 @@ print(wells)
 # %%
 assert (wells == -wells[::-1, ::-1]).all()
 assert set(wells.ravel()) >= {-1, 0, 1}
+
+# %% [markdown]
+# Thousands of members are the work of the program `lagroid sweep`, which goes on where it was broken off and uses many
+# machines: orbits and attractions in a Latin hypercube.
+
+# %%
+sweeps = Path(__file__).resolve().parents[2] / "examples" / "sweeps"
+with tempfile.TemporaryDirectory() as folder:
+    orbits = lagroid.sweep(sweeps / "kepler.toml", out=folder, set={"design.count": 100})
+    print(orbits.summary["statuses"], orbits.columns)
+    momentum, drift = orbits["initial.momentum.1"], orbits["ledger/energy"]
+print("the energy is kept worst where the orbit comes closest, from momentum", momentum[drift.argmax()])
+assert len(momentum) == 100 and np.isfinite(drift).all()

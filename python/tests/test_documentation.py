@@ -27,7 +27,8 @@ class Page(unittest.TestCase):
         finally:
             os.chdir(folder)
         self.assertGreater(len(blocks("python")), 8)
-        self.assertLess(abs(names["prototype"].object - names["compiled"].object).max(), 1e-11)  # type: ignore[attr-defined]
+        prototype, compiled = names["prototype"], names["compiled"]
+        self.assertLess(abs(prototype.object - compiled.object).max(), 1e-11)  # type: ignore[attr-defined]
 
     def test_cpp_is_that_of_the_template(self) -> None:
         source = (ROOT / "python" / "template" / "my_system.cpp").read_text()
@@ -44,7 +45,8 @@ class Page(unittest.TestCase):
     def test_classes_exist(self) -> None:
         import lagroid
 
-        for name in re.findall(r"lagroid\.(\w+)\(", PAGE) + re.findall(r"^\| (\w+(?:Error|Interrupted)) \|", PAGE, re.M):
+        errors = re.findall(r"^\| (\w+(?:Error|Interrupted)) \|", PAGE, re.M)
+        for name in re.findall(r"lagroid\.(\w+)\(", PAGE) + errors:
             self.assertTrue(hasattr(lagroid, name), name)
 
 

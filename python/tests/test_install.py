@@ -40,7 +40,8 @@ class Install(unittest.TestCase):
     def test_template(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             installed, build = Path(folder) / "installed", Path(folder) / "build"
-            run("cmake", "--install", BUILD, "--prefix", installed)
+            for component in ("development", "python"):
+                run("cmake", "--install", BUILD, "--prefix", installed, "--component", component)
             run("cmake", "-S", ROOT / "python" / "template", "-B", build, f"-DCMAKE_PREFIX_PATH={installed}",
                 f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release")  # fmt: skip
             run("cmake", "--build", build)

@@ -37,6 +37,14 @@ class Studies(unittest.TestCase):
         with self.assertRaises(ValueError):
             lagroid.study(EXAMPLES / "kepler.toml", steps=[-1.0])
 
+    def test_check_by_the_program_itself(self) -> None:
+        try:
+            short = {"time.steps": 50}
+            certificate = lagroid.check(EXAMPLES / "pendulum.toml", set=short, arguments=["--samples", "5"])
+        except lagroid.ProgramError as error:
+            self.skipTest(str(error))
+        self.assertEqual(certificate["status"], "certified")
+
     def test_check_hands_over_to_its_program(self) -> None:
         """The program is built apart (it compiles for minutes): here, one that prints what it was asked."""
         with tempfile.TemporaryDirectory() as folder:
@@ -56,7 +64,7 @@ class Studies(unittest.TestCase):
                     lagroid.check(EXAMPLES / "kepler.toml")
 
     def test_check_without_its_program_says_how_to_build_it(self) -> None:
-        with mock.patch("lagroid.studies._lagroid.__file__", "/nowhere/python/lagroid/_lagroid.so", create=True):
+        with mock.patch("lagroid.programs._lagroid.__file__", "/nowhere/python/lagroid/_lagroid.so", create=True):
             with mock.patch.dict(os.environ, {"PATH": "/nowhere"}):
                 with self.assertRaisesRegex(lagroid.ProgramError, "ninja lagroid_check"):
                     lagroid.check(EXAMPLES / "kepler.toml")

@@ -108,7 +108,8 @@ class Systems(unittest.TestCase):
         self.assertIn("explicit", system.integrator([0, 1.2], [1, 0], method="splitting").method)
         march = system.integrator([0, 1.2], [1, 0], mode="controlled").march(20)
         self.assertGreater(np.ptp(march.step_size), 1e-3)
-        for wrong in ({"mode": "fast"}, {"order": 3}, {"composition": "none"}, {"order": 4, "composition": "kahan-li-8"}):
+        wrongs = ({"mode": "fast"}, {"order": 3}, {"composition": "none"}, {"order": 4, "composition": "kahan-li-8"})
+        for wrong in wrongs:
             with self.assertRaises(ValueError):
                 system.integrator([0, 1.2], [1, 0], **wrong)  # type: ignore[arg-type]
 

@@ -55,13 +55,25 @@ class Stubs(unittest.TestCase):
     @staticmethod
     def members(node: ast.ClassDef) -> set[str]:
         out = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
-        out |= {item.target.id for item in node.body if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name)}  # fmt: skip
+        for item in node.body:
+            if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name):
+                out.add(item.target.id)
         return {name for name in out if not name.startswith("_")}
 
     def test_everything_public_has_a_docstring(self) -> None:
         for name in lagroid.__all__:
-            if not name.startswith("_"):
-                self.assertTrue(getattr(lagroid, name).__doc__, name)
+            value = getattr(lagroid, name)
+            if name.startswith("_"):
+                continue
+            self.assertTrue(value.__doc__, name)
+            if not isinstance(value, type) or value.__module__ != _lagroid.__name__:
+                continue
+            for member, item in vars(value).items():
+                if member.startswith("_"):
+                    continue
+                # A function's begins with its signature.
+                told = item.__doc__ or ""
+                self.assertTrue(told.partition("\n\n")[2] if callable(item) else told, f"{name}.{member}")
 
 
 if __name__ == "__main__":
