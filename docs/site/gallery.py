@@ -1,4 +1,4 @@
-"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below and takes what they say of themselves."""
+"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below."""
 import os
 import pathlib
 import re
