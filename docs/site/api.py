@@ -253,8 +253,8 @@ class LinkNames(SphinxPostTransform):
     default_priority = 900
 
     def place(self, name):
-        """Where an entity is described, or the only class that has a member of that name. Plain words, such as `constant`,
-        mean other things on the pages too."""
+        """Where an entity is described, or the only class that has a member of that name. Plain words, such as
+        `constant`, mean other things on the pages too."""
         if not re.search(r"_|[A-Z]", name):
             return None
         classes = self.env.lagroid_members.get(name, ())
