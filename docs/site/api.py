@@ -253,7 +253,10 @@ class LinkNames(SphinxPostTransform):
     default_priority = 900
 
     def place(self, name):
-        """Where an entity is described, or the only class that has a member of that name."""
+        """Where an entity is described, or the only class that has a member of that name. Plain words, such as
+        `constant`, mean other things on the pages too."""
+        if not re.search(r"_|[A-Z]", name):
+            return None
         classes = self.env.lagroid_members.get(name, ())
         return self.env.lagroid_names.get(name) or (next(iter(classes)) if len(classes) == 1 else None)
 

@@ -1,4 +1,4 @@
-"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below and takes what they say of themselves."""
+"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below."""
 import os
 import pathlib
 import re
@@ -51,8 +51,8 @@ def command(name, settings):
 def page():
     """The text of docs/gallery.md."""
     lines = ["# Gallery", "",
-             "Every picture is the `plot.svg` of a run: the command above it draws it again, `./lagroid view` of the same",
-             "folder moves it. `./lagroid pages gallery` writes this page."]
+             "Every picture is the `plot.svg` of a run: the command above it draws it again, `./lagroid view` of",
+             "the same folder moves it. `./lagroid pages gallery` writes this page."]
     for subject, scenes in gallery.items():
         lines += ["", f"## {subject}"]
         for name, settings in scenes.items():

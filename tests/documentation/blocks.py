@@ -103,7 +103,7 @@ def commands(text):
     """The command lines of a block that start lagroid: their words after the name."""
     joined = re.sub(r"\\\n", " ", text)
     for line in joined.splitlines():
-        for found in re.finditer(r"(?:^|[;|&]|\bdo)\s*(?:\$ )?(?:mpirun .*)?(?:\./)?\blagroid(?= )([^;|&]*)", line):
+        for found in re.finditer(r"(?:^|[;|&]|\bdo)\s*(?:\$ )?(?:(?:mpirun|srun) .*)?(?:\./)?\blagroid(?= )([^;|&]*)", line):
             words = re.split(r"\s#|\s\(|\s\[", found[1])[0]
             try:
                 yield shlex.split(words)
