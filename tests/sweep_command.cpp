@@ -328,7 +328,7 @@ radius = 2
 key = "initial.attitude"
 distribution = "attitude"
 )"));
-  ASSERT_EQ(sweep(file, "tops", "--set keep.ledger=false").code, 0);
+  ASSERT_EQ(sweep(file, "tops", "--set keep.ledger=false --set run.part=500").code, 0);
   std::array<std::vector<double>, 3> m;
   std::array<std::vector<double>, 4> q;
   for (int i = 0; i < 3; ++i) m[std::size_t(i)] = column("tops", "initial.momentum." + std::to_string(i));

@@ -89,7 +89,7 @@ void measure_files(const fs::path& folder, SweepCosts& costs) {
   std::error_code ignored;
   fs::remove_all(folder, ignored);
   // a + b parts + c members, at three sizes.
-  const std::array<std::array<long, 2>, 3> sizes{{{16, 4}, {1024, 4}, {16, 1024}}};
+  const std::array<std::array<long, 2>, 3> sizes{{{16, 4}, {400, 4}, {16, 1000}}};
   Eigen::Matrix3d shape;
   Eigen::Vector3d seconds;
   for (int i = 0; i < 3; ++i) {
@@ -187,7 +187,7 @@ SweepCosts measure_sweep(Ranks& ranks, double start, const fs::path& folder) {
   ranks.broadcast("");
   costs.start = now() - start;
   // Rank 0 only hands out, but for a part now and then.
-  std::vector<long> parts(5000);
+  std::vector<long> parts(3000);
   std::iota(parts.begin(), parts.end(), 0L);
   std::size_t own = 0;
   const auto outcome = for_each_part(ranks, parts, {.threads = 1}, [&](long) {
