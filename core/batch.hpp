@@ -51,12 +51,8 @@ template <int Width = widest_batch> class Batch {
   LAGROID_INLINE void store(double* x) const { native().store_unaligned(x); }
 
   /// Lane by lane, for what is rare.
-  double operator[](int lane) const { return to_array()[std::size_t(lane)]; }
-  void set(int lane, double x) {
-    auto all = to_array();
-    all[std::size_t(lane)] = x;
-    *this = load(all.data());
-  }
+  double operator[](int lane) const { return lanes_[lane]; }
+  void set(int lane, double x) { lanes_[lane] = x; }
   std::array<double, std::size_t(Width)> to_array() const {
     std::array<double, std::size_t(Width)> out;
     store(out.data());

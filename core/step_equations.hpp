@@ -27,7 +27,7 @@ template <class Sys, class S = double> struct StepEquations {
   }
 
   /// [ -d2f/dv dw   -(d(phi, C o alpha)/dv)^T ;  d(phi, C o beta)/dw   0 ].
-  static Jacobian jacobian(const TwoSidedOf<Sys, S>& d) {
+  static Jacobian jacobian(const TwoSidedOf<Sys>& d) {
     Jacobian j;
     j.template topLeftCorner<Sys::dimension, Sys::dimension>() = -d.mixed;
     j.template topRightCorner<Sys::dimension, Sys::constraints>() = -d.constraint_source;

@@ -101,14 +101,14 @@ template <int N, int M, class S = double> struct Gradients {
 };
 
 /// The gradients with the mixed second derivative: the derivative of F- along the alpha-fibre is -mixed.
-template <int N, int M, class S = double> struct TwoSided : Gradients<N, M, S> {
-  Matrix<S, N, N> mixed;              ///< d2f / dv dw
-  Matrix<S, N, M> constraint_source;  ///< d(phi, C o alpha)/dv, column by column; omega for nonholonomic phi
-  Matrix<S, M, N> constraint_target;  ///< d(phi, C o beta)/dw, row by row
+template <int N, int M> struct TwoSided : Gradients<N, M> {
+  Matrix<double, N, N> mixed;              ///< d2f / dv dw
+  Matrix<double, N, M> constraint_source;  ///< d(phi, C o alpha)/dv, column by column; omega for nonholonomic phi
+  Matrix<double, M, N> constraint_target;  ///< d(phi, C o beta)/dw, row by row
 };
 
 template <class Sys, class S = double> using GradientsOf = Gradients<Sys::dimension, Sys::constraints, S>;
-template <class Sys, class S = double> using TwoSidedOf = TwoSided<Sys::dimension, Sys::constraints, S>;
+template <class Sys> using TwoSidedOf = TwoSided<Sys::dimension, Sys::constraints>;
 
 /// What the solvers require of a system. Build one by deriving from `System`.
 template <class Sys>

@@ -26,7 +26,7 @@ S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multip
 
 }  // namespace detail
 
-template <class Sys, class S = double> using MixedOf = Mixed<S, Sys::dimension, Sys::dimension>;
+template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
 
 /// What acts on the two ends of g beside the Lagrangian: discrete forces, and at the source the reaction
 /// <lambda, omega>.
@@ -96,13 +96,12 @@ LAGROID_FLATTEN GradientsOf<Sys, S> automatic_gradients(const Sys& system,
 }
 
 /// The two-sided derivative by mixed dual numbers: one pass through L, phi and C.
-template <DiscreteSystem Sys, class S = double>
-LAGROID_FLATTEN TwoSidedOf<Sys, S> automatic_two_sided(const Sys& system,
-                                                       const ArrowOf<typename Sys::GroupoidType, S>& g,
-                                                       const Vector<S, Sys::constraints>& lambda) {
-  using M = MixedOf<Sys, S>;
+template <DiscreteSystem Sys>
+LAGROID_FLATTEN TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
+                                                    const typename Sys::Multipliers& lambda) {
+  using M = MixedOf<Sys>;
   const auto gm = system.groupoid.template seed<M, End::source, End::target>(g);
-  TwoSidedOf<Sys, S> out;
+  TwoSidedOf<Sys> out;
   M f = system.lagrangian(gm);
   if constexpr (Sys::arrow_constraints > 0) {
     const Vector<M, Sys::arrow_constraints> phi = system.constraint(gm);
@@ -130,7 +129,7 @@ LAGROID_FLATTEN TwoSidedOf<Sys, S> automatic_two_sided(const Sys& system,
   out.mixed = f.mixed();
   if constexpr (Nonholonomic<Sys>) {
     constexpr int k = Sys::arrow_constraints;
-    out.constraint_source.template leftCols<k>() = annihilator<Sys, S>(system, system.groupoid.source(g));
+    out.constraint_source.template leftCols<k>() = annihilator(system, system.groupoid.source(g));
     out.source_gradient += out.constraint_source.template leftCols<k>() * lambda.template head<k>();
   }
   if constexpr (Forced<Sys>) {

@@ -54,6 +54,8 @@ template <int Size> class SmallInverse {
     return inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < largest_entry;
   }
 
+  /// Column j of -a^{-1}.
+  const Lanes<double, Size>& column(int j) const { return columns_[std::size_t(j)]; }
   /// -a^{-1} b.
   Column correction(const Column& b) const {
     // Two sums, for two chains of additions instead of one.

@@ -163,7 +163,7 @@ auto BatchMarch<Sys, W>::next_step(const Sys& system, const Mask& wanted, StepSo
   const Unknowns predicted = past_.next();
   const Fibre chart = predicted.template head<n>();
   solution.step = along(system, predicted);
-  Mask solved = newton_.solve(system, state_, solution, wanted, index_);
+  Mask solved = newton_.solve(system, state_, solution, wanted);
   if (const Mask lost = wanted && !solved; xsimd::any(lost)) solved = solved || again(system, lost, solution);
   return solved && near(chart, system.groupoid.chart(solution.step.arrow));
 }

@@ -2,9 +2,10 @@
 /// Newton's iteration on the alpha-fibres of several members at once, one in each lane.
 
 #include <lagroid/core/batch.hpp>
-#include <lagroid/solvers/ensemble/batch_inverse.hpp>
+#include <lagroid/solvers/small_inverse.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
+#include <array>
 #include <limits>
 
 namespace lagroid {
@@ -56,27 +57,34 @@ void set_arrow_of_lane(const G& groupoid, ArrowOf<G, Batch<W>>& g, int lane, con
 }  // namespace detail
 
 /// The short way of `NewtonStep` (chord iterations with a kept inverse, to the same round-off levels), in every lane at
-/// once. A lane that has converged rests while others go on; one that does not contract, or whose matrix is not to be
-/// trusted, is given up, for the caller to solve otherwise. Each lane's outcome is its own. No allocation.
+/// once. Matrices are evaluated lane by lane, when a lane needs a new one: what a scalar with second derivatives keeps
+/// in registers, a batch of them does not. A lane that has converged rests while others go on; one that does not
+/// contract, or whose matrix is not to be trusted, is given up, for the caller to solve otherwise. Each lane's outcome
+/// is its own. No allocation.
 template <DiscreteSystem Sys, int W> class BatchNewton {
  public:
   using B = Batch<W>;
   using Mask = typename B::Mask;
   using G = typename Sys::GroupoidType;
 
-  /// From the guess in `solution.step` to the solution, in the lanes `wanted`; returns those that reached it. `index`
-  /// counts the steps of the trajectory.
-  Mask solve(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted,
-             long index);
-  /// The same with the matrix of every iterate, where the guess may be far, and scales chosen anew.
+  /// From the guess in `solution.step` to the solution, in the lanes `wanted`; returns those that reached it.
+  Mask solve(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted) {
+    // If iterations grow in proportion to the age of a matrix, it is best renewed when they have cost as much as it.
+    const Mask renewed = wanted && (!trusted_ || more_ > price);
+    const Mask done = iterate</*full=*/false>(system, state, solution, wanted, renewed);
+    best_ = select(renewed, iterations_, best_);
+    more_ = select(renewed, B(0.0), more_ + (iterations_ - best_));
+    return done;
+  }
+  /// The same with the matrix of every iterate, where the guess may be far, and an order of elimination chosen anew.
   Mask solve_fully(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted) {
-    rescale_ = rescale_ || wanted;
+    renew(wanted);
     return iterate</*full=*/true>(system, state, solution, wanted, wanted);
   }
-  /// Lanes that were solved otherwise: their matrices and scales are chosen anew at the next step.
+  /// The matrices of these lanes are evaluated anew at their next step.
   void renew(const Mask& lanes) {
-    rescale_ = rescale_ || lanes;
     trusted_ = trusted_ && !lanes;
+    reordered_ = reordered_ || lanes;
   }
 
  private:
@@ -86,13 +94,12 @@ template <DiscreteSystem Sys, int W> class BatchNewton {
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
   static constexpr double leftover = 0.1;  ///< of a round-off level: what the iteration may leave
   static constexpr int longest_chord = 12;
-  static constexpr double largest_entry = 1e4;  ///< of a scaled inverse that is trusted
-  static constexpr double longest_period = 64;
+  static constexpr double price = E::size > 4 ? 16 : 8;  ///< of a matrix, in iterations
 
   template <bool Full>
   Mask iterate(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution, const Mask& wanted,
                const Mask& renewed);
-  void renew(const Sys& system, const Step<Sys, B>& step, const Mask& lanes);
+  void evaluate(const Sys& system, const Step<Sys, B>& step, const Mask& lanes);
   Mask admissible(const Sys& system, const Step<Sys, B>& step, const Mask& lanes) const;
 
   LAGROID_INLINE Residual correction(const Residual& r) const {
@@ -116,37 +123,15 @@ template <DiscreteSystem Sys, int W> class BatchNewton {
   }
 
   Jacobian jacobian_;
-  Jacobian inverse_;  ///< the negative of the inverse
-  BatchScaling<W, E::size> scaling_;
+  Jacobian inverse_;  ///< the negative of its inverse
   Mask trusted_{false};
-  Mask rescale_{true};
+  Mask reordered_{true};
   B rate_ = 0.1;        ///< contraction of an iteration, as last seen
-  B period_ = 4.0;      ///< steps from one matrix to the next, a power of two: whole batches are renewed together
   B best_ = 0.0;        ///< iterations with a new matrix
-  B worst_ = 0.0;       ///< since
+  B more_ = 0.0;        ///< iterations beyond these since
   B iterations_ = 0.0;  ///< of the last solve
+  std::array<SmallInverse<E::size>, std::size_t(W)> elimination_;
 };
-
-/// Every lane's matrix is renewed when the number of the step is a multiple of the lane's period. The period doubles
-/// where iterations did not become more over its length, and is halved where they did by more than one.
-template <DiscreteSystem Sys, int W>
-auto BatchNewton<Sys, W>::solve(const Sys& system, const State<G, B>& state, StepSolution<Sys, B>& solution,
-                                const Mask& wanted, long index) -> Mask {
-  Mask renewed = wanted && !trusted_;
-  if (index % 4 == 0) {
-    Mask over(false);
-    for (long period = 4; period <= long(longest_period); period *= 2)
-      if (index % period == 0) over = over || period_ == B(period);
-    const Mask steady = over && worst_ <= best_;
-    const Mask worse = over && worst_ > best_ + 1.0;
-    period_ = select(steady, min(2.0 * period_, B(longest_period)), select(worse, max(0.5 * period_, B(4.0)), period_));
-    renewed = renewed || (wanted && over);
-  }
-  const Mask done = iterate</*full=*/false>(system, state, solution, wanted, renewed);
-  best_ = select(renewed, iterations_, best_);
-  worst_ = select(renewed, iterations_, max(worst_, iterations_));
-  return done;
-}
 
 template <DiscreteSystem Sys, int W>
 template <bool Full>
@@ -154,7 +139,7 @@ LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State
                                                   StepSolution<Sys, B>& solution, const Mask& wanted,
                                                   const Mask& renewed) -> Mask {
   Step<Sys, B>& step = solution.step;
-  if (xsimd::any(renewed)) renew(system, step, renewed);
+  if (xsimd::any(renewed)) evaluate(system, step, renewed);
   GradientsOf<Sys, B> d = automatic_gradients<Sys, B>(system, step.arrow, step.multipliers);
   Residual residual = E::residual(d, state.momentum);
   Residual floor = round_off_level<Sys, B>(system, state, step, jacobian_);
@@ -166,7 +151,7 @@ LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State
   Mask done(false);
   iterations_ = B(longest_chord);
   for (int iteration = 1; iteration <= longest_chord && xsimd::any(open); ++iteration) {
-    if (Full && iteration > 1) renew(system, step, open);
+    if (Full && iteration > 1) evaluate(system, step, open);
     const Residual by = correction(residual);
     const ArrowOf<G, B> there =
         system.groupoid.extend(step.arrow, AlgebroidVector<G, B>(by.template head<Sys::dimension>()));
@@ -192,31 +177,29 @@ LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State
   return done && admissible(system, step, done);
 }
 
-/// The inverse of the matrix at a step, in the lanes given.
+/// The matrix at a step and its inverse, in the lanes given.
 template <DiscreteSystem Sys, int W>
-[[gnu::noinline]] void BatchNewton<Sys, W>::renew(const Sys& system, const Step<Sys, B>& step, const Mask& lanes) {
-  const Jacobian a = E::jacobian(automatic_two_sided<Sys, B>(system, step.arrow, step.multipliers));
-  detail::blend(lanes, a, jacobian_);
-  if (const Mask rescaled = rescale_ && lanes; xsimd::any(rescaled)) {
-    const auto fresh = BatchScaling<W, E::size>::equilibrate(a);
-    detail::blend(rescaled, fresh.row, scaling_.row);
-    detail::blend(rescaled, fresh.column, scaling_.column);
-    rescale_ = rescale_ && !lanes;
-  }
-  Jacobian scaled;
-  for (int j = 0; j < E::size; ++j)
-    for (int i = 0; i < E::size; ++i) scaled(i, j) = a(i, j) * scaling_.row(i) * scaling_.column(j);
-  const Jacobian inverse = negative_inverse<W, E::size>(scaled);
-  B largest = 0.0;
-  B sum = 0.0;
-  for (int j = 0; j < E::size; ++j)
-    for (int i = 0; i < E::size; ++i) {
-      const B entry = inverse(i, j);
-      largest = max(largest, abs(entry));
-      sum += entry;
-      inverse_(i, j) = select(lanes, entry * scaling_.column(i) * scaling_.row(j), inverse_(i, j));
+[[gnu::noinline]] void BatchNewton<Sys, W>::evaluate(const Sys& system, const Step<Sys, B>& step, const Mask& lanes) {
+  using One = StepEquations<Sys>;
+  std::array<double, std::size_t(W)> good = select(trusted_, B(1.0), B(0.0)).to_array();
+  for (int lane = 0; lane < W; ++lane) {
+    if (!lanes.get(std::size_t(lane))) continue;
+    const typename One::Jacobian a =
+        One::jacobian(two_sided(system, detail::arrow_of_lane<W>(system.groupoid, step.arrow, lane),
+                                typename Sys::Multipliers(detail::lane_of(step.multipliers, lane))));
+    auto& elimination = elimination_[std::size_t(lane)];
+    if (reordered_.get(std::size_t(lane))) elimination.choose_pivots(a, Scaling<E::size>::equilibrate(a));
+    good[std::size_t(lane)] = elimination.invert(a) ? 1 : 0;
+    for (int j = 0; j < E::size; ++j) {
+      const auto column = elimination.column(j);
+      for (int i = 0; i < E::size; ++i) {
+        jacobian_(i, j).set(lane, a(i, j));
+        inverse_(i, j).set(lane, column[i]);
+      }
     }
-  trusted_ = (trusted_ && !lanes) || (lanes && largest + 0.0 * sum < largest_entry);
+  }
+  trusted_ = B::load(good.data()) > 0.0;
+  reordered_ = reordered_ && !lanes;
 }
 
 template <DiscreteSystem Sys, int W>
