@@ -533,7 +533,9 @@ to = 2.6
     EXPECT_NE(r.out.find("engine    lanes"), std::string::npos) << r.out;
     ASSERT_EQ(sweep(file, scenes, "--set run.engine=scenes").code, 0);
     for (const auto& [name, values] : members(lanes)) {
-      if (name == "status" || name == "run/steps") EXPECT_EQ(values, members(scenes).at(name));
+      if (name == "status" || name == "run/steps") {
+        EXPECT_EQ(values, members(scenes).at(name));
+      }
       if (!name.starts_with("final/")) continue;
       const auto a = column(lanes, name);
       const auto b = column(scenes, name);
