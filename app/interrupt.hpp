@@ -1,12 +1,14 @@
 #pragma once
 /// Ctrl-C and SIGTERM while a run goes on.
 
+#include <csignal>
+
 namespace lagroid::app {
 
-/// As long as it lives, the first SIGINT or SIGTERM is noted instead of ending the program, and from then on, so that
+/// As long as one lives, the first SIGINT or SIGTERM is noted instead of ending the program, and from then on, so that
 /// what was computed can be written, only one that comes over a second later ends it (a terminal and `timeout` send
-/// theirs to a whole group of processes, so that one may arrive twice). Of several, on any threads, the first sets that
-/// up and the last undoes it.
+/// theirs to a whole group of processes, so that one may arrive twice). Guards nest, and live on several threads: what
+/// handled signals before is put back with the last.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -15,6 +17,9 @@ class InterruptGuard {
   ~InterruptGuard();
   /// Whether one has come.
   static bool interrupted();
+  /// For a host that goes on after an interrupt: where no guard lives any more, puts back what handled signals before,
+  /// and forgets the one that came. Returns it; 0: none came, or a guard lives.
+  static int forget();
 };
 
 }  // namespace lagroid::app

@@ -234,6 +234,34 @@ TEST(Sweeps, WhatItNamesExists) {
 TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time.md"))), none); }
 TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
 
+TEST(TheoryPages, WhatTheyNameExists) {
+  for (const char* paper : {"G", "N", "V", "H"})
+    EXPECT_EQ(unknown_names(prose_of(read(std::string("docs/theory/") + paper + ".md"))), none) << paper;
+}
+
+/// What looks like the name of a test, Suite.Name, in `backquotes`.
+std::vector<std::string> unknown_tests(const std::string& page) {
+  const std::string tests = text_of({"tests"}, ".cpp");
+  std::vector<std::string> out;
+  for (const auto& name : matches(prose_of(page), "`([A-Z]\\w+\\.[A-Z]\\w+)`"))
+    if (body_of(name, tests).empty()) out.push_back(name);
+  return out;
+}
+
+TEST(Questions, AreAnsweredByTestsThatExist) {
+  const std::string page = read("docs/faq.md");
+  EXPECT_EQ(unknown_tests(page), none);
+  for (auto at = page.find("\n## "); at != std::string::npos; at = page.find("\n## ", at + 1)) {
+    const std::string answer = page.substr(at, page.find("\n## ", at + 1) - at);
+    EXPECT_FALSE(matches(answer, "`([A-Z]\\w+\\.[A-Z]\\w+)`").empty()) << answer.substr(0, 80);
+  }
+}
+
+TEST(BrokenPage, ATestOfNothingIsFoundOut) {
+  EXPECT_EQ(unknown_tests("`Nothing.IsTested`, `NewtonStep.ReportsNotFinite`"),
+            std::vector<std::string>{"Nothing.IsTested"});
+}
+
 TEST(Mathematics, ItNamesEveryLaw) {
   const auto named =
       matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +

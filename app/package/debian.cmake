@@ -10,6 +10,12 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
 
+set(runs_on "It runs on every amd64 processor; build from source for the
+vector registers of one of your own.")
+if(LAGROID_ARCH)
+  set(runs_on "It was compiled with -march=${LAGROID_ARCH}, and runs on no lesser processor.")
+endif()
+
 set(CPACK_COMPONENTS_ALL development)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblagroid-dev)
@@ -23,8 +29,7 @@ structure-preserving integrator, an optimal-control solver and a ledger of
 what was kept and what was not.
 .
 This package holds the static library, its headers, and the files for CMake
-and pkg-config. It runs on every amd64 processor; build from source for the
-vector registers of one of your own.")
+and pkg-config. ${runs_on}")
 if(LAGROID_APP)
   list(APPEND CPACK_COMPONENTS_ALL program)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lagroid)

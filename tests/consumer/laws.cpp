@@ -11,6 +11,7 @@ using namespace lagroid;
 
 /// Its inverse forgets to exchange the ends.
 struct Broken : PolarPairs {
+  static std::string name() { return "polar pairs with a broken inverse"; }
   template <class S> static Arrow<S> inverse(const lagroid::Vector<S, 4>& g) { return g; }
 };
 

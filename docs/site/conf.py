@@ -1,0 +1,31 @@
+"""The documentation site: the Markdown pages as they stand, and the API reference. `./lagroid docs` builds it."""
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+root = pathlib.Path(__file__).parents[2]
+
+project = "Lagroid"
+release = re.search(r"^## ([\d.]+)", (root / "CHANGELOG.md").read_text(), re.M)[1]
+version = release
+language = "en"
+
+extensions = ["myst_parser", "api", "links", "mathml"]
+include_patterns = ["*.md", "docs/**.md"]
+exclude_patterns = ["build", "out", ".git"]
+root_doc = "docs/index"
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+highlight_language = "text"
+
+html_theme = "sphinx_rtd_theme"
+html_title = f"Lagroid {release}"
+html_math_renderer = "mathml"
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
+html_extra_path = ["index.html"]
+html_show_sphinx = False
+html_show_copyright = False
+html_copy_source = False

@@ -1,0 +1,94 @@
+"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below and takes what they say of themselves."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+root = pathlib.Path(__file__).resolve().parents[2]
+
+# Scenes by subject, with the settings that keep a picture small.
+gallery = {
+    "The cheapest way": {
+        "plate_ball": [], "unicycle": [], "attitude_control": [], "kepler_boundary": []},
+    "Orbits": {
+        "kepler": ["time.steps=2000", "output.every=4"], "figure_eight": ["output.every=40"],
+        "pythagorean": ["output.every=20000"], "kepler_controlled": ["time.steps=800"]},
+    "Bodies that turn": {
+        "rigid_body": ["time.steps=1000"], "heavy_top": ["time.steps=1000"], "tops": ["output.every=20"],
+        "tumbling_book": ["output.every=10"]},
+    "Pendula": {
+        "spherical_pendulum": ["output.every=2"], "spring_pendulum": ["output.every=30"],
+        "foucault": ["output.every=12"],
+        "upside_down": ["output.every=45"], "pendulum_chain": ["output.every=10"]},
+    "Rolling and sliding": {
+        "rolling_ball": ["output.every=3"], "rolling_disk": ["output.every=2"], "chaplygin_sleigh": ["output.every=2"],
+        "two_ways_to_roll": ["output.every=4"], "steering": ["output.every=4"]},
+    "Many bodies": {
+        "chain_drop": ["output.every=30"], "six_bar": ["output.every=30"], "rolling_balls": ["output.every=18"]},
+}
+
+
+def caption(scene):
+    """The comment that opens a scene, as one paragraph."""
+    lines = []
+    for line in scene.read_text().splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.removeprefix("#").strip())
+    said = " ".join(lines)
+    if not said:
+        sys.exit(f"gallery: {scene}: the scene does not open with what it is; write a comment there")
+    return re.sub(r"(?=[*_\[\]<])", r"\\", said)
+
+
+def command(name, settings):
+    return ["run", f"examples/{name}.toml", *(word for setting in settings for word in ("--set", setting))]
+
+
+def page():
+    """The text of docs/gallery.md."""
+    lines = ["# Gallery", "",
+             "Every picture is the `plot.svg` of a run: the command above it draws it again, `./lagroid view` of the same",
+             "folder moves it. `./lagroid pages gallery` writes this page."]
+    for subject, scenes in gallery.items():
+        lines += ["", f"## {subject}"]
+        for name, settings in scenes.items():
+            lines += ["", f"### {name.replace('_', ' ').capitalize()}", "", caption(root / f"examples/{name}.toml"),
+                      f"([scene](../examples/{name}.toml))", "",
+                      f"    ./lagroid {' '.join(command(name, settings))} --out out/{name}", "",
+                      f"![{name}](gallery/{name}.svg)"]
+    return "\n".join(lines) + "\n"
+
+
+def draw(program, name, settings, pictures):
+    """Runs the scene and keeps its picture."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = command(name, settings)
+        done = subprocess.run([program, *arguments, "--out", folder], cwd=root, capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f"gallery: lagroid {' '.join(arguments)}: {done.stderr.strip()}")
+        shutil.copy(pathlib.Path(folder) / "plot.svg", pictures / f"{name}.svg")
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit("usage: gallery.py PROGRAM")
+    program = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory(dir=root / "docs") as drawn:
+        pictures = pathlib.Path(drawn)
+        for scenes in gallery.values():
+            for name, settings in scenes.items():
+                draw(program, name, settings, pictures)
+        shutil.rmtree(root / "docs/gallery", ignore_errors=True)
+        (root / "docs/gallery").mkdir()
+        for picture in pictures.glob("*.svg"):
+            shutil.move(picture, root / "docs/gallery" / picture.name)
+        (pictures / "gallery.md").write_text(page())
+        os.replace(pictures / "gallery.md", root / "docs/gallery.md")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,231 @@
+/// Hamiltonians on (T*S^2)^k from trajectories.
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "computing.hpp"
+
+#include <learn/learn_files.hpp>
+#include <learn/model_file.hpp>
+#include <learn/trajectory_files.hpp>
+#include <output_folder.hpp>
+
+#include <lagroid/solvers/learning/measures.hpp>
+#include <lagroid/solvers/learning/train.hpp>
+#include <lagroid/systems/chain_trajectories.hpp>
+
+#include <fmt/format.h>
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+using app::LearnedHamiltonian;
+using learning::Observation, learning::Trained, learning::Trajectories;
+using States = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Trajectories of M points (N, M, 6k) at these times (M,).
+Trajectories assembled(const States& states, const States& time, double noise) {
+  if (states.ndim() != 3 || time.ndim() != 1 || time.shape(0) != states.shape(1))
+    throw py::value_error("states: expected (trajectories, points, 6k), and the time of each point (points,)");
+  std::vector<Observation> rows;
+  for (py::ssize_t i = 0; i < states.shape(0); ++i)
+    for (py::ssize_t j = 0; j < states.shape(1); ++j)
+      rows.push_back({long(rows.size()), long(i), time.at(j),
+                      Eigen::Map<const Eigen::VectorXd>(states.data(i, j, 0), states.shape(2)), 1});
+  return learning::assemble(rows, noise);
+}
+
+/// Its states (N, M, 6k).
+py::array states_of(const Trajectories& data) {
+  const Eigen::Index width = data.width();
+  auto* kept = new Eigen::MatrixXd(width * data.points, data.count());
+  kept->topRows(width) = data.starts;
+  kept->bottomRows(width * (data.points - 1)) = data.ends;
+  const py::capsule owner(kept, [](void* p) { delete static_cast<Eigen::MatrixXd*>(p); });
+  return view(kept->data(), {data.count(), data.points, width}, {width * data.points, width, 1}, owner);
+}
+
+Trajectories draw(const Eigen::VectorXd& masses, const Eigen::VectorXd& lengths, double gravity, int count, int points,
+                  double duration, double noise, unsigned seed) {
+  return computing([&] {
+    const PendulumChain<Eigen::Dynamic> chain(masses, lengths, gravity);
+    return learning::assemble(
+        draw_trajectories(chain,
+                          {.count = count, .points = points, .duration = duration, .noise = noise, .seed = seed}),
+        noise);
+  });
+}
+
+/// A model with what its training came to.
+struct Learned {
+  LearnedHamiltonian hamiltonian;
+  Trained trained;
+
+  const learning::Model& model() const { return *hamiltonian.model; }
+  const Eigen::VectorXd& theta() const { return hamiltonian.parameters; }
+};
+
+std::shared_ptr<Learned> learn(const Trajectories& data, const std::string& model,
+                               const std::optional<std::shared_ptr<Learned>>& begin, const std::string& integrator,
+                               int substeps, double validation, int starts, int iterations, unsigned seed,
+                               double enough, double seconds) {
+  const LieGroupMethod* method = lie_group_methods::named(integrator);
+  if (method == nullptr) {
+    std::string all;
+    for (const LieGroupMethod& each : lie_group_methods::all) all += (all.empty() ? "" : ", ") + std::string(each.name);
+    throw py::value_error(fmt::format("integrator: \"{}\" is none of {}", integrator, all));
+  }
+  auto out = std::make_shared<Learned>();
+  learning::Training training;
+  if (begin) {
+    out->hamiltonian = (*begin)->hamiltonian;
+    training.begin = out->hamiltonian.parameters;
+  } else {
+    out->hamiltonian.model = app::named_model(model, data.bodies);
+  }
+  if (out->model().bodies() != data.bodies)
+    throw py::value_error(fmt::format("the model is of {} bodies, the data of {}", out->model().bodies(), data.bodies));
+  training.method = *method;
+  training.substeps = substeps;
+  training.seed = seed;
+  training.starts = begin ? 1 : starts;
+  training.iterations = iterations;
+  training.validation = validation;
+  training.enough = enough;
+  training.seconds = seconds;
+  training.stop = app::InterruptGuard::interrupted;
+  out->trained = computing([&] { return learning::train(out->model(), data, training); });
+  if (out->trained.usable()) out->hamiltonian.parameters = out->trained.parameters;
+  return out;
+}
+
+std::shared_ptr<Learned> load(const fs::path& file) {
+  auto out = std::make_shared<Learned>();
+  out->hamiltonian = app::read_model(file);
+  out->trained.message = file.string();
+  return out;
+}
+
+const Eigen::VectorXd& usable(const Learned& learned, const Eigen::VectorXd& z) {
+  if (learned.theta().size() == 0) throw py::value_error("the training left no parameters: " + learned.trained.message);
+  if (z.size() != 6 * learned.model().bodies())
+    throw py::value_error(fmt::format("z: expected {} numbers, got {}", 6 * learned.model().bodies(), z.size()));
+  return learned.theta();
+}
+
+}  // namespace
+
+void bind_learning(py::module_& module) {
+  py::class_<Trajectories>(module, "Trajectories", "Pieces of motions on (T*S^2)^k at equal intervals.")
+      .def(py::init(&assembled), py::arg("states"), py::arg("time"), py::kw_only(), py::arg("noise") = 0.0,
+           "From states (trajectories, points, 6k), q_1, p_1, q_2, ... each, and times (points,), s. `noise`: the\n"
+           "size of their errors. Raises ValueError, naming the row, for what is off the spheres.")
+      .def_static("read", &app::read_trajectories, py::arg("file"), py::kw_only(), py::arg("noise") = 0.0,
+                  "Reads a .csv or .h5 file (docs/learning.md). Raises DataError.")
+      .def_static(
+          "chain",
+          [](const Eigen::VectorXd& masses, const Eigen::VectorXd& lengths, double gravity, int count, int points,
+             double duration, double noise,
+             unsigned seed) { return draw(masses, lengths, gravity, count, points, duration, noise, seed); },
+          py::arg("masses"), py::arg("lengths"), py::kw_only(), py::arg("gravity") = 1.0, py::arg("count") = 500,
+          py::arg("points") = 5, py::arg("duration") = 0.1, py::arg("noise") = 0.0, py::arg("seed") = 0,
+          "Random motions of a pendulum chain: masses (k,), kg, lengths (k,), m.")
+      .def_readonly("bodies", &Trajectories::bodies, "k")
+      .def_readonly("points", &Trajectories::points, "Of each trajectory, the first included.")
+      .def_readonly("interval", &Trajectories::interval, "Between points, s.")
+      .def_property_readonly("states", states_of, "(trajectories, points, 6k).")
+      .def("__len__", &Trajectories::count);
+
+  py::class_<learning::Measures>(module, "Measures", "How good a learned Hamiltonian is on data.")
+      .def_readonly("mse", &learning::Measures::mse)
+      .def_readonly("times", &learning::Measures::times)
+      .def_readonly("rms", &learning::Measures::rms, "The root of the mean squared error at each of them.")
+      .def_readonly("energy_largest", &learning::Measures::energy_largest)
+      .def_readonly("energy_rms", &learning::Measures::energy_rms)
+      .def_readonly("momentum_learned", &learning::Measures::momentum_learned)
+      .def_readonly("momentum_data", &learning::Measures::momentum_data)
+      .def_readonly("lost", &learning::Measures::lost);
+
+  py::class_<Learned, std::shared_ptr<Learned>>(module, "LearnedHamiltonian",
+                                                "H = p^T M(q)^{-1} p / 2 + V(q) on (T*S^2)^k; states z are (6k,).")
+      .def_static("read", load, py::arg("file"), "Reads a model.json. Raises DataError.")
+      .def(
+          "write",
+          [](const Learned& l, const fs::path& file) { app::write_text(app::model_text(l.hamiltonian), file); },
+          py::arg("file"), "Writes a model.json, which a scene can run.")
+      .def_property_readonly("name", [](const Learned& l) { return l.model().name(); })
+      .def_property_readonly("bodies", [](const Learned& l) { return l.model().bodies(); })
+      .def_property_readonly("parameters",
+                             [](const py::object& self) {
+                               const auto& theta = self.cast<const Learned&>().theta();
+                               return view(theta.data(), {theta.size()}, {1}, self);
+                             })
+      .def_property_readonly(
+          "mass", [](const Learned& l) { return l.model().mass(l.theta()); }, "m, (k, k).")
+      .def_property_readonly("status", [](const Learned& l) { return std::string(to_string(l.trained.outcome)); })
+      .def_property_readonly("message", [](const Learned& l) { return l.trained.message; })
+      .def_property_readonly("usable", [](const Learned& l) { return l.theta().size() > 0; })
+      .def_property_readonly("mse", [](const Learned& l) { return l.trained.mse; })
+      .def_property_readonly("validation", [](const Learned& l) { return l.trained.validation; })
+      .def_property_readonly("mass_determined", [](const Learned& l) { return l.trained.mass_determined; })
+      .def_property_readonly("iterations", [](const Learned& l) { return l.trained.iterations; })
+      .def_property_readonly(
+          "seconds", [](const Learned& l) { return l.trained.seconds; }, "Of the processor.")
+      .def_property_readonly(
+          "history",
+          [](const Learned& l) {
+            Eigen::MatrixXd rows(Eigen::Index(l.trained.history.size()), 4);
+            for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+              const auto& stage = l.trained.history[std::size_t(i)];
+              rows.row(i) << stage.start, stage.iteration, stage.mse, stage.validation;
+            }
+            return owned(std::move(rows));
+          },
+          "(iterations, 4): start, iteration, mse, validation.")
+      .def(
+          "energy", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().energy(usable(l, z), z); },
+          py::arg("z"))
+      .def(
+          "field", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().field(usable(l, z), z); },
+          py::arg("z"), "The motion as an element of the algebra (xi_i, eta_i), (6k,).")
+      .def(
+          "follow",
+          [](const Learned& l, const Eigen::VectorXd& start, const std::vector<double>& times, double tolerance) {
+            usable(l, start);
+            Eigen::MatrixXd z(start.size(), Eigen::Index(times.size()));
+            if (!computing([&] { return l.model().follow(l.theta(), start, times, tolerance, z); }))
+              throw py::value_error("the motion could not be followed to these times");
+            return owned(Eigen::MatrixXd(z.transpose()));
+          },
+          py::arg("start"), py::arg("times"), py::kw_only(), py::arg("tolerance") = 1e-12,
+          "The motion from `start` at rising times > 0, (times, 6k).")
+      .def(
+          "measure",
+          [](const Learned& l, const Trajectories& data, double tolerance) {
+            return computing([&] {
+              return learning::measure(l.model(), l.theta(), data, tolerance, app::InterruptGuard::interrupted);
+            });
+          },
+          py::arg("data"), py::kw_only(), py::arg("tolerance") = 1e-12, "On data that it was not trained on.")
+      .def("__repr__", [](const Learned& l) {
+        return fmt::format("<{} of {} bodies: {}, mse {:.3g}>", l.model().name(), l.model().bodies(),
+                           to_string(l.trained.outcome), l.trained.mse);
+      });
+
+  module.def("learn", learn, py::arg("data"), py::arg("model"), py::arg("begin"), py::arg("integrator"),
+             py::arg("substeps"), py::arg("validation"), py::arg("starts"), py::arg("iterations"), py::arg("seed"),
+             py::arg("enough"), py::arg("seconds"));
+}
+
+}  // namespace lagroid::python

@@ -1,0 +1,241 @@
+/// Minimising on manifolds: scenes, and functions written in Python.
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "computing.hpp"
+#include "scene.hpp"
+
+#include <optimise/methods.hpp>
+#include <optimise/optimisation_files.hpp>
+#include <optimise/optimisation_scene.hpp>
+
+#include <lagroid/solvers/optimisation/penalised.hpp>
+#include <lagroid/solvers/optimisation/product.hpp>
+#include <lagroid/solvers/optimisation/sphere.hpp>
+#include <lagroid/solvers/optimisation/stiefel.hpp>
+#include <lagroid/systems/optimisation/instances.hpp>
+
+#include <fmt/format.h>
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::python {
+
+namespace {
+
+using namespace optimisation;
+
+/// How points are shown: (size,) or, columns first in memory, (rows, columns).
+struct Layout {
+  Eigen::Index rows = 0;
+  Eigen::Index columns = 1;
+  bool matrix = false;
+
+  py::array view_of(const double* numbers, py::handle owner) const {
+    if (!matrix) return python::view(numbers, {rows * columns}, {1}, owner);
+    return python::view(numbers, {rows, columns}, {1, rows}, owner);
+  }
+  py::array copy_of(const Eigen::VectorXd& x) const {
+    if (!matrix) return owned(std::vector<double>(x.begin(), x.end()));
+    return owned(Eigen::MatrixXd(x.reshaped(rows, columns)));
+  }
+};
+
+/// A manifold that is made anew for each minimisation, whose buffers it has.
+struct ManifoldMaker {
+  std::function<std::unique_ptr<Manifold>()> make;
+  Layout layout;
+};
+
+struct Optimum {
+  Result result;
+  Layout layout;
+  std::string summary;  ///< JSON, of a scene
+};
+
+using Numbers = py::array_t<double, py::array::f_style | py::array::forcecast>;
+
+/// Numbers from Python, by columns.
+Eigen::VectorXd flat(const Numbers& array, Eigen::Index size, const char* what) {
+  if (array.size() != size)
+    throw py::value_error(fmt::format("{}: expected {} numbers, got {}", what, size, array.size()));
+  return Eigen::Map<const Eigen::VectorXd>(array.data(), size);
+}
+
+/// A function in Python: fun(x) -> (value, gradient), and hessian(x, v), if there is one. Its arguments are copies, so
+/// that it may keep them.
+class PythonObjective final : public Objective {
+ public:
+  PythonObjective(py::function fun, std::optional<py::function> hessian, Layout layout)
+      : fun_(std::move(fun)), hessian_(std::move(hessian)), layout_(layout) {}
+
+  std::string name() const override { return "a function in Python"; }
+  double evaluate(const Point& x, Vector& gradient) const override {
+    const py::gil_scoped_acquire locked;
+    const py::object out = fun_(layout_.copy_of(x));
+    if (!py::isinstance<py::tuple>(out) || py::len(out) != 2)
+      throw py::type_error("the function returns the tuple (value, gradient)");
+    const auto pair = out.cast<py::tuple>();
+    gradient = flat(pair[1].cast<Numbers>(), x.size(), "gradient");
+    return pair[0].cast<double>();
+  }
+  void hessian(const Point& x, const Vector& v, Vector& h) const override {
+    if (!hessian_) return Objective::hessian(x, v, h);
+    const py::gil_scoped_acquire locked;
+    h = flat((*hessian_)(layout_.copy_of(x), layout_.copy_of(v)).cast<Numbers>(), x.size(), "hessian");
+  }
+
+ private:
+  py::function fun_;
+  std::optional<py::function> hessian_;
+  Layout layout_;
+};
+
+/// Ctrl-C ends it; so does what Python raises.
+Callback watch() {
+  return [](const Iterate&, const Point&) { return !app::InterruptGuard::interrupted(); };
+}
+
+std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::function& fun,
+                                         const std::optional<Numbers>& start, const std::string& method,
+                                         const std::optional<py::function>& hessian, unsigned seed, double gradient,
+                                         double relative_gradient, long iterations, double seconds, bool history) {
+  const auto manifold = maker.make();
+  const PythonObjective objective(fun, hessian, maker.layout);
+  const app::Section keys = app::parse_scene(method, "method", {});
+  const auto by = app::read_optimiser(keys);
+  keys.finish();
+  const Point from = start ? flat(*start, manifold->size(), "start") : random_start(*manifold, seed);
+  Stopping stopping;
+  stopping.gradient = gradient;
+  stopping.relative_gradient = relative_gradient;
+  stopping.iterations = iterations;
+  stopping.seconds = seconds;
+  return std::make_shared<Optimum>(
+      Optimum{computing([&] {
+                return optimisation::minimise(*manifold, objective, from, *by, stopping, {history, watch()});
+              }),
+              maker.layout,
+              {}});
+}
+
+std::shared_ptr<Optimum> minimise_scene(const Scene& scene, bool history,
+                                        const std::optional<std::filesystem::path>& folder) {
+  const app::OptimisationScene read = app::read_optimisation(scene.read(), scene.file.value_or(""));
+  if (folder) app::require_writable_optimisation(*folder);
+  const Instance& instance = read.instance;
+  auto out = std::make_shared<Optimum>();
+  out->layout = {instance.rows, instance.columns, instance.columns > 1};
+  computing([&] {
+    const Recording recording{history || folder, watch()};
+    out->result = read.penalty ? minimise_penalised(*instance.manifold, *instance.objective, *read.penalty, read.start,
+                                                    *read.method, read.stopping, recording)
+                               : optimisation::minimise(*instance.manifold, *instance.objective, read.start,
+                                                        *read.method, read.stopping, recording);
+    std::string note;
+    if (folder) app::write_optimisation(read, out->result, *folder, note);
+    return 0;
+  });
+  out->summary = app::optimisation_json(read, out->result).dump(2);
+  return out;
+}
+
+/// A column of the history.
+template <class F> py::array column(const Optimum& optimum, const F& of) {
+  std::vector<double> out;
+  for (const Iterate& each : optimum.result.history) out.push_back(double(of(each)));
+  return owned(std::move(out));
+}
+
+}  // namespace
+
+void bind_optimisation(py::module_& module) {
+  py::class_<ManifoldMaker>(module, "Manifold", "A manifold on which functions are minimised.")
+      .def_property_readonly("name", [](const ManifoldMaker& m) { return m.make()->name(); })
+      .def_property_readonly(
+          "size", [](const ManifoldMaker& m) { return m.make()->size(); }, "How many numbers a point has.")
+      .def_property_readonly(
+          "dimension", [](const ManifoldMaker& m) { return m.make()->dimension(); }, "How many of them are free.")
+      .def(
+          "random",
+          [](const ManifoldMaker& m, unsigned seed) { return m.layout.copy_of(random_start(*m.make(), seed)); },
+          py::arg("seed") = 1, "The point nearest to a random matrix.")
+      .def("__repr__", [](const ManifoldMaker& m) { return fmt::format("<{}>", m.make()->name()); });
+  module.def(
+      "Sphere",
+      [](Eigen::Index n) {
+        Sphere{n};
+        return ManifoldMaker{[n] { return std::make_unique<Sphere>(n); }, {n, 1, false}};
+      },
+      py::arg("n"), "The unit sphere in R^n; points (n,).");
+  module.def(
+      "Stiefel",
+      [](Eigen::Index n, Eigen::Index m) {
+        Stiefel{n, m};
+        return ManifoldMaker{[n, m] { return std::make_unique<Stiefel>(n, m); }, {n, m, true}};
+      },
+      py::arg("n"), py::arg("m"), "The n x m matrices with orthonormal columns; points (n, m). O(n) for m = n.");
+  module.def(
+      "Product",
+      [](const std::vector<ManifoldMaker>& factors) {
+        const auto make = [factors]() -> std::unique_ptr<Manifold> {
+          std::vector<std::unique_ptr<Manifold>> made;
+          for (const auto& each : factors) made.push_back(each.make());
+          return std::make_unique<ProductManifold>(std::move(made));
+        };
+        return ManifoldMaker{make, {make()->size(), 1, false}};
+      },
+      py::arg("factors"), "A product; points one after another, (size,), matrices by columns.");
+
+  py::class_<Optimum, std::shared_ptr<Optimum>>(module, "Optimum", "What a minimisation came to.")
+      .def_property_readonly(
+          "x",
+          [](const py::object& self) {
+            const auto& o = self.cast<const Optimum&>();
+            if (o.result.x.size() == 0) return view(nullptr, {0}, {1}, self);
+            return o.layout.view_of(o.result.x.data(), self);
+          },
+          "The point: (n,) or (rows, columns).")
+      .def_property_readonly("value", [](const Optimum& o) { return o.result.value; })
+      .def_property_readonly(
+          "gradient", [](const Optimum& o) { return o.result.gradient; }, "The norm of the Riemannian gradient.")
+      .def_property_readonly(
+          "residual", [](const Optimum& o) { return o.result.residual; }, "Of the constraints.")
+      .def_property_readonly("status", [](const Optimum& o) { return std::string(to_string(o.result.outcome)); })
+      .def_property_readonly("message", [](const Optimum& o) { return o.result.message; })
+      .def_property_readonly("converged", [](const Optimum& o) { return o.result.converged(); })
+      .def_property_readonly("iterations", [](const Optimum& o) { return o.result.iterations; })
+      .def_property_readonly("seconds", [](const Optimum& o) { return o.result.seconds; })
+      .def_property_readonly(
+          "evaluations",
+          [](const Optimum& o) {
+            const Evaluations& e = o.result.evaluations;
+            return py::make_tuple(e.values, e.gradients, e.hessians);
+          },
+          "Of values alone, of gradients, of Hessians times vectors.")
+      .def_property_readonly(
+          "values", [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.value; }); },
+          "After each iteration, where a history was asked for.")
+      .def_property_readonly("gradients",
+                             [](const Optimum& o) { return column(o, [](const Iterate& i) { return i.gradient; }); })
+      .def_readonly("summary", &Optimum::summary, "Of a scene: JSON, as lagroid optimize --json prints it.")
+      .def("__repr__", [](const Optimum& o) {
+        return fmt::format("<minimum {:.10g}: {} after {} iterations>", o.result.value, to_string(o.result.outcome),
+                           o.result.iterations);
+      });
+
+  module.def("minimise", minimise_python, py::arg("manifold"), py::arg("fun"), py::arg("start"), py::arg("method"),
+             py::arg("hessian"), py::arg("seed"), py::arg("gradient"), py::arg("relative_gradient"),
+             py::arg("iterations"), py::arg("seconds"), py::arg("history"));
+  module.def("optimise", minimise_scene, py::arg("scene"), py::arg("history"), py::arg("folder"));
+}
+
+}  // namespace lagroid::python

@@ -1,0 +1,237 @@
+/// Scenes and their runs.
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "computing.hpp"
+#include "scene.hpp"
+
+#include <checkpoint.hpp>
+#include <output.hpp>
+#include <registry.hpp>
+#include <report.hpp>
+
+#include <fmt/format.h>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+using app::Endpoint, app::LedgerEntry, app::Minimum, app::RunResult, app::Series;
+
+/// Runs the scene; with a folder, keeps checkpoints there and leaves the files of a run.
+std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std::optional<fs::path>& folder,
+                               bool resume) {
+  if (folder) app::require_writable(*folder);
+  bool interrupted = false;
+  auto result = computing(
+      [&] {
+        auto made = std::make_shared<RunResult>(app::run_scene(
+            scene, {.record = record || folder, .progress = false, .folder = folder.value_or(""), .resume = resume}));
+        if (folder) app::write_outputs(*made, *folder);
+        return made;
+      },
+      interrupted);
+  if (interrupted && !result->interrupted()) PyErr_SetInterrupt();  // it came too late for the run: to Python, then
+  return result;
+}
+
+std::shared_ptr<RunResult> resume(const fs::path& folder, std::optional<long> steps) {
+  std::vector<std::string> overrides;
+  if (steps) overrides.push_back(fmt::format("time.steps={}", *steps));
+  const std::string text = app::Checkpoint::scene_of(folder);
+  return run(app::parse_scene(text, folder.string() + "/checkpoint/scene.toml", overrides), true, folder, true);
+}
+
+py::array values(const Series& series, py::handle owner) {
+  const auto width = py::ssize_t(series.width());
+  const auto rows = width > 0 ? py::ssize_t(series.values.size()) / width : 0;
+  if (width == 1) return view(series.values, owner);
+  return view(series.values.data(), {rows, width}, {width, 1}, owner);
+}
+
+/// A column by its label, or a series by its name.
+py::array column(const py::object& self, const std::string& label) {
+  const auto& trajectory = self.cast<const RunResult&>().trajectory;
+  if (label == "t") return view(trajectory.time, self);
+  for (const Series& series : trajectory.series)
+    for (std::size_t i = 0; i < series.width(); ++i)
+      if (series.components[i] == label) {
+        const auto width = py::ssize_t(series.width());
+        return view(series.values.data() + i, {py::ssize_t(series.values.size()) / width}, {width}, self);
+      }
+  for (const Series& series : trajectory.series)
+    if (series.name == label) return values(series, self);
+  throw py::key_error(trajectory.series.empty() ? label + ": nothing was recorded" : label);
+}
+
+std::vector<std::string> columns(const RunResult& result) {
+  std::vector<std::string> out;
+  if (result.trajectory.series.empty()) return out;
+  out.emplace_back("t");
+  for (const Series& series : result.trajectory.series)
+    out.insert(out.end(), series.components.begin(), series.components.end());
+  return out;
+}
+
+}  // namespace
+
+void bind_scenes(py::module_& module) {
+  py::class_<Scene>(module, "Scene", "A scene (docs/scenes.md), read anew whenever it is used.")
+      .def_static(
+          "file",
+          [](const fs::path& file, const std::vector<std::string>& overrides) {
+            return Scene{file, {}, file.string(), overrides};
+          },
+          py::arg("file"), py::arg("overrides"))
+      .def_static(
+          "text",
+          [](const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+            return Scene{std::nullopt, text, name, overrides};
+          },
+          py::arg("text"), py::arg("name"), py::arg("overrides"))
+      .def_readonly("name", &Scene::name, "The file, or what messages call the text.")
+      .def(
+          "toml", [](const Scene& self) { return self.read().whole(); }, "The whole scene with its overrides.");
+
+  py::class_<Endpoint>(module, "Endpoint", "A state as users see it.")
+      .def_readonly("time", &Endpoint::time, "s")
+      .def_property_readonly("position",
+                             [](const py::object& self) { return view(self.cast<const Endpoint&>().position, self); })
+      .def_readonly("attitude", &Endpoint::attitude, "Unit quaternion w, x, y, z, or None.")
+      .def_readonly("body_attitude", &Endpoint::body_attitude,
+                    "The same of the body one sees, where that is the transpose.")
+      .def_property_readonly("momentum",
+                             [](const py::object& self) { return view(self.cast<const Endpoint&>().momentum, self); });
+
+  py::class_<LedgerEntry>(module, "LedgerEntry", "What was promised, and what was found.")
+      .def_readonly("name", &LedgerEntry::name)
+      .def_readonly("promise", &LedgerEntry::promise, "round-off, conserved, bounded, none or counted")
+      .def_property_readonly("initial",
+                             [](const py::object& self) { return view(self.cast<const LedgerEntry&>().initial, self); })
+      .def_property_readonly("final",
+                             [](const py::object& self) { return view(self.cast<const LedgerEntry&>().final, self); })
+      .def_readonly("drift", &LedgerEntry::drift, "Largest deviation from the initial value.")
+      .def_readonly("relative_drift", &LedgerEntry::relative_drift)
+      .def_readonly("bound", &LedgerEntry::bound, "On the drift; zero where none is promised.")
+      .def_readonly("verdict", &LedgerEntry::verdict, "kept, BROKEN, bounded, growing, unjudged, watched or counted")
+      .def_property_readonly("broken", &LedgerEntry::broken)
+      .def("__repr__", [](const LedgerEntry& e) {
+        return fmt::format("<{}: {}, drift {:.2e}: {}>", e.name, e.promise, e.drift, e.verdict);
+      });
+
+  py::class_<Minimum>(module, "Minimum", "A stationary path of a boundary value.")
+      .def_readonly("cost", &Minimum::cost)
+      .def_property_readonly("momentum",
+                             [](const py::object& self) { return view(self.cast<const Minimum&>().momentum, self); })
+      .def_readonly("is_minimum", &Minimum::is_minimum)
+      .def_readonly("isolated", &Minimum::isolated)
+      .def_readonly("normal", &Minimum::normal)
+      .def_readonly("negative_directions", &Minimum::negative_directions);
+
+  py::class_<Series>(module, "Series", "A recorded quantity: a row for each node, or for each arrow.")
+      .def_readonly("name", &Series::name)
+      .def_readonly("components", &Series::components, "The labels of its columns.")
+      .def_readonly("unit", &Series::unit)
+      .def_readonly("meaning", &Series::meaning)
+      .def_readonly("on_arrows", &Series::on_arrows, "A row for each arrow: one fewer than there are nodes.")
+      .def_property_readonly(
+          "values", [](const py::object& self) { return values(self.cast<const Series&>(), self); },
+          "(rows,) or (rows, width); the run's own numbers.");
+
+  py::class_<app::Panel>(module, "Panel", "Curves that belong in one picture.")
+      .def_readonly("title", &app::Panel::title)
+      .def_readonly("x_label", &app::Panel::x_label)
+      .def_readonly("y_label", &app::Panel::y_label)
+      .def_readonly("x", &app::Panel::x, "The column on the x axis.")
+      .def_readonly("curves", &app::Panel::curves, "Columns.")
+      .def_readonly("equal_axes", &app::Panel::equal_axes);
+
+  py::class_<RunResult, std::shared_ptr<RunResult>>(
+      module, "Run", "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
+      .def_readonly("system", &RunResult::system)
+      .def_readonly("method", &RunResult::method)
+      .def_readonly("status", &RunResult::status, "converged, interrupted or why not.")
+      .def_readonly("message", &RunResult::message, "Why, at which step, what to do.")
+      .def_readonly("steps", &RunResult::steps, "Arrows computed.")
+      .def_readonly("steps_asked", &RunResult::steps_asked)
+      .def_readonly("seconds", &RunResult::seconds, "Of the computation alone.")
+      .def_readonly("iterations", &RunResult::iterations)
+      .def_readonly("cost", &RunResult::cost, "Of a boundary value.")
+      .def_readonly("residual", &RunResult::residual, "Of a solve that failed.")
+      .def_property_readonly(
+          "initial", [](const RunResult& r) -> const Endpoint& { return r.initial; },
+          py::return_value_policy::reference_internal)
+      .def_property_readonly(
+          "final", [](const RunResult& r) -> const Endpoint& { return r.final; },
+          py::return_value_policy::reference_internal)
+      .def_property_readonly(
+          "first_multipliers",
+          [](const py::object& self) { return view(self.cast<const RunResult&>().first_multipliers, self); })
+      .def_property_readonly(
+          "last_multipliers",
+          [](const py::object& self) { return view(self.cast<const RunResult&>().last_multipliers, self); })
+      .def_readonly("minima", &RunResult::minima, "Of a boundary value: all stationary paths, cheapest first.")
+      .def_readonly("notes", &RunResult::notes)
+      .def_property_readonly(
+          "ledger", [](const RunResult& r) { return r.ledger.entries; }, "What was promised and found.")
+      .def_property_readonly("mean_iterations", [](const RunResult& r) { return r.ledger.mean_iterations; })
+      .def_property_readonly("most_iterations", [](const RunResult& r) { return r.ledger.most_iterations; })
+      .def_property_readonly(
+          "time", [](const py::object& self) { return view(self.cast<const RunResult&>().trajectory.time, self); },
+          "(nodes,), s.")
+      .def_property_readonly(
+          "series",
+          [](const py::object& self) {
+            py::list out;
+            for (const Series& series : self.cast<const RunResult&>().trajectory.series)
+              out.append(py::cast(&series, py::return_value_policy::reference_internal, self));
+            return out;
+          },
+          "All that was recorded, in the order of the files.")
+      .def_property_readonly(
+          "conventions", [](const RunResult& r) { return r.trajectory.conventions; }, "What the numbers mean.")
+      .def_property_readonly(
+          "panels", [](const RunResult& r) { return r.panels; }, "The pictures of such a run.")
+      .def_property_readonly("columns", columns, "The labels of all columns; \"t\" is the time.")
+      .def("__getitem__", column, py::arg("label"),
+           "A column by its label, (rows,), or a series by its name, (rows, width).")
+      .def("__contains__",
+           [](const RunResult& r, const std::string& label) {
+             const auto all = columns(r);
+             return std::find(all.begin(), all.end(), label) != all.end();
+           })
+      .def_property_readonly("converged", &RunResult::converged)
+      .def_property_readonly("interrupted", &RunResult::interrupted)
+      .def("text", app::text_report, "The report, as lagroid run prints it.")
+      .def("json", app::json_report, "The summary, as lagroid run --json prints it.")
+      .def(
+          "write",
+          [](RunResult& self, const fs::path& folder) {
+            const py::gil_scoped_release unlocked;
+            return app::write_outputs(self, folder);
+          },
+          py::arg("folder"), "Writes trajectory, summary and plots into the folder. Raises OutputError.")
+      .def("__repr__", [](const RunResult& r) {
+        return fmt::format("<run of {}: {}, {} of {} steps in {:.3g} s>", r.system, r.status, r.steps, r.steps_asked,
+                           r.seconds);
+      });
+
+  module.def(
+      "run",
+      [](const Scene& scene, bool record, const std::optional<fs::path>& folder) {
+        return run(scene.read(), record, folder, false);
+      },
+      py::arg("scene"), py::arg("record"), py::arg("folder"));
+  module.def("resume", resume, py::arg("folder"), py::arg("steps"));
+}
+
+}  // namespace lagroid::python

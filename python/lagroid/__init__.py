@@ -1,0 +1,99 @@
+"""Lagroid in Python: discrete mechanics on Lie groupoids (docs/python.md).
+
+    import lagroid
+    run = lagroid.run("examples/kepler.toml", set={"time.steps": 1000})
+    run["x"], run["drift energy"], run.ledger
+"""
+
+from . import plot
+from ._lagroid import (
+    BoundaryPath,
+    Endpoint,
+    HeavyTop,
+    Integrator,
+    Kepler,
+    LedgerEntry,
+    March,
+    Minimum,
+    Panel,
+    Pendulum,
+    PlateBall,
+    RigidBody,
+    Run,
+    Series,
+    SphericalPendulum,
+    __version__,
+)
+from .errors import DataError, Error, Interrupted, OutputError, ProgramError, SceneError, SolveError
+from .learning import LearnedHamiltonian, Measures, Trajectories, learn, trajectories
+from .optimisation import Manifold, Optimum, Product, Sphere, Stiefel, minimise, optimize
+from .prototype import (
+    SE2,
+    SE3,
+    SO3,
+    DiscreteLagrangian,
+    Groupoid,
+    MatrixGroup,
+    Pairs,
+    PrototypeIntegrator,
+    PrototypeMarch,
+)
+from .scenes import require, resume, run, scene_text, systems
+from .studies import Method, check, methods, study
+
+__all__ = [
+    "BoundaryPath",
+    "DataError",
+    "DiscreteLagrangian",
+    "Endpoint",
+    "Error",
+    "Groupoid",
+    "HeavyTop",
+    "Integrator",
+    "Interrupted",
+    "Kepler",
+    "LearnedHamiltonian",
+    "LedgerEntry",
+    "Manifold",
+    "March",
+    "MatrixGroup",
+    "Measures",
+    "Method",
+    "Minimum",
+    "Optimum",
+    "OutputError",
+    "Pairs",
+    "Panel",
+    "Pendulum",
+    "PlateBall",
+    "Product",
+    "ProgramError",
+    "PrototypeIntegrator",
+    "PrototypeMarch",
+    "RigidBody",
+    "Run",
+    "SE2",
+    "SE3",
+    "SO3",
+    "SceneError",
+    "Series",
+    "SolveError",
+    "Sphere",
+    "SphericalPendulum",
+    "Stiefel",
+    "Trajectories",
+    "__version__",
+    "check",
+    "learn",
+    "methods",
+    "minimise",
+    "optimize",
+    "plot",
+    "require",
+    "resume",
+    "run",
+    "scene_text",
+    "study",
+    "systems",
+    "trajectories",
+]

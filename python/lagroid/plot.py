@@ -1,0 +1,98 @@
+"""Pictures of runs and studies by matplotlib. Each returns the figure; none opens a window or needs one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+
+from ._lagroid import LedgerEntry, Run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["ledger", "study", "trajectory"]
+
+
+def _figure(width: float, height: float) -> Figure:
+    # Without pyplot: such a figure belongs to no window, and to no thread.
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), constrained_layout=True)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def trajectory(run: Run, columns: Optional[Sequence[str]] = None) -> Figure:
+    """The panels of the run, as in its plot.svg; or the given columns against time. Raises ValueError where nothing was
+    recorded."""
+    if len(run.time) < 2:
+        raise ValueError("nothing was recorded; run the scene with record=True")
+    if columns is not None:
+        figure = _figure(7, 4)
+        axes = figure.add_subplot()
+        for label in columns:
+            values = run[label]
+            axes.plot(run.time[-len(values) :], values, label=label)
+        axes.set_xlabel("t")
+        axes.legend()
+        return figure
+    panels = run.panels
+    rows = (len(panels) + 1) // 2
+    figure = _figure(10, 3.6 * rows)
+    for i, panel in enumerate(panels):
+        axes = figure.add_subplot(rows, 2, i + 1)
+        x = run[panel.x]
+        for label in panel.curves:
+            y = run[label]
+            axes.plot(x[-len(y) :], y, linewidth=1, label=label)
+        axes.set_title(panel.title)
+        axes.set_xlabel(panel.x_label)
+        axes.set_ylabel(panel.y_label)
+        if panel.equal_axes:
+            axes.set_aspect("equal", adjustable="datalim")
+        if len(panel.curves) > 1:
+            axes.legend()
+    return figure
+
+
+def ledger(entries: Run | Sequence[LedgerEntry]) -> Figure:
+    """What was promised and found: the drift of each entry beside its bound, where one is promised."""
+    watched = [e for e in (entries.ledger if isinstance(entries, Run) else entries) if e.promise != "counted"]
+    figure = _figure(8, 1 + 0.5 * max(1, len(watched)))
+    axes = figure.add_subplot()
+    place = np.arange(len(watched))
+    floor = 1e-18
+    colours = {"kept": "tab:green", "bounded": "tab:blue", "BROKEN": "tab:red", "growing": "tab:red"}
+    axes.barh(
+        place,
+        [max(e.drift, floor) for e in watched],
+        color=[colours.get(e.verdict, "tab:gray") for e in watched],
+    )
+    axes.scatter([e.bound if e.bound > 0 else np.nan for e in watched], place, marker="|", s=200, color="black")
+    axes.set_yticks(place, [f"{e.name}: {e.verdict}" for e in watched])
+    axes.invert_yaxis()
+    axes.set_xscale("log")
+    axes.set_xlabel("largest deviation from the first value; the mark is the bound")
+    return figure
+
+
+def study(found: Mapping[str, Any]) -> Figure:
+    """Error at the end against seconds, a curve for each method of `lagroid.study`."""
+    figure = _figure(8, 5)
+    axes = figure.add_subplot()
+    curves: dict[str, list[tuple[float, float]]] = {}
+    for run in found["runs"]:
+        error = run.get("trajectory")
+        if run["status"] == "converged" and error and run["seconds"]:
+            curves.setdefault(run["method"], []).append((run["seconds"], error))
+    for name, points in curves.items():
+        seconds, errors = zip(*sorted(points))
+        axes.loglog(seconds, errors, marker="o", markersize=3, label=name)
+    axes.set_xlabel("processor time, s")
+    axes.set_ylabel("relative error at the end")
+    if curves:
+        axes.legend(fontsize="small")
+    return figure

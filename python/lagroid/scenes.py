@@ -1,0 +1,97 @@
+"""Scenes and their runs."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, TypeVar, Union
+
+import numpy as np
+
+from . import _lagroid
+from ._lagroid import March, Run
+from .errors import Interrupted, SceneError, SolveError
+
+SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+_Result = TypeVar("_Result", Run, March)
+
+__all__ = ["SceneLike", "require", "resume", "run", "scene_text", "systems"]
+
+
+def _toml(value: Any, key: str) -> str:
+    """A value as TOML; tables are written inline."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, os.PathLike):
+        return _toml(os.fspath(value), key)
+    if isinstance(value, np.ndarray):
+        return _toml(value.tolist(), key)
+    if isinstance(value, Mapping):
+        inner = ", ".join(f"{json.dumps(str(k))} = {_toml(v, f'{key}.{k}')}" for k, v in value.items())
+        return "{" + inner + "}"
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(_toml(v, key) for v in value) + "]"
+    raise SceneError(f"{key}: a scene holds numbers, texts, arrays and tables, not {type(value).__name__}")
+
+
+def scene_text(scene: Mapping[str, Any]) -> str:
+    """The scene of a dict as TOML: its tables are dicts, its arrays lists or NumPy arrays."""
+    return "".join(f"{json.dumps(str(key))} = {_toml(value, str(key))}\n" for key, value in scene.items())
+
+
+def made(scene: SceneLike, settings: Optional[Mapping[str, Any]]) -> _lagroid.Scene:
+    """The scene of a file, a text or a dict, with other values at dotted keys."""
+    overrides = [f"{key}={_toml(value, key)}" for key, value in (settings or {}).items()]
+    if isinstance(scene, Mapping):
+        return _lagroid.Scene.text(scene_text(scene), "<dict>", overrides)
+    if isinstance(scene, str) and "\n" in scene:
+        return _lagroid.Scene.text(scene, "<text>", overrides)
+    return _lagroid.Scene.file(scene, overrides)
+
+
+def run(
+    scene: SceneLike,
+    *,
+    set: Optional[Mapping[str, Any]] = None,
+    record: bool = True,
+    out: Optional[str | os.PathLike[str]] = None,
+) -> Run:
+    """Runs a scene (docs/scenes.md): a file, a TOML text (a str with more than one line) or a dict.
+
+    `set` holds other values by dotted keys, as in {"time.steps": 100}. Without `record` only the ledger and the end
+    points are kept. `out` is a folder for checkpoints and the files of `lagroid run --out`.
+
+    Returns also where a step failed: see `status`, or call `require`. Raises SceneError, OutputError, and Interrupted
+    after Ctrl-C. Other threads of Python go on meanwhile."""
+    return _finished(_lagroid.run(made(scene, set), record, out))
+
+
+def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None) -> Run:
+    """Goes on with a run that was broken off, or with a finished one to more steps. Raises OutputError where the folder
+    holds none."""
+    return _finished(_lagroid.resume(folder, steps))
+
+
+def _finished(result: Run) -> Run:
+    if result.interrupted:
+        raise Interrupted(result)
+    return result
+
+
+def require(result: _Result) -> _Result:
+    """The result of a run or a march, if it was solved. Raises SolveError where it was not."""
+    if not result.converged:
+        raise SolveError(result.message, result.status, result)
+    return result
+
+
+def systems() -> dict[str, dict[str, Any]]:
+    """The systems that a scene can name: summary, groupoid, parameters, symmetries, conserved quantities."""
+    return {entry["name"]: entry for entry in json.loads(_lagroid.listing())}

@@ -1,0 +1,387 @@
+#pragma once
+/// A discrete Lagrangian system of one's own as a Python class (docs/python.md).
+///
+///     PYBIND11_MODULE(mine, module) {
+///       lagroid::python::bind_system<MySystem>(module, "MySystem", "What it is.")
+///           .def_readwrite("mass", &MySystem::mass, "kg");
+///     }
+///
+/// Its march is the class Integrator of the package lagroid.
+
+#include <lagroid/core/stepped.hpp>
+#include <lagroid/core/two_sided.hpp>
+#include <lagroid/python/any_march.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
+#include <lagroid/solvers/compositions.hpp>
+#include <lagroid/solvers/constrained_momentum.hpp>
+#include <lagroid/solvers/march.hpp>
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace lagroid::python {
+
+namespace py = pybind11;
+using Array = py::array_t<double, py::array::f_style | py::array::forcecast>;
+
+namespace detail {
+
+/// A class of the module that every system works with, imported where it is not yet.
+inline py::object class_of_lagroid(const char* name) { return py::module_::import("lagroid._lagroid").attr(name); }
+
+/// The shape in which arrows of the groupoid are shown: that of the matrix, or the number of coordinates.
+template <class G> std::vector<std::size_t> arrow_shape() {
+  using A = ArrowOf<G>;
+  if constexpr (lagroid::detail::EigenValued<A>) {
+    if constexpr (A::ColsAtCompileTime > 1) return {A::RowsAtCompileTime, A::ColsAtCompileTime};
+  }
+  return {std::size_t(G::arrow_coordinate_count())};
+}
+
+/// `count` finite numbers of an array, columns first.
+inline std::vector<double> numbers(const Array& array, std::size_t count, const std::string& what) {
+  if (std::size_t(array.size()) != count)
+    throw py::value_error(what + ": expected " + std::to_string(count) + " numbers, got " +
+                          std::to_string(array.size()));
+  std::vector<double> out(array.data(), array.data() + count);
+  for (const double x : out)
+    if (!std::isfinite(x)) throw py::value_error(what + ": must be finite");
+  return out;
+}
+
+template <class V> V vector_of(const Array& array, const std::string& what) {
+  return Eigen::Map<const V>(numbers(array, V::SizeAtCompileTime, what).data());
+}
+
+template <class V> void put(const V& v, double* out) { std::copy(v.data(), v.data() + v.size(), out); }
+
+/// One of the words, by its place.
+template <std::size_t N>
+std::size_t choice(const char* key, const std::string& word, const std::array<std::string_view, N>& words) {
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found != words.end()) return std::size_t(found - words.begin());
+  std::string all;
+  for (const auto& each : words) all += (all.empty() ? "" : ", ") + std::string(each);
+  throw py::value_error(std::string(key) + ": \"" + word + "\" is none of " + all);
+}
+
+inline Composition composition_of(std::optional<int> order, const std::optional<std::string>& name, bool split) {
+  std::vector<Composition> offered(compositions::all.begin(), compositions::all.end());
+  if (split) offered.insert(offered.end(), splittings::all.begin(), splittings::all.end());
+  if (name) {
+    for (const auto& each : offered)
+      if (each.name == *name) {
+        if (order && each.order != *order)
+          throw py::value_error("composition: \"" + *name + "\" is of order " + std::to_string(each.order));
+        return each;
+      }
+    std::string all;
+    for (const auto& each : offered) all += (all.empty() ? "" : ", ") + std::string(each.name);
+    throw py::value_error("composition: \"" + *name + "\" is none of " + all);
+  }
+  switch (order.value_or(2)) {
+    case 2:
+      return compositions::single;
+    case 4:
+      return compositions::suzuki;
+    case 6:
+      return compositions::kahan_li_6;
+    case 8:
+      return compositions::kahan_li_8;
+    default:
+      throw py::value_error("order: must be 2, 4, 6 or 8");
+  }
+}
+
+/// The keys of [time] and [solver] of a scene.
+inline MarchOptions march_options(const std::string& mode, const std::string& method, std::optional<int> order,
+                                  const std::optional<std::string>& composition, const std::string& without_root,
+                                  int max_iterations, double tolerance) {
+  MarchOptions options;
+  options.mode = TimeMode(choice<4>("mode", mode, {"fixed", "adaptive", "controlled", "transformed"}));
+  options.fixed = StepKind(choice<3>("method", method, {"variational", "splitting", "runge-kutta"}));
+  options.without_root = WithoutRoot(choice<3>("without_root", without_root, {"stop", "constant", "controlled"}));
+  const bool split = options.fixed == StepKind::splitting;
+  if (options.fixed == StepKind::runge_kutta) {
+    if (composition || order.value_or(4) != 4) throw py::value_error("order: of Runge-Kutta steps is 4");
+  } else {
+    options.composition = composition_of(order, composition, split);
+  }
+  options.step = {max_iterations, tolerance};
+  return options;
+}
+
+}  // namespace detail
+
+/// The march of a system behind AnyMarch.
+template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  MarchOfSystem(const Sys& system, const State<G>& initial, const ArrowOf<G>& configuration,
+                const MarchOptions& options)
+      : system_(system),
+        mode_(options.mode),
+        march_(make_march(system, initial, configuration, options)),
+        fields_{{"object", {std::size_t(G::object_coordinate_count())}},
+                {"momentum", {std::size_t(G::dimension)}},
+                {"configuration", detail::arrow_shape<G>()},
+                {"arrow", detail::arrow_shape<G>(), true},
+                {"multipliers", {std::size_t(Sys::constraints)}, true},
+                {"step_size", {1}, true}} {
+    if constexpr (requires { system.quantities(); })
+      for (auto& q : system.quantities()) {
+        watched_.push_back({q.name, q.components, q.promise, q.needs_step});
+        quantities_.push_back(std::move(q));
+      }
+    see();
+  }
+
+  StepReport advance() override {
+    const StepReport report = march_->advance();
+    if (report.converged()) see();
+    return report;
+  }
+  long index() const override { return at_.index; }
+  double time() const override { return at_.time; }
+  MethodTraits traits() const override { return march_->traits(); }
+  TimeMode mode() const override { return mode_; }
+  const std::vector<Field>& fields() const override { return fields_; }
+  void read(std::size_t field, double* out) const override {
+    const G& groupoid = system_.groupoid;
+    switch (field) {
+      case 0:
+        return detail::put(groupoid.coordinates_of_object(at_.state.object), out);
+      case 1:
+        return detail::put(at_.state.momentum, out);
+      case 2:
+        return detail::put(groupoid.coordinates_of_arrow(at_.configuration), out);
+      case 3:
+        return detail::put(groupoid.coordinates_of_arrow(at_.step.arrow), out);
+      case 4:
+        return detail::put(at_.step.multipliers, out);
+      default:
+        *out = at_.step_size;
+    }
+  }
+  const std::vector<Watched>& watched() const override { return watched_; }
+  double watch(std::size_t i, double* out) const override {
+    quantities_[i].evaluate(at_, out);
+    if (quantities_[i].size) return quantities_[i].size(at_);
+    return std::sqrt(std::inner_product(out, out + watched_[i].components.size(), out, 0.0));
+  }
+  bool constrained() const override { return Sys::constraints > 0; }
+  double residual() const override {
+    double largest = 0;
+    if constexpr (Sys::constraints > 0) {
+      const auto look = [&](const Step<Sys>& step, double start, double over) {
+        const double found = constraint_values(over_step(start, over), step.arrow).cwiseAbs().maxCoeff();
+        if (!(found <= largest)) largest = found;  // a NaN too
+      };
+      march_->for_each_inner_stage(look);
+      look(at_.step, at_.time - at_.step_size, at_.step_size);
+    }
+    return largest;
+  }
+  double residual_size() const override {
+    if constexpr (Sys::constraints > 0) {
+      const Sys system = over_step(at_.time - at_.step_size, at_.step_size);
+      const auto d = two_sided(system, at_.step.arrow, at_.step.multipliers);
+      return (d.constraint_target.cwiseAbs() * system.groupoid.coordinate_scale(at_.step.arrow)).maxCoeff();
+    }
+    return 0;
+  }
+
+ private:
+  /// The node as it is reported: with its momentum tangent to the object constraints.
+  void see() {
+    at_ = march_->point();
+    at_.state.momentum = tangent_momentum(system_, at_.state);
+  }
+  Sys over_step(double start, double over) const {
+    Sys system = system_;
+    if constexpr (HasTimeStep<Sys>) system.h = over;
+    set_time(system, start);
+    return system;
+  }
+
+  Sys system_;
+  TimeMode mode_;
+  TrajectoryPoint<Sys> at_;
+  std::unique_ptr<March<Sys>> march_;
+  std::vector<Field> fields_;
+  std::vector<Watched> watched_;
+  std::vector<Quantity<Sys>> quantities_;
+};
+
+/// A march of the system from a momentum and an object or, where more than the object is to be followed, the arrow that
+/// ends there.
+template <DiscreteSystem Sys>
+std::shared_ptr<AnyMarch> begin_march(const Sys& system, const Array& momentum, const std::optional<Array>& object,
+                                      const std::optional<Array>& configuration, const MarchOptions& options) {
+  using G = typename Sys::GroupoidType;
+  const G& groupoid = system.groupoid;
+  if constexpr (HasTimeStep<Sys>) {
+    if (!std::isfinite(system.h) || system.h == 0) throw py::value_error("h: the step must be finite and not zero");
+  }
+  if (object && configuration) throw py::value_error("give object or configuration, not both: an arrow has its target");
+  if (!object && !configuration && G::object_coordinate_count() > 0)
+    throw py::value_error("give object, or configuration, the arrow that ends there");
+  State<G> state;
+  ArrowOf<G> arrow;
+  if (configuration) {
+    using V = Vector<double, G::arrow_coordinate_count()>;
+    arrow = groupoid.template arrow_at<double>(detail::vector_of<V>(*configuration, "configuration"));
+    state.object = groupoid.target(arrow);
+  } else {
+    using V = Vector<double, G::object_coordinate_count()>;
+    const V q = object ? detail::vector_of<V>(*object, "object") : V();
+    state.object = groupoid.template object_at<double>(q);
+    arrow = groupoid.unit(state.object);
+  }
+  state.momentum = detail::vector_of<AlgebroidVector<G>>(momentum, "momentum");
+  constexpr double on_it = 1e-8;
+  if constexpr (Sys::object_constraints > 0) {
+    const double off = system.object_constraint(state.object).cwiseAbs().maxCoeff();
+    const double size = groupoid.coordinates_of_object(state.object).squaredNorm();
+    if (!(off <= on_it * (1 + size)))
+      throw py::value_error("object: off the constraint C(q) = 0 by " + std::to_string(off));
+  }
+  const auto kept = groupoid.coordinates_of_arrow(groupoid.project(arrow));
+  if (!((kept - groupoid.coordinates_of_arrow(arrow)).norm() <= on_it * (1 + kept.norm())))
+    throw py::value_error("configuration: no arrow of " + G::name());
+  return std::make_shared<MarchOfSystem<Sys>>(system, state, arrow, options);
+}
+
+/// The stationary paths between the ends of `boundary`, an arrow in coordinates, cheapest first.
+template <DiscreteSystem Sys>
+std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& boundary, std::size_t steps,
+                                           const std::string& method, int starts, std::uint64_t seed,
+                                           std::string& failure) {
+  using G = typename Sys::GroupoidType;
+  using V = Vector<double, G::arrow_coordinate_count()>;
+  const auto kind = BoundaryMethod(detail::choice<3>("method", method, {"newton", "shooting", "ceres"}));
+  const BoundaryProblem<Sys> problem{
+      system, system.groupoid.template arrow_at<double>(detail::vector_of<V>(boundary, "boundary"))};
+  const auto solver = make_boundary_solver<Sys>(kind);
+  MultistartOptions options;
+  options.starts = starts;
+  options.seed = seed;
+  MultistartResult<Sys> found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = solve_boundary(*solver, problem, steps, options);
+  }
+  if (found.solutions.empty())
+    failure = found.best_failure.message.empty() ? "none of " + std::to_string(starts) + " starts converged (" +
+                                                       std::string(to_string(found.best_failure.status)) + ")"
+                                                 : found.best_failure.message;
+  std::vector<BoundaryPath> out;
+  for (const auto& solution : found.solutions) {
+    BoundaryPath path{solution.cost,
+                      solution.kind.is_minimum,
+                      solution.kind.isolated,
+                      solution.kind.normal,
+                      solution.kind.negative_directions,
+                      {{{"object", {std::size_t(G::object_coordinate_count())}}, {}},
+                       {{"momentum", {std::size_t(G::dimension)}}, {}},
+                       {{"arrow", detail::arrow_shape<G>(), true}, {}},
+                       {{"multipliers", {std::size_t(Sys::constraints)}, true}, {}}}};
+    const auto add = [&path](std::size_t row, const auto& v) {
+      auto& values = path.rows[row].values;
+      values.insert(values.end(), v.data(), v.data() + v.size());
+    };
+    const auto node = [&](const State<G>& state) {
+      add(0, system.groupoid.coordinates_of_object(state.object));
+      add(1, tangent_momentum(system, state));
+    };
+    node(legendre_minus(system, solution.path.front()));
+    for (const auto& step : solution.path) {
+      node(legendre_plus(system, step));
+      add(2, system.groupoid.coordinates_of_arrow(step.arrow));
+      add(3, step.multipliers);
+    }
+    out.push_back(std::move(path));
+  }
+  return out;
+}
+
+/// The class of the system in `module`: parameters as keywords of the constructor (all that the caller adds with
+/// def_readwrite or def_property), the step `h`, `integrator(...)`. A system of one's own that is not among those of
+/// the library includes lagroid/solvers/march_methods.hpp too.
+template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, const char* name, const char* doc) {
+  py::class_<Sys> made(module, name, doc);
+  made.def(py::init([name](const py::kwargs& parameters) {
+    Sys system;
+    const py::object self = py::cast(&system, py::return_value_policy::reference);
+    for (const auto& [key, value] : parameters) {
+      if (!py::hasattr(py::type::of(self), key))
+        throw py::type_error(std::string(name) + " has no parameter " + py::str(key).cast<std::string>());
+      py::setattr(self, key, value);
+    }
+    return system;
+  }));
+  if constexpr (HasTimeStep<Sys>) made.def_readwrite("h", &Sys::h, "The time step, or the first one (s).");
+  made.def_property_readonly_static(
+      "groupoid", [](const py::object&) { return Sys::GroupoidType::name(); }, "The groupoid of its arrows.");
+  made.def("__copy__", [](const Sys& self) { return Sys(self); });
+  made.def("__deepcopy__", [](const Sys& self, const py::dict&) { return Sys(self); });
+  made.def(
+      "integrator",
+      [](const Sys& self, const Array& momentum, const std::optional<Array>& object,
+         const std::optional<Array>& configuration, const std::string& mode, const std::string& method,
+         std::optional<int> order, const std::optional<std::string>& composition, const std::string& without_root,
+         int max_iterations, double tolerance, bool ledger) {
+        const MarchOptions options =
+            detail::march_options(mode, method, order, composition, without_root, max_iterations, tolerance);
+        const py::object integrator = detail::class_of_lagroid("Integrator");
+        return integrator(py::cast(begin_march(self, momentum, object, configuration, options)), ledger);
+      },
+      py::arg("momentum"), py::arg("object") = py::none(), py::kw_only(), py::arg("configuration") = py::none(),
+      py::arg("mode") = "fixed", py::arg("method") = "variational", py::arg("order") = py::none(),
+      py::arg("composition") = py::none(), py::arg("without_root") = "stop", py::arg("max_iterations") = 0,
+      py::arg("tolerance") = 0.0, py::arg("ledger") = true,
+      "An Integrator at the state (object, momentum). `configuration` is the arrow that ends at the object, in the\n"
+      "coordinates of arrows; it is carried along (an attitude). The keywords are those of [time] and [solver] of\n"
+      "scenes (docs/scenes.md). Raises ValueError for what the system does not have.");
+  return made;
+}
+
+/// Adds `boundary(arrow, steps, ...)` to a class of `bind_system`: a system of one's own includes
+/// lagroid/solvers/boundary_methods.hpp too.
+template <DiscreteSystem Sys> void bind_boundary(py::class_<Sys>& made) {
+  made.def(
+      "boundary",
+      [](const Sys& self, const Array& arrow, std::size_t steps, const std::string& method, int starts,
+         std::uint64_t seed) {
+        detail::class_of_lagroid("BoundaryPath");  // known from here on
+        std::string failure;
+        auto paths = stationary_paths(self, arrow, steps, method, starts, seed, failure);
+        if (paths.empty()) {
+          const auto error = py::module_::import("lagroid.errors").attr("SolveError")("boundary value: " + failure);
+          PyErr_SetObject(error.get_type().ptr(), error.ptr());
+          throw py::error_already_set();
+        }
+        return paths;
+      },
+      py::arg("arrow"), py::arg("steps"), py::kw_only(), py::arg("method") = "newton", py::arg("starts") = 40,
+      py::arg("seed") = 1,
+      "The stationary paths of `steps` arrows whose product is `arrow`, cheapest first. Raises SolveError where no\n"
+      "start leads to one.");
+}
+
+}  // namespace lagroid::python

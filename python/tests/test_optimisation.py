@@ -1,0 +1,103 @@
+"""Minimising functions of scenes and functions written in Python."""
+
+import json
+import unittest
+from typing import Any
+
+import lagroid
+import numpy as np
+from data import EXAMPLES
+
+A = np.diag(np.arange(1.0, 9.0))
+
+
+def brockett(x: Any) -> tuple[float, Any]:
+    return float(np.trace(x.T @ A @ x)), 2 * A @ x
+
+
+class Optimisation(unittest.TestCase):
+    def test_lowest_eigenvectors(self) -> None:
+        for method in ("trust-region", "conjugate-gradients", "gradient-descent"):
+            found = lagroid.minimise(lagroid.Stiefel(8, 3), brockett, method=method, iterations=100000)
+            self.assertTrue(found.converged, f"{method}: {found.message}")
+            self.assertAlmostEqual(found.value, 6.0, places=9)
+            self.assertEqual(found.x.shape, (8, 3))
+            np.testing.assert_allclose(found.x.T @ found.x, np.eye(3), atol=1e-13)
+            self.assertEqual(len(found.values), found.iterations + 1)
+            self.assertTrue(np.all(np.diff(found.values) < 1e-12))
+
+    def test_hessian(self) -> None:
+        asked = 0
+
+        def hessian(x: Any, v: Any) -> Any:
+            nonlocal asked
+            asked += 1
+            self.assertEqual((x.shape, v.shape), ((8, 3), (8, 3)))
+            return 2 * A @ v
+
+        found = lagroid.minimise(lagroid.Stiefel(8, 3), brockett, hessian=hessian)
+        self.assertTrue(found.converged)
+        self.assertEqual(asked, found.evaluations[2])
+
+    def test_keys_of_a_method(self) -> None:
+        found = lagroid.minimise(
+            lagroid.Stiefel(8, 2), brockett, method={"name": "gradient-descent", "retraction": "polar"}
+        )
+        self.assertTrue(found.converged, found.message)
+        with self.assertRaisesRegex(lagroid.SceneError, "did you mean"):
+            lagroid.minimise(lagroid.Sphere(3), brockett, method="trust-regio")
+        with self.assertRaisesRegex(lagroid.SceneError, "unknown key"):
+            lagroid.minimise(lagroid.Sphere(3), brockett, method={"name": "robust", "speed": 3})
+
+    def test_arguments_may_be_kept(self) -> None:
+        kept: list[Any] = []
+
+        def fun(x: Any) -> tuple[float, Any]:
+            kept.append(x)
+            return brockett(x.reshape(8, 1))[0], 2 * A @ x
+
+        lagroid.minimise(lagroid.Sphere(8), fun)
+        self.assertGreater(len({float(x[0]) for x in kept}), 2)
+        for x in kept:
+            self.assertAlmostEqual(float(np.linalg.norm(x)), 1.0, places=6)  # Hessians look beside it
+
+    def test_product(self) -> None:
+        """Thomson's problem for two: opposite points."""
+        manifold = lagroid.Product([lagroid.Sphere(3), lagroid.Sphere(3)])
+        self.assertEqual((manifold.size, manifold.dimension), (6, 4))
+
+        def energy(x: Any) -> tuple[float, Any]:
+            apart = x[:3] - x[3:]
+            distance = np.linalg.norm(apart)
+            return float(1 / distance), np.concatenate([-apart, apart]) / distance**3
+
+        found = lagroid.minimise(manifold, energy, seed=3)
+        self.assertAlmostEqual(found.value, 0.5, places=9)
+
+    def test_what_python_raises_is_raised(self) -> None:
+        with self.assertRaises(ZeroDivisionError):
+            lagroid.minimise(lagroid.Sphere(3), lambda x: (1 / 0, x))
+        with self.assertRaisesRegex(TypeError, "tuple"):
+            lagroid.minimise(lagroid.Sphere(3), lambda x: 1.0)  # type: ignore[arg-type, return-value]
+        with self.assertRaisesRegex(ValueError, "gradient: expected 3 numbers, got 2"):
+            lagroid.minimise(lagroid.Sphere(3), lambda x: (1.0, [1.0, 2.0]))
+        with self.assertRaisesRegex(ValueError, "start: expected 3 numbers"):
+            lagroid.minimise(lagroid.Sphere(3), lambda x: (1.0, x), [1.0])
+        with self.assertRaises(ValueError):
+            lagroid.Stiefel(2, 3)
+
+    def test_a_wrong_gradient_is_not_a_minimum(self) -> None:
+        found = lagroid.minimise(lagroid.Sphere(8), lambda x: (float(x @ A @ x), -2 * A @ x), iterations=200)
+        self.assertFalse(found.converged and found.value < 1.01)
+
+    def test_scene(self) -> None:
+        found = lagroid.optimize(EXAMPLES / "optimisation" / "membrane.toml")
+        self.assertTrue(found.converged, found.message)
+        self.assertEqual(json.loads(found.summary)["value"], found.value)
+        self.assertGreater(len(found.values), 10)
+        with self.assertRaises(lagroid.SceneError):
+            lagroid.optimize(EXAMPLES / "kepler.toml")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,57 @@
+"""The template project's system, in a module of its own."""
+
+import unittest
+
+import lagroid
+import my_system
+import numpy as np
+
+
+class OwnSystems(unittest.TestCase):
+    def test_parameters(self) -> None:
+        bead = my_system.Bead(mass=2.0, bend=0.5, h=0.02)
+        self.assertEqual((bead.mass, bead.bend, bead.gravity, bead.h), (2.0, 0.5, 1.0, 0.02))
+        with self.assertRaisesRegex(TypeError, "Bead has no parameter length"):
+            my_system.Bead(length=1)
+
+    def test_marches_with_a_ledger(self) -> None:
+        integrator = my_system.Bead(h=0.05).integrator([0.0], [1.0])
+        self.assertIsInstance(integrator, lagroid.Integrator)
+        march = lagroid.require(integrator.march(2000))
+        self.assertEqual(march.object.shape, (2001, 1))
+        self.assertEqual([entry.verdict for entry in integrator.ledger], ["bounded"])
+        self.assertLess(np.ptp(march.quantities["energy"]), 1e-3)
+
+    def test_is_the_prototype(self) -> None:
+        class Bead(lagroid.DiscreteLagrangian):
+            groupoid = lagroid.Pairs(1)
+            h = 0.05
+
+            def lagrangian(self, q0, q1):  # type: ignore[no-untyped-def]
+                y0, y1 = q0**2 / 2, q1**2 / 2
+                return (((q1 - q0) ** 2 + (y1 - y0) ** 2) / (2 * self.h) - self.h * (y0 + y1) / 2)[0]
+
+        compiled = my_system.Bead(h=0.05).integrator([0.3], [1.0]).march(100)
+        prototype = Bead().integrator([0.3], [1.0]).march(100)
+        np.testing.assert_allclose(prototype.object, compiled.object, atol=1e-12)
+
+    def test_a_broken_bead_is_another_one(self) -> None:
+        """The comparison above can fail."""
+        one = my_system.Bead(h=0.05).integrator([0.3], [1.0]).march(100)
+        other = my_system.Bead(h=0.05, gravity=1.001).integrator([0.3], [1.0]).march(100)
+        self.assertGreater(np.abs(one.object - other.object).max(), 1e-4)
+
+    def test_high_order_and_other_modes(self) -> None:
+        bead = my_system.Bead(h=0.1)
+        exact = my_system.Bead(h=0.01).integrator([0.3], [1.0], order=8).march(100).object[-1, 0]
+        errors = [
+            abs(bead.integrator([0.3], [1.0], order=order).march(10).object[-1, 0] - exact) for order in (2, 4, 8)
+        ]
+        self.assertGreater(errors[0], 20 * errors[1])
+        self.assertGreater(errors[1], 20 * errors[2])
+        with self.assertRaises(ValueError):
+            bead.integrator([0.3], [1.0], method="splitting")
+
+
+if __name__ == "__main__":
+    unittest.main()

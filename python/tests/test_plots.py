@@ -1,0 +1,55 @@
+"""Pictures are drawn without a window, and hold the run's numbers."""
+
+import io
+import os
+import unittest
+
+import lagroid
+import numpy as np
+from data import EXAMPLES
+
+
+class Plots(unittest.TestCase):
+    def setUp(self) -> None:
+        os.environ.pop("DISPLAY", None)
+        self.run_ = lagroid.run(EXAMPLES / "kepler.toml", set={"time.steps": 200})
+
+    def test_trajectory(self) -> None:
+        figure = lagroid.plot.trajectory(self.run_)
+        self.assertEqual(len(figure.axes), len(self.run_.panels))
+        line = figure.axes[0].lines[0]
+        np.testing.assert_array_equal(line.get_xdata(), self.run_["x"])
+        np.testing.assert_array_equal(line.get_ydata(), self.run_["y"])
+        picture = io.BytesIO()
+        figure.savefig(picture, format="png", dpi=40)
+        self.assertGreater(len(picture.getvalue()), 2000)
+
+    def test_columns(self) -> None:
+        ball = lagroid.run(EXAMPLES / "plate_ball_initial_value.toml", set={"time.steps": 20})
+        figure = lagroid.plot.trajectory(ball, ["x", "lambda1"])
+        self.assertEqual([len(line.get_xdata()) for line in figure.axes[0].lines], [21, 20])
+        with self.assertRaises(ValueError):
+            lagroid.plot.trajectory(lagroid.run(EXAMPLES / "kepler.toml", record=False))
+
+    def test_ledger(self) -> None:
+        figure = lagroid.plot.ledger(self.run_)
+        self.assertEqual(len(figure.axes[0].patches), len(self.run_.ledger))
+        integrator = lagroid.Kepler(h=0.01).integrator([0, 1], [1, 0])
+        integrator.march(10)
+        self.assertEqual(len(lagroid.plot.ledger(integrator.ledger).axes[0].patches), 2)
+
+    def test_study(self) -> None:
+        found = lagroid.study(
+            EXAMPLES / "pendulum.toml",
+            set={"time.steps": 50},
+            methods=["splitting", "runge-kutta"],
+            steps=[0.1, 0.05],
+            reference_time=0.5,
+            repetitions=1,
+        )
+        figure = lagroid.plot.study(found)
+        self.assertEqual({line.get_label() for line in figure.axes[0].lines}, {"splitting", "runge-kutta"})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,178 @@
+"""Scenes and runs: the numbers of the program, arrays without copies, messages."""
+
+import copy
+import gc
+import json
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import lagroid
+import numpy as np
+from data import EXAMPLES
+
+PENDULUM = {
+    "system": "pendulum",
+    "initial": {"position": [0.5], "momentum": np.array([0.2])},
+    "time": {"step": 0.1, "steps": 100},
+}
+
+
+class Scenes(unittest.TestCase):
+    def test_file_text_and_dict_are_one_scene(self) -> None:
+        text = lagroid.scene_text(PENDULUM)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.toml"
+            file.write_text(text)
+            runs = [lagroid.run(scene) for scene in (file, str(file), text, PENDULUM)]
+        for run in runs[1:]:
+            np.testing.assert_array_equal(run["q"], runs[0]["q"])
+        self.assertEqual(runs[0].steps, 100)
+
+    def test_settings_override(self) -> None:
+        run = lagroid.run(PENDULUM, set={"time.steps": 7, "parameters": {"gravity": 2.5}, "time.step": np.float64(0.2)})
+        self.assertEqual(len(run.time), 8)
+        self.assertAlmostEqual(run.time[-1], 1.4)
+
+    def test_arrays_of_tables(self) -> None:
+        run = lagroid.run(EXAMPLES / "chain_drop.toml", set={"time.steps": 2})
+        self.assertTrue(run.converged)
+
+    def test_every_example_that_is_short_runs(self) -> None:
+        for name in ("rigid_body", "heavy_top", "plate_ball_initial_value", "spherical_pendulum", "pendulum_chain"):
+            run = lagroid.require(lagroid.run(EXAMPLES / f"{name}.toml", set={"time.steps": 20}))
+            self.assertGreater(len(run.series), 0, name)
+            self.assertFalse(any(entry.broken for entry in run.ledger), name)
+
+    def test_columns_are_those_of_the_files(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            run = lagroid.run(EXAMPLES / "rigid_body.toml", set={"time.steps": 50}, out=folder)
+            with open(Path(folder) / "trajectory.csv", encoding="ascii") as file:
+                header = file.readline().lstrip("# ").strip().split(",")
+            table = np.genfromtxt(Path(folder) / "trajectory.csv", delimiter=",", skip_header=1)
+            summary = json.loads((Path(folder) / "summary.json").read_text())
+        self.assertEqual(header, run.columns)
+        for i, label in enumerate(run.columns):
+            values = run[label]
+            np.testing.assert_array_equal(table[-len(values) :, i], values)
+        self.assertEqual(summary["status"], run.status)
+        self.assertEqual(json.loads(run.json())["steps"], 50)
+
+    def test_arrays_are_the_runs_own_numbers(self) -> None:
+        run = lagroid.run(PENDULUM)
+        first, second = run["q"], run["q"]
+        self.assertFalse(first.flags.owndata)
+        self.assertFalse(first.flags.writeable)
+        self.assertTrue(np.shares_memory(first, second))
+        self.assertTrue(np.shares_memory(run.series[0].values, first))
+        expected = first.copy()
+        del run, second
+        gc.collect()
+        _ = [lagroid.run(PENDULUM) for _ in range(3)]
+        np.testing.assert_array_equal(first, expected)  # the array keeps them alive
+
+    def test_shapes(self) -> None:
+        run = lagroid.run(EXAMPLES / "plate_ball_initial_value.toml", set={"time.steps": 10})
+        self.assertEqual(run["position"].shape, (11, 2))
+        self.assertEqual(run["attitude"].shape, (11, 4))
+        self.assertEqual(run["multipliers"].shape, (10, 3))
+        self.assertEqual(run["x"].shape, (11,))
+        self.assertIn("x", run)
+        self.assertNotIn("nothing", run)
+        with self.assertRaises(KeyError):
+            run["nothing"]
+
+    def test_without_record(self) -> None:
+        run = lagroid.run(PENDULUM, record=False)
+        self.assertEqual(run.columns, [])
+        self.assertEqual(len(run.final.position), 1)
+        with self.assertRaisesRegex(KeyError, "nothing was recorded"):
+            run["q"]
+
+    def test_mistakes_are_the_programs_one_line(self) -> None:
+        with self.assertRaisesRegex(lagroid.SceneError, 'stepz: unknown key; did you mean "step"') as caught:
+            lagroid.run(PENDULUM, set={"time": {"stepz": 1, "steps": 5}})
+        self.assertNotIn("\n", str(caught.exception))
+        self.assertIsInstance(caught.exception, ValueError)
+        with self.assertRaisesRegex(lagroid.SceneError, "no such scene file"):
+            lagroid.run("missing.toml")
+        with self.assertRaisesRegex(lagroid.SceneError, "time.thing"):
+            lagroid.run({"time": {"thing": object()}})
+        with self.assertRaises(lagroid.OutputError):
+            lagroid.run(PENDULUM, out="/proc/nowhere")
+
+    def test_a_failed_step_is_a_status_and_an_error(self) -> None:
+        run = lagroid.run(
+            {
+                "system": "plate_ball",
+                "initial": {"position": [0, 0], "momentum": [1, 1, 1, 1, 1]},
+                "time": {"step": 40.0, "steps": 3},
+            }
+        )
+        self.assertFalse(run.converged)
+        with self.assertRaises(lagroid.SolveError) as caught:
+            lagroid.require(run)
+        self.assertEqual(caught.exception.status, run.status)
+        self.assertIs(caught.exception.result, run)
+        self.assertIn("step 1", str(caught.exception))
+
+    def test_resume_goes_on_with_the_same_bits(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            lagroid.run(PENDULUM, out=folder)
+            longer = lagroid.resume(folder, steps=150)
+            with self.assertRaises(lagroid.OutputError):
+                lagroid.resume(Path(folder) / "elsewhere")
+        np.testing.assert_array_equal(longer["q"], lagroid.run(PENDULUM, set={"time.steps": 150})["q"])
+
+    def test_threads_run_at_once(self) -> None:
+        expected = lagroid.run(PENDULUM)["q"].copy()
+        found: list[lagroid.Run] = []
+        threads = [threading.Thread(target=lambda: found.append(lagroid.run(PENDULUM))) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(found), 8)
+        for run in found:
+            np.testing.assert_array_equal(run["q"], expected)
+
+    def test_the_lock_is_released(self) -> None:
+        ticks = 0
+        done = threading.Event()
+
+        def long() -> None:
+            lagroid.run(PENDULUM, set={"time.steps": 1_000_000}, record=False)
+            done.set()
+
+        thread = threading.Thread(target=long)
+        thread.start()
+        while not done.is_set():
+            ticks += 1
+        thread.join()
+        self.assertGreater(ticks, 1000)
+
+    def test_boundary_value(self) -> None:
+        run = lagroid.require(lagroid.run(EXAMPLES / "kepler_boundary.toml"))
+        self.assertIsNotNone(run.cost)
+        self.assertGreaterEqual(len(run.minima), 1)
+        self.assertEqual(run.minima[0].momentum.shape, (2,))
+
+    def test_systems_are_those_of_the_listing(self) -> None:
+        systems = lagroid.systems()
+        self.assertIn("plate_ball", systems)
+        self.assertEqual(systems["kepler"]["parameters"][0]["name"], "strength")
+        self.assertIn("angular momentum", systems["kepler"]["conserved"])
+
+    def test_a_scene_is_not_changed(self) -> None:
+        before = copy.deepcopy(PENDULUM)
+        lagroid.run(PENDULUM, set={"time.steps": 3})
+        self.assertEqual(lagroid.scene_text(before), lagroid.scene_text(PENDULUM))
+
+    def test_text_of_a_scene(self) -> None:
+        text = lagroid.scene_text({"a": True, "b": 'say "x"', "c": {"d": [1, 2.5], "e f": float("inf")}})
+        self.assertEqual(text, '"a" = true\n"b" = "say \\"x\\""\n"c" = {"d" = [1, 2.5], "e f" = inf}\n')
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,66 @@
+"""Studies, and the program that asks laws."""
+
+import os
+import stat
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import lagroid
+from data import EXAMPLES
+
+
+class Studies(unittest.TestCase):
+    def test_study(self) -> None:
+        found = lagroid.study(
+            EXAMPLES / "kepler.toml",
+            set={"time.steps": 100},
+            methods=["splitting", "variational/suzuki"],
+            steps=[0.1, 0.05, 0.025],
+            reference_time=1,
+            repetitions=2,
+        )
+        self.assertEqual(found["status"], "done")
+        runs = [run for run in found["runs"] if run["method"] == "splitting"]
+        self.assertEqual(len(runs), 3)
+        self.assertAlmostEqual(runs[-2]["trajectory"] / runs[-1]["trajectory"], 4, delta=0.5)
+        self.assertTrue(found["recommendation"])
+
+    def test_methods(self) -> None:
+        found = {method.name: method for method in lagroid.methods(EXAMPLES / "kepler.toml")}
+        self.assertEqual(found["splitting/kahan-li-8"].order, 8)
+        with self.assertRaises(lagroid.SceneError):
+            lagroid.study(EXAMPLES / "kepler.toml", methods=["magic"])
+        with self.assertRaises(lagroid.SceneError):
+            lagroid.methods(EXAMPLES / "kepler_boundary.toml")
+        with self.assertRaises(ValueError):
+            lagroid.study(EXAMPLES / "kepler.toml", steps=[-1.0])
+
+    def test_check_hands_over_to_its_program(self) -> None:
+        """The program is built apart (it compiles for minutes): here, one that prints what it was asked."""
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "lagroid-check"
+            program.write_text('#!/bin/sh\nprintf \'{"arguments": "%s", "scene": "%s"}\' "$2 $3" "$(head -c 6 "$1")"\n')
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
+                found = lagroid.check(EXAMPLES / "kepler.toml", arguments=["--samples=5"])
+            self.assertEqual(found["arguments"], "--json --samples=5")
+            program.write_text('#!/bin/sh\necho "lagroid: $1: mistaken" >&2\nexit 2\n')
+            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
+                with self.assertRaisesRegex(lagroid.SceneError, "kepler.toml: mistaken"):
+                    lagroid.check(EXAMPLES / "kepler.toml")
+            program.write_text("#!/bin/sh\nexit 1\n")
+            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
+                with self.assertRaises(lagroid.ProgramError):
+                    lagroid.check(EXAMPLES / "kepler.toml")
+
+    def test_check_without_its_program_says_how_to_build_it(self) -> None:
+        with mock.patch("lagroid.studies._lagroid.__file__", "/nowhere/python/lagroid/_lagroid.so", create=True):
+            with mock.patch.dict(os.environ, {"PATH": "/nowhere"}):
+                with self.assertRaisesRegex(lagroid.ProgramError, "ninja lagroid_check"):
+                    lagroid.check(EXAMPLES / "kepler.toml")
+
+
+if __name__ == "__main__":
+    unittest.main()

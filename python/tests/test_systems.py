@@ -1,0 +1,195 @@
+"""Systems as objects: the same numbers as scenes, step by step and many at once."""
+
+import copy
+import threading
+import unittest
+
+import lagroid
+import numpy as np
+from data import EXAMPLES
+
+
+def turned(angle: float) -> np.ndarray:
+    """By the angle about the first axis."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+class Systems(unittest.TestCase):
+    def test_a_march_is_the_run_of_the_scene(self) -> None:
+        run = lagroid.run(
+            {
+                "system": "kepler",
+                "initial": {"position": [0.4, 0], "momentum": [0, 2]},
+                "time": {"step": 0.05, "steps": 500},
+            }
+        )
+        system = lagroid.Kepler(h=0.05, quadrature="trapezoid")
+        integrator = system.integrator([0, 2], [0.4, 0])
+        march = integrator.march(500)
+        np.testing.assert_array_equal(march.object, run["position"])
+        np.testing.assert_array_equal(march.momentum, run["momentum"])
+        np.testing.assert_array_equal(march.time, run.time)
+        for mine, theirs in zip(integrator.ledger, run.ledger):
+            self.assertEqual((mine.name, mine.drift, mine.verdict), (theirs.name, theirs.drift, theirs.verdict))
+
+    def test_the_ledger_holds_the_constraints(self) -> None:
+        ball = lagroid.PlateBall(h=0.05, plate_rate=0.3)
+        integrator = ball.integrator([0.5, 0.2, 0.1, 0.2, 0.3], [0.1, 0])
+        integrator.march(200)
+        run = lagroid.run(
+            {
+                "system": "plate_ball",
+                "parameters": {"plate_rate": 0.3},
+                "initial": {"position": [0.1, 0], "momentum": [0.5, 0.2, 0.1, 0.2, 0.3]},
+                "time": {"step": 0.05, "steps": 200},
+            }
+        )
+        told = [(entry.name, entry.drift, entry.bound, entry.verdict) for entry in integrator.ledger]
+        self.assertEqual(told[0][0], "constraint residual")
+        self.assertEqual(told, [(entry.name, entry.drift, entry.bound, entry.verdict) for entry in run.ledger])
+        self.assertEqual(ball.integrator([0.5, 0.2, 0.1, 0.2, 0.3], [0.1, 0], ledger=False).ledger, [])
+
+    def test_bodies_are_those_of_scenes(self) -> None:
+        angle = 0.3
+        scene = {
+            "system": "heavy_top",
+            "parameters": {"inertia": [1.0, 1.2, 0.5], "weight": [0.1, 0.0, 1.0]},
+            "initial": {"attitude": [angle, 0.0, 0.0], "momentum": [0.1, 0.2, 1.5]},
+            "time": {"step": 0.02, "steps": 200},
+        }
+        run = lagroid.run(scene)
+        top = lagroid.HeavyTop(inertia=[1.0, 1.2, 0.5], weight=[0.1, 0, 1], h=0.02, rotation="exp")
+        march = top.integrator([0.1, 0.2, 1.5], configuration=top.arrow(turned(angle))).march(200)
+        np.testing.assert_allclose(march.object, run["position"], atol=1e-13)
+        np.testing.assert_allclose(march.momentum, run["momentum"], atol=1e-13)
+        self.assertEqual(march.configuration.shape, (201, 12))
+
+    def test_attitudes_are_matrices(self) -> None:
+        start = turned(1.0)
+        body = lagroid.RigidBody(inertia=[1, 2, 3], h=0.01)
+        march = body.integrator([1, 0.5, 2], configuration=start).march(300)
+        np.testing.assert_allclose(march.configuration[0], start, atol=1e-15)
+        spatial = np.einsum("kij,kj->ki", march.configuration, march.momentum)
+        np.testing.assert_allclose(spatial, np.broadcast_to(spatial[0], spatial.shape), atol=1e-13)
+        np.testing.assert_allclose(march.configuration[5] @ march.arrow[5], march.configuration[6], atol=1e-14)
+
+    def test_one_step_at_a_time(self) -> None:
+        system = lagroid.SphericalPendulum(h=0.02)
+        together = system.integrator([0.1, 0.5, 0], [1, 0, 0]).march(50)
+        one = system.integrator([0.1, 0.5, 0], [1, 0, 0])
+        for k in range(1, 51):
+            one.advance()
+            np.testing.assert_array_equal(one.object, together.object[k])
+            np.testing.assert_array_equal(one.state[1], together.momentum[k])
+        self.assertEqual(one.index, 50)
+        self.assertEqual(one.time, together.time[-1])
+        np.testing.assert_array_equal(one.multipliers, together.multipliers[-1])
+        self.assertEqual(one.quantity("energy").shape, (1,))
+
+    def test_every_nth_node_and_the_last(self) -> None:
+        march = lagroid.Pendulum(h=0.1).integrator([1], [0]).march(25, every=10)
+        np.testing.assert_allclose(march.time, [0, 1, 2, 2.5])
+        self.assertEqual(march.arrow.shape, (3, 2))
+        self.assertEqual(march.quantities["energy"].shape, (4, 1))
+
+    def test_arrays_are_the_marchs_own_numbers(self) -> None:
+        march = lagroid.Pendulum().integrator([1], [0]).march(10)
+        self.assertTrue(np.shares_memory(march.object, march.object))
+        self.assertFalse(march.object.flags.writeable)
+        kept = march.object
+        expected = kept.copy()
+        del march
+        np.testing.assert_array_equal(kept, expected)
+
+    def test_modes_and_orders(self) -> None:
+        system = lagroid.Kepler(h=0.1)
+        self.assertIn("order 8", system.integrator([0, 1.2], [1, 0], order=8).method)
+        self.assertIn("explicit", system.integrator([0, 1.2], [1, 0], method="splitting").method)
+        march = system.integrator([0, 1.2], [1, 0], mode="controlled").march(20)
+        self.assertGreater(np.ptp(march.step_size), 1e-3)
+        for wrong in ({"mode": "fast"}, {"order": 3}, {"composition": "none"}, {"order": 4, "composition": "kahan-li-8"}):
+            with self.assertRaises(ValueError):
+                system.integrator([0, 1.2], [1, 0], **wrong)  # type: ignore[arg-type]
+
+    def test_mistakes(self) -> None:
+        with self.assertRaisesRegex(TypeError, "Kepler has no parameter mass"):
+            lagroid.Kepler(mass=1)
+        with self.assertRaisesRegex(ValueError, "momentum: expected 2 numbers, got 1"):
+            lagroid.Kepler().integrator([1], [0, 0])
+        with self.assertRaisesRegex(ValueError, "object: must be finite"):
+            lagroid.Kepler().integrator([1, 0], [0, np.nan])
+        with self.assertRaisesRegex(ValueError, "give object"):
+            lagroid.Kepler().integrator([1, 0])
+        with self.assertRaisesRegex(ValueError, "off the constraint"):
+            lagroid.SphericalPendulum().integrator([0, 0, 0], [2, 0, 0])
+        with self.assertRaisesRegex(ValueError, "no arrow of SO"):
+            lagroid.RigidBody().integrator([0, 0, 1], configuration=2 * np.eye(3))
+        with self.assertRaisesRegex(ValueError, "h: the step"):
+            lagroid.Kepler(h=0).integrator([1, 0], [1, 0])
+        with self.assertRaisesRegex(ValueError, "quadrature"):
+            lagroid.Kepler(quadrature="simpson")
+
+    def test_a_step_that_fails_changes_nothing(self) -> None:
+        ball = lagroid.PlateBall(h=40.0)
+        integrator = ball.integrator([1, 1, 1, 1, 1], [0, 0])
+        before = integrator.state
+        with self.assertRaises(lagroid.SolveError) as caught:
+            integrator.advance()
+        self.assertNotEqual(caught.exception.status, "converged")
+        self.assertIn("step 1", str(caught.exception))
+        np.testing.assert_array_equal(integrator.state[1], before[1])
+        march = integrator.march(3)
+        self.assertEqual((march.steps, march.converged), (0, False))
+        with self.assertRaises(lagroid.SolveError):
+            lagroid.require(march)
+
+    def test_boundary_values_are_those_of_scenes(self) -> None:
+        run = lagroid.run(EXAMPLES / "kepler_boundary.toml")
+        start, end = run["position"][0], run["position"][-1]
+        system = lagroid.Kepler(h=float(run.time[1]), quadrature="trapezoid")
+        paths = system.boundary(np.concatenate([start, end]), run.steps)
+        costs = [path.cost for path in paths]
+        self.assertEqual(costs, sorted(costs))
+        self.assertAlmostEqual(min(costs), run.minima[0].cost, places=9)
+        np.testing.assert_allclose(paths[0].object[-1], end, atol=1e-9)
+        self.assertEqual(paths[0].momentum.shape, (run.steps + 1, 2))
+        self.assertEqual(paths[0].arrow.shape, (run.steps, 4))
+
+    def test_boundary_value_without_solution(self) -> None:
+        ball = lagroid.PlateBall(h=0.05)
+        far = ball.arrow([0, 0], [500, 0], turned(1.0))
+        with self.assertRaisesRegex(lagroid.SolveError, "boundary value"):
+            ball.boundary(far, 4, starts=1)
+
+    def test_copies(self) -> None:
+        system = lagroid.Pendulum(length=2.0)
+        other = copy.copy(system)
+        other.length = 3.0
+        self.assertEqual((system.length, other.length), (2.0, 3.0))
+        self.assertEqual(copy.deepcopy(other).length, 3.0)
+
+    def test_one_thread_at_a_time(self) -> None:
+        integrator = lagroid.Pendulum(h=0.01).integrator([1], [0])
+        started = threading.Event()
+
+        def long() -> None:
+            started.set()
+            integrator.march(3_000_000, every=1_000_000)
+
+        thread = threading.Thread(target=long)
+        thread.start()
+        started.wait()
+        refused = 0
+        while thread.is_alive():
+            try:
+                integrator.advance()
+            except RuntimeError as error:
+                self.assertIn("another thread", str(error))
+                refused += 1
+        thread.join()
+        self.assertGreater(refused, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

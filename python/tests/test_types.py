@@ -1,0 +1,68 @@
+"""The stubs say what the module has, and the package, notebooks and tests keep to them."""
+
+import ast
+import subprocess
+import sys
+import unittest
+from importlib import util
+
+import lagroid
+from data import ROOT
+from lagroid import _lagroid
+
+
+@unittest.skipUnless(util.find_spec("mypy"), "mypy is not installed")
+class Checked(unittest.TestCase):
+    def mypy(self, *files: str) -> "subprocess.CompletedProcess[str]":
+        return subprocess.run(
+            [sys.executable, "-m", "mypy", "--config-file", str(ROOT / "pyproject.toml"), "--cache-dir", "/dev/null",
+             *files],
+            capture_output=True,
+            text=True,
+            check=False,
+            cwd=ROOT / "python",
+        )  # fmt: skip
+
+    def test_package_and_notebooks(self) -> None:
+        notebooks = sorted(str(file) for file in (ROOT / "python" / "notebooks").glob("*.py"))
+        found = self.mypy("lagroid", "bench/overhead.py", *notebooks)
+        self.assertEqual(found.returncode, 0, found.stdout)
+
+    def test_a_mistake_is_found(self) -> None:
+        found = self.mypy("lagroid", "-c", "import lagroid\nlagroid.run('a', steps=3)")
+        self.assertNotEqual(found.returncode, 0)
+
+
+class Stubs(unittest.TestCase):
+    def test_every_name_has_its_stub(self) -> None:
+        stub = ast.parse((ROOT / "python" / "lagroid" / "_lagroid.pyi").read_text())
+        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+        functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+        shared = {"groupoid"} | self.members(classes["_System"])
+        for name in dir(_lagroid):
+            value = getattr(_lagroid, name)
+            if name.startswith("__"):
+                continue
+            if isinstance(value, type):
+                own = {member for member in vars(value) if not member.startswith("_")}
+                told = self.members(classes[name])
+                if {base.id for base in classes[name].bases if isinstance(base, ast.Name)} == {"_System"}:
+                    told |= shared
+                self.assertEqual(own, told, name)
+            else:
+                self.assertIn(name, functions)
+
+    @staticmethod
+    def members(node: ast.ClassDef) -> set[str]:
+        out = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
+        out |= {item.target.id for item in node.body if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name)}  # fmt: skip
+        return {name for name in out if not name.startswith("_")}
+
+    def test_everything_public_has_a_docstring(self) -> None:
+        for name in lagroid.__all__:
+            if not name.startswith("_"):
+                self.assertTrue(getattr(lagroid, name).__doc__, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
