@@ -657,20 +657,6 @@ TEST_F(Sweep, EveryExampleRuns) {
   for (const double q : column("basins", "final/q")) EXPECT_LT(std::abs(std::remainder(q, 2 * M_PI)), 0.6);
 }
 
-TEST_F(Sweep, TheFileOnThePageIsOne) {
-  std::ifstream page(std::string(LAGROID_EXAMPLES) + "/../docs/sweeps.md");
-  std::string text;
-  for (std::string line; std::getline(page, line);)
-    if (line.starts_with("    [scene]") || (!text.empty() && (line.empty() || line.starts_with("    "))))
-      text += line + "\n";
-    else if (!text.empty())
-      break;
-  const std::string path = "../kepler.toml";
-  ASSERT_NE(text.find(path), std::string::npos);
-  text.replace(text.find(path), path.size(), example("kepler"));
-  EXPECT_EQ(sweep(file("page.toml", text), "page", "--set design.count=3 --set scene.time.steps=10").code, 0);
-}
-
 TEST_F(Sweep, WhatItCostsIsMeasuredAndModelled) {
   if (const std::string why = without_ranks(); !why.empty()) GTEST_SKIP() << why;
   const Outcome r = run("reproduce sweep-scaling --json --out " + out("scaling"), mpirun(2));
