@@ -153,6 +153,21 @@ template <DiscreteSystem Sys> class SystemRun final : public SteppedRun {
   Recorder<Sys> recorder_;
 };
 
+template <DiscreteSystem Sys> struct PlainMarch {
+  State<typename Sys::GroupoidType> initial;
+  ArrowOf<typename Sys::GroupoidType> configuration;
+  Presentation<Sys> presentation;
+  Pace pace;
+};
+
+/// Whether it is one: nothing is asked of steps and solver beyond their size and number.
+inline bool is_plain(const MarchChoice& choice) {
+  const MarchOptions& o = choice.options;
+  return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.composition.stages() == 1 &&
+         o.method == StepMethod::newton && o.step.tolerance == 0 &&
+         o.step.max_iterations == MarchOptions().step.max_iterations && choice.accuracy == 0;
+}
+
 /// Runs the system.
 template <DiscreteSystem Sys>
 RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typename Sys::GroupoidType>& initial,
@@ -194,6 +209,9 @@ Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys&
   const MarchChoice choice = read_march(scene, able);
   const Pace pace = read_pace(scene, context);
   scene.finish();
+  std::shared_ptr<const PlainMarch<Sys>> plain;
+  if (is_plain(choice))
+    plain = std::make_shared<const PlainMarch<Sys>>(PlainMarch<Sys>{initial, configuration, presentation, pace});
   return {system,
           [=](const Observer<Sys>& observer) {
             return simulate(system, presentation, initial, configuration, choice, pace, context, observer);
@@ -201,7 +219,7 @@ Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys&
           [=]() -> std::unique_ptr<Trial> {
             return std::make_unique<SystemTrial<Sys>>(system, initial, configuration, choice.options);
           },
-          march_methods(able)};
+          march_methods(able), plain};
 }
 
 }  // namespace lagroid::app

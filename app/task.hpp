@@ -25,11 +25,15 @@ struct RunContext {
 /// Sees every point of a run, in order, beside its recorder; may be null.
 template <class Sys> using Observer = std::function<void(const TrajectoryPoint<Sys>&)>;
 
+/// An initial value of equal steps of order two by Newton, as ensembles march them (simulation.hpp).
+template <DiscreteSystem Sys> struct PlainMarch;
+
 template <DiscreteSystem Sys> struct Task {
   Sys system;
   std::function<RunResult(const Observer<Sys>&)> run;
-  std::function<std::unique_ptr<Trial>()> begin;  ///< the same motion alone; null for boundary values
-  std::vector<Method> methods = {};               ///< by which the scene could march
+  std::function<std::unique_ptr<Trial>()> begin;           ///< the same motion alone; null for boundary values
+  std::vector<Method> methods = {};                        ///< by which the scene could march
+  std::shared_ptr<const PlainMarch<Sys>> plain = nullptr;  ///< null where it is no such march
 };
 
 }  // namespace lagroid::app

@@ -22,6 +22,7 @@
 #include <set>
 #include <sstream>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -328,7 +329,7 @@ radius = 2
 key = "initial.attitude"
 distribution = "attitude"
 )"));
-  ASSERT_EQ(sweep(file, "tops", "--set keep.ledger=false").code, 0);
+  ASSERT_EQ(sweep(file, "tops", "--set keep.ledger=false --set run.part=500").code, 0);
   std::array<std::vector<double>, 3> m;
   std::array<std::vector<double>, 4> q;
   for (int i = 0; i < 3; ++i) m[std::size_t(i)] = column("tops", "initial.momentum." + std::to_string(i));
@@ -500,6 +501,64 @@ TEST_F(Sweep, ThreadsAndPartsLeaveTheSameBytes) {
   EXPECT_TRUE(bytes(out("one") + "/members.csv") == bytes(out("whole") + "/members.csv"));
 }
 
+TEST_F(Sweep, LanesAndScenesAgreeToRoundOff) {
+  const std::string ranges = R"(
+[[vary]]
+key = "initial.momentum.0"
+from = 0.2
+to = 0.6
+[[vary]]
+key = "initial.momentum.1"
+from = 0.2
+to = 0.6
+)";
+  const std::string range = R"(
+[[vary]]
+key = "initial.position.0"
+from = 0.2
+to = 2.6
+)";
+  for (const auto& [scene, vary, series] : {std::tuple("rigid_body", ranges, "M1"), std::tuple("pendulum", range, "q"),
+                                            std::tuple("plate_ball_initial_value", ranges, "px")}) {
+    SCOPED_TRACE(scene);
+    // A number of members that fills no register.
+    const std::string file =
+        this->file("lanes.toml", "keep = {ledger = false, every = 30, series = [\"" + std::string(series) +
+                                     "\"]}\n[scene]\nfile = \"" + example(scene) + "\"\ntime.steps = 100\n" +
+                                     random_design("latin-hypercube", 21, vary));
+    const std::string lanes = std::string(scene) + "_lanes";
+    const std::string scenes = std::string(scene) + "_scenes";
+    const Outcome r = sweep(file, lanes);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.out.find("engine    lanes"), std::string::npos) << r.out;
+    ASSERT_EQ(sweep(file, scenes, "--set run.engine=scenes").code, 0);
+    for (const auto& [name, values] : members(lanes)) {
+      if (name == "status" || name == "run/steps") {
+        EXPECT_EQ(values, members(scenes).at(name));
+      }
+      if (!name.starts_with("final/")) continue;
+      const auto a = column(lanes, name);
+      const auto b = column(scenes, name);
+      for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-11 * (1 + std::abs(b[i]))) << name;
+    }
+    // Threads and parts change nothing in lanes either.
+    ASSERT_EQ(sweep(file, lanes + "2", "--threads 1 --set run.part=8 --set run.engine=lanes").code, 0);
+    EXPECT_TRUE(bytes(out(lanes) + "/members.csv") == bytes(out(lanes + "2") + "/members.csv"));
+  }
+}
+
+TEST_F(Sweep, AMemberThatFailsInALaneFailsAlone) {
+  const std::string file =
+      this->file("steps.toml", "[scene]\nfile = \"" + example("rigid_body") +
+                                   "\"\ntime.steps = 50\n[keep]\nledger = false\n[design]\nkind = "
+                                   "\"grid\"\n[[vary]]\nkey = \"initial.momentum.1\"\nvalues = [2, 1e4, 3]\n");
+  EXPECT_EQ(sweep(file, "lanes", "--set run.engine=lanes --set run.part=3").code, 3);
+  EXPECT_EQ(sweep(file, "scenes", "--set run.engine=scenes").code, 3);
+  EXPECT_EQ(members("lanes").at("status"), members("scenes").at("status"));
+  EXPECT_EQ(column("lanes", "run/steps"), (std::vector<double>{50, 0, 50}));
+  EXPECT_NEAR(column("lanes", "final/M2")[2], column("scenes", "final/M2")[2], 1e-12);
+}
+
 TEST_F(Sweep, AnInterruptKeepsWhatIsFinishedAndTheSameCommandGoesOn) {
   const std::string file =
       orbits(random_design("random", 60, "[[vary]]\nkey = \"initial.momentum.1\"\nfrom = 1.5\nto = 2\n"), 20000);
@@ -598,20 +657,6 @@ TEST_F(Sweep, EveryExampleRuns) {
   for (const double q : column("basins", "final/q")) EXPECT_LT(std::abs(std::remainder(q, 2 * M_PI)), 0.6);
 }
 
-TEST_F(Sweep, TheFileOnThePageIsOne) {
-  std::ifstream page(std::string(LAGROID_EXAMPLES) + "/../docs/sweeps.md");
-  std::string text;
-  for (std::string line; std::getline(page, line);)
-    if (line.starts_with("    [scene]") || (!text.empty() && (line.empty() || line.starts_with("    "))))
-      text += line + "\n";
-    else if (!text.empty())
-      break;
-  const std::string path = "../kepler.toml";
-  ASSERT_NE(text.find(path), std::string::npos);
-  text.replace(text.find(path), path.size(), example("kepler"));
-  EXPECT_EQ(sweep(file("page.toml", text), "page", "--set design.count=3 --set scene.time.steps=10").code, 0);
-}
-
 TEST_F(Sweep, WhatItCostsIsMeasuredAndModelled) {
   if (const std::string why = without_ranks(); !why.empty()) GTEST_SKIP() << why;
   const Outcome r = run("reproduce sweep-scaling --json --out " + out("scaling"), mpirun(2));
@@ -685,6 +730,8 @@ TEST_F(Sweep, BadInputIsOneLineThatNamesTheRemedy) {
       {good + there + " --set keep.every=3", "goes with series"},
       {good + there + " --set plot.quantity=z", "no column \"z\""},
       {good + there + " --set run.part=0", "from 1 to"},
+      {good + there + " --set run.engine=lanes", "keep.ledger = false"},
+      {good + there + " --set run.engine=lanes --set keep.ledger=false", "parameters.strength varies"},
       {good + there + " --set sceen=1", "did you mean \"scene\""},
       {good, "--out"},
       {good + there + " --threads 0", "--threads"},

@@ -56,32 +56,6 @@ void keep_series(const Trajectory& t, const std::vector<std::string>& names, lon
     }
 }
 
-void keep_result(const RunResult& r, const Keep& keep, long at, Part& part) {
-  part.end(at, r.status, r.converged() ? std::string() : r.message);
-  part.set(at, "run/steps", "1", "arrows computed", double(r.steps));
-  part.set(at, "run/iterations", "1", "of the solver, all together", double(r.iterations));
-  if (r.cost) part.set(at, "run/cost", "action", "of the path", *r.cost);
-  if (!r.minima.empty()) part.set(at, "run/stationary_paths", "1", "found", double(r.minima.size()));
-  const auto broken = std::count_if(r.ledger.entries.begin(), r.ledger.entries.end(),
-                                    [](const LedgerEntry& entry) { return entry.broken(); });
-  part.set(at, "run/broken", "1", "promises of the ledger that were broken", double(broken));
-  if (keep.ledger)
-    for (const LedgerEntry& entry : r.ledger.entries)
-      part.set(at, "ledger/" + entry.name, entry.promise == "counted" ? "1" : "unit of the quantity",
-               entry.promise == "counted" ? "how often" : "largest deviation from the initial value", entry.drift);
-  const Trajectory& t = r.trajectory;
-  if (t.time.empty()) return;
-  keep_node(t, 0, "initial", &keep.initial, at, part);
-  part.set(at, "final/t", "s", "time", t.time.back());
-  keep_node(t, t.time.size() - 1, "final", keep.final ? &*keep.final : nullptr, at, part);
-  if (!keep.series.empty()) keep_series(t, keep.series, at, part);
-}
-
-/// A scene that records what is kept, and no more.
-Section recording(const Section& scene, const Keep& keep) {
-  return scene.with({{"output.every", {double(keep.series.empty() ? most_apart : keep.every)}}});
-}
-
 class SceneRunner final : public MemberRunner {
  public:
   SceneRunner(const Section& scene, const Design& design, const Keep& keep)
@@ -96,6 +70,7 @@ class SceneRunner final : public MemberRunner {
       try {
         const RunResult result = run_scene(scene_.with(design_.member(first + at)), {.record = true});
         if (result.interrupted()) return std::nullopt;
+        part.set(at, "run/iterations", "1", "of the solver, all together", double(result.iterations));
         keep_result(result, keep_, at, part);
       } catch (const SceneError& error) {
         part.end(at, "invalid_scene", error.problem());
@@ -127,6 +102,30 @@ Keep read_keep(const Section& sweep) {
   keep.every = section.integer_or("every", 1, 1, most_apart);
   keep.ledger = section.flag_or("ledger", true);
   return keep;
+}
+
+Section recording(const Section& scene, const Keep& keep) {
+  return scene.with({{"output.every", {double(keep.series.empty() ? most_apart : keep.every)}}});
+}
+
+void keep_result(const RunResult& r, const Keep& keep, long at, Part& part) {
+  part.end(at, r.status, r.converged() ? std::string() : r.message);
+  part.set(at, "run/steps", "1", "arrows computed", double(r.steps));
+  if (r.cost) part.set(at, "run/cost", "action", "of the path", *r.cost);
+  if (!r.minima.empty()) part.set(at, "run/stationary_paths", "1", "found", double(r.minima.size()));
+  const auto broken = std::count_if(r.ledger.entries.begin(), r.ledger.entries.end(),
+                                    [](const LedgerEntry& entry) { return entry.broken(); });
+  part.set(at, "run/broken", "1", "promises of the ledger that were broken", double(broken));
+  if (keep.ledger)
+    for (const LedgerEntry& entry : r.ledger.entries)
+      part.set(at, "ledger/" + entry.name, entry.promise == "counted" ? "1" : "unit of the quantity",
+               entry.promise == "counted" ? "how often" : "largest deviation from the initial value", entry.drift);
+  const Trajectory& t = r.trajectory;
+  if (t.time.empty()) return;
+  keep_node(t, 0, "initial", &keep.initial, at, part);
+  part.set(at, "final/t", "s", "time", t.time.back());
+  keep_node(t, t.time.size() - 1, "final", keep.final ? &*keep.final : nullptr, at, part);
+  if (!keep.series.empty()) keep_series(t, keep.series, at, part);
 }
 
 std::unique_ptr<MemberRunner> scene_runner(const Section& scene, const Design& design, const Keep& keep) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Running the members of a sweep.
 
+#include "../run_result.hpp"
 #include "design.hpp"
 #include "part.hpp"
 
@@ -33,6 +34,12 @@ class MemberRunner {
 
 /// By `run_scene`, one after the other: any scene. One that fails does so alone: its row has a status and a message.
 std::unique_ptr<MemberRunner> scene_runner(const Section& scene, const Design& design, const Keep& keep);
+
+/// A scene that records what is kept, and no more.
+Section recording(const Section& scene, const Keep& keep);
+
+/// Sets what is kept of a member, at its place in the part.
+void keep_result(const RunResult& result, const Keep& keep, long at, Part& part);
 
 /// Runs one step (or, of a boundary value, one start) of the scene as it is written, so that its mistakes, and names of
 /// `keep` that it does not record, are found before all else. Returns what would be kept of it. Throws SceneError.

@@ -4,6 +4,8 @@
 
 #include <lagroid/solvers/ensemble/tasks.hpp>
 
+#include <tbb/global_control.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -34,7 +36,10 @@ constexpr std::chrono::microseconds between_looks(200);
 class Crew {
  public:
   Crew(int threads, const std::function<bool(long)>& work, const std::function<bool()>& interrupted)
-      : work_(work), interrupted_(interrupted), running_(threads) {
+      : allowed_(tbb::global_control::max_allowed_parallelism, std::size_t(threads)),
+        work_(work),
+        interrupted_(interrupted),
+        running_(threads) {
     threads_ = std::thread([this, threads] { for_each_task(threads, threads, [this](long) { serve(); }); });
   }
   Crew(const Crew&) = delete;
@@ -132,6 +137,7 @@ class Crew {
     changed_.notify_one();
   }
 
+  tbb::global_control allowed_;  ///< also for what the parts themselves do on several threads
   const std::function<bool(long)>& work_;
   const std::function<bool()>& interrupted_;
   std::mutex mutex_;

@@ -8,6 +8,7 @@
 #include "../scene_reader.hpp"
 #include "../study/accuracy.hpp"
 #include "../written.hpp"
+#include "lanes.hpp"
 #include "ranks.hpp"
 #include "schedule.hpp"
 #include "sweep_files.hpp"
@@ -44,6 +45,9 @@ struct Plan {
 void try_out(const SweepScene& sweep, const SweepOptions& options) {
   const Section file = read_scene(options.scene, options.overrides);
   const Part tried = try_scene(file, sweep.scene, sweep.keep);
+  if (sweep.engine == "lanes")
+    if (const std::string why = why_no_lanes(sweep.scene, sweep.design, sweep.keep); !why.empty())
+      file.section("run", "").fail("engine", fmt::format("no lanes here: {}; leave it out", why));
   if (tried.find("final/t") == nullptr) return;
   const std::vector<std::string> keys = sweep.design.columns();
   for (const auto& [key, column] :
@@ -75,10 +79,16 @@ Plan prepare(const SweepOptions& options) {
   return plan;
 }
 
+/// The engine: lanes where they are asked for or may be taken.
+std::unique_ptr<MemberRunner> runner_of(const SweepScene& sweep) {
+  if (sweep.engine != "scenes")
+    if (auto lanes = lane_runner(sweep.scene, sweep.design, sweep.keep)) return lanes;
+  return scene_runner(sweep.scene, sweep.design, sweep.keep);
+}
+
 /// Runs a part of the sweep, and keeps it. False where an interrupt came before it was finished.
 std::function<bool(long)> worker(const SweepScene& sweep, const std::string& out) {
-  return [&sweep, runner = std::shared_ptr<MemberRunner>(scene_runner(sweep.scene, sweep.design, sweep.keep)),
-          files = PartFiles(out)](long p) {
+  return [&sweep, runner = std::shared_ptr<MemberRunner>(runner_of(sweep)), files = PartFiles(out)](long p) {
     const auto part = runner->run(sweep.first_of(p), sweep.count_of(p));
     if (part) files.keep(p, *part);
     return part.has_value();
@@ -95,7 +105,7 @@ int tell_finished(const SweepOptions& options) {
 
 /// Joins the parts, writes the files, tells what was found. Returns the exit code.
 int conclude(Plan& plan, const SweepOptions& options, const std::string& took) {
-  const SweepResult result{"scenes", plan.folder->joined(plan.sweep)};
+  const SweepResult result{std::string(runner_of(plan.sweep)->name()), plan.folder->joined(plan.sweep)};
   std::string note;
   std::string text = sweep_text(plan.sweep, result);
   auto json = sweep_json(plan.sweep, result);

@@ -57,6 +57,7 @@ void read_rest(const Section& sweep, SweepScene& out) {
   out.keep = read_keep(sweep);
   out.plot = read_plot(sweep);
   const Section run = sweep.section_or_empty("run");
+  out.engine = run.choice_or("engine", "auto", {"auto", "scenes", "lanes"});
   const long count = out.design.count();
   out.part = run.integer_or("part", (count + most_parts - 1) / most_parts, 1, 100'000'000);
 }

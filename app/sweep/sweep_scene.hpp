@@ -29,6 +29,7 @@ struct SweepScene {
   Keep keep;
   SweepPlot plot;
   std::vector<std::string> notes;  ///< on how the scene came to be
+  std::string engine;              ///< asked for: auto, scenes or lanes
   long part = 1;                   ///< members that are run, and written, together
 
   long parts() const { return (design.count() + part - 1) / part; }

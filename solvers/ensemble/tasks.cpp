@@ -18,9 +18,6 @@ int available_threads() { return tbb::this_task_arena::max_concurrency(); }
 
 void for_each_task(long count, int threads, const std::function<void(long)>& work,
                    const std::function<bool()>& interrupted) {
-  const int wanted = threads > 0 ? threads : available_threads();
-  // Pieces that come here themselves have no more.
-  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::size_t(wanted));
   if (threads == 1) {
     for (long i = 0; i < count && !(interrupted && interrupted()); ++i) work(i);
     return;
@@ -41,6 +38,8 @@ void for_each_task(long count, int threads, const std::function<void(long)>& wor
       }
     }
   };
+  const int wanted = threads > 0 ? threads : available_threads();
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::size_t(wanted));
   tbb::task_arena arena(wanted);
   arena.execute([&] {
     tbb::parallel_for(

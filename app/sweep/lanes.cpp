@@ -1,0 +1,150 @@
+#include "lanes.hpp"
+
+#include "../interrupt.hpp"
+#include "../simulation.hpp"
+#include "../systems/readers.hpp"
+
+#include <lagroid/systems/ensembles.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace {
+
+template <class Sys> using Reader = Task<Sys> (*)(const Section&, const RunContext&);
+
+/// Visits name and reader of every system that has compiled ensembles.
+template <class Visit> void for_each_ensemble(const Visit& visit) {
+  visit("rigid_body", Reader<RigidBody>(read_rigid_body));
+  visit("pendulum", Reader<Pendulum>(read_pendulum));
+  visit("plate_ball", Reader<PlateBall>(read_plate_ball));
+}
+
+template <class Sys> class LaneRunner final : public MemberRunner {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  LaneRunner(Reader<Sys> read, const Section& scene, const Design& design, const Keep& keep)
+      : read_(read), scene_(recording(scene, keep)), design_(design), keep_(keep) {}
+
+  std::string_view name() const override { return "lanes"; }
+
+  std::optional<Part> run(long first, long count) const override {
+    Part part(first, count);
+    std::vector<Member> members;
+    std::vector<State<G>> states;
+    std::vector<ArrowOf<G>> configurations;
+    for (long at = 0; at < count; ++at) {
+      if (InterruptGuard::interrupted()) return std::nullopt;
+      try {
+        Task<Sys> task = read_(scene_.with(design_.member(first + at)), {.record = true});
+        states.push_back(task.plain->initial);
+        configurations.push_back(task.plain->configuration);
+        members.emplace_back(at, std::move(task));
+      } catch (const SceneError& error) {
+        part.end(at, "invalid_scene", error.problem());
+      }
+    }
+    if (members.empty()) return part;
+    const Pace& pace = members.front().task.plain->pace;
+    Ensemble<Sys> ensemble(members.front().task.system, states, configurations);
+    for (std::size_t i = 0; i < members.size(); ++i) members[i].see(ensemble.point(long(i)));
+    EnsembleOptions<Sys> options;
+    options.interrupted = InterruptGuard::interrupted;
+    options.every = pace.every;
+    if (pace.every <= pace.steps)
+      options.observe = [&](long i, const TrajectoryPoint<Sys>& point) { members[std::size_t(i)].see(point); };
+    if (!ensemble.advance_to(pace.steps, options)) {
+      const bool all = std::all_of(members.begin(), members.end(), [&, i = 0L](const Member&) mutable {
+        const bool ended = ensemble.status(i) != SolveStatus::converged || ensemble.point(i).index == pace.steps;
+        ++i;
+        return ended;
+      });
+      if (!all) return std::nullopt;
+    }
+    for (std::size_t i = 0; i < members.size(); ++i)
+      keep_result(members[i].end(ensemble.point(long(i)), ensemble.status(long(i))), keep_, members[i].at, part);
+    return part;
+  }
+
+ private:
+  struct Member {
+    Member(long place, Task<Sys> its)
+        : at(place),
+          task(std::move(its)),
+          recorder(std::make_unique<Recorder<Sys>>(task.system, task.plain->presentation, std::vector<Quantity<Sys>>(),
+                                                   task.plain->pace.every)) {}
+
+    void see(const TrajectoryPoint<Sys>& point) { recorder->observe(reported(task.system, point)); }
+
+    RunResult end(const TrajectoryPoint<Sys>& last, SolveStatus status) {
+      if (last.index % task.plain->pace.every != 0) see(last);
+      RunResult out;
+      recorder->finish(out);
+      out.steps = last.index;
+      out.steps_asked = task.plain->pace.steps;
+      if (status != SolveStatus::converged) {
+        out.status = std::string(to_string(status));
+        out.message = fmt::format("step {} (from t = {:.6g}): {}; lagroid run of this member says what to do",
+                                  last.index + 1, last.time, to_string(status));
+      }
+      return out;
+    }
+
+    long at;
+    Task<Sys> task;
+    std::unique_ptr<Recorder<Sys>> recorder;
+  };
+
+  Reader<Sys> read_;
+  Section scene_;
+  const Design& design_;
+  const Keep& keep_;
+};
+
+bool names_drifts(const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.starts_with("drift "); });
+}
+
+/// The runner, or why there is none.
+std::pair<std::unique_ptr<MemberRunner>, std::string> make_lanes(const Section& scene, const Design& design,
+                                                                 const Keep& keep) {
+  if (keep.ledger) return {nullptr, "the ledger looks at every step of every member; set keep.ledger = false"};
+  if (names_drifts(keep.initial) || names_drifts(keep.series) || (keep.final && names_drifts(*keep.final)))
+    return {nullptr, "drifts are the ledger's"};
+  for (const Design::Key& key : design.keys)
+    if (!key.path.starts_with("initial.")) return {nullptr, fmt::format("{} varies, which all must share", key.path)};
+  std::pair<std::unique_ptr<MemberRunner>, std::string> out{nullptr, "this system has none"};
+  if (!scene.has("system")) return out;
+  const std::string system = scene.text("system", "its name");
+  for_each_ensemble([&]<class Sys>(std::string_view name, Reader<Sys> read) {
+    if (name != system) return;
+    try {
+      if (read(scene, {}).plain)
+        out = {std::make_unique<LaneRunner<Sys>>(read, scene, design, keep), ""};
+      else
+        out.second = "they take initial values by equal steps of order 2 by Newton's method";
+    } catch (const SceneError& error) {
+      out.second = error.problem();
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+std::string why_no_lanes(const Section& scene, const Design& design, const Keep& keep) {
+  return make_lanes(scene, design, keep).second;
+}
+
+std::unique_ptr<MemberRunner> lane_runner(const Section& scene, const Design& design, const Keep& keep) {
+  return make_lanes(scene, design, keep).first;
+}
+
+}  // namespace lagroid::app
