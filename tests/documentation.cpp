@@ -224,11 +224,16 @@ TEST(MultibodyPage, ItsCodeIsThatOfTheExample) {
 TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time.md"))), none); }
 TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
 
+TEST(Ensembles, ItsCodeIsThatOfTheExample) {
+  EXPECT_EQ(foreign_blocks(read("docs/ensembles.md"), "cpp", read("examples/my_ensemble.cpp")), none);
+  EXPECT_EQ(unknown_names(read("docs/ensembles.md")), none);
+}
+
 TEST(Mathematics, ItNamesEveryLaw) {
-  const auto named =
-      matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +
-                  read("docs/higher_order.md") + read("docs/multibody.md") + read("docs/lie_group_integrators.md"),
-              "\"([^\"]+)\"");
+  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +
+                                 read("docs/higher_order.md") + read("docs/multibody.md") +
+                                 read("docs/lie_group_integrators.md") + read("docs/ensembles.md"),
+                             "\"([^\"]+)\"");
   const auto laws =
       matches(text_of({"core/testing", "solvers/testing", "systems/multibody/testing", "systems/testing"}, ".hpp"),
               "law\\( ?\"([^\"]+)\"");
