@@ -63,6 +63,8 @@ std::vector<Subject> scene_subjects();
 std::vector<Goal> scene_goals();
 std::vector<Subject> pendulum_chain_subjects();
 std::vector<Goal> pendulum_chain_goals();
+std::vector<Subject> ensemble_subjects();
+std::vector<Goal> ensemble_goals();
 /// Markdown: instructions and memory of a scene's step without and with each effect. Needs valgrind.
 std::string effects_table();
 /// Markdown: what accuracy costs on a chain, by a scene, by hand and by MuJoCo.

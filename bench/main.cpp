@@ -40,6 +40,7 @@ int main(int argc, char** argv) try {
       {"@STEPS@", bench::step_subjects(), bench::step_goals(), 21},
       {"@SCENES@", bench::scene_subjects(), bench::scene_goals(), 21},
       {"@PENDULUM_CHAINS@", bench::pendulum_chain_subjects(), bench::pendulum_chain_goals(), 21},
+      {"@ENSEMBLES@", bench::ensemble_subjects(), bench::ensemble_goals(), 11},
       {"@BOUNDARY@", bench::boundary_subjects(), bench::boundary_goals(), 7},
       {"@LIE_NEWTON@", bench::lie_newton_subjects(), bench::lie_newton_goals(), 21},
   };

@@ -106,9 +106,9 @@ template <int Width = widest_batch> class Batch {
   }
 
  private:
-  LAGROID_INLINE static Batch made(const Register& lanes) {
+  LAGROID_INLINE static Batch made(const Register& numbers) {
     Batch out;
-    out.lanes_ = lanes;
+    out.lanes_ = numbers;
     return out;
   }
 

@@ -168,7 +168,7 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     using std::sqrt;
     const S s = sqrt(g(0, 0) + g(1, 1) + g(2, 2) + 1.0) * 2.0;
     const S inverse = 1.0 / s;
-    return {s * 0.25, (g(2, 1) - g(1, 2)) * inverse, (g(0, 2) - g(2, 0)) * inverse, (g(1, 0) - g(0, 1)) * inverse};
+    return {S(s * 0.25), (g(2, 1) - g(1, 2)) * inverse, (g(0, 2) - g(2, 0)) * inverse, (g(1, 0) - g(0, 1)) * inverse};
   }
   template <class S> static Vector<S, 4> quaternion_by_axis(const Matrix<S, 3, 3>& g, int i) {
     using std::sqrt;

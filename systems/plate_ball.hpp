@@ -70,9 +70,9 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// In the trace form the rotation angle of a step stays below pi/2: tr g = 1 + 2 cos(angle) > 1. Of the form's four
   /// roots this leaves the one that is continuous in h. In the Cayley form 1 + tr g = 4 / (1 + |w|^2 / 4) keeps half
   /// its digits: nearer to a half turn w would be round-off, and any equation of it seem solved.
-  bool admissible(const ArrowOf<GroupoidType>& g) const {
-    const double trace = std::get<1>(g).trace();
-    return rotation == RotationForm::exponential || trace > (rotation == RotationForm::trace ? 1 : -1 + 1e-8);
+  template <class S> MaskOf<S> admissible(const Arrow<S>& g) const {
+    if (rotation == RotationForm::exponential) return true;
+    return std::get<1>(g).trace() > (rotation == RotationForm::trace ? 1 : -1 + 1e-8);
   }
 
   /// lambda = (M1/r, -M2/r, -M3), u = px - l2 - h Omega l1/2, v = py - l1 + h Omega l2/2: exact as h -> 0.
