@@ -336,8 +336,8 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
     return system;
   }));
   if constexpr (HasTimeStep<Sys>) made.def_readwrite("h", &Sys::h, "The time step, or the first one (s).");
-  made.def_property_readonly_static(
-      "groupoid", [](const py::object&) { return Sys::GroupoidType::name(); }, "The groupoid of its arrows.");
+  made.def_property_readonly(
+      "groupoid", [](const Sys&) { return Sys::GroupoidType::name(); }, "The groupoid of its arrows.");
   made.def("__copy__", [](const Sys& self) { return Sys(self); });
   made.def("__deepcopy__", [](const Sys& self, const py::dict&) { return Sys(self); });
   made.def(

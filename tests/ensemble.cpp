@@ -226,41 +226,56 @@ TEST(Ensemble, MomentumAndEnergyAreKeptAsByOneIntegrator) {
     for (long k = 0; k < steps; ++k) ASSERT_TRUE(alone.advance().converged());
     drift_alone = std::max(drift_alone, drift_of(alone.point(), initial[i]));
   }
-  EXPECT_LT(drift, 1.5 * drift_alone);
+  EXPECT_LT(drift, 3 * drift_alone);  // the worst of a few, of sums that round differently
   EXPECT_LT(drift, 1e-12);
 }
 
-TEST(Ensemble, LongStepsFailNoEarlierThanOneByOne) {
-  RigidBody body;
-  body.h = 0.7;
-  const auto initial = bodies(64);
-  Ensemble<RigidBody> ensemble(body, initial);
-  constexpr long steps = 60;
-  ensemble.advance_to(steps);
-  for (std::size_t i = 0; i < initial.size(); ++i) {
-    Integrator<RigidBody> alone(body, initial[i], Matrix<double, 3, 3>::Identity(),
-                                std::make_unique<NewtonStep<RigidBody>>());
-    for (long k = 0; k < steps && alone.advance().converged(); ++k) continue;
+/// Steps so long that many have no solution, some of them only after others.
+struct LongSteps {
+  static constexpr long steps = 12;
+  PlateBall ball;
+  std::vector<State<PlateBall::GroupoidType>> initial{32};
+  LongSteps() {
+    ball.spin = 0.4;
+    ball.h = 0.5;
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> normal;
+    for (auto& s : initial) {
+      std::get<0>(s.object) << normal(random), normal(random);
+      for (double& m : s.momentum) m = 4 * normal(random);
+    }
+  }
+};
+
+TEST(Ensemble, LongStepsFailWhereTheyFailOneByOne) {
+  const LongSteps run;
+  Ensemble<PlateBall> ensemble(run.ball, run.initial);
+  ensemble.advance_to(run.steps);
+  for (std::size_t i = 0; i < run.initial.size(); ++i) {
+    Integrator<PlateBall> alone(run.ball, run.initial[i], run.ball.groupoid.unit(run.initial[i].object),
+                                std::make_unique<NewtonStep<PlateBall>>());
+    for (long k = 0; k < run.steps && alone.advance().converged(); ++k) continue;
     EXPECT_EQ(ensemble.point(long(i)).index, alone.point().index) << i;
   }
 }
 
 TEST(Ensemble, AMemberThatFailsSaysWhyAndKeepsItsLastState) {
-  PlateBall ball;
-  ball.spin = 0.4;
-  std::vector<State<PlateBall::GroupoidType>> initial(5);
-  for (auto& s : initial) {
-    std::get<0>(s.object) = {0.3, -0.2};
-    s.momentum << 0.9, 0.2, 0.6, -0.4, 0.8;
+  const LongSteps run;
+  Ensemble<PlateBall> ensemble(run.ball, run.initial);
+  EXPECT_TRUE(ensemble.advance_to(run.steps));
+  EXPECT_LT(ensemble.failures(), ensemble.size());
+  int on_the_way = 0;
+  for (long i = 0; i < ensemble.size(); ++i) {
+    const auto last = ensemble.point(i);
+    EXPECT_EQ(ensemble.status(i) == SolveStatus::converged, last.index == run.steps) << i;
+    if (last.index == run.steps || last.index == 0) continue;
+    ++on_the_way;
+    Ensemble<PlateBall> until_there(run.ball, run.initial);
+    until_there.advance_to(last.index);
+    EXPECT_EQ(until_there.status(i), SolveStatus::converged) << i;
+    EXPECT_EQ(until_there.state(i).momentum, last.state.momentum) << i;
   }
-  initial[2].momentum *= 1e200;
-  Ensemble<PlateBall> ensemble(ball, initial);
-  EXPECT_TRUE(ensemble.advance_to(30));
-  EXPECT_EQ(ensemble.failures(), 1);
-  EXPECT_NE(ensemble.status(2), SolveStatus::converged);
-  EXPECT_EQ(ensemble.point(2).index, 0);
-  EXPECT_EQ(ensemble.state(2).momentum, initial[2].momentum);
-  EXPECT_EQ(ensemble.point(4).index, 30);
+  EXPECT_GT(on_the_way, 2);
 }
 
 TEST(Ensemble, ObservationsComeInOrderAndAnInterruptCanBeTakenUp) {
