@@ -1,13 +1,14 @@
 #include <lagroid/solvers/learning/network_potential.hpp>
 #include <lagroid/solvers/learning/parametric_model.hpp>
 
+#include <fmt/ranges.h>
+
 #include <string>
 
 namespace lagroid::learning {
 
 std::unique_ptr<Model> network_model(int bodies, std::vector<int> hidden) {
-  std::string name = "network";
-  for (std::size_t i = 0; i < hidden.size(); ++i) name += (i == 0 ? ":" : ",") + std::to_string(hidden[i]);
+  const std::string name = hidden.empty() ? "network" : fmt::format("network:{}", fmt::join(hidden, ","));
   NetworkPotential potential(bodies, std::move(hidden));
   if (bodies == 1) return std::make_unique<ParametricModel<NetworkPotential, 1>>(name, std::move(potential));
   if (bodies == 2) return std::make_unique<ParametricModel<NetworkPotential, 2>>(name, std::move(potential));
