@@ -220,6 +220,7 @@ class PrototypeMarch:
 
     @property
     def converged(self) -> bool:
+        """Whether every step was made."""
         return self.status == "converged"
 
 
@@ -232,9 +233,11 @@ class _Derivatives:
         self.size = 0.0  # of what is differentiated, where differences are
 
     def value(self, g: tuple[Array, ...]) -> Array:
-        return np.concatenate(
-            [np.atleast_1d(self.system.lagrangian(*g)).ravel(), np.atleast_1d(self.system.constraint(*g)).ravel()]
-        )
+        lagrangian = np.asarray(self.system.lagrangian(*g))
+        if lagrangian.size != 1 or lagrangian.dtype.kind not in "biufc":
+            found = f"an array {lagrangian.shape}" if lagrangian.dtype.kind in "biufc" else f"{lagrangian.item()!r}"
+            raise ValueError(f"lagrangian: expected a number, got {found}")
+        return np.concatenate([lagrangian.ravel(), np.atleast_1d(self.system.constraint(*g)).ravel()])
 
     def _along(self, g: tuple[Array, ...], direction: Array) -> Array:
         n = self.system.groupoid.dimension
@@ -292,18 +295,49 @@ class PrototypeIntegrator:
         self.index = 0
         self._derivatives = _Derivatives(system)
         if configuration is not None:
-            arrow = configuration if isinstance(configuration, tuple) else (configuration,)
-            self.configuration = tuple(np.array(each, dtype=float) for each in arrow)
+            if object is not None:
+                raise ValueError("give object or configuration, not both: an arrow has its target")
+            self.configuration = self._arrow(configuration)
         else:
-            self.configuration = self.groupoid.unit(np.array([] if object is None else object, dtype=float).reshape(-1))
+            self.configuration = self.groupoid.unit(self._object(object))
         self.momentum: Array = np.array(momentum, dtype=float).reshape(-1)
         if len(self.momentum) != self.groupoid.dimension:
             raise ValueError(f"momentum: expected {self.groupoid.dimension} numbers, got {len(self.momentum)}")
+        for name, numbers in (("momentum", self.momentum), ("object", self.object)):
+            if not np.isfinite(numbers).all():
+                raise ValueError(f"{name}: must be finite")
+        if not np.isfinite(system.h) or system.h == 0:
+            raise ValueError("h: the step must be finite and not zero")
         unit = self.groupoid.unit(self.object)
         self._arrow_constraints = len(np.atleast_1d(system.constraint(*unit)))
         self._object_constraints = len(np.atleast_1d(system.object_constraint(self.object)))
         self.arrow = unit
         self.multipliers: Array = np.zeros(self._arrow_constraints + self._object_constraints)
+
+    def _object(self, given: Any) -> Array:
+        """The coordinates of an object, of the number that the groupoid asks for, where that is known."""
+        q = np.array([] if given is None else given, dtype=float).reshape(-1)
+        if isinstance(self.groupoid, Pairs):
+            if given is None:
+                raise ValueError("give object, or configuration, the arrow that ends there")
+            if len(q) != self.groupoid.n:
+                raise ValueError(f"object: expected {self.groupoid.n} numbers, got {len(q)}")
+        if isinstance(self.groupoid, MatrixGroup) and len(q) != 0:
+            raise ValueError(f"object: a group has none, got {len(q)} numbers")
+        return q
+
+    def _arrow(self, given: Any) -> tuple[Array, ...]:
+        arrow = tuple(np.array(each, dtype=float) for each in (given if isinstance(given, tuple) else (given,)))
+        shapes = [each.shape for each in arrow]
+        if isinstance(self.groupoid, Pairs):
+            if shapes != [(self.groupoid.n,)] * 2:
+                raise ValueError(f"configuration: expected the tuple of two arrays ({self.groupoid.n},), got {shapes}")
+        if isinstance(self.groupoid, MatrixGroup):
+            if shapes != [self.groupoid.basis.shape[1:]]:
+                raise ValueError(f"configuration: expected a matrix {self.groupoid.basis.shape[1:]}, got {shapes}")
+            if not np.isfinite(arrow[0]).all() or np.linalg.det(arrow[0]) == 0:
+                raise ValueError("configuration: no arrow of the group, it has no inverse")
+        return arrow
 
     @property
     def object(self) -> Array:
@@ -312,10 +346,12 @@ class PrototypeIntegrator:
 
     @property
     def time(self) -> float:
+        """s"""
         return self.index * self.system.h
 
     @property
     def state(self) -> tuple[Array, Array]:
+        """(object, momentum)."""
         return self.object, self.momentum
 
     def _object_gradient(self, q: Array) -> Array:
@@ -439,6 +475,10 @@ class PrototypeIntegrator:
 
     def march(self, steps: int, every: int = 1) -> PrototypeMarch:
         """So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status."""
+        if steps < 0:
+            raise ValueError("steps: must not be negative")
+        if every < 1:
+            raise ValueError("every: must be at least 1")
         rows: list[tuple[float, Array, Array, tuple[Array, ...], Array]] = []
 
         def record() -> None:

@@ -51,12 +51,17 @@ def settings(given: Optional[Mapping[str, Any]]) -> list[str]:
     return [f"{key}={_toml(value, key)}" for key, value in (given or {}).items()]
 
 
+def is_file(scene: SceneLike) -> bool:
+    """Whether the scene is the name of a file."""
+    return not isinstance(scene, Mapping) and not (isinstance(scene, str) and "\n" in scene)
+
+
 def made(scene: SceneLike, given: Optional[Mapping[str, Any]]) -> _lagroid.Scene:
     """The scene of a file, a text or a dict, with other values at dotted keys."""
     overrides = settings(given)
     if isinstance(scene, Mapping):
         return _lagroid.Scene.text(scene_text(scene), "<dict>", overrides)
-    if isinstance(scene, str) and "\n" in scene:
+    if isinstance(scene, str) and not is_file(scene):
         return _lagroid.Scene.text(scene, "<text>", overrides)
     return _lagroid.Scene.file(scene, overrides)
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Optional
 
 from . import _lagroid
 from .programs import output_of, program
-from .scenes import SceneLike, made
+from .scenes import SceneLike, is_file, made, settings
 
 __all__ = ["Method", "check", "methods", "study"]
 
@@ -46,9 +46,10 @@ def study(
     `steps`: sizes in s, or found: halved until errors are those of round-off or a run lasts `longest` s. `target`: the
     error for which a method is recommended. `reference_time`: seconds that the reference may take. `out`: a folder for
     its page and figures. Raises KeyboardInterrupt after Ctrl-C."""
+    patterns = [methods] if isinstance(methods, str) else methods
     found: dict[str, Any] = json.loads(
         _lagroid.study(
-            made(scene, set), ",".join(methods), list(steps), target, longest, reference_time, repetitions, out
+            made(scene, set), ",".join(patterns), list(steps), target, longest, reference_time, repetitions, out
         )
     )
     return found
@@ -61,9 +62,18 @@ def check(
     laws are compiled: the certificate that it prints with --json. `arguments` go to it as they are. Raises ProgramError
     where it is missing, SceneError where it refuses the scene."""
     asked = made(scene, set)
+    text = asked.toml()  # what is mistaken in it is told here
     with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
-        file.write(asked.toml())
-        file.flush()
-        command = [program("lagroid-check", "LAGROID_CHECK", "lagroid_check"), file.name, "--json", *arguments]
-        certificate: dict[str, Any] = json.loads(output_of(command, asked.name, file.name))
+        command = [program("lagroid-check", "LAGROID_CHECK", "lagroid_check")]
+        if is_file(scene):  # itself, because what it names stands beside it
+            name = asked.name
+            command += [name, "--json", *arguments]
+            for each in settings(set):
+                command += ["--set", each]
+        else:
+            file.write(text)
+            file.flush()
+            name = file.name
+            command += [name, "--json", *arguments]
+        certificate: dict[str, Any] = json.loads(output_of(command, asked.name, name))
     return certificate

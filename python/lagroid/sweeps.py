@@ -29,8 +29,14 @@ class Sweep:
 
     @staticmethod
     def read(folder: str | os.PathLike[str]) -> Sweep:
-        """That which an earlier sweep left."""
-        return Sweep(Path(folder), json.loads((Path(folder) / "summary.json").read_text()))
+        """That which an earlier sweep left. Raises OutputError where the folder holds none."""
+        try:
+            summary = json.loads((Path(folder) / "summary.json").read_text())
+        except (OSError, ValueError):
+            summary = {}
+        if "members" not in summary:
+            raise OutputError(f'"{os.fspath(folder)}" holds no sweep; lagroid sweep FILE --out DIR makes one')
+        return Sweep(Path(folder), summary)
 
     def __len__(self) -> int:
         """How many members there are."""

@@ -149,8 +149,45 @@ class Prototypes(unittest.TestCase):
             Pendulum(length=1)
         with self.assertRaisesRegex(ValueError, "momentum: expected 1 numbers"):
             Pendulum().integrator([1.0, 2.0], [0.5])
+        for arguments, message in (
+            (([1.0],), "give object"),
+            (([1.0], [0.5, 0.5]), "object: expected 1 numbers, got 2"),
+            (([np.nan], [0.5]), "momentum: must be finite"),
+            (([1.0], [np.inf]), "object: must be finite"),
+        ):
+            with self.assertRaisesRegex(ValueError, message):
+                Pendulum().integrator(*arguments)
+        with self.assertRaisesRegex(ValueError, "not both"):
+            Pendulum().integrator([1.0], [0.5], configuration=([0.0], [0.5]))
+        with self.assertRaisesRegex(ValueError, "tuple of two arrays"):
+            Pendulum().integrator([1.0], configuration=[0.0, 0.5])
+        with self.assertRaisesRegex(ValueError, "has no inverse"):
+            Body().integrator([1.0, 0.0, 0.0], configuration=np.zeros((3, 3)))
+        with self.assertRaisesRegex(ValueError, "expected a matrix"):
+            Body().integrator([1.0, 0.0, 0.0], configuration=np.eye(4))
+        with self.assertRaisesRegex(ValueError, "a group has none"):
+            Body().integrator([1.0, 0.0, 0.0], [0.0])
+        with self.assertRaisesRegex(ValueError, "h: the step"):
+            Pendulum(h=0.0).integrator([1.0], [0.5])
+        for steps, every in ((-1, 1), (1, 0)):
+            with self.assertRaises(ValueError):
+                Pendulum().integrator([1.0], [0.5]).march(steps, every)
         with self.assertRaises(NotImplementedError):
             lagroid.DiscreteLagrangian.lagrangian(Pendulum(), 0)
+
+    def test_a_lagrangian_that_is_no_number(self) -> None:
+        for value, message in (
+            (None, "expected a number, got None"),
+            (np.ones(2), r"expected a number, got an array \(2,\)"),
+            ("x", "expected a number, got 'x'"),
+        ):
+
+            class Mistaken(Pendulum):
+                def lagrangian(self, q0: Any, q1: Any, value: Any = value) -> Any:
+                    return value
+
+            with self.assertRaisesRegex(ValueError, message):
+                Mistaken().integrator([1.0], [0.5]).advance()
 
 
 if __name__ == "__main__":

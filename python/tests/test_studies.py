@@ -54,6 +54,12 @@ class Studies(unittest.TestCase):
             with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
                 found = lagroid.check(EXAMPLES / "kepler.toml", arguments=["--samples=5"])
             self.assertEqual(found["arguments"], "--json --samples=5")
+            # A file is handed over as it is, because what it names stands beside it.
+            program.write_text('#!/bin/sh\nprintf \'{"scene": "%s", "set": "%s"}\' "$1" "$3 $4"\n')
+            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
+                found = lagroid.check(EXAMPLES / "learned_hamiltonian.toml", set={"time.steps": 3})
+            self.assertEqual(found["scene"], str(EXAMPLES / "learned_hamiltonian.toml"))
+            self.assertEqual(found["set"], "--set time.steps=3")
             program.write_text('#!/bin/sh\necho "lagroid: $1: mistaken" >&2\nexit 2\n')
             with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
                 with self.assertRaisesRegex(lagroid.SceneError, "kepler.toml: mistaken"):

@@ -51,6 +51,8 @@ class Sweeps(unittest.TestCase):
         np.testing.assert_array_equal(again["final/q"], found["final/q"])
         with self.assertRaises(lagroid.DataError):
             again["final/nothing"]
+        with self.assertRaisesRegex(lagroid.OutputError, "holds no sweep"):
+            lagroid.Sweep.read(EXAMPLES)
 
     def test_settings_and_mistakes(self) -> None:
         self.assertEqual(len(lagroid.sweep(self.file, out=self.out, set={"vary.0.count": 3})), 3)
