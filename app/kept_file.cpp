@@ -25,8 +25,11 @@ void replace_file(const fs::path& file, std::string_view bytes) {
   partial += ".partial";
   write_text(bytes, partial);
   if (const int descriptor = ::open(partial.c_str(), O_RDONLY); descriptor >= 0) {
-    ::fsync(descriptor);
+    const int lost = ::fsync(descriptor) == 0 ? 0 : errno;
     ::close(descriptor);
+    // What cannot be synchronised at all says something else.
+    if (lost == EIO || lost == ENOSPC || lost == EDQUOT)
+      throw OutputError(fmt::format("{}: could not be written ({})", partial.string(), std::strerror(lost)));
   }
   std::error_code error;
   fs::rename(partial, file, error);

@@ -147,8 +147,9 @@ void Section::fail(std::string_view key, const std::string& problem) const {
     origin = dot == std::string::npos ? "" : origin.substr(0, dot);
   }
   const std::string said = one_line(name.empty() ? problem : fmt::format("{}: {}", name, problem));
-  if (!origin.empty() && origin != name) throw SceneError(fmt::format("--set {}: {}", one_line(origin), said), said);
-  if (!origin.empty()) throw SceneError(fmt::format("--set {}", said), said);
+  if (!origin.empty() && origin != name)
+    throw SceneError(fmt::format("{}{}: {}", one_line(source_->overrider), one_line(origin), said), said);
+  if (!origin.empty()) throw SceneError(fmt::format("{}{}", one_line(source_->overrider), said), said);
   const toml::node* node = table_ && !key.empty() ? table_->get(key) : nullptr;
   const int line = node ? int(node->source().begin.line) : line_;
   const std::string where = line > 0 ? fmt::format("{}:{}", source_->file, line) : source_->file;
@@ -475,20 +476,23 @@ Section Section::set(const std::vector<std::string>& overrides) const {
   return parse_scene(whole(), source_->file, overrides);
 }
 
-Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                   const std::string& overrider) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     throw SceneError(fmt::format("{}: no such scene file; examples are in examples/", file.string()));
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw SceneError(fmt::format("{}: cannot be read", file.string()));
-  return parse_scene(text, file.string(), overrides);
+  return parse_scene(text, file.string(), overrides, overrider);
 }
 
-Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides) {
+Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
+                    const std::string& overrider) {
   Section scene;
   scene.source_ = std::make_shared<Section::Source>();
   scene.source_->file = file;
+  scene.source_->overrider = overrider;
   try {
     scene.source_->root = toml::parse(text, file);
   } catch (const toml::parse_error& e) {

@@ -112,7 +112,7 @@ class Section {
   [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
 
  private:
-  friend Section parse_scene(std::string_view, const std::string&, const std::vector<std::string>&);
+  friend Section parse_scene(std::string_view, const std::string&, const std::vector<std::string>&, const std::string&);
 
   struct Source {
     std::string file;
@@ -120,6 +120,7 @@ class Section {
     toml::table root;
     std::set<std::string, std::less<>> known;  ///< every key asked for
     bool interpolated = false;
+    std::string overrider;  ///< what stands in messages before the keys that were overridden
   };
 
   /// A copy of the whole scene that shares nothing with it.
@@ -135,9 +136,12 @@ class Section {
   int line_ = 0;
 };
 
-/// Reads a scene file and applies overrides "key.subkey=value". Throws SceneError.
-Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// Reads a scene file and applies overrides "key.subkey=value", which messages call by `overrider` and the key. Throws
+/// SceneError.
+Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                   const std::string& overrider = "--set ");
 /// The same of a text; `file` is what messages call it.
-Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides);
+Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
+                    const std::string& overrider = "--set ");
 
 }  // namespace lagroid::app

@@ -269,6 +269,27 @@ TEST_F(Sweep, LogarithmicScalesMeetBothEnds) {
   EXPECT_EQ(values[0], 0.1);
   EXPECT_NEAR(values[1], 1, 1e-15);
   EXPECT_EQ(values[2], 10);
+  // Between them whole numbers are met, too: 1000^(1/3) is 10 but for a round-off.
+  ASSERT_EQ(sweep(orbits("[design]\nkind = \"grid\"\n[[vary]]\nkey = \"time.steps\"\nfrom = 1\nto = 1000\n"
+                         "count = 4\nscale = \"log\"\n"),
+                  "steps")
+                .code,
+            0);
+  EXPECT_EQ(column("steps", "run/steps"), (std::vector<double>{1, 10, 100, 1000}));
+}
+
+TEST_F(Sweep, WhatElseStandsInTheFolderStays) {
+  fs::create_directories(out("mine") + "/parts");
+  file("mine/notes.txt", "mine");
+  file("mine/parts/notes.txt", "mine");
+  ASSERT_EQ(sweep(orbits(square), "mine").code, 0);
+  EXPECT_EQ(bytes(out("mine") + "/notes.txt"), "mine");
+  EXPECT_EQ(bytes(out("mine") + "/parts/notes.txt"), "mine");
+  EXPECT_EQ(parts("mine"), 0U);
+  // Results that were taken away are made again.
+  fs::remove(out("mine") + "/summary.json");
+  ASSERT_EQ(sweep(orbits(square), "mine").code, 0);
+  EXPECT_TRUE(fs::exists(out("mine") + "/summary.json"));
 }
 
 TEST_F(Sweep, ALatinHypercubeMeetsEveryStratumOnce) {
@@ -383,8 +404,18 @@ TEST_F(Sweep, ListsComeFromCsvAndHdf5) {
   ASSERT_EQ(sweep(orbits(design), "h5", "--set design.file=list.h5").code, 0);
   EXPECT_EQ(column("csv", "parameters.strength"), (std::vector<double>{1, 1.05}));
   EXPECT_EQ(column("csv", "final/x"), column("h5", "final/x"));
-  // Members of one sweep are a list for another.
-  ASSERT_EQ(column("csv", "final/x").size(), 2U);
+  // Keys of members.csv are a list for another sweep.
+  std::string keys;
+  std::istringstream lines(bytes(out("csv") + "/members.csv"));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::vector<std::string> words;
+    for (std::string word; std::getline(fields, word, ',');) words.push_back(word);
+    keys += words[2] + "," + words[3] + "\n";
+  }
+  this->file("keys.csv", keys);
+  ASSERT_EQ(sweep(orbits(design), "again", "--set design.file=keys.csv").code, 0);
+  EXPECT_TRUE(bytes(out("csv") + "/members.csv") == bytes(out("again") + "/members.csv"));
 }
 
 TEST_F(Sweep, SeriesHoldTheNodesThatWereAskedFor) {
@@ -575,6 +606,12 @@ TEST_F(Sweep, AnInterruptKeepsWhatIsFinishedAndTheSameCommandGoesOn) {
   const Outcome other = sweep(file, "broken", "--set design.count=61");
   EXPECT_EQ(other.code, 2);
   EXPECT_NE(other.err.find("holds a sweep of another sweep file"), std::string::npos) << other.err;
+  // Nor have parts of which nobody knows the sweep.
+  fs::rename(out("broken") + "/sweep.cbor", out("aside"));
+  const Outcome unknown = sweep(file, "broken");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.err.find("sweep.cbor"), std::string::npos) << unknown.err;
+  fs::rename(out("aside"), out("broken") + "/sweep.cbor");
   // A part that was damaged is noticed, and run again.
   const fs::path part = fs::directory_iterator(out("broken") + "/parts")->path();
   std::ofstream(part, std::ios::app) << "x";
@@ -700,12 +737,15 @@ TEST_F(Sweep, BadInputIsOneLineThatNamesTheRemedy) {
   file("ragged.csv", "initial.momentum.1,parameters.strength\n1,2\n3\n");
   file("twice.csv", "initial.momentum.1,initial.momentum.1\n1,2\n");
   file("stranger.csv", "initial.momentum.7\n1\n");
+  file("overlap.csv", "initial.position,initial.position.0\n1,2\n");
   file("empty.csv", "initial.momentum.1\n");
   file("no.h5", "no HDF5");
   file("plain", "");
   const std::string list = orbits("[design]\nkind = \"list\"\n");
   const std::string listed = file("listed.toml", bytes(list));
   orbits(square);
+  const std::string pendula = file(
+      "pendula.toml", "scene = \"" + example("pendulum") + "\"\n[design]\nkind = \"list\"\nfile = \"overlap.csv\"\n");
   const auto from = [&](const std::string& name) { return listed + " --set design.file=" + name; };
   const std::string there = " --out " + out("bad");
   const std::vector<std::pair<std::string, std::string>> cases{
@@ -725,7 +765,7 @@ TEST_F(Sweep, BadInputIsOneLineThatNamesTheRemedy) {
       {good + there + " --set vary.1.values=[]", "none"},
       {good + there + " --set vary=[]", "no [[vary]]"},
       {good + there + " --set scene.file=nowhere.toml", "no such scene file"},
-      {good + there + " --set scene.time.stpes=3", "time.stpes"},
+      {good + there + " --set scene.time.stpes=3", "orbits.toml: scene.time.stpes"},
       {good + there + " --set keep.final=[\\\"z\\\"]", "these are: position, x, y"},
       {good + there + " --set keep.every=3", "goes with series"},
       {good + there + " --set plot.quantity=z", "no column \"z\""},
@@ -741,7 +781,8 @@ TEST_F(Sweep, BadInputIsOneLineThatNamesTheRemedy) {
       {from("word.csv") + there, "\"one\" is no number"},
       {from("ragged.csv") + there, "line 3 has 1 fields"},
       {from("twice.csv") + there, "two columns"},
-      {from("stranger.csv") + there, "no number of the scene"},
+      {from("stranger.csv") + there, "design.file: \"initial.momentum.7\" is no number of the scene"},
+      {pendula + there, "varies already"},
       {from("empty.csv") + there, "holds no members"},
       {from("no.h5") + there, "HDF5"},
       {from("nowhere.csv") + there, "there is no such file"}};

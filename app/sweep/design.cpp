@@ -30,24 +30,36 @@ struct Variation {
   std::vector<double> grid;  ///< empty where it has none
 };
 
-/// The columns of a key that stands for `size` numbers of the scene.
-std::vector<std::string> columns_of(const Section& at, const std::string& path, std::size_t size,
+/// The columns of a key that stands for `size` numbers of the scene; `said` is where the sweep names it.
+std::vector<std::string> columns_of(const Section& at, const char* said, const std::string& path, std::size_t size,
                                     const Section& scene) {
   const std::size_t there = scene.numbers_at(path).size();
   if (there == 0)
-    at.fail(
-        "key",
-        fmt::format("\"{}\" is no number of the scene, nor an array of them; write it there, with any number", path));
+    at.fail(said, fmt::format("\"{}\" is no number of the scene, nor an array of them; write it there, with any number",
+                              path));
   // An attitude may be written as a rotation vector, and be varied as a quaternion.
   const bool attitude = size == 4 && there == 3;
   if (there != size && !attitude)
-    at.fail("key", size == 1
-                       ? fmt::format("\"{}\" is an array of {}; vary one of them, as in \"{}.0\"", path, there, path)
-                       : fmt::format("\"{}\" holds {} numbers, not {}", path, there, size));
+    at.fail(said, size == 1
+                      ? fmt::format("\"{}\" is an array of {}; vary one of them, as in \"{}.0\"", path, there, path)
+                      : fmt::format("\"{}\" holds {} numbers, not {}", path, there, size));
   std::vector<std::string> columns;
   if (size == 1) columns = {path};
   for (std::size_t i = 0; size > 1 && i < size; ++i) columns.push_back(fmt::format("{}.{}", path, i));
   return columns;
+}
+
+/// Fails where the path, or a part of it, is among the keys.
+void require_new(const Section& at, const char* said, const std::string& path, const std::vector<Design::Key>& keys) {
+  for (const Design::Key& key : keys)
+    if (path == key.path || path.starts_with(key.path + ".") || key.path.starts_with(path + "."))
+      at.fail(said, fmt::format("\"{}\" varies already, as \"{}\"", path, key.path));
+}
+
+/// The whole number that x misses by round-off; else x.
+double whole_if_near(double x) {
+  const double whole = std::round(x);
+  return std::abs(x - whole) <= 1e-13 * std::abs(whole) ? whole : x;
 }
 
 void read_range(const Section& vary, Variation& v, bool on_grid) {
@@ -67,7 +79,7 @@ void read_range(const Section& vary, Variation& v, bool on_grid) {
     // Both ends are met, and whole numbers stay whole.
     v.grid.push_back(logarithmic ? (i == 0           ? from
                                     : i == count - 1 ? to
-                                                     : from * std::pow(to / from, double(i) / last))
+                                                     : whole_if_near(from * std::pow(to / from, double(i) / last)))
                                  : (from * (last - double(i)) + to * double(i)) / last);
   }
 }
@@ -130,7 +142,7 @@ Variation read_variation(const Section& vary, bool on_grid, const Section& scene
     read_range(vary, v, on_grid);
   }
   v.key.path = path;
-  v.key.columns = columns_of(vary, path, size, scene);
+  v.key.columns = columns_of(vary, "key", path, size, scene);
   return v;
 }
 
@@ -138,14 +150,11 @@ std::vector<Variation> read_variations(const Section& sweep, bool on_grid, const
   const std::vector<Section> tables = sweep.tables("vary");
   if (tables.empty()) sweep.fail("", "no [[vary]]: say what of the scene the members change");
   std::vector<Variation> out;
+  std::vector<Design::Key> keys;
   for (const Section& vary : tables) {
     out.push_back(read_variation(vary, on_grid, scene));
-    const std::string& path = out.back().key.path;
-    for (std::size_t i = 0; i + 1 < out.size(); ++i) {
-      const std::string& other = out[i].key.path;
-      if (path == other || path.starts_with(other + ".") || other.starts_with(path + "."))
-        vary.fail("key", fmt::format("\"{}\" varies already, as \"{}\"", path, other));
-    }
+    require_new(vary, "key", out.back().key.path, keys);
+    keys.push_back(out.back().key);
   }
   return out;
 }
@@ -208,7 +217,10 @@ void fill_random(const std::vector<Variation>& variations, long count, long seed
 void read_list(const Section& sweep, const Section& section, const Section& scene, Design& design) {
   if (!sweep.tables("vary").empty()) sweep.fail("vary", "the columns of the list say what varies; leave it out");
   MemberList list = read_member_list(section);
-  for (const std::string& column : list.columns) design.keys.push_back({column, columns_of(section, column, 1, scene)});
+  for (const std::string& column : list.columns) {
+    require_new(section, "file", column, design.keys);
+    design.keys.push_back({column, columns_of(section, "file", column, 1, scene)});
+  }
   design.values = std::move(list.values);
   if (design.count() > most_members)
     section.fail("file", fmt::format("more than {} members; use several sweeps", most_members));

@@ -115,7 +115,8 @@ void keep_result(const RunResult& r, const Keep& keep, long at, Part& part) {
   if (!r.minima.empty()) part.set(at, "run/stationary_paths", "1", "found", double(r.minima.size()));
   const auto broken = std::count_if(r.ledger.entries.begin(), r.ledger.entries.end(),
                                     [](const LedgerEntry& entry) { return entry.broken(); });
-  part.set(at, "run/broken", "1", "promises of the ledger that were broken", double(broken));
+  if (!r.ledger.entries.empty())
+    part.set(at, "run/broken", "1", "promises of the ledger that were broken", double(broken));
   if (keep.ledger)
     for (const LedgerEntry& entry : r.ledger.entries)
       part.set(at, "ledger/" + entry.name, entry.promise == "counted" ? "1" : "unit of the quantity",

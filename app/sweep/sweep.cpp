@@ -23,6 +23,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -95,12 +96,20 @@ std::function<bool(long)> worker(const SweepScene& sweep, const std::string& out
   };
 }
 
+/// The exit code where so many members failed.
+int told_of_failed(const SweepOptions& options, long failed, long members) {
+  if (failed == 0) return 0;
+  fmt::print(stderr, "lagroid: {}: {} of {} members failed; their rows say why\n", options.scene, failed, members);
+  return exit_failed;
+}
+
 int tell_finished(const SweepOptions& options) {
   const std::filesystem::path folder = options.out;
   const std::string text = contents(folder / (options.json ? "summary.json" : "summary.txt")).value_or("");
   print(options.json ? text : text + fmt::format("  (finished before; the files are in {})\n", options.out));
   const auto json = nlohmann::json::parse(contents(folder / "summary.json").value_or("{}"), nullptr, false);
-  return json.is_object() && json.value("failed", 0L) == 0 ? 0 : exit_failed;
+  if (!json.is_object()) return exit_failed;
+  return told_of_failed(options, json.value("failed", 0L), json.value("members", 0L));
 }
 
 /// Joins the parts, writes the files, tells what was found. Returns the exit code.
@@ -114,18 +123,21 @@ int conclude(Plan& plan, const SweepOptions& options, const std::string& took) {
   text += took;
   tell_written(files, note, text, json);
   print(options.json ? json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n" : text);
-  if (result.failed() == 0) return 0;
-  fmt::print(stderr, "lagroid: {}: {} of {} members failed; their rows say why\n", options.scene, result.failed(),
-             result.members.count());
-  return exit_failed;
+  return told_of_failed(options, result.failed(), result.members.count());
 }
 
 /// Rank 0.
 int lead(Ranks& ranks, const SweepOptions& options) {
   const auto start = Clock::now();
   std::optional<Plan> plan;
+  std::vector<long> missing;
+  std::string told;
   try {
     plan.emplace(prepare(options));
+    if (!plan->folder->finished()) {
+      missing = plan->folder->missing(plan->sweep);
+      if (ranks.size() > 1) told = packed(plan->sweep);
+    }
   } catch (const OutputError& error) {
     ranks.broadcast("");
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
@@ -137,8 +149,7 @@ int lead(Ranks& ranks, const SweepOptions& options) {
     ranks.broadcast("");
     return tell_finished(options);
   }
-  ranks.broadcast(packed(plan->sweep));
-  const std::vector<long> missing = plan->folder->missing(plan->sweep);
+  ranks.broadcast(told);
   const long parts = plan->sweep.parts();
   ScheduleOutcome outcome;
   {
@@ -204,6 +215,9 @@ int sweep(const SweepOptions& options) {
     return refuse(options.json, exit_failed, "output_failed", error.what());
   } catch (const RunError& error) {
     return refuse(options.json, exit_bad_input, "invalid_run", error.what());
+  } catch (const std::bad_alloc&) {
+    return refuse(options.json, exit_failed, "out_of_memory",
+                  fmt::format("{}: out of memory; have fewer members, or keep less of each", options.scene));
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
 #include <system_error>
 
 namespace lagroid::app {
@@ -12,6 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+/// Whether a file is a part, or was to become one.
+bool is_part(const fs::path& file) {
+  const std::string name = file.filename().string();
+  const auto digits = name.find_first_not_of("0123456789");
+  return digits != 0 && digits != std::string::npos &&
+         (name.substr(digits) == ".cbor" || name.substr(digits) == ".cbor.partial");
+}
 
 }  // namespace
 
@@ -35,13 +45,26 @@ void PartFiles::remove(long part) const {
   fs::remove(file(part), ignored);
 }
 
+bool PartFiles::any() const {
+  std::error_code ignored;
+  const fs::directory_iterator files(folder_, ignored);
+  return std::any_of(begin(files), end(files), [](const auto& entry) { return is_part(entry.path()); });
+}
+
 void PartFiles::remove_all() const {
   std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  for (const auto& entry : fs::directory_iterator(folder_, ignored))
+    if (is_part(entry.path())) fs::remove(entry.path(), ignored);
+  fs::remove(folder_, ignored);  // not where there is something else in it
 }
 
 SweepFolder::SweepFolder(const fs::path& folder, const SweepScene& sweep)
     : folder_(folder), lock_(folder), parts_(folder), identity_(identity_of(sweep)), kept_(read_cbor(file())) {
+  if (!kept_ && parts_.any())
+    throw RunError(
+        fmt::format("--out {}: holds parts of a sweep, but {}, which says of which one, is missing or damaged; choose "
+                    "another folder, or remove this one",
+                    folder.string(), file().filename().string()));
   if (!kept_) return;
   const Json before = kept_->at("identity");
   if (before == identity_) return;
@@ -55,8 +78,11 @@ SweepFolder::SweepFolder(const fs::path& folder, const SweepScene& sweep)
 }
 
 bool SweepFolder::finished() const {
-  std::error_code ignored;
-  return kept_ && kept_->value("finished", false) && fs::is_regular_file(folder_ / "sweep.h5", ignored);
+  const auto there = [&](const char* name) {
+    std::error_code ignored;
+    return fs::is_regular_file(folder_ / name, ignored);
+  };
+  return kept_ && kept_->value("finished", false) && there("sweep.h5") && there("summary.json") && there("summary.txt");
 }
 
 void SweepFolder::restore(SweepScene& sweep) const {
@@ -82,15 +108,19 @@ std::vector<long> SweepFolder::missing(const SweepScene& sweep) const {
 
 Part SweepFolder::joined(const SweepScene& sweep) const {
   Part out;
+  long damaged = 0;
   for (long p = 0; p < sweep.parts(); ++p) {
     const auto part = parts_.read(p);
     if (!part || part->first() != sweep.first_of(p) || part->count() != sweep.count_of(p)) {
       parts_.remove(p);
-      throw RunError(fmt::format("{}: members from {} were damaged, and are taken away; run the same command again",
-                                 folder_.string(), sweep.first_of(p)));
+      ++damaged;
+    } else if (damaged == 0) {
+      out.append(*part);
     }
-    out.append(*part);
   }
+  if (damaged > 0)
+    throw RunError(fmt::format("{}: {} of {} parts were damaged, and are taken away; run the same command again",
+                               folder_.string(), damaged, sweep.parts()));
   return out;
 }
 

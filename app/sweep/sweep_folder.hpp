@@ -24,6 +24,9 @@ class PartFiles {
   std::optional<Part> read(long part) const;
   bool has(long part) const;
   void remove(long part) const;
+  /// Whether there is a file of parts.
+  bool any() const;
+  /// The parts, and their folder where nothing else is in it.
   void remove_all() const;
 
  private:
@@ -35,7 +38,8 @@ class PartFiles {
 /// The folder as a whole, which one process holds.
 class SweepFolder {
  public:
-  /// Throws OutputError where it cannot be used, RunError where it holds another sweep.
+  /// Throws OutputError where it cannot be used, RunError where it holds another sweep, or
+  /// parts of who knows which.
   SweepFolder(const std::filesystem::path& folder, const SweepScene& sweep);
 
   /// Whether an earlier command began this sweep, and whether one finished it.
@@ -47,7 +51,7 @@ class SweepFolder {
   void begin(const SweepScene& sweep);
   /// Which parts are still to be run.
   std::vector<long> missing(const SweepScene& sweep) const;
-  /// All parts, one after the other; takes a damaged one away and throws RunError.
+  /// All parts, one after the other; takes damaged ones away and throws RunError.
   Part joined(const SweepScene& sweep) const;
   /// To be called when the results are written.
   void finish();

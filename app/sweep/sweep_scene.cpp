@@ -31,9 +31,10 @@ Section read_its_scene(const Section& sweep) {
   const Section section = sweep.section("scene", "the scene");
   std::vector<std::string> overrides = section.as_overrides();
   try {
-    if (!section.has("file")) return parse_scene("", sweep.file(), overrides);
+    const std::string overrider = sweep.file() + ": scene.";
+    if (!section.has("file")) return parse_scene("", sweep.file(), overrides, overrider);
     std::erase_if(overrides, [](const std::string& each) { return each.starts_with("file="); });
-    return read_scene(scene_file(section, "file", sweep.file()), overrides);
+    return read_scene(scene_file(section, "file", sweep.file()), overrides, overrider);
   } catch (const SceneError& error) {
     section.fail("", error.problem());
   }
