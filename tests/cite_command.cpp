@@ -41,6 +41,7 @@ TEST_F(Cite, SaysWhatASceneRestsOn) {
   EXPECT_EQ(cited(example("rigid_body_moser_veselov")), (Keys{"marrero2015", "hairer2006"}));
   EXPECT_EQ(cited(example("rolling_disk")), (Keys{"marrero2015", "iglesias2008", "owren2000"}));
   EXPECT_EQ(cited(example("chain_drop")), Keys{"marrero2015"});
+  EXPECT_EQ(cited(example("rolling_balls")), (Keys{"marrero2015", "iglesias2008"}));
   EXPECT_EQ(cited(example("sweeps/basins")), (Keys{"marrero2015", "owren2000"}));
   EXPECT_EQ(cited(example("pendulum_chain")), Keys{"marrero2015"});
   EXPECT_EQ(cited(example("pendulum_chain") + " --set time.method=munthe-kaas-54"), Keys{"celledoni2022"});

@@ -311,6 +311,14 @@ TEST(Ensemble, StepsAllocateNothing) {
   EXPECT_EQ(during(200), one);  // what an advance takes, however many steps it makes
 }
 
+TEST(Ensemble, ToBeObservedAtNoStepIsRefused) {
+  const auto initial = bodies(3);
+  Ensemble<RigidBody> ensemble(RigidBody{}, initial);
+  EnsembleOptions<RigidBody> options;
+  options.every = 0;
+  EXPECT_THROW(ensemble.advance_to(1, options), std::invalid_argument);
+}
+
 TEST(Ensemble, AWrongNumberOfConfigurationsIsRefused) {
   const auto initial = bodies(3);
   const std::vector<Matrix<double, 3, 3>> configurations(2, Matrix<double, 3, 3>::Identity());

@@ -65,6 +65,21 @@ class LocalRanks final : public Ranks {
   int rank_;
 };
 
+/// Has no memory for a message.
+class Speechless final : public Ranks {
+ public:
+  int rank() const override { return 1; }
+  int size() const override { return 2; }
+  void send(int, const Message&) override { throw std::bad_alloc(); }
+  std::optional<Received> receive() override { return std::nullopt; }
+  std::string broadcast(const std::string& text) override { return text; }
+};
+
+TEST(Schedule, ARankThatCannotGoOnEndsAll) {
+  Speechless ranks;
+  EXPECT_THROW(for_each_part(ranks, {}, {.threads = 1}, [](long) { return true; }), std::bad_alloc);
+}
+
 ScheduleOutcome on_ranks(int ranks, int threads, long parts, const std::function<bool(int rank, long part)>& work,
                          const std::function<bool()>& interrupted = nullptr) {
   Post post;

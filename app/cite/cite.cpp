@@ -150,7 +150,8 @@ std::string as_cff(const std::vector<Use>& uses) {
 void add_cite_options(CLI::App& command, CiteOptions& options) {
   command.add_option(
       "subject", options.subject,
-      "a scene, or the folder that lagroid run or lagroid learn wrote: cite what it rests on (default: all)");
+      "a scene or sweep, the folder of a run from initial values or that of lagroid learn: cite what it rests on "
+      "(default: all)");
   command.add_option("--set", options.overrides, "override a key of the scene (repeatable)")->allow_extra_args(false);
   auto* bibtex = command.add_flag("--bibtex", options.bibtex, "print entries for BibTeX (UTF-8)");
   auto* json = command.add_flag("--json", options.json, "print one JSON object");

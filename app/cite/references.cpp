@@ -2,6 +2,7 @@
 
 #include "../optimise/methods.hpp"
 #include "../registry.hpp"
+#include "../scenes/scene_bodies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -180,9 +181,11 @@ std::vector<Use> uses_of(const Section& scene) {
       time.choice_or("method", "variational", {"variational", "splitting", "moser-veselov", "runge-kutta"});
   std::vector<Use> uses{{&named("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};
   add_uses_of_time(mode, method, uses);
-  if (scene.has("body")) return uses;
-  if (with_system_of(scene, []<class Sys>(const Entry<Sys>&) { return Sys::principle == Principle::nonholonomic; }))
+  const bool bodies = scene.has("body");
+  const auto nonholonomic = []<class Sys>(const Entry<Sys>&) { return Sys::principle == Principle::nonholonomic; };
+  if (bodies ? read_scene_bodies(scene).nonholonomic : with_system_of(scene, nonholonomic))
     uses.push_back({&named("iglesias2008"), "nonholonomic constraints on Lie groupoids"});
+  if (bodies) return uses;
   const std::string solver =
       scene.section_or_empty("solver").choice_or("method", "newton", {"newton", "shooting", "ceres"});
   if (mode != "transformed" && method == "variational" && solver == "newton")

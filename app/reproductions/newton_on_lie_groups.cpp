@@ -5,15 +5,13 @@
 #include <lagroid/groupoids/rotation_fibre.hpp>
 #include <lagroid/solvers/ceres_lie.hpp>
 #include <lagroid/solvers/crouch_grossman.hpp>
+#include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/lie_differentials.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <future>
 #include <limits>
-#include <mutex>
 #include <numbers>
 #include <optional>
 #include <type_traits>
@@ -154,24 +152,13 @@ std::string name_of(NewtonMethod method) {
 std::vector<NewtonCell> run_newton_study(const NewtonStudy& study, const std::function<void(long, long)>& done) {
   const int sizes = study.largest - study.smallest + 1;
   const int starts = 2 * sizes * study.seeds;
-  std::vector<std::vector<NewtonCell>> cells(static_cast<std::size_t>(starts));
-  std::atomic<int> next = 0;
-  std::atomic<long> finished = 0;
-  std::mutex telling;
-  const auto work = [&] {
-    for (int i = next++; i < starts; i = next++) {
-      const int n = study.largest - i / (2 * study.seeds);  // the long ones first
-      const auto example = i % 2 == 0 ? NewtonExample::first : NewtonExample::second;
-      const auto seed = std::uint64_t(study.first_seed + i / 2 % study.seeds);
-      cells[std::size_t(i)] = StartingPoint(example, n, seed).cells();
-      ++finished;
-      const std::lock_guard lock(telling);
-      done(finished, starts);
-    }
+  const auto cells_of = [&](long i) {
+    const int n = study.largest - int(i) / (2 * study.seeds);  // the long ones first
+    const auto example = i % 2 == 0 ? NewtonExample::first : NewtonExample::second;
+    const auto seed = std::uint64_t(study.first_seed + i / 2 % study.seeds);
+    return StartingPoint(example, n, seed).cells();
   };
-  auto other = std::async(std::launch::async, work);
-  work();
-  other.get();
+  const auto cells = results_of_tasks(starts, /*threads=*/0, cells_of, [&](long finished) { done(finished, starts); });
   std::vector<NewtonCell> out;
   for (auto part = cells.rbegin(); part != cells.rend(); ++part) out.insert(out.end(), part->begin(), part->end());
   return out;

@@ -49,6 +49,8 @@ template <class Sys> class LaneRunner final : public MemberRunner {
         members.emplace_back(at, std::move(task));
       } catch (const SceneError& error) {
         part.end(at, "invalid_scene", error.problem());
+      } catch (const std::exception& error) {
+        part.end(at, "internal_error", fmt::format("internal error: {}; please report it", error.what()));
       }
     }
     if (members.empty()) return part;

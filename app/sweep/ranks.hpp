@@ -31,6 +31,8 @@ class Ranks {
   virtual std::optional<Received> receive() = 0;
   /// What rank 0 passes, on all ranks.
   virtual std::string broadcast(const std::string& text) = 0;
+  /// Tells why, and ends all ranks, which would wait for this one; does nothing where there is no other.
+  virtual void abort(const std::string&) {}
 };
 
 /// Joins those that were started with this process; one process by itself is rank 0 of 1. MPI begins here, where the

@@ -1,8 +1,12 @@
+#include "../command.hpp"
 #include "ranks.hpp"
 
 #include <mpi.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <string>
 
@@ -56,6 +60,14 @@ class MpiRanks final : public Ranks {
     for (long at = 0; at < size; at += most)
       MPI_Bcast(out.data() + at, int(std::min(most, size - at)), MPI_CHAR, 0, MPI_COMM_WORLD);
     return out;
+  }
+
+  void abort(const std::string& why) override {
+    if (size_ == 1) return;
+    fmt::print(stderr, "lagroid: rank {}: {}; the finished parts are kept, and the same command goes on from them\n",
+               rank_, why);
+    std::fflush(stderr);
+    MPI_Abort(MPI_COMM_WORLD, exit_failed);
   }
 
  private:

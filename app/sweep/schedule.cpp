@@ -230,10 +230,15 @@ void ask_for_parts(Ranks& ranks, Crew& crew) {
 
 ScheduleOutcome for_each_part(Ranks& ranks, std::span<const long> parts, const Schedule& schedule,
                               const std::function<bool(long)>& work) {
-  Crew crew(schedule.threads > 0 ? schedule.threads : available_threads(), work, schedule.interrupted);
-  if (ranks.rank() == 0) return hand_out(ranks, parts, schedule, crew);
-  ask_for_parts(ranks, crew);
-  return {};
+  try {
+    Crew crew(schedule.threads > 0 ? schedule.threads : available_threads(), work, schedule.interrupted);
+    if (ranks.rank() == 0) return hand_out(ranks, parts, schedule, crew);
+    ask_for_parts(ranks, crew);
+    return {};
+  } catch (const std::exception& error) {
+    ranks.abort(error.what());
+    throw;
+  }
 }
 
 }  // namespace lagroid::app

@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// So many that threads and ranks are kept busy to the end, so few that a folder holds them easily.
-constexpr long most_parts = 512;
+constexpr long most_parts = 512;  ///< unless more are asked for
+constexpr long most_files = 1'000'000;
 
 fs::path scene_file(const Section& at, const char* key, const std::string& sweep) {
   const std::string name = at.text(key, "the path of a scene");
@@ -61,6 +62,9 @@ void read_rest(const Section& sweep, SweepScene& out) {
   out.engine = run.choice_or("engine", "auto", {"auto", "scenes", "lanes"});
   const long count = out.design.count();
   out.part = run.integer_or("part", (count + most_parts - 1) / most_parts, 1, 100'000'000);
+  if (out.parts() > most_files)
+    run.fail("part", fmt::format("makes {} parts, each a file for a while; take {} or more", out.parts(),
+                                 (count + most_files - 1) / most_files));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ template <DiscreteSystem Sys> struct EnsembleOptions {
   /// Called with every member that goes on, at every step whose number is a multiple of `every`: in order for one
   /// member, from all threads at once for several. It may write to places of that member's own.
   std::function<void(long member, const TrajectoryPoint<Sys>& point)> observe = nullptr;
-  long every = 1;
+  long every = 1;  ///< at least 1; std::invalid_argument otherwise
   /// Asked now and then; once it is true the advance ends, and another one goes on from there.
   std::function<bool()> interrupted = nullptr;
 };
@@ -108,6 +108,7 @@ TrajectoryPoint<Sys> Ensemble<Sys, Width>::point(const March& march, const Sys& 
 
 template <DiscreteSystem Sys, int Width>
 bool Ensemble<Sys, Width>::advance_to(long index, const EnsembleOptions<Sys>& options) {
+  if (options.every < 1) throw std::invalid_argument("an ensemble is observed at every step, or at every n-th, n > 0");
   constexpr long batches_per_task = 4;
   const long count = long(marches_.size());
   long reached = index;
