@@ -135,7 +135,7 @@ template <class Sys> py::dict parameters_of(const py::object& self) {
   const py::type type = py::type::of<Sys>();
   py::dict out;
   for (const py::handle name : py::reinterpret_steal<py::list>(PyObject_Dir(type.ptr())))
-    if (is_parameter(type, name)) out[name] = self.attr(name);
+    if (is_parameter(type, name)) out[name] = type.attr(name).attr("fget")(self);
   return out;
 }
 
@@ -154,7 +154,9 @@ inline void set_attribute(const py::object& self, const py::str& name, const py:
   if (PyObject_GenericSetAttr(self.ptr(), name.ptr(), value.ptr()) == 0) return;
   const py::error_already_set error;
   const py::type type = py::type::of(self);
-  if (!error.matches(PyExc_TypeError) || !is_parameter(type, name)) throw error;
+  const bool of_its_setter =
+      std::string_view(error.what()).find("incompatible function arguments") != std::string::npos;
+  if (!error.matches(PyExc_TypeError) || !of_its_setter) throw error;
   throw py::type_error(fmt::format("{}: {}: expected {}, got {}", std::string(py::str(type.attr("__name__"))),
                                    std::string(name), kind_of(self.attr(name)),
                                    std::string(py::str(py::type::of(value).attr("__name__")))));

@@ -24,6 +24,18 @@ class Named(lagroid.Pendulum):
         self.name = name
 
 
+class Stiff(lagroid.Pendulum):
+    """A system with a property of its own."""
+
+    @property
+    def softness(self) -> float:
+        return 1 / self.gravity
+
+    @softness.setter
+    def softness(self, value: float) -> None:
+        self.gravity = 1 / value
+
+
 class Systems(unittest.TestCase):
     def test_a_march_is_the_run_of_the_scene(self) -> None:
         run = lagroid.run(
@@ -240,6 +252,13 @@ class Systems(unittest.TestCase):
         np.testing.assert_array_equal(body.inertia, lagroid.RigidBody().inertia)
         with self.assertRaises(ValueError):
             body.inertia[0] = -1  # what is read is read-only
+
+    def test_what_a_derived_class_raises_is_raised(self) -> None:
+        system = Stiff(gravity=2.0)
+        system.softness = 0.25
+        self.assertEqual(pickle.loads(pickle.dumps(system)).gravity, 4.0)
+        with self.assertRaisesRegex(TypeError, "unsupported operand"):
+            system.softness = "soft"  # type: ignore[assignment]
 
     def test_a_step_that_fails_changes_nothing(self) -> None:
         ball = lagroid.PlateBall(h=40.0)
