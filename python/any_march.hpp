@@ -10,6 +10,7 @@
 #include <functional>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::python {
@@ -53,10 +54,21 @@ class AnyMarch {
   virtual double residual_size() const = 0;
 };
 
-/// Rows of numbers of one field, for nodes or arrows.
+/// Rows of numbers of one field, for nodes or arrows. There are as many where a row has no numbers.
 struct Rows {
+  explicit Rows(Field of) : field(std::move(of)) {}
+
   Field field;
+  std::size_t count = 0;
   std::vector<double> values;
+
+  /// Room for one more.
+  double* add() {
+    const std::size_t at = values.size();
+    values.resize(at + field.width());
+    ++count;
+    return values.data() + at;
+  }
 };
 
 /// A stationary path between two ends.

@@ -21,6 +21,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,19 +54,112 @@ template <class G> std::vector<std::size_t> arrow_shape() {
   return {std::size_t(G::arrow_coordinate_count())};
 }
 
-/// `count` finite numbers of an array, columns first.
-inline std::vector<double> numbers(const Array& array, std::size_t count, const std::string& what) {
+/// `count` finite numbers of an array of one dimension or, columns first, of the given shape.
+inline std::vector<double> numbers(const Array& array, std::size_t count, const std::string& what,
+                                   const std::vector<std::size_t>& shape = {}) {
+  if (array.ndim() > 1) {
+    const std::vector<std::size_t> found(array.shape(), array.shape() + array.ndim());
+    if (found != shape) {
+      const auto words = [](const auto& of) { return std::string(py::str(py::tuple(py::cast(of)))); };
+      throw py::value_error(fmt::format("{}: expected {} numbers{}, got an array of shape {}", what, count,
+                                        shape.size() > 1 ? " or shape " + words(shape) : "", words(found)));
+    }
+  }
   if (std::size_t(array.size()) != count)
-    throw py::value_error(what + ": expected " + std::to_string(count) + " numbers, got " +
-                          std::to_string(array.size()));
+    throw py::value_error(fmt::format("{}: expected {} numbers, got {}", what, count, array.size()));
   std::vector<double> out(array.data(), array.data() + count);
   for (const double x : out)
-    if (!std::isfinite(x)) throw py::value_error(what + ": must be finite");
+    if (!std::isfinite(x)) throw py::value_error(fmt::format("{}: must be finite, got {}", what, x));
   return out;
 }
 
 template <class V> V vector_of(const Array& array, const std::string& what) {
   return Eigen::Map<const V>(numbers(array, V::SizeAtCompileTime, what).data());
+}
+
+/// The arrow of these coordinates, if it is one: the equations of G hold, its inverse is one, and it is connected to
+/// the units, which a reflection is not. `what` names it in messages.
+template <class G> ArrowOf<G> arrow_of(const G& groupoid, const Array& array, const std::string& what) {
+  using V = Vector<double, G::arrow_coordinate_count()>;
+  const auto read = numbers(array, V::SizeAtCompileTime, what, arrow_shape<G>());
+  const ArrowOf<G> arrow = groupoid.template arrow_at<double>(V(Eigen::Map<const V>(read.data())));
+  const auto same = [&](const ArrowOf<G>& a, const ArrowOf<G>& b, double tolerance) {
+    const V x = groupoid.coordinates_of_arrow(a);
+    return (x - groupoid.coordinates_of_arrow(b)).norm() <= tolerance * (1 + x.norm());
+  };
+  constexpr double on_it = 1e-8;
+  if (!same(groupoid.project(arrow), arrow, on_it) ||
+      !same(groupoid.unit(groupoid.target(arrow)), groupoid.multiply(groupoid.inverse(arrow), arrow), on_it))
+    throw py::value_error(what + ": no arrow of " + G::name());
+  // A retraction may miss single arrows, as Cayley's the half turns: it then reaches some of those near them.
+  for (int k = 0; k < 8; ++k) {
+    AlgebroidVector<G> v;
+    for (int i = 0; i < v.size(); ++i) v(i) = std::sin(k * (i + 1.0));
+    const ArrowOf<G> near = groupoid.multiply(arrow, groupoid.tau(groupoid.target(arrow), v));
+    constexpr double reached = 1e-6;  // what is lost near arrows that it misses
+    if (same(groupoid.tau(groupoid.source(near), groupoid.tau_inverse(near)), near, reached)) return arrow;
+  }
+  throw py::value_error(what + ": no arrow of " + G::name() + " that is connected to its units");
+}
+
+/// Refuses a time step that is none.
+template <class Sys> void require_step(const Sys& system) {
+  if constexpr (HasTimeStep<Sys>) {
+    if (!std::isfinite(system.h) || system.h == 0) throw py::value_error("h: the step must be finite and not zero");
+  }
+}
+
+/// Whether instances of the class have a parameter of this name: a property that can be set.
+inline bool is_parameter(const py::handle& type, const py::handle& name) {
+  if (!py::hasattr(type, name)) return false;
+  const py::object found = type.attr(name);
+  return PyObject_TypeCheck(found.ptr(), &PyProperty_Type) != 0 && !found.attr("fset").is_none();
+}
+
+/// A system with these parameters, the others as they are by default.
+template <class Sys> Sys with_parameters(const py::dict& parameters) {
+  Sys system;
+  const py::object self = py::cast(&system, py::return_value_policy::reference);
+  const py::handle type = py::type::handle_of(self);
+  for (const auto& [key, value] : parameters) {
+    if (!is_parameter(type, key))
+      throw py::type_error(fmt::format("{} has no parameter {}", std::string(py::str(type.attr("__name__"))),
+                                       std::string(py::str(key))));
+    py::setattr(self, key, value);
+  }
+  return system;
+}
+
+/// The parameters of a system by name.
+template <class Sys> py::dict parameters_of(const py::object& self) {
+  const py::type type = py::type::of<Sys>();
+  py::dict out;
+  for (const py::handle name : py::reinterpret_steal<py::list>(PyObject_Dir(type.ptr())))
+    if (is_parameter(type, name)) out[name] = type.attr(name).attr("fget")(self);
+  return out;
+}
+
+/// What a parameter with this value is, in words.
+inline std::string kind_of(const py::object& value) {
+  if (py::isinstance<py::bool_>(value)) return "True or False";
+  if (py::isinstance<py::int_>(value)) return "a whole number";
+  if (py::isinstance<py::float_>(value)) return "a number";
+  if (py::isinstance<py::str>(value)) return "a word";
+  if (py::isinstance<py::array>(value)) return fmt::format("{} numbers", py::cast<py::array>(value).size());
+  return py::str(py::type::of(value).attr("__name__"));
+}
+
+/// Sets an attribute. A parameter of the wrong type is a TypeError of one line with its name.
+inline void set_attribute(const py::object& self, const py::str& name, const py::object& value) {
+  if (PyObject_GenericSetAttr(self.ptr(), name.ptr(), value.ptr()) == 0) return;
+  const py::error_already_set error;
+  const py::type type = py::type::of(self);
+  const bool of_its_setter =
+      std::string_view(error.what()).find("incompatible function arguments") != std::string::npos;
+  if (!error.matches(PyExc_TypeError) || !of_its_setter) throw error;
+  throw py::type_error(fmt::format("{}: {}: expected {}, got {}", std::string(py::str(type.attr("__name__"))),
+                                   std::string(name), kind_of(self.attr(name)),
+                                   std::string(py::str(py::type::of(value).attr("__name__")))));
 }
 
 template <class V> void put(const V& v, double* out) { std::copy(v.data(), v.data() + v.size(), out); }
@@ -121,6 +216,11 @@ inline MarchOptions march_options(const std::string& mode, const std::string& me
   } else {
     options.composition = composition_of(order, composition, split);
   }
+  constexpr int most = 100000;
+  if (max_iterations < 0 || max_iterations > most)
+    throw py::value_error(fmt::format("max_iterations: must be from 0 to {}, got {}", most, max_iterations));
+  if (!std::isfinite(tolerance)) throw py::value_error(fmt::format("tolerance: must be finite, got {}", tolerance));
+  if (tolerance < 0) throw py::value_error(fmt::format("tolerance: must be zero or positive, got {}", tolerance));
   options.step = {max_iterations, tolerance};
   return options;
 }
@@ -235,17 +335,14 @@ std::shared_ptr<AnyMarch> begin_march(const Sys& system, const Array& momentum, 
                                       const std::optional<Array>& configuration, const MarchOptions& options) {
   using G = typename Sys::GroupoidType;
   const G& groupoid = system.groupoid;
-  if constexpr (HasTimeStep<Sys>) {
-    if (!std::isfinite(system.h) || system.h == 0) throw py::value_error("h: the step must be finite and not zero");
-  }
+  detail::require_step(system);
   if (object && configuration) throw py::value_error("give object or configuration, not both: an arrow has its target");
   if (!object && !configuration && G::object_coordinate_count() > 0)
     throw py::value_error("give object, or configuration, the arrow that ends there");
   State<G> state;
   ArrowOf<G> arrow;
   if (configuration) {
-    using V = Vector<double, G::arrow_coordinate_count()>;
-    arrow = groupoid.template arrow_at<double>(detail::vector_of<V>(*configuration, "configuration"));
+    arrow = detail::arrow_of(groupoid, *configuration, "configuration");
     state.object = groupoid.target(arrow);
   } else {
     using V = Vector<double, G::object_coordinate_count()>;
@@ -263,20 +360,21 @@ std::shared_ptr<AnyMarch> begin_march(const Sys& system, const Array& momentum, 
   }
   const auto kept = groupoid.coordinates_of_arrow(groupoid.project(arrow));
   if (!((kept - groupoid.coordinates_of_arrow(arrow)).norm() <= on_it * (1 + kept.norm())))
-    throw py::value_error("configuration: no arrow of " + G::name());
+    throw py::value_error("object: no object of " + G::name());
   return std::make_shared<MarchOfSystem<Sys>>(system, state, arrow, options);
 }
 
 /// The stationary paths between the ends of `boundary`, an arrow in coordinates, cheapest first.
 template <DiscreteSystem Sys>
-std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& boundary, std::size_t steps,
+std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& boundary, long steps,
                                            const std::string& method, int starts, std::uint64_t seed,
                                            std::string& failure) {
   using G = typename Sys::GroupoidType;
-  using V = Vector<double, G::arrow_coordinate_count()>;
   const auto kind = BoundaryMethod(detail::choice<3>("method", method, {"newton", "shooting", "ceres"}));
-  const BoundaryProblem<Sys> problem{
-      system, system.groupoid.template arrow_at<double>(detail::vector_of<V>(boundary, "boundary"))};
+  detail::require_step(system);
+  if (steps < 2) throw py::value_error(fmt::format("steps: must be at least 2, got {}", steps));
+  if (starts < 1) throw py::value_error(fmt::format("starts: must be at least 1, got {}", starts));
+  const BoundaryProblem<Sys> problem{system, detail::arrow_of(system.groupoid, boundary, "arrow")};
   const auto solver = make_boundary_solver<Sys>(kind);
   MultistartOptions options;
   options.starts = starts;
@@ -284,7 +382,7 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
   MultistartResult<Sys> found;
   {
     const py::gil_scoped_release unlocked;
-    found = solve_boundary(*solver, problem, steps, options);
+    found = solve_boundary(*solver, problem, std::size_t(steps), options);
   }
   if (found.solutions.empty())
     failure = found.best_failure.message.empty() ? "none of " + std::to_string(starts) + " starts converged (" +
@@ -297,14 +395,10 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
                       solution.kind.isolated,
                       solution.kind.normal,
                       solution.kind.negative_directions,
-                      {{{"object", {std::size_t(G::object_coordinate_count())}}, {}},
-                       {{"momentum", {std::size_t(G::dimension)}}, {}},
-                       {{"arrow", detail::arrow_shape<G>(), true}, {}},
-                       {{"multipliers", {std::size_t(Sys::constraints)}, true}, {}}}};
-    const auto add = [&path](std::size_t row, const auto& v) {
-      auto& values = path.rows[row].values;
-      values.insert(values.end(), v.data(), v.data() + v.size());
-    };
+                      {Rows({"object", {std::size_t(G::object_coordinate_count())}}),
+                       Rows({"momentum", {std::size_t(G::dimension)}}), Rows({"arrow", detail::arrow_shape<G>(), true}),
+                       Rows({"multipliers", {std::size_t(Sys::constraints)}, true})}};
+    const auto add = [&path](std::size_t row, const auto& v) { detail::put(v, path.rows[row].add()); };
     const auto node = [&](const State<G>& state) {
       add(0, system.groupoid.coordinates_of_object(state.object));
       add(1, tangent_momentum(system, state));
@@ -321,25 +415,24 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
 }
 
 /// The class of the system in `module`: parameters as keywords of the constructor (all that the caller adds with
-/// def_readwrite or def_property), the step `h`, `integrator(...)`. A system of one's own that is not among those of
-/// the library includes lagroid/solvers/march_methods.hpp too.
+/// def_readwrite or def_property), which copies and pickles hold; the step `h`, `integrator(...)`. A system of one's
+/// own that is not among those of the library includes lagroid/solvers/march_methods.hpp too.
 template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, const char* name, const char* doc) {
   py::class_<Sys> made(module, name, doc);
-  made.def(py::init([name](const py::kwargs& parameters) {
-    Sys system;
-    const py::object self = py::cast(&system, py::return_value_policy::reference);
-    for (const auto& [key, value] : parameters) {
-      if (!py::hasattr(py::type::of(self), key))
-        throw py::type_error(std::string(name) + " has no parameter " + py::str(key).cast<std::string>());
-      py::setattr(self, key, value);
-    }
-    return system;
-  }));
+  made.def(py::init([](const py::kwargs& parameters) { return detail::with_parameters<Sys>(parameters); }));
+  made.def("__setattr__", detail::set_attribute);
+  // Pickles and copies: the parameters, and what a class derived in Python has besides.
+  made.def(py::pickle(
+      [](const py::object& self) {
+        const py::dict besides = py::hasattr(self, "__dict__") ? self.attr("__dict__").attr("copy")() : py::dict();
+        return py::make_tuple(detail::parameters_of<Sys>(self), besides);
+      },
+      [](const py::tuple& kept) {
+        return std::pair(detail::with_parameters<Sys>(kept[0].cast<py::dict>()), kept[1].cast<py::dict>());
+      }));
   if constexpr (HasTimeStep<Sys>) made.def_readwrite("h", &Sys::h, "The time step, or the first one (s).");
   made.def_property_readonly(
       "groupoid", [](const Sys&) { return Sys::GroupoidType::name(); }, "The groupoid of its arrows.");
-  made.def("__copy__", [](const Sys& self) { return Sys(self); });
-  made.def("__deepcopy__", [](const Sys& self, const py::dict&) { return Sys(self); });
   made.def(
       "integrator",
       [](const Sys& self, const Array& momentum, const std::optional<Array>& object,
@@ -366,8 +459,7 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
 template <DiscreteSystem Sys> void bind_boundary(py::class_<Sys>& made) {
   made.def(
       "boundary",
-      [](const Sys& self, const Array& arrow, std::size_t steps, const std::string& method, int starts,
-         std::uint64_t seed) {
+      [](const Sys& self, const Array& arrow, long steps, const std::string& method, int starts, std::uint64_t seed) {
         detail::class_of_lagroid("BoundaryPath");  // known from here on
         std::string failure;
         auto paths = stationary_paths(self, arrow, steps, method, starts, seed, failure);

@@ -36,7 +36,7 @@ using States = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Trajectories of M points (N, M, 6k) at these times (M,).
 Trajectories assembled(const States& states, const States& time, double noise) {
-  if (states.ndim() != 3 || time.ndim() != 1 || time.shape(0) != states.shape(1))
+  if (states.ndim() != 3 || states.shape(2) == 0 || time.ndim() != 1 || time.shape(0) != states.shape(1))
     throw py::value_error("states: expected (trajectories, points, 6k), and the time of each point (points,)");
   std::vector<Observation> rows;
   for (py::ssize_t i = 0; i < states.shape(0); ++i)

@@ -28,9 +28,8 @@ namespace {
 
 /// The rows of a field; matrices are columns first in memory.
 py::array rows_of(const Rows& rows, py::handle owner) {
-  const auto width = py::ssize_t(rows.field.width());
-  std::vector<py::ssize_t> shape{width > 0 ? py::ssize_t(rows.values.size()) / width : 0};
-  std::vector<py::ssize_t> strides{width};
+  std::vector<py::ssize_t> shape{py::ssize_t(rows.count)};
+  std::vector<py::ssize_t> strides{py::ssize_t(rows.field.width())};
   py::ssize_t stride = 1;
   for (const std::size_t n : rows.field.shape) {
     shape.push_back(py::ssize_t(n));
@@ -68,8 +67,6 @@ class Integrator {
     observe();
   }
 
-  const AnyMarch& march() const { return *march_; }
-
   /// One step, in the calling thread, with the interpreter's lock: it takes microseconds.
   void advance() {
     const Busy busy(busy_);
@@ -83,9 +80,9 @@ class Integrator {
     const Busy busy(busy_);
     return computing([&] {
       auto out = std::make_shared<Marched>();
-      for (const Field& field : march_->fields()) out->rows.push_back({field, {}});
+      for (const Field& field : march_->fields()) out->rows.emplace_back(field);
       for (const Watched& each : march_->watched())
-        out->quantities.push_back({{each.name, {each.components.size()}, each.on_arrows}, {}});
+        out->quantities.emplace_back(Field{each.name, {each.components.size()}, each.on_arrows});
       const auto start = std::chrono::steady_clock::now();
       record(*out);
       for (long k = 1; k <= count; ++k) {
@@ -104,7 +101,17 @@ class Integrator {
     });
   }
 
+  long index() const {
+    const Busy busy(busy_);
+    return march_->index();
+  }
+  double time() const {
+    const Busy busy(busy_);
+    return march_->time();
+  }
+  MethodTraits traits() const { return march_->traits(); }
   std::vector<app::LedgerEntry> ledger() const {
+    const Busy busy(busy_);
     std::vector<app::LedgerEntry> out;
     if (ledger_ && march_->constrained()) out.push_back(app::constraint_entry(largest_residual_, residual_size_));
     for (const auto& watch : watches_) out.push_back(watch.entry());
@@ -116,10 +123,9 @@ class Integrator {
     const auto& fields = march_->fields();
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (fields[i].name != name) continue;
-      auto* rows = new Rows{fields[i], std::vector<double>(fields[i].width())};
+      auto* rows = new Rows(fields[i]);
       const py::capsule owner(rows, [](void* p) { delete static_cast<Rows*>(p); });
-      if (fields[i].on_arrows && march_->index() == 0) throw py::value_error(name + ": no step was made yet");
-      march_->read(i, rows->values.data());
+      look(name, fields[i].on_arrows, [&] { march_->read(i, rows->add()); });
       return rows_of(*rows, owner)[py::int_(0)].cast<py::array>();
     }
     throw py::key_error(name);
@@ -128,16 +134,15 @@ class Integrator {
     const auto& all = march_->watched();
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].name != name) continue;
-      if (all[i].on_arrows && march_->index() == 0) throw py::value_error(name + ": no step was made yet");
       std::vector<double> out(all[i].components.size());
-      march_->watch(i, out.data());
+      look(name, all[i].on_arrows, [&] { march_->watch(i, out.data()); });
       return owned(std::move(out));
     }
     throw py::key_error(name);
   }
 
  private:
-  /// Held by the thread that marches.
+  /// Held while the march is made or looked at.
   class Busy {
    public:
     explicit Busy(std::atomic<bool>& busy) : busy_(busy) {
@@ -151,6 +156,12 @@ class Integrator {
     std::atomic<bool>& busy_;
   };
 
+  /// Reads numbers at this node.
+  template <class F> void look(const std::string& name, bool on_arrows, const F& read) const {
+    const Busy busy(busy_);
+    if (on_arrows && march_->index() == 0) throw py::value_error(name + ": no step was made yet");
+    read();
+  }
   StepReport step() {
     const StepReport report = march_->advance();
     if (report.converged()) observe();
@@ -179,9 +190,7 @@ class Integrator {
     out.time.push_back(march_->time());
     const auto put = [&](Rows& rows, const auto& read) {
       if (rows.field.on_arrows && (!has_step || out.time.size() == 1)) return;
-      const std::size_t at = rows.values.size();
-      rows.values.resize(at + rows.field.width());
-      read(rows.values.data() + at);
+      read(rows.add());
     };
     for (std::size_t i = 0; i < out.rows.size(); ++i) put(out.rows[i], [&](double* to) { march_->read(i, to); });
     for (std::size_t i = 0; i < out.quantities.size(); ++i)
@@ -194,7 +203,7 @@ class Integrator {
   double residual_size_ = 0;
   std::vector<app::QuantityWatch> watches_;
   std::vector<std::vector<double>> scratch_;
-  std::atomic<bool> busy_ = false;
+  mutable std::atomic<bool> busy_ = false;
 };
 
 /// A property of the class for a field.
@@ -273,19 +282,17 @@ void bind_marches(py::module_& module) {
 
   py::class_<Integrator> integrator(module, "Integrator",
                                     "A trajectory in the making. A step that fails leaves everything as it was.");
-  integrator.def(py::init<std::shared_ptr<AnyMarch>, bool>(), py::arg("march"), py::arg("ledger") = true)
+  integrator.def(py::init<std::shared_ptr<AnyMarch>, bool>(), py::arg("march").none(false), py::arg("ledger") = true)
       .def("advance", &Integrator::advance, "One step. Raises SolveError, with its status.")
       .def("march", &Integrator::steps, py::arg("steps"), py::arg("every") = 1,
            "So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status.")
-      .def_property_readonly(
-          "index", [](const Integrator& self) { return self.march().index(); }, "Steps made.")
-      .def_property_readonly(
-          "time", [](const Integrator& self) { return self.march().time(); }, "s")
+      .def_property_readonly("index", &Integrator::index, "Steps made.")
+      .def_property_readonly("time", &Integrator::time, "s")
       .def_property_readonly(
           "state", [](const Integrator& self) { return py::make_tuple(self.now("object"), self.now("momentum")); },
           "(object, momentum).")
       .def_property_readonly(
-          "method", [](const Integrator& self) { return app::description(self.march().traits()); },
+          "method", [](const Integrator& self) { return app::description(self.traits()); },
           "What the steps declare of themselves.")
       .def_property_readonly("ledger", &Integrator::ledger, "What was promised and found, over all steps so far.")
       .def("quantity", &Integrator::quantity, py::arg("name"), "One of the system's quantities at this node.");

@@ -3,6 +3,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "computing.hpp"
+#include "numbers.hpp"
 #include "scene.hpp"
 
 #include <optimise/methods.hpp>
@@ -43,6 +44,10 @@ struct Layout {
     if (!matrix) return python::view(numbers, {rows * columns}, {1}, owner);
     return python::view(numbers, {rows, columns}, {1, rows}, owner);
   }
+  std::vector<py::ssize_t> shape() const {
+    if (!matrix) return {rows * columns};
+    return {rows, columns};
+  }
   py::array copy_of(const Eigen::VectorXd& x) const {
     if (!matrix) return owned(std::vector<double>(x.begin(), x.end()));
     return owned(Eigen::MatrixXd(x.reshaped(rows, columns)));
@@ -61,13 +66,29 @@ struct Optimum {
   std::string summary;  ///< JSON, of a scene
 };
 
-using Numbers = py::array_t<double, py::array::f_style | py::array::forcecast>;
+[[noreturn]] void refuse(const char* what, const char* expected, const py::handle& got) {
+  PyErr_Clear();
+  throw py::type_error(fmt::format("{}: expected {}, got {}", what, expected,
+                                   std::string(py::str(py::type::handle_of(got).attr("__name__")))));
+}
 
-/// Numbers from Python, by columns.
-Eigen::VectorXd flat(const Numbers& array, Eigen::Index size, const char* what) {
-  if (array.size() != size)
-    throw py::value_error(fmt::format("{}: expected {} numbers, got {}", what, size, array.size()));
-  return Eigen::Map<const Eigen::VectorXd>(array.data(), size);
+/// Numbers from Python in the shape of points, by columns.
+Eigen::VectorXd flat(const py::object& given, const Layout& layout, const char* what) {
+  const auto array = py::array_t<double, py::array::f_style | py::array::forcecast>::ensure(given);
+  if (!array) refuse(what, "numbers", given);
+  const std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim());
+  if (shape != layout.shape()) {
+    const auto words = [](const auto& of) { return std::string(py::str(py::tuple(py::cast(of)))); };
+    throw py::value_error(fmt::format("{}: expected shape {}, got {}", what, words(layout.shape()), words(shape)));
+  }
+  return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
+}
+
+double number(const py::object& given, const char* what) {
+  const double x = PyFloat_AsDouble(given.ptr());
+  if (x != -1 || PyErr_Occurred() == nullptr) return x;
+  if (PyErr_ExceptionMatches(PyExc_TypeError) != 0) refuse(what, "a number", given);
+  throw py::error_already_set();
 }
 
 /// A function in Python: fun(x) -> (value, gradient), and hessian(x, v), if there is one. Its arguments are copies, so
@@ -84,13 +105,13 @@ class PythonObjective final : public Objective {
     if (!py::isinstance<py::tuple>(out) || py::len(out) != 2)
       throw py::type_error("the function returns the tuple (value, gradient)");
     const auto pair = out.cast<py::tuple>();
-    gradient = flat(pair[1].cast<Numbers>(), x.size(), "gradient");
-    return pair[0].cast<double>();
+    gradient = flat(pair[1], layout_, "gradient");
+    return number(pair[0], "value");
   }
   void hessian(const Point& x, const Vector& v, Vector& h) const override {
     if (!hessian_) return Objective::hessian(x, v, h);
     const py::gil_scoped_acquire locked;
-    h = flat((*hessian_)(layout_.copy_of(x), layout_.copy_of(v)).cast<Numbers>(), x.size(), "hessian");
+    h = flat((*hessian_)(layout_.copy_of(x), layout_.copy_of(v)), layout_, "hessian");
   }
 
  private:
@@ -105,7 +126,7 @@ Callback watch() {
 }
 
 std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::function& fun,
-                                         const std::optional<Numbers>& start, const std::string& method,
+                                         const std::optional<py::object>& start, const std::string& method,
                                          const std::optional<py::function>& hessian, unsigned seed, double gradient,
                                          double relative_gradient, long iterations, double seconds, bool history) {
   const auto manifold = maker.make();
@@ -113,12 +134,14 @@ std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::f
   const app::Section keys = app::parse_scene(method, "method", {});
   const auto by = app::read_optimiser(keys);
   keys.finish();
-  const Point from = start ? flat(*start, manifold->size(), "start") : random_start(*manifold, seed);
+  const Point from = start ? flat(*start, maker.layout, "start") : random_start(*manifold, seed);
   Stopping stopping;
-  stopping.gradient = gradient;
-  stopping.relative_gradient = relative_gradient;
+  stopping.gradient = finite("gradient", gradient, app::nonnegative);
+  stopping.relative_gradient =
+      finite("relative_gradient", relative_gradient, {"from 0 to below 1", [](double x) { return x >= 0 && x < 1; }});
+  if (iterations < 1) throw py::value_error(fmt::format("iterations: must be at least 1, got {}", iterations));
   stopping.iterations = iterations;
-  stopping.seconds = seconds;
+  stopping.seconds = held("seconds", seconds, app::positive);
   return std::make_shared<Optimum>(
       Optimum{computing([&] {
                 return optimisation::minimise(*manifold, objective, from, *by, stopping, {history, watch()});

@@ -15,6 +15,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -213,11 +214,15 @@ void bind_scenes(py::module_& module) {
       .def_property_readonly("columns", columns, "The labels of all columns; \"t\" is the time.")
       .def("__getitem__", column, py::arg("label"),
            "A column by its label, (rows,), or a series by its name, (rows, width).")
-      .def("__contains__",
-           [](const RunResult& r, const std::string& label) {
-             const auto all = columns(r);
-             return std::find(all.begin(), all.end(), label) != all.end();
-           })
+      .def(
+          "__contains__",
+          [](const RunResult& r, const std::string& label) {
+            const auto all = columns(r);
+            const auto& series = r.trajectory.series;
+            return std::find(all.begin(), all.end(), label) != all.end() ||
+                   std::any_of(series.begin(), series.end(), [&](const Series& s) { return s.name == label; });
+          },
+          "Whether there is such a column or series.")
       .def_property_readonly("converged", &RunResult::converged, "Whether all was solved.")
       .def_property_readonly("interrupted", &RunResult::interrupted, "Whether Ctrl-C or SIGTERM ended it.")
       .def("text", app::text_report, "The report, as lagroid run prints it.")

@@ -1,6 +1,8 @@
 /// Systems of the library as classes.
 
+#include "arrays.hpp"
 #include "bindings.hpp"
+#include "numbers.hpp"
 
 #include <lagroid/python/system.hpp>
 #include <lagroid/systems/heavy_top.hpp>
@@ -13,6 +15,36 @@
 namespace lagroid::python {
 
 namespace {
+
+/// A property that is a finite number which the rule holds of.
+template <class Sys, class Base>
+void bind_number(py::class_<Sys>& made, const char* name, double Base::*member, const char* doc,
+                 const app::NumberRule& rule = app::any_number) {
+  made.def_property(
+      name, [member](const Sys& self) { return self.*member; },
+      [name, member, rule](Sys& self, double x) { self.*member = finite(name, x, rule); }, doc);
+}
+
+/// A property that is three of them; `meaning` names them in messages. It is read as an array of its own.
+template <class Sys>
+void bind_numbers(py::class_<Sys>& made, const char* name, Vector<double, 3> Sys::*member, const char* meaning,
+                  const char* doc, const app::NumberRule& rule = app::any_number) {
+  made.def_property(
+      name,
+      [member](const Sys& self) {
+        py::array out = owned(std::vector<double>((self.*member).begin(), (self.*member).end()));
+        out.attr("flags").attr("writeable") = false;
+        return out;
+      },
+      [name, member, meaning, rule](Sys& self, const Array& given) {
+        const auto v = detail::vector_of<Vector<double, 3>>(given, name);
+        for (const double x : v)
+          if (!rule.holds(x))
+            throw py::value_error(fmt::format("{}: {} must be {}, got {}", name, meaning, rule.words, x));
+        self.*member = v;
+      },
+      doc);
+}
 
 /// A property that is one of some words, the values of an enumeration in order.
 template <class Sys, class Base, class Enum, std::size_t N>
@@ -34,9 +66,9 @@ static_assert(int(Quadrature::midpoint) == 0 && int(Retraction::exponential) == 
               int(RotationForm::exponential) == 1);
 
 template <class Sys> void bind_rod_and_bob(py::class_<Sys>& made) {
-  made.def_readwrite("mass", &Sys::bob_mass, "Of the bob, kg.")
-      .def_readwrite("length", &Sys::length, "Of the rod, m.")
-      .def_readwrite("gravity", &Sys::gravity, "m/s^2.");
+  bind_number(made, "mass", &Sys::bob_mass, "Of the bob, kg.", app::positive);
+  bind_number(made, "length", &Sys::length, "Of the rod, m.", app::positive);
+  bind_number(made, "gravity", &Sys::gravity, "m/s^2.");
   bind_choice(made, "quadrature", &Sys::quadrature, quadratures, quadrature_doc);
 }
 
@@ -49,7 +81,7 @@ using Attitude = Matrix<double, 3, 3>;
 void bind_systems(py::module_& module) {
   auto kepler =
       bind_system<Kepler>(module, "Kepler", "The planar Kepler problem: object q (2,), m; momentum p = q' (2,), m/s.");
-  kepler.def_readwrite("strength", &Kepler::strength, "Of the attraction, m^3/s^2.");
+  bind_number(kepler, "strength", &Kepler::strength, "Of the attraction, m^3/s^2.");
   bind_choice(kepler, "quadrature", &Kepler::quadrature, quadratures, quadrature_doc);
   bind_boundary(kepler);
 
@@ -69,7 +101,8 @@ void bind_systems(py::module_& module) {
       module, "RigidBody",
       "The free rigid body: no object; momentum the body angular momentum M (3,), kg m^2/s; configuration the\n"
       "attitude A (3, 3), which carries body to space.");
-  body.def_readwrite("inertia", &RigidBody::inertia, "Principal moments (3,), kg m^2.");
+  bind_numbers(body, "inertia", &RigidBody::inertia, "principal moments", "Principal moments (3,), kg m^2.",
+               app::positive);
   bind_choice(body, "rotation", &RigidBody::rotation, rotations, rotation_doc);
   bind_boundary(body);
 
@@ -77,8 +110,9 @@ void bind_systems(py::module_& module) {
       module, "HeavyTop",
       "A body with a fixed point under gravity: object the upward vertical seen from the body, v = A^T e3 (3,);\n"
       "momentum M (3,), kg m^2/s; configuration the attitude by columns, then e3 (12,).");
-  top.def_readwrite("inertia", &HeavyTop::inertia, "Principal moments (3,), kg m^2.")
-      .def_readwrite("weight", &HeavyTop::weight, "Weight times the vector to the centre of mass (3,), N m.");
+  bind_numbers(top, "inertia", &HeavyTop::inertia, "principal moments", "Principal moments (3,), kg m^2.",
+               app::positive);
+  bind_numbers(top, "weight", &HeavyTop::weight, "weight", "Weight times the vector to the centre of mass (3,), N m.");
   bind_choice(top, "rotation", &HeavyTop::rotation, rotations, rotation_doc);
   top.def_static(
       "arrow",
@@ -93,9 +127,9 @@ void bind_systems(py::module_& module) {
       module, "PlateBall",
       "Optimal control of a ball that rolls on a turning plate: object the contact point (2,), m; momentum\n"
       "px, py, M1, M2, M3 (5,); arrows two points and a rotation by columns (13,).");
-  ball.def_readwrite("radius", &PlateBall::radius, "Of the ball, m.")
-      .def_readwrite("plate_rate", &PlateBall::plate_rate, "Angular velocity of the plate, rad/s.")
-      .def_readwrite("spin", &PlateBall::spin, "Prescribed rate about the vertical, rad/s.");
+  bind_number(ball, "radius", &PlateBall::radius, "Of the ball, m.", app::positive);
+  bind_number(ball, "plate_rate", &PlateBall::plate_rate, "Angular velocity of the plate, rad/s.");
+  bind_number(ball, "spin", &PlateBall::spin, "Prescribed rate about the vertical, rad/s.");
   bind_choice(ball, "rotation", &PlateBall::rotation, std::array<std::string_view, 3>{"trace", "exp", "cayley"},
               "Form of the constraints: trace, exp or cayley.");
   ball.def_static(

@@ -255,6 +255,8 @@ class BoundaryPath:
 class _System:
     h: float
     def __init__(self, **parameters: Any) -> None: ...
+    @property
+    def groupoid(self) -> str: ...
     def integrator(
         self,
         momentum: ArrayLike,
@@ -273,30 +275,24 @@ class _System:
     def boundary(
         self, arrow: ArrayLike, steps: int, *, method: str = "newton", starts: int = 40, seed: int = 1
     ) -> list[BoundaryPath]: ...
-    def __copy__(self) -> Any: ...
-    def __deepcopy__(self, memo: dict[Any, Any]) -> Any: ...
 
 class Kepler(_System):
-    groupoid: str
     strength: float
     quadrature: str
 
 class Pendulum(_System):
-    groupoid: str
     mass: float
     length: float
     gravity: float
     quadrature: str
 
 class SphericalPendulum(_System):
-    groupoid: str
     mass: float
     length: float
     gravity: float
     quadrature: str
 
 class RigidBody(_System):
-    groupoid: str
     @property
     def inertia(self) -> _Array: ...
     @inertia.setter
@@ -304,7 +300,6 @@ class RigidBody(_System):
     rotation: str
 
 class HeavyTop(_System):
-    groupoid: str
     @property
     def inertia(self) -> _Array: ...
     @inertia.setter
@@ -318,7 +313,6 @@ class HeavyTop(_System):
     def arrow(attitude: ArrayLike) -> _Array: ...
 
 class PlateBall(_System):
-    groupoid: str
     radius: float
     plate_rate: float
     spin: float

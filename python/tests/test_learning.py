@@ -56,6 +56,8 @@ class Learning(unittest.TestCase):
         self.assertEqual(caught.exception.status, "too_little_data")
         with self.assertRaises(ValueError):
             lagroid.Trajectories(2 * data.states, data.interval * np.arange(data.points))
+        with self.assertRaisesRegex(ValueError, "states: expected"):
+            lagroid.Trajectories(np.zeros((2, 2, 0)), [0, 1])
         with self.assertRaises(lagroid.DataError):
             lagroid.Trajectories.read("missing.csv")
 

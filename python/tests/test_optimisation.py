@@ -79,12 +79,38 @@ class Optimisation(unittest.TestCase):
             lagroid.minimise(lagroid.Sphere(3), lambda x: (1 / 0, x))
         with self.assertRaisesRegex(TypeError, "tuple"):
             lagroid.minimise(lagroid.Sphere(3), lambda x: 1.0)  # type: ignore[arg-type, return-value]
-        with self.assertRaisesRegex(ValueError, "gradient: expected 3 numbers, got 2"):
+        with self.assertRaisesRegex(ValueError, r"gradient: expected shape \(3,\), got \(2,\)"):
             lagroid.minimise(lagroid.Sphere(3), lambda x: (1.0, [1.0, 2.0]))
-        with self.assertRaisesRegex(ValueError, "start: expected 3 numbers"):
+        with self.assertRaisesRegex(ValueError, r"start: expected shape \(3,\)"):
             lagroid.minimise(lagroid.Sphere(3), lambda x: (1.0, x), [1.0])
         with self.assertRaises(ValueError):
             lagroid.Stiefel(2, 3)
+
+    def test_shapes_and_kinds(self) -> None:
+        manifold = lagroid.Stiefel(8, 3)
+        for wrong in (lambda x: brockett(x)[1].T, lambda x: brockett(x)[1].ravel()):
+            with self.assertRaisesRegex(ValueError, r"gradient: expected shape \(8, 3\), got"):
+                lagroid.minimise(manifold, lambda x, wrong=wrong: (brockett(x)[0], wrong(x)))
+        with self.assertRaisesRegex(ValueError, r"start: expected shape \(8, 3\), got \(3, 8\)"):
+            lagroid.minimise(manifold, brockett, np.eye(8)[:3])
+        with self.assertRaisesRegex(ValueError, r"hessian: expected shape \(8, 3\), got \(3, 8\)"):
+            lagroid.minimise(manifold, brockett, hessian=lambda x, v: v.T)
+        with self.assertRaisesRegex(TypeError, "^value: expected a number, got str$"):
+            lagroid.minimise(manifold, lambda x: ("low", x))  # type: ignore[arg-type, return-value]
+        with self.assertRaisesRegex(TypeError, "^gradient: expected numbers, got str$"):
+            lagroid.minimise(manifold, lambda x: (1.0, "down"))
+
+    def test_numbers_are_held_to_the_rules_of_scenes(self) -> None:
+        for wrong, message in (
+            ({"iterations": -1}, "iterations: must be at least 1, got -1"),
+            ({"gradient": np.nan}, "gradient: must be finite, got nan"),
+            ({"gradient": -1}, "gradient: must be zero or positive, got -1"),
+            ({"relative_gradient": 1}, "relative_gradient: must be from 0 to below 1, got 1"),
+            ({"seconds": 0}, "seconds: must be positive, got 0"),
+            ({"seconds": np.nan}, "seconds: must be positive, got nan"),
+        ):
+            with self.assertRaisesRegex(ValueError, f"^{message}$"):
+                lagroid.minimise(lagroid.Sphere(8), lambda x: (float(x[0]), np.eye(8)[0]), **wrong)  # type: ignore[arg-type]
 
     def test_a_wrong_gradient_is_not_a_minimum(self) -> None:
         found = lagroid.minimise(lagroid.Sphere(8), lambda x: (float(x @ A @ x), -2 * A @ x), iterations=200)

@@ -1,5 +1,6 @@
 """The template project's system, in a module of its own."""
 
+import pickle
 import unittest
 
 import lagroid
@@ -13,6 +14,10 @@ class OwnSystems(unittest.TestCase):
         self.assertEqual((bead.mass, bead.bend, bead.gravity, bead.h), (2.0, 0.5, 1.0, 0.02))
         with self.assertRaisesRegex(TypeError, "Bead has no parameter length"):
             my_system.Bead(length=1)
+        with self.assertRaisesRegex(TypeError, "^Bead: mass: expected a number, got str$"):
+            my_system.Bead(mass="heavy")
+        again = pickle.loads(pickle.dumps(bead))
+        self.assertEqual((again.mass, again.bend, again.gravity, again.h), (2.0, 0.5, 1.0, 0.02))
 
     def test_marches_with_a_ledger(self) -> None:
         integrator = my_system.Bead(h=0.05).integrator([0.0], [1.0])

@@ -78,7 +78,8 @@ class Scenes(unittest.TestCase):
         self.assertEqual(run["attitude"].shape, (11, 4))
         self.assertEqual(run["multipliers"].shape, (10, 3))
         self.assertEqual(run["x"].shape, (11,))
-        self.assertIn("x", run)
+        for label in ("x", "position", "t"):
+            self.assertIn(label, run)
         self.assertNotIn("nothing", run)
         with self.assertRaises(KeyError):
             run["nothing"]

@@ -1,6 +1,7 @@
 """Systems as objects: the same numbers as scenes, step by step and many at once."""
 
 import copy
+import pickle
 import threading
 import unittest
 
@@ -13,6 +14,26 @@ def turned(angle: float) -> np.ndarray:
     """By the angle about the first axis."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+class Named(lagroid.Pendulum):
+    """A system with something besides its parameters."""
+
+    def __init__(self, name: str, **parameters: float) -> None:
+        super().__init__(**parameters)
+        self.name = name
+
+
+class Stiff(lagroid.Pendulum):
+    """A system with a property of its own."""
+
+    @property
+    def softness(self) -> float:
+        return 1 / self.gravity
+
+    @softness.setter
+    def softness(self, value: float) -> None:
+        self.gravity = 1 / value
 
 
 class Systems(unittest.TestCase):
@@ -128,8 +149,116 @@ class Systems(unittest.TestCase):
             lagroid.RigidBody().integrator([0, 0, 1], configuration=2 * np.eye(3))
         with self.assertRaisesRegex(ValueError, "h: the step"):
             lagroid.Kepler(h=0).integrator([1, 0], [1, 0])
+        for h in (0, np.nan, np.inf):
+            with self.assertRaisesRegex(ValueError, "h: the step"):
+                lagroid.Kepler(h=h).boundary([1, 0, 0, 1], 10)
         with self.assertRaisesRegex(ValueError, "quadrature"):
             lagroid.Kepler(quadrature="simpson")
+
+    def test_a_march_must_be_given(self) -> None:
+        with self.assertRaises(TypeError):
+            lagroid.Integrator(None)  # type: ignore[arg-type]
+
+    def test_fields_without_numbers_have_rows(self) -> None:
+        body = lagroid.RigidBody(h=0.1).integrator([1, 2, 3])
+        q, momentum = body.state
+        self.assertEqual((q.shape, body.object.shape, momentum.shape), ((0,), (0,), (3,)))
+        march = body.march(4)
+        self.assertEqual((march.object.shape, march.multipliers.shape), ((5, 0), (4, 0)))
+        self.assertEqual(body.multipliers.shape, (0,))
+        self.assertEqual(lagroid.Kepler().integrator([0, 1], [1, 0]).march(3, every=2).multipliers.shape, (2, 0))
+        path = lagroid.RigidBody(h=0.1).boundary(turned(0.5), 5)[0]
+        self.assertEqual((path.object.shape, path.multipliers.shape), ((6, 0), (5, 0)))
+
+    def test_what_is_no_arrow_is_refused(self) -> None:
+        body = lagroid.RigidBody(h=0.1)
+        reflection = np.diag([1.0, 1.0, -1.0])
+        wrongs = (np.zeros((3, 3)), -np.eye(3), reflection, turned(0.3) @ reflection, 2 * np.eye(3), np.ones((3, 3)))
+        for wrong in wrongs:
+            with self.assertRaisesRegex(ValueError, "^configuration: no arrow of SO"):
+                body.integrator([1, 2, 3], configuration=wrong)
+            with self.assertRaisesRegex(ValueError, "^arrow: no arrow of SO"):
+                body.boundary(wrong, 10)
+            with self.assertRaisesRegex(ValueError, "^configuration: no arrow of SO"):
+                top = lagroid.HeavyTop()
+                top.integrator([1, 2, 3], configuration=top.arrow(wrong))
+            with self.assertRaisesRegex(ValueError, "^arrow: no arrow of "):
+                lagroid.PlateBall().boundary(lagroid.PlateBall.arrow([0, 0], [1, 0], wrong), 10)
+        for shape in ((1, 9), (9, 1), (3, 3, 1)):
+            with self.assertRaisesRegex(ValueError, r"configuration: expected 9 numbers or shape \(3, 3\)"):
+                body.integrator([1, 2, 3], configuration=np.eye(3).reshape(shape))
+        with self.assertRaisesRegex(ValueError, "object: no object of"):
+            lagroid.HeavyTop().integrator([1, 2, 3], [0, 0, 2])
+
+    def test_every_arrow_is_taken(self) -> None:
+        """Half turns too, which a retraction may miss, and arrows far from the units."""
+        rng = np.random.default_rng(1)
+        axes = [*np.eye(3), *rng.normal(size=(40, 3))]
+        body, top, ball = lagroid.RigidBody(), lagroid.HeavyTop(), lagroid.PlateBall()
+        for axis in axes:
+            n = axis / np.linalg.norm(axis)
+            hat = np.cross(np.eye(3), n)
+            for angle in (np.pi, np.pi - 1e-7, np.pi - 1e-4, rng.uniform(0, np.pi)):
+                turn = np.eye(3) + np.sin(angle) * hat + (1 - np.cos(angle)) * hat @ hat
+                body.integrator([1, 2, 3], configuration=turn)
+                top.integrator([1, 2, 3], configuration=top.arrow(turn))
+                ball.integrator([1, 2, 3, 4, 5], configuration=ball.arrow([1e6, 0], [0, -1e6], turn))
+        self.assertTrue(lagroid.RigidBody(h=0.1).boundary(turned(np.pi), 10))
+
+    def test_parameters_are_held_to_the_rules_of_scenes(self) -> None:
+        for make, message in (
+            (lambda: lagroid.Kepler(strength=np.nan), "strength: must be finite, got nan"),
+            (lambda: lagroid.RigidBody(inertia=[0, 1, 2]), "inertia: principal moments must be positive, got 0"),
+            (lambda: lagroid.HeavyTop(inertia=[1, -1, 2]), "inertia: principal moments must be positive, got -1"),
+            (lambda: lagroid.RigidBody(inertia=[1, 2, np.inf]), "inertia: must be finite, got inf"),
+            (lambda: lagroid.RigidBody(inertia=[1, 2]), "inertia: expected 3 numbers, got 2"),
+            (lambda: lagroid.HeavyTop(weight=[np.nan, 0, 1]), "weight: must be finite, got nan"),
+            (lambda: lagroid.Pendulum(mass=-1), "mass: must be positive, got -1"),
+            (lambda: lagroid.SphericalPendulum(length=0), "length: must be positive, got 0"),
+            (lambda: lagroid.Pendulum(gravity=np.inf), "gravity: must be finite, got inf"),
+            (lambda: lagroid.PlateBall(radius=0), "radius: must be positive, got 0"),
+        ):
+            with self.assertRaisesRegex(ValueError, f"^{message}$"):
+                make()
+        for wrong, message in (
+            ({"tolerance": np.nan}, "tolerance: must be finite, got nan"),
+            ({"tolerance": -1}, "tolerance: must be zero or positive, got -1"),
+            ({"max_iterations": -1}, "max_iterations: must be from 0 to 100000, got -1"),
+        ):
+            with self.assertRaisesRegex(ValueError, f"^{message}$"):
+                lagroid.Kepler().integrator([0, 1], [1, 0], **wrong)  # type: ignore[arg-type]
+        for steps, starts, message in ((1, 1, "steps: must be at least 2, got 1"), (9, 0, "starts: must be at least 1")):
+            with self.assertRaisesRegex(ValueError, f"^{message}"):
+                lagroid.Kepler().boundary([1, 0, 0, 1], steps, starts=starts)
+
+    def test_parameters_of_the_wrong_type(self) -> None:
+        body = lagroid.RigidBody()
+
+        def assign() -> None:
+            body.inertia = "heavy"
+
+        for make, message in (
+            (lambda: lagroid.Kepler(h="small"), "Kepler: h: expected a number, got str"),
+            (lambda: lagroid.Kepler(strength=[1.0]), "Kepler: strength: expected a number, got list"),
+            (lambda: lagroid.Kepler(quadrature=2), "Kepler: quadrature: expected a word, got int"),
+            (assign, "RigidBody: inertia: expected 3 numbers, got str"),
+            (lambda: lagroid.Kepler(integrator=3), "Kepler has no parameter integrator"),
+            (lambda: lagroid.Kepler(groupoid="R"), "Kepler has no parameter groupoid"),
+        ):
+            with self.assertRaisesRegex(TypeError, f"^{message}$"):
+                make()
+        with self.assertRaises(AttributeError):
+            body.mass = 3  # type: ignore[attr-defined]
+        np.testing.assert_array_equal(body.inertia, lagroid.RigidBody().inertia)
+        with self.assertRaises(ValueError):
+            body.inertia[0] = -1  # what is read is read-only
+
+    def test_what_a_derived_class_raises_is_raised(self) -> None:
+        system = Stiff(gravity=2.0)
+        system.softness = 0.25
+        self.assertEqual(pickle.loads(pickle.dumps(system)).gravity, 4.0)
+        with self.assertRaisesRegex(TypeError, "unsupported operand"):
+            system.softness = "soft"  # type: ignore[assignment]
 
     def test_a_step_that_fails_changes_nothing(self) -> None:
         ball = lagroid.PlateBall(h=40.0)
@@ -163,12 +292,25 @@ class Systems(unittest.TestCase):
         with self.assertRaisesRegex(lagroid.SolveError, "boundary value"):
             ball.boundary(far, 4, starts=1)
 
-    def test_copies(self) -> None:
-        system = lagroid.Pendulum(length=2.0)
+    def test_copies_and_pickles(self) -> None:
+        system = lagroid.Pendulum(length=2.0, quadrature="trapezoid", h=0.3)
         other = copy.copy(system)
         other.length = 3.0
         self.assertEqual((system.length, other.length), (2.0, 3.0))
         self.assertEqual(copy.deepcopy(other).length, 3.0)
+        again = pickle.loads(pickle.dumps(system))
+        self.assertEqual((again.length, again.quadrature, again.h), (2.0, "trapezoid", 0.3))
+        top = pickle.loads(pickle.dumps(lagroid.HeavyTop(inertia=[1, 2, 3], rotation="cayley")))
+        np.testing.assert_array_equal(top.inertia, [1, 2, 3])
+        self.assertEqual(top.rotation, "cayley")
+
+    def test_copies_keep_the_class(self) -> None:
+        system = Named("first", length=2.0)
+        for other in (copy.copy(system), copy.deepcopy(system), pickle.loads(pickle.dumps(system))):
+            self.assertIs(type(other), Named)
+            self.assertEqual((other.name, other.length), ("first", 2.0))
+            other.name = "second"
+            self.assertEqual(system.name, "first")
 
     def test_one_thread_at_a_time(self) -> None:
         integrator = lagroid.Pendulum(h=0.01).integrator([1], [0])
@@ -181,15 +323,26 @@ class Systems(unittest.TestCase):
         thread = threading.Thread(target=long)
         thread.start()
         started.wait()
-        refused = 0
+        uses = {
+            "advance": integrator.advance,
+            "object": lambda: integrator.object,
+            "state": lambda: integrator.state,
+            "ledger": lambda: integrator.ledger,
+            "quantity": lambda: integrator.quantity("energy"),
+            "index": lambda: integrator.index,
+            "time": lambda: integrator.time,
+        }
+        refused = dict.fromkeys(uses, 0)
         while thread.is_alive():
-            try:
-                integrator.advance()
-            except RuntimeError as error:
-                self.assertIn("another thread", str(error))
-                refused += 1
+            for name, use in uses.items():
+                try:
+                    use()
+                except RuntimeError as error:
+                    self.assertIn("another thread", str(error))
+                    refused[name] += 1
         thread.join()
-        self.assertGreater(refused, 0)
+        for name, times in refused.items():
+            self.assertGreater(times, 0, name)
 
 
 if __name__ == "__main__":

@@ -38,7 +38,7 @@ class Stubs(unittest.TestCase):
         stub = ast.parse((ROOT / "python" / "lagroid" / "_lagroid.pyi").read_text())
         classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
         functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
-        shared = {"groupoid"} | self.members(classes["_System"])
+        shared = self.members(classes["_System"])
         for name in dir(_lagroid):
             value = getattr(_lagroid, name)
             if name.startswith("__"):
