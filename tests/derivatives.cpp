@@ -2,11 +2,13 @@
 #include "affine.hpp"
 #include "badly_framed.hpp"
 #include "draws.hpp"
+#include "turning_plate.hpp"
 
 #include <lagroid/core/testing/derivative_laws.hpp>
 #include <lagroid/groupoids/se2.hpp>
 #include <lagroid/groupoids/se3.hpp>
 #include <lagroid/groupoids/vector_group.hpp>
+#include <lagroid/systems/chaplygin_sleigh.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>
 #include <lagroid/systems/plate_ball.hpp>
@@ -41,6 +43,14 @@ TEST(Derivatives, RigidBodyInBothForms) {
   expect_laws(system);
   system.rotation = RotationMap::cayley;
   expect_laws(system);
+}
+
+TEST(Derivatives, NonholonomicSystems) {
+  const RollingBall ball = ball_on_turning_plate();
+  const auto on_plate = laws::derivative_laws(ball, [&] { return draw_step(ball, 0.5); });
+  EXPECT_TRUE(on_plate.holds()) << on_plate;
+  const auto sleigh = laws::derivative_laws(ChaplyginSleigh{}, [] { return draw_step(ChaplyginSleigh{}, 0.5); });
+  EXPECT_TRUE(sleigh.holds()) << sleigh;
 }
 
 TEST(Derivatives, PointMasses) {
