@@ -57,7 +57,7 @@ inline kernels::PlateBallPath nodes(const Path<PlateBall>& path) {
   out.attitude.push_back(Eigen::Matrix3d::Identity());
   for (const auto& [arrow, lambda] : path) {
     out.position.push_back(std::get<0>(arrow).target);
-    out.attitude.push_back(SO3::project(out.attitude.back() * std::get<1>(arrow)));
+    out.attitude.push_back(SO3::project((out.attitude.back() * std::get<1>(arrow)).eval()));
     out.multipliers.push_back(lambda);
   }
   return out;
