@@ -73,11 +73,15 @@ class Speechless final : public Ranks {
   void send(int, const Message&) override { throw std::bad_alloc(); }
   std::optional<Received> receive() override { return std::nullopt; }
   std::string broadcast(const std::string& text) override { return text; }
+  void abort(const std::string& why) override { told = why; }
+
+  std::string told;
 };
 
 TEST(Schedule, ARankThatCannotGoOnEndsAll) {
   Speechless ranks;
   EXPECT_THROW(for_each_part(ranks, {}, {.threads = 1}, [](long) { return true; }), std::bad_alloc);
+  EXPECT_EQ(ranks.told, std::bad_alloc().what());
 }
 
 ScheduleOutcome on_ranks(int ranks, int threads, long parts, const std::function<bool(int rank, long part)>& work,

@@ -38,15 +38,10 @@ template <class Sys> class LaneRunner final : public MemberRunner {
   std::optional<Part> run(long first, long count) const override {
     Part part(first, count);
     std::vector<Member> members;
-    std::vector<State<G>> states;
-    std::vector<ArrowOf<G>> configurations;
     for (long at = 0; at < count; ++at) {
       if (InterruptGuard::interrupted()) return std::nullopt;
       try {
-        Task<Sys> task = read_(scene_.with(design_.member(first + at)), {.record = true});
-        states.push_back(task.plain->initial);
-        configurations.push_back(task.plain->configuration);
-        members.emplace_back(at, std::move(task));
+        members.emplace_back(at, read_(scene_.with(design_.member(first + at)), {.record = true}));
       } catch (const SceneError& error) {
         part.end(at, "invalid_scene", error.problem());
       } catch (const std::exception& error) {
@@ -54,6 +49,12 @@ template <class Sys> class LaneRunner final : public MemberRunner {
       }
     }
     if (members.empty()) return part;
+    std::vector<State<G>> states;
+    std::vector<ArrowOf<G>> configurations;
+    for (const Member& member : members) {
+      states.push_back(member.task.plain->initial);
+      configurations.push_back(member.task.plain->configuration);
+    }
     const Pace& pace = members.front().task.plain->pace;
     Ensemble<Sys> ensemble(members.front().task.system, states, configurations);
     for (std::size_t i = 0; i < members.size(); ++i) members[i].see(ensemble.point(long(i)));
@@ -62,14 +63,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     options.every = pace.every;
     if (pace.every <= pace.steps)
       options.observe = [&](long i, const TrajectoryPoint<Sys>& point) { members[std::size_t(i)].see(point); };
-    if (!ensemble.advance_to(pace.steps, options)) {
-      const bool all = std::all_of(members.begin(), members.end(), [&, i = 0L](const Member&) mutable {
-        const bool ended = ensemble.status(i) != SolveStatus::converged || ensemble.point(i).index == pace.steps;
-        ++i;
-        return ended;
-      });
-      if (!all) return std::nullopt;
-    }
+    if (!ensemble.advance_to(pace.steps, options)) return std::nullopt;
     for (std::size_t i = 0; i < members.size(); ++i)
       keep_result(members[i].end(ensemble.point(long(i)), ensemble.status(long(i))), keep_, members[i].at, part);
     return part;
