@@ -56,6 +56,9 @@ struct Viscous : SphericalPendulum {
     return {half, half};
   }
   template <class S> Forces<S, 3> forces(const PairArrow<S, 3>& g) const { return forces(g, h); }
+  // Drag takes what the pendulum's symmetries keep.
+  std::vector<Quantity<Viscous>> quantities() const { return {}; }
+  std::vector<Symmetry<Viscous>> symmetries() const { return {}; }
 
   State<Pair<3>> reference(const State<Pair<3>>& start, double t) const {
     Eigen::VectorXd y(6);
