@@ -5,7 +5,6 @@
 #include "scene_reader.hpp"
 
 #include <fmt/format.h>
-#include <glog/logging.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -71,8 +70,6 @@ int refuse(bool json, int code, const std::string& status, const std::string& me
 }
 
 int command_line(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
-  // What Ceres would say on standard error stands in its summary too, and is judged anew from the residual.
-  FLAGS_minloglevel = google::GLOG_FATAL;
   try {
     return parse_and_serve(app, argc, argv, options, serve);
   } catch (const OutputError& error) {

@@ -5,10 +5,12 @@
 #include <lagroid/core/types.hpp>
 
 #include <rapidcheck.h>
+#include <rapidcheck/detail/TestListenerAdapter.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <iostream>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -17,7 +19,7 @@
 namespace lagroid::laws {
 
 /// RapidCheck seeds itself from the clock. Unless the environment sets RC_PARAMS (put a seed into it: "seed=..."), the
-/// suites run from this seed; RapidCheck prints the seed of every run and, on a failure, the line that reproduces it.
+/// suites run from this seed.
 inline void fix_seed() { ::setenv("RC_PARAMS", "seed=20261120", /*overwrite=*/0); }
 
 /// A number in [-1, 1], whatever RapidCheck's current size (which otherwise pulls ranges towards their lower end).
@@ -36,6 +38,22 @@ struct NotSampled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// rc::check that is silent where the property holds, and otherwise says why not and what reproduces it.
+inline void check_quietly(const std::string& name, const std::function<void()>& property) {
+  using namespace rc::detail;
+  fix_seed();
+  Configuration configuration = configFromString(std::getenv("RC_PARAMS"));
+  TestListenerAdapter silent;
+  const TestResult result =
+      checkTestable(property, TestMetadata{name, name}, configuration.testParams, silent, configuration.reproduce);
+  if (result.is<SuccessResult>()) return;
+  std::cerr << "- " << name << '\n';
+  printResultMessage(result, std::cerr);
+  FailureResult failure;
+  if (result.match(failure)) configuration.reproduce = {{name, failure.reproduce}};
+  std::cerr << "\nRC_PARAMS=\"" << configToMinimalString(configuration) << "\"\n\n";
+}
+
 /// Of the samples drawn, the share above which passing over some leaves a law unjudged: those that remain are then no
 /// longer the ones that were asked for.
 inline constexpr double most_skipped = 1.0 / 3;
@@ -45,12 +63,11 @@ inline constexpr double most_skipped = 1.0 / 3;
 /// commonest.
 /// (Any law's defect in one type: RapidCheck's machinery is then compiled once.)
 inline Law check_law(const std::string& name, double tolerance, const std::function<double()>& defect) {
-  fix_seed();
   Law law;
   law.name = name;
   law.tolerance = tolerance;
   std::map<std::string, int> reasons;
-  rc::check(name, [&] {
+  check_quietly(name, [&] {
     double d = std::numeric_limits<double>::infinity();
     try {
       d = defect();

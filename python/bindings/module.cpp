@@ -12,8 +12,6 @@
 
 #include <lagroid/core/version.hpp>
 
-#include <glog/logging.h>
-
 #include <pybind11/stl/filesystem.h>
 
 #include <exception>
@@ -52,8 +50,6 @@ void translate(std::exception_ptr thrown) {
 
 PYBIND11_MODULE(_lagroid, module) {
   module.doc() = "Discrete mechanics on Lie groupoids: what is compiled. Use the package lagroid.";
-  // What Ceres would say on standard error stands in its summary too, and is judged anew from the residual.
-  FLAGS_minloglevel = google::GLOG_FATAL;
   py::register_exception_translator(translate);
   module.attr("__version__") = LAGROID_VERSION;
   module.def("listing", app::json_listing, "The systems a scene can name, as JSON.");
