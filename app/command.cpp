@@ -3,8 +3,12 @@
 #include "output.hpp"
 #include "report.hpp"
 #include "scene_reader.hpp"
+#include "text.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -16,6 +20,13 @@
 namespace lagroid::app {
 
 namespace {
+
+/// Of standard input, output and error what is closed is held by something that cannot be written to, so that no file
+/// that is opened later takes its place and is told what is meant for a terminal.
+void hold_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(descriptor, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);  // takes the lowest that is free
+}
 
 int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
   try {
@@ -58,22 +69,28 @@ bool asks_for_json(int argc, char** argv) {
   return std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
 }
 
-void print(const std::string& text) {
+void print(const std::string& written) {
+  const std::string text = visible(written, "\n");
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw OutputError("standard output could not be written");
 }
 
+void complain(const std::string& message) {
+  std::fputs(fmt::format("lagroid: {}\n", visible(message)).c_str(), stderr);
+}
+
 int refuse(bool json, int code, const std::string& status, const std::string& message) {
-  fmt::print(stderr, "lagroid: {}\n", message);
+  complain(message);
   if (json) print(json_error(status, message) + "\n");
   return code;
 }
 
 int command_line(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
+  hold_standard_descriptors();
   try {
     return parse_and_serve(app, argc, argv, options, serve);
   } catch (const OutputError& error) {
-    fmt::print(stderr, "lagroid: {}\n", error.what());
+    complain(error.what());
     return exit_failed;
   }
 }

@@ -1,7 +1,10 @@
 #include "output.hpp"
 
+#include "gnuplot.hpp"
 #include "hdf5_file.hpp"
+#include "markup.hpp"
 #include "report.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -37,7 +40,7 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
   std::ofstream out(file);
   out << 't';
   for (const auto& s : trajectory.series)
-    for (const auto& c : s.components) out << ',' << c;
+    for (const auto& c : s.components) out << ',' << in_csv(c);
   out << '\n';
   fmt::memory_buffer line;
   for (std::size_t node = 0; node < trajectory.time.size(); ++node) {
@@ -90,13 +93,6 @@ void write_trajectory(const RunResult& result, const fs::path& file) {
   });
 }
 
-/// A text as a gnuplot string: single quotes, no enhanced-text surprises.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
-
 /// The time, and the series that hold a column of a panel.
 Trajectory excerpt_for_plots(const RunResult& result) {
   const auto plotted = [&](const std::string& column) {
@@ -111,10 +107,11 @@ Trajectory excerpt_for_plots(const RunResult& result) {
   return out;
 }
 
-std::string gnuplot_script(const RunResult& result, const std::string& data) {
-  const std::size_t panels = result.panels.size();
-  const std::size_t columns = panels > 1 ? 2 : 1;
-  const std::size_t rows = (panels + columns - 1) / columns;
+}  // namespace
+
+std::string plot_script(const std::vector<Panel>& panels, const std::string& data) {
+  const std::size_t columns = panels.size() > 1 ? 2 : 1;
+  const std::size_t rows = (panels.size() + columns - 1) / columns;
   std::string out = fmt::format("# Draws {}; run by lagroid, or by hand: gnuplot plot.gp\n", data);
   out += "set datafile separator ','\nset grid\n";
   const std::pair<const char*, std::string> terminals[] = {
@@ -123,22 +120,21 @@ std::string gnuplot_script(const RunResult& result, const std::string& data) {
   for (const auto& [file, terminal] : terminals) {
     out +=
         fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout {},{}\n", terminal, file, rows, columns);
-    for (const auto& panel : result.panels) {
+    for (const auto& panel : panels) {
       out += panel.curves.size() > 1 ? "set key below\n" : "unset key\n";
-      out += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n{}\nplot ", quoted(panel.title),
-                         quoted(panel.x_label), quoted(panel.y_label),
+      out += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n{}\nplot ", gnuplot_string(panel.title),
+                         gnuplot_string(panel.x_label), gnuplot_string(panel.y_label),
                          panel.equal_axes ? "set size ratio -1" : "set size noratio");
       for (std::size_t i = 0; i < panel.curves.size(); ++i)
-        out += fmt::format("{}'{}' using (column({})):(column({})) with lines linewidth 1.5 title {}", i ? ", " : "",
-                           data, quoted(panel.x), quoted(panel.curves[i]), quoted(panel.curves[i]));
+        out +=
+            fmt::format("{}'{}' using (column({})):(column({})) with lines linewidth 1.5 title {}", i ? ", " : "", data,
+                        gnuplot_string(panel.x), gnuplot_string(panel.curves[i]), gnuplot_string(panel.curves[i]));
       out += "\n";
     }
     out += "unset multiplot\nset output\n";
   }
   return out;
 }
-
-}  // namespace
 
 void require_writable(const fs::path& folder) { require_writable(folder, output_files); }
 
@@ -156,16 +152,16 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
         write_csv(excerpt_for_plots(result), staging / data);
         names.push_back(data);
       }
-      write_text(gnuplot_script(result, data), staging / "plot.gp");
+      write_text(plot_script(result.panels, data), staging / "plot.gp");
       names.emplace_back("plot.gp");
       if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); reason.empty()) {
         names.insert(names.end(), {"plot.svg", "plot.png"});
       } else {
-        result.notes.push_back("no pictures: " + reason);
+        result.notes.push_back("no pictures: " + visible(reason));
       }
     }
     write_text(json_report(result) + "\n", staging / "summary.json");
-    write_text(text_report(result), staging / "summary.txt");
+    write_text(visible(text_report(result), "\n"), staging / "summary.txt");
     return names;
   });
 }

@@ -5,9 +5,14 @@
 #include "run_result.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace lagroid::app {
+
+/// The script that draws the panels from a CSV file in its folder: what a run's plot.gp holds. It follows from what the
+/// summary says, so that a script by someone else is told from it.
+std::string plot_script(const std::vector<Panel>& panels, const std::string& data);
 
 /// Throws OutputError, with the remedy, unless `folder` can be created and written to. Leaves nothing behind.
 void require_writable(const std::filesystem::path& folder);

@@ -1,6 +1,7 @@
 #include "reproduce.hpp"
 
 #include "clock.hpp"
+#include "markup.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "reproductions/accelerated_report.hpp"
@@ -45,7 +46,7 @@ nlohmann::ordered_json solved(const NewtonFindings& findings) {
 int conclude(nlohmann::ordered_json result, std::string text, const std::vector<std::filesystem::path>& files,
              const std::string& note, bool json) {
   tell_written(files, note, text, result);
-  print(json ? result.dump(2) + "\n" : text);
+  print(json ? json_text(result) + "\n" : text);
   return 0;
 }
 

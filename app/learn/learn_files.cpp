@@ -1,7 +1,9 @@
 #include "learn_files.hpp"
 
 #include "../clock.hpp"
+#include "../markup.hpp"
 #include "../output_folder.hpp"
+#include "../text.hpp"
 
 #include <fmt/format.h>
 
@@ -163,8 +165,8 @@ std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder,
       write_text(errors_csv(lesson), staging / "errors.csv");
       names.emplace_back("errors.csv");
     }
-    write_text(lesson_json(lesson).dump(2) + "\n", staging / "summary.json");
-    write_text(lesson_text(lesson), staging / "summary.txt");
+    write_text(json_text(lesson_json(lesson)) + "\n", staging / "summary.json");
+    write_text(visible(lesson_text(lesson), "\n"), staging / "summary.txt");
     write_text(gnuplot_script(lesson), staging / "plot.gp");
     note = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"});
     if (note.empty()) names.insert(names.end(), {"plot.svg", "plot.png"});

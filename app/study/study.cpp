@@ -1,11 +1,14 @@
 #include "study.hpp"
 
 #include "../interrupt.hpp"
+#include "../kept_file.hpp"
 #include "../machine.hpp"
+#include "../nesting.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../scene_reader.hpp"
 #include "../shell.hpp"
+#include "../text.hpp"
 #include "accuracy.hpp"
 #include "experiment.hpp"
 #include "methods.hpp"
@@ -17,8 +20,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -82,12 +83,12 @@ std::vector<double> read_steps(const std::string& text, double end) {
 /// The reference state of an earlier study of the same scene.
 std::unique_ptr<Reference> reference_from(const std::string& file, const Experiment& experiment) {
   const auto refuse = [&](const std::string& why) { return BadOption(fmt::format("--reference {}: {}", file, why)); };
-  std::error_code error;
-  std::ifstream in(file);
-  if (!std::filesystem::is_regular_file(file, error) || !in)
-    throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
+  const auto text = contents(file);
+  if (!text) throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
+  const auto read = read_json(*text);
+  if (!read) throw refuse("is no study.json");
   try {
-    const auto json = nlohmann::json::parse(in);
+    const auto& json = *read;
     if (std::abs(json.at("time").get<double>() - experiment.end) > 1e-12 * experiment.end)
       throw refuse(
           fmt::format("is for t = {:g}, this scene lasts {:g}", json.at("time").get<double>(), experiment.end));
@@ -96,8 +97,11 @@ std::unique_ptr<Reference> reference_from(const std::string& file, const Experim
       state.push_back({b.at("name"), b.at("values").get<std::vector<double>>(), b.at("size")});
     const auto own = experiment.begin(experiment.methods.front(), experiment.step)->see().state;
     if (std::isnan(distance(own, state))) throw refuse("is of another system");
+    const std::string method = json.at("reference").at("method");
+    if (const std::string problem = text_problem(method); !problem.empty())
+      throw refuse("reference.method: " + problem);
     return known_reference(experiment, state, json.at("reference").at("uncertainty").get<double>(),
-                           json.at("reference").at("method").get<std::string>() + ", from " + file);
+                           method + ", from " + file);
   } catch (const nlohmann::json::exception&) {
     throw refuse("is no study.json");
   }
@@ -221,7 +225,7 @@ int study(const StudyOptions& options) {
   }
   print(report);
   if (!findings.interrupted) return 0;
-  fmt::print(stderr, "lagroid: {}: interrupted; what was measured so far is told\n", options.scene);
+  complain(fmt::format("{}: interrupted; what was measured so far is told", options.scene));
   return exit_interrupted;
 }
 

@@ -1,7 +1,10 @@
 #include "study_files.hpp"
 
 #include "../clock.hpp"
+#include "../gnuplot.hpp"
+#include "../markup.hpp"
 #include "../output_folder.hpp"
+#include "../text.hpp"
 #include "costs.hpp"
 #include "methods.hpp"
 
@@ -58,17 +61,10 @@ std::string csv(const Findings& findings) {
       "method,order,step,steps,evaluations,seconds,spread,repetitions,trajectory,invariants,constraint,energy_drift,"
       "energy_drift_error,status,message\n";
   for (const Measurement& m : findings.runs)
-    out += fmt::format("{},{},{:.9g},{},{},{},{},{},{},{},{},{},{},{},\"{}\"\n", m.method, m.order, m.step,
-                       m.work.steps, m.work.evaluations, cell(m.median(), "{:.4g}"), cell(m.spread()), m.seconds.size(),
+    out += fmt::format("{},{},{:.9g},{},{},{},{},{},{},{},{},{},{},{},{}\n", m.method, m.order, m.step, m.work.steps,
+                       m.work.evaluations, cell(m.median(), "{:.4g}"), cell(m.spread()), m.seconds.size(),
                        cell(m.trajectory, "{:.4g}"), cell(m.invariants, "{:.4g}"), cell(m.constraint, "{:.4g}"),
-                       cell(m.drift, "{:.4g}"), cell(m.drift_error, "{:.4g}"), m.status, m.message);
-  return out;
-}
-
-/// As a gnuplot string in single quotes.
-std::string in_quotes(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+                       cell(m.drift, "{:.4g}"), cell(m.drift_error, "{:.4g}"), m.status, in_csv(m.message));
   return out;
 }
 
@@ -110,10 +106,10 @@ std::string figure(const Findings& findings) {
       for (const Measurement& m : findings.runs)
         if (const double error = error_of(m, axis); m.converged() && std::isfinite(error)) most = std::max(most, error);
       for (const auto& [column, label] : {std::pair("seconds", "time, s"), std::pair("evaluations", "evaluations")}) {
-        out += fmt::format("set xlabel '{}'\nset ylabel 'error: {}'\nset title '{}'\n", label, name_of(axis),
-                           axis == Axis::trajectory
-                               ? fmt::format("{}, state at t = {:g}", in_quotes(findings.name), findings.end)
-                               : fmt::format("{}, worst at any node", in_quotes(findings.name)));
+        out += fmt::format(
+            "set xlabel '{}'\nset ylabel 'error: {}'\nset title {}\n", label, name_of(axis),
+            gnuplot_string(axis == Axis::trajectory ? fmt::format("{}, state at t = {:g}", findings.name, findings.end)
+                                                    : fmt::format("{}, worst at any node", findings.name)));
         out += "plot ";
         for (std::size_t i = 0; i < methods.size(); ++i)
           out += fmt::format(
@@ -142,29 +138,9 @@ std::string figure(const Findings& findings) {
   return out;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
   std::string out = "<tr>";
-  for (const auto& c : cells) out += fmt::format("<{0}>{1}</{0}>", tag, escaped(c));
+  for (const auto& c : cells) out += fmt::format("<{0}>{1}</{0}>", tag, in_html(c));
   return out + "</tr>\n";
 }
 
@@ -193,8 +169,8 @@ std::string html(const Findings& findings, const std::string& picture) {
       "text-align:right}}td:first-child,th:first-child{{text-align:left}}code{{background:#f3f3f3;padding:0 3px}}"
       "svg{{max-width:100%;height:auto}}.failed{{color:#a00}}</style></head><body>\n<h1>{0}: what accuracy "
       "costs</h1>\n",
-      escaped(findings.name));
-  for (const auto& line : recommendation(findings)) out += fmt::format("<p><b>{}</b></p>\n", escaped(line));
+      in_html(findings.name));
+  for (const auto& line : recommendation(findings)) out += fmt::format("<p><b>{}</b></p>\n", in_html(line));
   out += fmt::format(
       "<p>Written by <code>{}</code>. To t = {:g}. Reference: {}, uncertain by {:.1g}. {}.</p>\n"
       "<p>Errors: <i>trajectory</i>, of configuration and momentum at the end, relative to their size along the "
@@ -204,8 +180,8 @@ std::string html(const Findings& findings, const std::string& picture) {
       "<i>Energy drift</i> is the slope of the energy times the time, with its standard error. Evaluations: gradients "
       "of the discrete Lagrangian (Newton's iterations), flows or vector fields of explicit steps. Times are medians "
       "of interleaved repetitions, the march alone, without records, in processor time of its thread.</p>\n",
-      escaped(findings.command), findings.end, escaped(findings.reference), findings.uncertainty,
-      escaped(findings.machine));
+      in_html(findings.command), findings.end, in_html(findings.reference), findings.uncertainty,
+      in_html(findings.machine));
   out += picture;
   out += "<h2>The least time for an error of the trajectory</h2>\n<table>" +
          row({"error", "method", "step", "time", "evaluations"}, "th");
@@ -226,17 +202,17 @@ std::string html(const Findings& findings, const std::string& picture) {
 
 std::string line_of(const std::vector<std::string>& cells) {
   std::string out = "|";
-  for (const auto& c : cells) out += " " + c + " |";
+  for (const auto& c : cells) out += " " + in_markdown(c) + " |";
   return out + "\n";
 }
 
 std::string markdown(const Findings& findings, bool pictures) {
-  std::string out =
-      fmt::format("# {}, to t = {:g}\n\nWritten by\n\n    {}\n\n", findings.name, findings.end, findings.command);
+  std::string out = fmt::format("# {}, to t = {:g}\n\nWritten by\n\n    {}\n\n", in_markdown(findings.name),
+                                findings.end, visible(findings.command));
   out += fmt::format(
       "{}. Reference: {}, uncertain by {:.1g}. What the columns mean: docs/scenes.md, *What accuracy costs a "
       "scene*.\n\n",
-      findings.machine, findings.reference, findings.uncertainty);
+      in_markdown(findings.machine), in_markdown(findings.reference), findings.uncertainty);
   if (pictures) out += "![error over time and evaluations](study.svg)\n\n";
   out += "| error of the trajectory | least time | method | step |\n|---|---|---|---|\n";
   for (const double level : levels(findings)) {
@@ -246,7 +222,7 @@ std::string markdown(const Findings& findings, bool pictures) {
                 : line_of({fmt::format("{:.0e}", level), "not reached", "", ""});
   }
   out += "\n";
-  for (const auto& line : recommendation(findings)) out += fmt::format("- {}\n", line);
+  for (const auto& line : recommendation(findings)) out += fmt::format("- {}\n", in_markdown(line));
   out += "\n" + line_of(headings) + "|" + [] {
     std::string rule;
     for (std::size_t i = 0; i < headings.size(); ++i) rule += "---|";
@@ -339,7 +315,7 @@ std::string study_json(const Findings& findings) {
                                                     {"evaluations", cost->evaluations}});
   }
   for (const auto& line : recommendation(findings)) out["recommendation"].push_back(line);
-  return out.dump(2);
+  return json_text(out);
 }
 
 std::vector<std::filesystem::path> write_study(const Findings& findings, const std::filesystem::path& folder,
