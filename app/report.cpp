@@ -57,8 +57,8 @@ Json json(const Shape& s) {
 }
 
 Json json(const Panel& p) {
-  return {{"title", p.title}, {"x_label", p.x_label}, {"y_label", p.y_label},
-          {"x", p.x},         {"curves", p.curves},   {"equal_axes", p.equal_axes}};
+  return {{"title", p.title},   {"x_label", p.x_label},       {"y_label", p.y_label},   {"x", p.x},
+          {"curves", p.curves}, {"equal_axes", p.equal_axes}, {"x_offset", p.x_offset}, {"y_offset", p.y_offset}};
 }
 
 template <class T> Json array_of(const std::vector<T>& items) {
