@@ -1,5 +1,6 @@
 #include "output.hpp"
 
+#include "curves.hpp"
 #include "gnuplot.hpp"
 #include "hdf5_file.hpp"
 #include "markup.hpp"
@@ -24,7 +25,9 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 8> output_files{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt",
                                                   "plot.csv",      "plot.gp",        "plot.svg",     "plot.png"};
 
-/// gnuplot looks for a column by its name in every row: of wide files it gets an excerpt.
+/// gnuplot reads the whole file for every curve, and looks for its columns by their names in every row: of long and of
+/// wide files it gets what can be seen.
+constexpr std::size_t most_rows_for_gnuplot = 10'000;
 constexpr std::size_t most_columns_for_gnuplot = 200;
 
 /// Row `node` of a series; series on arrows have none at the first node.
@@ -93,23 +96,28 @@ void write_trajectory(const RunResult& result, const fs::path& file) {
   });
 }
 
-/// The time, and the series that hold a column of a panel.
-Trajectory excerpt_for_plots(const RunResult& result) {
-  const auto plotted = [&](const std::string& column) {
-    return std::any_of(result.panels.begin(), result.panels.end(), [&](const Panel& panel) {
-      return panel.x == column || std::find(panel.curves.begin(), panel.curves.end(), column) != panel.curves.end();
-    });
+bool is_for_gnuplot(const Trajectory& trajectory) {
+  std::size_t columns = 0;
+  for (const auto& s : trajectory.series) columns += s.width();
+  return trajectory.time.size() <= most_rows_for_gnuplot && columns <= most_columns_for_gnuplot;
+}
+
+/// What gnuplot takes for x and y of a curve of the panel: columns of the trajectory by their names, or those of the
+/// panel's block of the excerpt by their numbers.
+std::string gnuplot_columns(const Panel& panel, std::size_t curve, bool by_name) {
+  const auto shown = [](const std::string& column, double offset) {
+    return offset == 0 ? fmt::format("({})", column) : fmt::format("({}-({}))", column, offset);
   };
-  Trajectory out;
-  out.time = result.trajectory.time;
-  for (const auto& s : result.trajectory.series)
-    if (std::any_of(s.components.begin(), s.components.end(), plotted)) out.series.push_back(s);
-  return out;
+  const std::string x = by_name ? fmt::format("column({})", gnuplot_string(panel.x)) : "$1";
+  const std::string y =
+      by_name ? fmt::format("column({})", gnuplot_string(panel.curves[curve])) : fmt::format("${}", curve + 2);
+  return shown(x, panel.x_offset) + ":" + shown(y, panel.y_offset);
 }
 
 }  // namespace
 
-std::string plot_script(const std::vector<Panel>& panels, const std::string& data) {
+std::string plot_script(const std::vector<Panel>& panels, bool by_name) {
+  const std::string data = by_name ? "trajectory.csv" : "plot.csv";
   const std::size_t columns = panels.size() > 1 ? 2 : 1;
   const std::size_t rows = (panels.size() + columns - 1) / columns;
   std::string out = fmt::format("# Draws {}; run by lagroid, or by hand: gnuplot plot.gp\n", data);
@@ -120,15 +128,17 @@ std::string plot_script(const std::vector<Panel>& panels, const std::string& dat
   for (const auto& [file, terminal] : terminals) {
     out +=
         fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout {},{}\n", terminal, file, rows, columns);
-    for (const auto& panel : panels) {
+    for (std::size_t p = 0; p < panels.size(); ++p) {
+      const Panel& panel = panels[p];
       out += panel.curves.size() > 1 ? "set key below\n" : "unset key\n";
       out += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n{}\nplot ", gnuplot_string(panel.title),
-                         gnuplot_string(panel.x_label), gnuplot_string(panel.y_label),
+                         gnuplot_string(label_of(panel.x_label, panel.x_offset)),
+                         gnuplot_string(label_of(panel.y_label, panel.y_offset)),
                          panel.equal_axes ? "set size ratio -1" : "set size noratio");
       for (std::size_t i = 0; i < panel.curves.size(); ++i)
-        out +=
-            fmt::format("{}'{}' using (column({})):(column({})) with lines linewidth 1.5 title {}", i ? ", " : "", data,
-                        gnuplot_string(panel.x), gnuplot_string(panel.curves[i]), gnuplot_string(panel.curves[i]));
+        out += fmt::format("{}'{}'{} using {} with lines linewidth 1.5 title {}", i ? ", " : "", data,
+                           by_name ? "" : fmt::format(" index {}", p), gnuplot_columns(panel, i, by_name),
+                           gnuplot_string(panel.curves[i]));
       out += "\n";
     }
     out += "unset multiplot\nset output\n";
@@ -144,15 +154,13 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
     write_trajectory(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
     if (result.trajectory.time.size() > 1) {
-      std::size_t columns = 0;
-      for (const auto& s : result.trajectory.series) columns += s.width();
-      std::string data = "trajectory.csv";
-      if (columns > most_columns_for_gnuplot) {
-        data = "plot.csv";
-        write_csv(excerpt_for_plots(result), staging / data);
-        names.push_back(data);
+      for (Panel& panel : result.panels) take_offsets(panel, result.trajectory);
+      const bool by_name = is_for_gnuplot(result.trajectory);
+      if (!by_name) {
+        write_text(table_of_visible(result.panels, result.trajectory), staging / "plot.csv");
+        names.emplace_back("plot.csv");
       }
-      write_text(plot_script(result.panels, data), staging / "plot.gp");
+      write_text(plot_script(result.panels, by_name), staging / "plot.gp");
       names.emplace_back("plot.gp");
       if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); reason.empty()) {
         names.insert(names.end(), {"plot.svg", "plot.png"});

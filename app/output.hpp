@@ -10,9 +10,10 @@
 
 namespace lagroid::app {
 
-/// The script that draws the panels from a CSV file in its folder: what a run's plot.gp holds. It follows from what the
-/// summary says, so that a script by someone else is told from it.
-std::string plot_script(const std::vector<Panel>& panels, const std::string& data);
+/// The script that draws the panels, from the columns of trajectory.csv by their names or from what is to be seen of
+/// them, plot.csv: what a run's plot.gp holds. It follows from what the summary says, so that a script by someone else
+/// is told from it.
+std::string plot_script(const std::vector<Panel>& panels, bool by_name);
 
 /// Throws OutputError, with the remedy, unless `folder` can be created and written to. Leaves nothing behind.
 void require_writable(const std::filesystem::path& folder);

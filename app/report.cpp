@@ -60,8 +60,8 @@ Json json(const Shape& s) {
 
 /// `panels_of` reads it.
 Json json(const Panel& p) {
-  return {{"title", p.title}, {"x_label", p.x_label}, {"y_label", p.y_label},
-          {"x", p.x},         {"curves", p.curves},   {"equal_axes", p.equal_axes}};
+  return {{"title", p.title},   {"x_label", p.x_label},       {"y_label", p.y_label},   {"x", p.x},
+          {"curves", p.curves}, {"equal_axes", p.equal_axes}, {"x_offset", p.x_offset}, {"y_offset", p.y_offset}};
 }
 
 template <class T> Json array_of(const std::vector<T>& items) {
@@ -177,7 +177,8 @@ std::string json_report(const RunResult& r) {
 std::vector<Panel> panels_of(const Json& summary) {
   std::vector<Panel> out;
   for (const Json& p : summary.at("picture").at("panels"))
-    out.push_back({p.at("title"), p.at("x_label"), p.at("y_label"), p.at("x"), p.at("curves"), p.at("equal_axes")});
+    out.push_back({p.at("title"), p.at("x_label"), p.at("y_label"), p.at("x"), p.at("curves"), p.at("equal_axes"),
+                   p.at("x_offset"), p.at("y_offset")});
   return out;
 }
 

@@ -190,8 +190,7 @@ std::vector<fs::path> draw_plots(const PlotOptions& options) {
   const fs::path script = file_of_run(options.run, "plot.gp");
   const fs::path data = file_of_run(options.run, "trajectory.csv");
   const fs::path excerpt = data.parent_path() / "plot.csv";
-  const fs::path drawn = fs::exists(excerpt) ? excerpt : data;
-  const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), drawn.filename().string()); };
+  const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), !fs::exists(excerpt)); };
   if (!options.own_script && contents(script) != from_summary(options.run, its_own))
     throw RunError(
         fmt::format("{}: is not the script that summary.json gives: someone changed it, or another lagroid wrote it. "

@@ -109,7 +109,7 @@ std::unique_ptr<Reference> reference_from(const std::string& file, const Experim
 
 std::unique_ptr<Reference> make_reference(const StudyOptions& options, const Experiment& experiment) {
   const std::string& text = options.reference;
-  if (text.empty()) return extrapolated_reference(experiment, options.reference_time);
+  if (text.empty()) return extrapolated_reference(experiment, share_of_reference * options.budget);
   const auto at = text.rfind('@');
   if (at == std::string::npos) return reference_from(text, experiment);
   if (at == 0) throw BadOption("--reference: name a method before the @, as in splitting@0.001");
@@ -132,6 +132,7 @@ std::string command_of(const StudyOptions& options) {
   const StudyOptions usual;
   if (options.target != usual.target) out += fmt::format(" --target {:g}", options.target);
   if (options.longest != usual.longest) out += fmt::format(" --longest {:g}", options.longest);
+  if (options.budget != usual.budget) out += fmt::format(" --budget {:g}", options.budget);
   if (options.repetitions != usual.repetitions) out += fmt::format(" --repetitions {}", options.repetitions);
   if (!options.out.empty()) out += " --out " + quoted(options.out);
   return out;
@@ -166,6 +167,12 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_option("--longest", options.longest, "seconds that a run may take, where steps are found")
       ->check(CLI::Range(1e-3, 1e5))
       ->capture_default_str();
+  command
+      .add_option("--budget", options.budget,
+                  "seconds of wall clock that all of it may take: spent first on the methods that are the cheapest, "
+                  "or near them; what was not measured for want of time is told")
+      ->check(CLI::Range(0.1, 1e7))
+      ->capture_default_str();
   command.add_option("--repetitions", options.repetitions, "of every run, interleaved, to be timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -191,6 +198,14 @@ int study(const StudyOptions& options) {
     Progress progress("study", 1000, !options.json);
     const InterruptGuard guard;
     experiment.interrupted = [&guard] { return guard.interrupted(); };
+    const Budget budget(options.budget);
+    if (!options.json)
+      print(
+          fmt::format("{}: {} methods, within {:g} s (--budget): {}then rounds of smaller steps, in which methods far "
+                      "dearer than others drop out\n",
+                      experiment.name, findings.methods.size(), options.budget,
+                      options.reference.empty() ? "a third for the reference at most, " : "the reference, "));
+    experiment = within(std::move(experiment), budget);
     const auto reference = make_reference(options, experiment);
     findings.scene = options.scene;
     findings.name = experiment.name;
@@ -201,10 +216,15 @@ int study(const StudyOptions& options) {
     findings.reference = reference->description;
     findings.uncertainty = reference->uncertainty;
     findings.reference_state = reference->at(experiment.end);
-    findings.runs = measure(experiment, findings.methods, steps, *reference, options.repetitions, [&](double done) {
-      progress.update(long(1000 * done));
-      return !guard.interrupted();
-    });
+    findings.budget = options.budget;
+    findings.repetitions = options.repetitions;
+    Survey found =
+        survey(experiment, findings.methods, steps, *reference, options.repetitions, budget, [&](double spent) {
+          progress.update(long(1000 * std::min(spent, 1.0)));
+          return !guard.interrupted();
+        });
+    findings.runs = std::move(found.runs);
+    findings.left_out = std::move(found.left_out);
     findings.interrupted = guard.interrupted();
   } catch (const BadOption& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());

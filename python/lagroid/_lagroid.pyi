@@ -331,6 +331,7 @@ def study(
     target: float,
     longest: float,
     reference_time: float,
+    budget: float,
     repetitions: int,
     folder: Optional[_Path],
 ) -> str: ...

@@ -109,17 +109,32 @@ def ledger(entries: Union[Run, Integrator, Sequence[LedgerEntry]]) -> Figure:
 
 
 def study(found: Mapping[str, Any]) -> Figure:
-    """Error at the end against seconds, a curve for each method of `lagroid.study`."""
+    """Error at the end against seconds, a curve for each method of `lagroid.study`: drawn strongly where it is the
+    cheapest at some error, else pale. An error beyond the motion's own size is no point."""
     figure = _figure(8, 5)
     axes = figure.add_subplot()
     curves: dict[str, list[tuple[float, float]]] = {}
     for run in found["runs"]:
         error = run.get("trajectory")
-        if run["status"] == "converged" and error and run["seconds"]:
+        if run["status"] == "converged" and error and error <= 1 and run["seconds"]:
             curves.setdefault(run["method"], []).append((run["seconds"], error))
-    for name, points in curves.items():
-        seconds, errors = zip(*sorted(points))
-        axes.loglog(seconds, errors, marker="o", markersize=3, label=name)
+    cheapest = {level["method"] for level in found.get("least_time", {}).get("trajectory", [])}
+    colours = [f"C{i}" for i in range(10)]
+    markers = "osDv^P*Xhd<>"
+    for i, name in enumerate(sorted(curves, key=lambda method: method not in cheapest)):
+        strong = name in cheapest
+        seconds, errors = zip(*sorted(curves[name]))
+        axes.loglog(
+            seconds,
+            errors,
+            color=colours[i % len(colours)],
+            marker=markers[(i + i // len(colours)) % len(markers)],
+            markersize=5 if strong else 3,
+            linewidth=2 if strong else 0.8,
+            alpha=1 if strong else 0.35,
+            zorder=3 if strong else 2,
+            label=name,
+        )
     axes.set_xlabel("processor time, s")
     axes.set_ylabel("relative error at the end")
     if curves:

@@ -73,6 +73,8 @@ class Plots(unittest.TestCase):
         )
         figure = lagroid.plot.study(found)
         self.assertEqual({line.get_label() for line in figure.axes[0].lines}, {"splitting", "runge-kutta"})
+        styles = {(line.get_color(), line.get_marker()) for line in figure.axes[0].lines}
+        self.assertEqual(len(styles), 2)
 
 
 if __name__ == "__main__":
