@@ -133,7 +133,7 @@ void QuantityWatch::judge_bounded(LedgerEntry& e, double first_half, double seco
   } else if (e.drift > e.bound) {
     judge(e, "BROKEN", "off by more than half of the size of its terms: use a smaller step");
   } else if (samples_ < enough) {
-    judge(e, "unjudged", fmt::format("{} nodes; drift is told from oscillation after {}", samples_, enough));
+    judge(e, "unjudged", fmt::format("{} of the {} nodes that tell drift from oscillation", samples_, enough));
   } else {
     judge(e, second_half <= 1.5 * first_half + noise ? "bounded" : "growing");
   }

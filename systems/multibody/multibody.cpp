@@ -21,6 +21,13 @@ LAGROID_INLINE inline double size_of(const Vec& v) {
   return largest == 0 || (largest > 1e-150 && largest < 1e150) ? v.norm() : v.stableNorm();
 }
 
+/// The inverse, also where the determinant overflows or underflows.
+Mat inverse(const Mat& a) {
+  const double size = a.lpNorm<Eigen::Infinity>();
+  if (size > 1e-90 && size < 1e90) return a.inverse();
+  return Mat(a / size).inverse() / size;
+}
+
 /// sum += increment with what earlier sums lost.
 LAGROID_INLINE inline void add(Vec& sum, Vec& carry, const Vec& increment) {
   const Vec step = carry + increment;
@@ -166,7 +173,7 @@ bool Multibody::factorise(Island& island) {
     const auto i = std::size_t(r);
     Mat a = turns_[i].derivative(turned_[i]);
     if (!damped_turns_.empty()) a.diagonal() += 0.5 * turn_damping_[i];
-    turn_inverse_[i] = a.inverse();
+    turn_inverse_[i] = inverse(a);
     turn_frame_[i] = turns_[i].target_frame(turned_[i]);
   }
   for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
@@ -380,7 +387,7 @@ StepReport Multibody::turn_freely(int rotation) {
     }
     Mat a = turn.derivative(xi);
     if (!damped_turns_.empty()) a.diagonal() += 0.5 * turn_damping_[i];
-    xi -= a.inverse() * residual;
+    xi -= inverse(a) * residual;
     if (last && report.residual < 1e-12) return report;
     previous = report.residual;
   }
@@ -652,7 +659,7 @@ void Multibody::set_step(double h) {
   for (Dragged& d : dragged_) {
     Mat inertia = 0.5 * d.drag;
     inertia.diagonal() += inertia_[std::size_t(d.factor)] / h_;
-    d.response = inertia.inverse();
+    d.response = inverse(inertia);
   }
   for (std::size_t r = 0; r < moments_.size(); ++r) turns_[r].inertia_over_h = moments_[r] / h_;
 }
