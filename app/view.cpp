@@ -187,19 +187,20 @@ fs::path write_view(const ViewOptions& options) {
 }
 
 std::vector<fs::path> draw_plots(const PlotOptions& options) {
-  const fs::path script = file_of_run(options.run, "plot.gp");
+  const fs::path file = file_of_run(options.run, "plot.gp");
   const fs::path data = file_of_run(options.run, "trajectory.csv");
   const fs::path excerpt = data.parent_path() / "plot.csv";
+  const std::string script = contents(file).value_or("");
   const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), !fs::exists(excerpt)); };
-  if (!options.own_script && contents(script) != from_summary(options.run, its_own))
+  if (!options.own_script && script != from_summary(options.run, its_own))
     throw RunError(
         fmt::format("{}: is not the script that summary.json gives: someone changed it, or another lagroid wrote it. "
                     "A script can do all that you can: --own-script runs it, where you trust it",
-                    script.string()));
+                    file.string()));
   return write_whole(options.run, pictures, [&](const fs::path& staging) {
-    fs::copy_file(script, staging / "plot.gp");
-    fs::create_symlink(fs::absolute(data), staging / "trajectory.csv");
-    if (fs::exists(excerpt)) fs::create_symlink(fs::absolute(excerpt), staging / "plot.csv");
+    write_text(script, staging / "plot.gp");
+    fs::create_symlink(fs::absolute(drawn), staging / drawn.filename());
+    if (drawn != data) fs::create_symlink(fs::absolute(data), staging / data.filename());
     if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); !reason.empty())
       throw RunError(fmt::format("{}: {}", options.run, reason));
     return std::vector<std::string>{"plot.svg", "plot.png"};

@@ -535,7 +535,7 @@ TEST_F(CommandLine, PlotDrawsAnewWhatWasEdited) {
   EXPECT_EQ(run("plot " + out.string()).code, 0);
   EXPECT_TRUE(fs::exists(out / "plot.svg"));
   std::ofstream(out / "plot.gp", std::ios::app) << "set output 'plot.svg'\nnonsense\n";
-  const Outcome r = run("plot " + out.string());
+  const Outcome r = run("plot --own-script " + out.string());
   EXPECT_EQ(r.code, 2);
   EXPECT_NE(r.err.find("gnuplot failed"), std::string::npos) << r.err;
   EXPECT_TRUE(fs::exists(out / "plot.svg")) << "the picture there is stays";
