@@ -1,11 +1,14 @@
 #include "command.hpp"
 
-#include "output.hpp"
+#include "output_folder.hpp"
 #include "report.hpp"
 #include "scene_reader.hpp"
 
 #include <fmt/format.h>
 #include <glog/logging.h>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -13,10 +16,20 @@
 #include <new>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 namespace lagroid::app {
 
 namespace {
+
+/// Where one of them was closed, a file of ours would be opened as it, and be written into by whoever prints.
+void hold_standard_descriptors() {
+  for (int opened = ::open("/dev/null", O_RDWR); opened >= 0; opened = ::open("/dev/null", O_RDWR))
+    if (opened > STDERR_FILENO) {
+      ::close(opened);
+      return;
+    }
+}
 
 int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
   try {
@@ -35,8 +48,14 @@ int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options,
                   fmt::format("{}; see {} --help", error.what(), app.get_name()));
   } catch (const SceneError& error) {
     return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
+  } catch (const FolderRefused& error) {
+    return refuse(asks_for_json(argc, argv), exit_bad_input, "invalid_command_line", error.what());
   } catch (const OutputError&) {
     throw;
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) throw;
+    return refuse(options.json, exit_failed, "no_threads",
+                  "no thread could be started (raise ulimit -u, or lower ulimit -s; --threads asks for fewer)");
   } catch (const std::bad_alloc&) {
     return refuse(options.json, exit_failed, "out_of_memory",
                   fmt::format("{}: out of memory; lower time.steps, or raise output.every", options.scene));
@@ -71,6 +90,7 @@ int refuse(bool json, int code, const std::string& status, const std::string& me
 }
 
 int command_line(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
+  hold_standard_descriptors();
   // What Ceres would say on standard error stands in its summary too, and is judged anew from the residual.
   FLAGS_minloglevel = google::GLOG_FATAL;
   try {

@@ -2,6 +2,7 @@
 
 #include "hdf5_file.hpp"
 #include "report.hpp"
+#include "scene_reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -140,11 +141,28 @@ std::string gnuplot_script(const RunResult& result, const std::string& data) {
 
 }  // namespace
 
-void require_writable(const fs::path& folder) { require_writable(folder, output_files); }
+OutputFolder folder_for_run(const fs::path& folder, const Section& scene) {
+  return {folder, OutputKind::run, OutputSource{{"scene", scene.whole()}}, output_files};
+}
+
+OutputFolder folder_for_result(const fs::path& folder, const RunResult& result) {
+  // No two runs take equally long.
+  const std::string which = fmt::format("{} {} {} {:.17g}", result.system, result.method, result.steps, result.seconds);
+  return {folder, OutputKind::run, OutputSource{{"result", which}}, output_files};
+}
+
+OutputFolder folder_of_run(const fs::path& folder) { return {folder, OutputKind::run, std::nullopt, output_files}; }
 
 std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
-  return write_whole(folder, output_files, [&](const fs::path& staging) {
-    std::vector<std::string> names{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt"};
+  const auto summarise = [&](const fs::path& staging) {
+    write_text(json_report(result) + "\n", staging / "summary.json");
+    write_text(text_report(result), staging / "summary.txt");
+    return std::vector<std::string>{"summary.json", "summary.txt"};
+  };
+  Drawing drawing;
+  const auto make = [&](const fs::path& staging) {
+    std::vector<std::string> names = summarise(staging);
+    names.insert(names.end(), {"trajectory.h5", "trajectory.csv"});
     write_trajectory(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
     if (result.trajectory.time.size() > 1) {
@@ -158,16 +176,16 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
       }
       write_text(gnuplot_script(result, data), staging / "plot.gp");
       names.emplace_back("plot.gp");
-      if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); reason.empty()) {
-        names.insert(names.end(), {"plot.svg", "plot.png"});
-      } else {
-        result.notes.push_back("no pictures: " + reason);
-      }
+      drawing = {"plot.gp", {"plot.svg", "plot.png"}};
     }
-    write_text(json_report(result) + "\n", staging / "summary.json");
-    write_text(text_report(result), staging / "summary.txt");
     return names;
-  });
+  };
+  std::string note;
+  auto written = write_and_draw(folder, output_files, make, drawing, note);
+  if (note.empty()) return written;
+  result.notes.push_back("no pictures: " + note);
+  write_whole(folder, {}, summarise);
+  return written;
 }
 
 }  // namespace lagroid::app

@@ -2,7 +2,9 @@
 
 #include "hdf5_file.hpp"
 
-#include "output_folder.hpp"
+#include "interrupt.hpp"
+#include "kept_file.hpp"
+#include "output.hpp"
 #include "viewer/assets.hpp"
 
 #include <H5Cpp.h>
@@ -11,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <utility>
 
 namespace lagroid::app {
@@ -22,7 +23,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 1> pages{"view.html"};
-constexpr std::array<const char*, 2> pictures{"plot.svg", "plot.png"};
 
 fs::path file_of_run(const std::string& run, const char* name) {
   const fs::path folder(run);
@@ -35,8 +35,7 @@ fs::path file_of_run(const std::string& run, const char* name) {
 }
 
 Json read_summary(const fs::path& file) {
-  std::ifstream in(file);
-  Json summary = Json::parse(in, nullptr, /*allow_exceptions=*/false);
+  Json summary = Json::parse(contents(file).value_or(""), nullptr, /*allow_exceptions=*/false);
   if (summary.is_discarded())
     throw RunError(fmt::format("{}: is no JSON any more; run the scene again", file.string()));
   for (const char* key : {"system", "status", "steps", "ledger", "notes", "picture"})
@@ -154,7 +153,9 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 }  // namespace
 
 fs::path write_view(const ViewOptions& options) {
-  const Json summary = read_summary(file_of_run(options.run, "summary.json"));
+  const fs::path file = file_of_run(options.run, "summary.json");
+  const OutputFolder held = folder_of_run(options.run);
+  const Json summary = read_summary(file);
   Columns columns = read_columns(file_of_run(options.run, "trajectory.h5"), options.most_rows);
   if (columns.recorded == 0)
     throw RunError(fmt::format("{}: nothing was computed ({}); there is nothing to show", options.run,
@@ -182,17 +183,15 @@ fs::path write_view(const ViewOptions& options) {
 }
 
 std::vector<fs::path> draw_plots(const std::string& run) {
-  const fs::path script = file_of_run(run, "plot.gp");
-  const fs::path data = file_of_run(run, "trajectory.csv");
-  return write_whole(run, pictures, [&](const fs::path& staging) {
-    fs::copy_file(script, staging / "plot.gp");
-    fs::create_symlink(fs::absolute(data), staging / "trajectory.csv");
-    if (const fs::path excerpt = data.parent_path() / "plot.csv"; fs::exists(excerpt))
-      fs::create_symlink(fs::absolute(excerpt), staging / "plot.csv");
-    if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); !reason.empty())
-      throw RunError(fmt::format("{}: {}", run, reason));
-    return std::vector<std::string>{"plot.svg", "plot.png"};
-  });
+  for (const char* needed : {"plot.gp", "trajectory.csv"}) file_of_run(run, needed);
+  const OutputFolder held = folder_of_run(run);
+  const InterruptGuard guard;
+  const Drawing drawing{"plot.gp", {"plot.svg", "plot.png"}};
+  if (const std::string reason = draw(run, drawing, false); !reason.empty())
+    throw RunError(fmt::format("{}: {}", run, reason));
+  std::vector<fs::path> written;
+  for (const std::string& picture : drawing.pictures) written.push_back(fs::path(run) / picture);
+  return written;
 }
 
 }  // namespace lagroid::app

@@ -1,7 +1,6 @@
 #include "learn.hpp"
 
 #include "../interrupt.hpp"
-#include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../written.hpp"
 #include "learn_files.hpp"
@@ -111,14 +110,13 @@ int serve(const LearnOptions& options) {
         options.json, exit_bad_input, "invalid_command_line",
         fmt::format("--integrator {}: there is none; take one of {}", options.integrator, integrator_names()));
   Lesson lesson;
+  std::optional<OutputFolder> folder;
   try {
     lesson = prepare(options);
-    if (options.out) require_writable_lesson(*options.out);
+    if (options.out) folder.emplace(folder_for_lesson(*options.out, lesson));
   } catch (const DataError& error) {
     return refuse(options.json, exit_bad_input, "invalid_data", error.what());
   } catch (const ModelError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
-  } catch (const OutputError& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   }
   const InterruptGuard guard;
@@ -143,7 +141,7 @@ int serve(const LearnOptions& options) {
   print(options.json ? json.dump(2) + "\n" : text);
   if (code != 0)
     fmt::print(stderr, "lagroid: {}: {}\n", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message);
-  return code;
+  return code_after_writing(code, options.data);
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
 #include "model_file.hpp"
 
+#include "../kept_file.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <vector>
 
 namespace lagroid::app {
@@ -60,10 +61,9 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& problem) {
     throw ModelError(fmt::format("{}: {}; give a model.json that lagroid learn wrote", file.string(), problem));
   };
-  std::error_code ignored;
-  std::ifstream in(file);
-  if (!std::filesystem::is_regular_file(file, ignored) || !in) fail("there is no such file");
-  const auto json = nlohmann::json::parse(in, nullptr, false);
+  const auto text = contents(file);
+  if (!text) fail("there is no such file, or it cannot be read");
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
   if (json.is_discarded() || !json.is_object()) fail("no JSON object");
   if (json.value("kind", nlohmann::json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
   const auto bodies = json.value("bodies", nlohmann::json());

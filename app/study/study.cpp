@@ -1,11 +1,13 @@
 #include "study.hpp"
 
 #include "../interrupt.hpp"
+#include "../kept_file.hpp"
 #include "../machine.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../scene_reader.hpp"
 #include "../shell.hpp"
+#include "../written.hpp"
 #include "accuracy.hpp"
 #include "experiment.hpp"
 #include "methods.hpp"
@@ -18,7 +20,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -82,12 +83,10 @@ std::vector<double> read_steps(const std::string& text, double end) {
 /// The reference state of an earlier study of the same scene.
 std::unique_ptr<Reference> reference_from(const std::string& file, const Experiment& experiment) {
   const auto refuse = [&](const std::string& why) { return BadOption(fmt::format("--reference {}: {}", file, why)); };
-  std::error_code error;
-  std::ifstream in(file);
-  if (!std::filesystem::is_regular_file(file, error) || !in)
-    throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
+  const auto text = contents(file);
+  if (!text) throw refuse("no such file, or it cannot be read; give METHOD@STEP or the study.json of an earlier study");
   try {
-    const auto json = nlohmann::json::parse(in);
+    const auto json = nlohmann::json::parse(*text);
     if (std::abs(json.at("time").get<double>() - experiment.end) > 1e-12 * experiment.end)
       throw refuse(
           fmt::format("is for t = {:g}, this scene lasts {:g}", json.at("time").get<double>(), experiment.end));
@@ -172,6 +171,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
 int study(const StudyOptions& options) {
   Findings findings;
   std::string note;
+  std::optional<OutputFolder> folder;
   try {
     if (!std::isfinite(options.target)) throw BadOption("--target: give a number between 1e-15 and 1");
     const Section scene = read_scene(options.scene, options.overrides);
@@ -183,7 +183,8 @@ int study(const StudyOptions& options) {
     }
     findings.methods = chosen_methods("--methods", options.methods, experiment.methods);
     Steps steps{read_steps(options.steps, experiment.end), options.longest};
-    if (!options.out.empty()) require_writable(options.out, study_files);
+    if (!options.out.empty())
+      folder.emplace(options.out, OutputKind::study, OutputSource{{"scene", scene.whole()}}, study_files);
     Progress progress("study", 1000, !options.json);
     const InterruptGuard guard;
     experiment.interrupted = [&guard] { return guard.interrupted(); };
@@ -204,8 +205,6 @@ int study(const StudyOptions& options) {
     findings.interrupted = guard.interrupted();
   } catch (const BadOption& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
-  } catch (const OutputError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const std::domain_error& error) {
     return refuse(options.json, exit_failed, "no_reference", error.what());
   }
@@ -220,7 +219,7 @@ int study(const StudyOptions& options) {
     report += "  (no files written; --out DIR writes page, figures, CSV and JSON)\n";
   }
   print(report);
-  if (!findings.interrupted) return 0;
+  if (!findings.interrupted) return code_after_writing(0, options.scene);
   fmt::print(stderr, "lagroid: {}: interrupted; what was measured so far is told\n", options.scene);
   return exit_interrupted;
 }
