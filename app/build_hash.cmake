@@ -1,5 +1,5 @@
-# Writes FOLDER/build_hash.cpp: a hash of the sources that FOLDER/sources.txt lists (below ROOT), of FOLDER/build.txt, and
-# of what COMPILER takes ARCH for on this machine.
+# Writes FOLDER/build_hash.cpp: a hash of the sources that FOLDER/sources.txt lists (below ROOT), of FOLDER/build.txt,
+# and of what COMPILER takes ARCH for on this machine.
 if(COMPILER_ID STREQUAL "GNU")
   set(question -Q --help=target)
 else()

@@ -1,5 +1,5 @@
-# lagroid_machine: what a program is, so that it can tell its own work from another's. The hash of what enters numbers is
-# made when one of these files changes, and stands in a file of its own, so that nothing else is compiled again for it.
+# lagroid_machine: what a program is, so that it can tell its own work from another's. The hash of what enters numbers
+# is made when one of these files changes, and stands in a file of its own, so that nothing else is compiled for it.
 file(GLOB sources_of_numbers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/groupoids/*.[ch]pp
@@ -35,7 +35,8 @@ ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${configuration}}
 $<FILTER:$<TARGET_PROPERTY:lagroid,COMPILE_OPTIONS>,EXCLUDE,^-W>
 $<TARGET_PROPERTY:lagroid_core,INTERFACE_COMPILE_OPTIONS>
 $<TARGET_PROPERTY:lagroid_core,INTERFACE_COMPILE_DEFINITIONS>
-Eigen ${Eigen3_VERSION}, Ceres ${Ceres_VERSION}, Boost ${Boost_VERSION}, Spectra ${Spectra_VERSION}, xsimd ${xsimd_VERSION}
+Eigen ${Eigen3_VERSION}, Ceres ${Ceres_VERSION}, Boost ${Boost_VERSION}
+Spectra ${Spectra_VERSION}, xsimd ${xsimd_VERSION}
 ")
 add_custom_command(
   OUTPUT ${folder}/build_hash.cpp
