@@ -1,13 +1,13 @@
 #include "command.hpp"
 
-#include "output.hpp"
+#include "output_folder.hpp"
 #include "report.hpp"
 #include "scene_reader.hpp"
 #include "text.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include <new>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 namespace lagroid::app {
 
@@ -45,8 +46,14 @@ int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options,
                   fmt::format("{}; see {} --help", error.what(), app.get_name()));
   } catch (const SceneError& error) {
     return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
+  } catch (const FolderRefused& error) {
+    return refuse(asks_for_json(argc, argv), exit_bad_input, "invalid_command_line", error.what());
   } catch (const OutputError&) {
     throw;
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) throw;
+    return refuse(options.json, exit_failed, "no_threads",
+                  "no thread could be started (raise ulimit -u, or lower ulimit -s; --threads asks for fewer)");
   } catch (const std::bad_alloc&) {
     return refuse(options.json, exit_failed, "out_of_memory",
                   fmt::format("{}: out of memory; lower time.steps, or raise output.every", options.scene));

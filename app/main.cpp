@@ -15,6 +15,7 @@
 #include "study/study.hpp"
 #include "sweep/sweep.hpp"
 #include "view.hpp"
+#include "written.hpp"
 
 #include <lagroid/core/version.hpp>
 
@@ -35,6 +36,7 @@ using namespace lagroid::app;
 
 struct RunOptions : SceneOptions {
   std::optional<std::string> out;
+  bool other_build = false;
 };
 
 /// The scene of a run that is taken up, of which only the number of steps may change.
@@ -49,16 +51,16 @@ Section kept_scene(const std::string& folder, const std::vector<std::string>& ov
 /// Runs the scene, or takes up the run in the folder `out`.
 int run(const RunOptions& options, bool resume) {
   RunResult result;
+  std::optional<OutputFolder> folder;
   try {
     const Section scene =
         resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
-    if (options.out) require_writable(*options.out);
+    if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene));
+    if (resume && !options.other_build) Checkpoint::require_this_build(*options.out);
     result = run_scene(scene, {.record = options.out.has_value(),
                                .progress = !options.json,
                                .folder = options.out.value_or(""),
                                .resume = resume});
-  } catch (const OutputError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
   } catch (const RunError& error) {
     return refuse(options.json, exit_bad_input, "invalid_run", error.what());
   }
@@ -77,7 +79,8 @@ int run(const RunOptions& options, bool resume) {
   if (!result.converged()) complain(fmt::format("{}: {}", resume ? *options.out : options.scene, result.message));
   if (!result.output_error.empty()) complain(result.output_error);
   if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
-  return result.converged() && result.output_error.empty() ? 0 : exit_failed;
+  if (!result.converged() || !result.output_error.empty()) return exit_failed;
+  return code_after_writing(0, resume ? *options.out : options.scene);
 }
 
 /// Writes something from a run's folder: `make` returns the files.
@@ -116,6 +119,8 @@ int main(int argc, char** argv) {
   resume_command->add_option("run", options.out, "the folder that lagroid run --out wrote")->required();
   resume_command->add_option("--set", options.overrides, "time.steps=N: go on to so many steps")
       ->allow_extra_args(false);
+  resume_command->add_flag("--other-build", options.other_build,
+                           "go on with the work of another build of lagroid; the same bits are not promised then");
   resume_command->add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand(

@@ -5,6 +5,7 @@
 #include "hdf5_file.hpp"
 #include "markup.hpp"
 #include "report.hpp"
+#include "scene_reader.hpp"
 #include "text.hpp"
 
 #include <fmt/format.h>
@@ -146,15 +147,34 @@ std::string plot_script(const std::vector<Panel>& panels, bool by_name) {
   return out;
 }
 
-void require_writable(const fs::path& folder) { require_writable(folder, output_files); }
+OutputFolder folder_for_run(const fs::path& folder, const Section& scene) {
+  return {folder, OutputKind::run, OutputSource{{"scene", scene.whole()}}, output_files};
+}
+
+OutputFolder folder_for_result(const fs::path& folder, const RunResult& result) {
+  // No two runs take equally long.
+  const std::string which = fmt::format("{} {} {} {:.17g}", result.system, result.method, result.steps, result.seconds);
+  return {folder, OutputKind::run, OutputSource{{"result", which}}, output_files};
+}
+
+OutputFolder folder_of_run(const fs::path& folder) { return {folder, OutputKind::run, std::nullopt, output_files}; }
 
 std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
-  return write_whole(folder, output_files, [&](const fs::path& staging) {
-    std::vector<std::string> names{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt"};
+  const auto summarise = [&](const fs::path& staging) {
+    write_text(json_report(result) + "\n", staging / "summary.json");
+    write_text(visible(text_report(result), "\n"), staging / "summary.txt");
+    return std::vector<std::string>{"summary.json", "summary.txt"};
+  };
+  Drawing drawing;
+  const auto make = [&](const fs::path& staging) {
+    const bool moves = result.trajectory.time.size() > 1;
+    if (moves)
+      for (Panel& panel : result.panels) take_offsets(panel, result.trajectory);
+    std::vector<std::string> names = summarise(staging);
+    names.insert(names.end(), {"trajectory.h5", "trajectory.csv"});
     write_trajectory(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
-    if (result.trajectory.time.size() > 1) {
-      for (Panel& panel : result.panels) take_offsets(panel, result.trajectory);
+    if (moves) {
       const bool by_name = is_for_gnuplot(result.trajectory);
       if (!by_name) {
         write_text(table_of_visible(result.panels, result.trajectory), staging / "plot.csv");
@@ -162,16 +182,16 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
       }
       write_text(plot_script(result.panels, by_name), staging / "plot.gp");
       names.emplace_back("plot.gp");
-      if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); reason.empty()) {
-        names.insert(names.end(), {"plot.svg", "plot.png"});
-      } else {
-        result.notes.push_back("no pictures: " + visible(reason));
-      }
+      drawing = {"plot.gp", {"plot.svg", "plot.png"}};
     }
-    write_text(json_report(result) + "\n", staging / "summary.json");
-    write_text(visible(text_report(result), "\n"), staging / "summary.txt");
     return names;
-  });
+  };
+  std::string note;
+  auto written = write_and_draw(folder, output_files, make, drawing, note);
+  if (note.empty()) return written;
+  result.notes.push_back("no pictures: " + visible(note));
+  write_whole(folder, {}, summarise);
+  return written;
 }
 
 }  // namespace lagroid::app

@@ -1,5 +1,6 @@
 #include "scene_reader.hpp"
 
+#include "kept_file.hpp"
 #include "nesting.hpp"
 #include "text.hpp"
 
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 
@@ -531,10 +531,9 @@ Section read_scene(const std::filesystem::path& file, const std::vector<std::str
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     throw SceneError(fmt::format("{}: no such scene file; examples are in examples/", file.string()));
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw SceneError(fmt::format("{}: cannot be read", file.string()));
-  return parse_scene(text, file.string(), overrides, overrider);
+  const auto text = contents(file);
+  if (!text) throw SceneError(fmt::format("{}: cannot be read", file.string()));
+  return parse_scene(*text, file.string(), overrides, overrider);
 }
 
 Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,

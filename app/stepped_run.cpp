@@ -50,6 +50,8 @@ void restore(Checkpoint& checkpoint, SteppedRun& run, RunResult& result, Clock& 
         fmt::format("{}: its checkpoint is of another {}; run the scene again", context.folder.string(), of));
   };
   Archive archive(checkpoint.restore(rows));
+  for (const std::string& build : checkpoint.other_builds())
+    result.notes.push_back("goes on from another build (" + build + "), without the promise of the same bits");
   try {
     persist(archive, run, result, clock);
   } catch (const nlohmann::json::exception&) {

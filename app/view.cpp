@@ -1,6 +1,7 @@
 #include "view.hpp"
 
 #include "hdf5_file.hpp"
+#include "interrupt.hpp"
 #include "kept_file.hpp"
 #include "markup.hpp"
 #include "nesting.hpp"
@@ -25,7 +26,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 1> pages{"view.html"};
-constexpr std::array<const char*, 2> pictures{"plot.svg", "plot.png"};
 
 fs::path file_of_run(const std::string& run, const char* name) {
   const fs::path folder(run);
@@ -174,6 +174,8 @@ Json data_of_page(const Json& summary, const ViewOptions& options) {
 }  // namespace
 
 fs::path write_view(const ViewOptions& options) {
+  file_of_run(options.run, "summary.json");
+  const OutputFolder held = folder_of_run(options.run);
   const std::string data =
       from_summary(options.run, [&](const Json& summary) { return in_script(data_of_page(summary, options)); });
   const std::string page =
@@ -188,23 +190,21 @@ fs::path write_view(const ViewOptions& options) {
 
 std::vector<fs::path> draw_plots(const PlotOptions& options) {
   const fs::path file = file_of_run(options.run, "plot.gp");
-  const fs::path data = file_of_run(options.run, "trajectory.csv");
-  const fs::path excerpt = data.parent_path() / "plot.csv";
-  const std::string script = contents(file).value_or("");
+  const fs::path excerpt = file_of_run(options.run, "trajectory.csv").parent_path() / "plot.csv";
+  const OutputFolder held = folder_of_run(options.run);
   const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), !fs::exists(excerpt)); };
-  if (!options.own_script && script != from_summary(options.run, its_own))
+  if (!options.own_script && contents(file) != from_summary(options.run, its_own))
     throw RunError(
         fmt::format("{}: is not the script that summary.json gives: someone changed it, or another lagroid wrote it. "
                     "A script can do all that you can: --own-script runs it, where you trust it",
                     file.string()));
-  return write_whole(options.run, pictures, [&](const fs::path& staging) {
-    write_text(script, staging / "plot.gp");
-    fs::create_symlink(fs::absolute(drawn), staging / drawn.filename());
-    if (drawn != data) fs::create_symlink(fs::absolute(data), staging / data.filename());
-    if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); !reason.empty())
-      throw RunError(fmt::format("{}: {}", options.run, reason));
-    return std::vector<std::string>{"plot.svg", "plot.png"};
-  });
+  const InterruptGuard guard;
+  const Drawing drawing{"plot.gp", {"plot.svg", "plot.png"}};
+  if (const std::string reason = draw(options.run, drawing, false); !reason.empty())
+    throw RunError(fmt::format("{}: {}", options.run, reason));
+  std::vector<fs::path> written;
+  for (const std::string& picture : drawing.pictures) written.push_back(fs::path(options.run) / picture);
+  return written;
 }
 
 }  // namespace lagroid::app

@@ -372,8 +372,8 @@ TEST_F(Scenes, SystemsGoOnWithTheSameBits) {
        {"kepler_adaptive", "kepler_controlled", "kepler_order_8", "plate_ball_initial_value", "plate_ball_adaptive",
         "rigid_body_moser_veselov", "spherical_pendulum", "damped_pendulum", "driven_pendulum", "pythagorean",
         "kepler --set solver.method=ceres", "heavy_top --set time.method=splitting --set output.every=7"}) {
-    const fs::path whole = folder_ / "whole";
-    const fs::path parts = folder_ / "parts";
+    const fs::path whole = folder_ / ("whole" + std::to_string(entries()));
+    const fs::path parts = folder_ / ("parts" + std::to_string(entries()));
     const std::string rest = name.find(' ') == std::string::npos ? "" : name.substr(name.find(' '));
     const std::string scene = "run " + example(name.substr(0, name.find(' '))) + rest + " --set output.checkpoint=50 ";
     ASSERT_EQ(run(scene + "--set time.steps=200 --out " + whole.string()).code, 0) << name;
@@ -405,8 +405,8 @@ TEST_F(Scenes, WhatIsTakenUpWithNothingToDoStaysAsItIs) {
   for (const std::string scene : {"rolling_balls --set time.steps=100 --set output.every=7",
                                   "steering --set time.step=0.7 --set time.steps=100000 --set output.every=9",
                                   "spring_pendulum --set time.step=5", "pendulum_adaptive --set time.step=1.5"}) {
-    const fs::path out = folder_ / "out";
     const std::string name = scene.substr(0, scene.find(' '));
+    const fs::path out = folder_ / name;
     const int code = run("run " + example(name) + scene.substr(scene.find(' ')) + " --out " + out.string()).code;
     const std::string rows = contents(out / "trajectory.csv");
     auto before = nlohmann::json::parse(contents(out / "summary.json"));
@@ -444,16 +444,16 @@ TEST_F(Scenes, AFolderOfThatNameKeepsItsFiles) {
   std::ofstream(own) << "mine";
   const std::string out = " --out " + (folder_ / "out").string();
   EXPECT_EQ(run("run " + example("tops") + " --set time.steps=20" + out).code, 0);
-  EXPECT_EQ(run("run " + example("kepler_boundary") + out).code, 0);
+  EXPECT_EQ(run("run " + example("tops") + " --set time.steps=20" + out).code, 0);
   EXPECT_EQ(contents(own), "mine");
 }
 
 TEST_F(Scenes, TwoRunsDoNotShareAFolder) {
   const fs::path out = folder_ / "out";
-  const std::string scene = example("tops") + " --set output.every=100000 --out " + out.string();
-  const Outcome r = run("run " + scene + " --set time.steps=10",
-                        "(timeout -s INT 3 " + std::string(LAGROID_PROGRAM) + " run " + scene +
-                            " --set time.steps=100000000 >/dev/null 2>&1 &) ; sleep 1 ; ");
+  const std::string scene =
+      example("tops") + " --set output.every=100000 --set time.steps=100000000 --out " + out.string();
+  const Outcome r = run("run " + scene, "(timeout -s INT 3 " + std::string(LAGROID_PROGRAM) + " run " + scene +
+                                            " >/dev/null 2>&1 &) ; sleep 1 ; ");
   EXPECT_EQ(r.code, 2);
   EXPECT_NE(r.err.find("another run is at work there"), std::string::npos) << r.err;
   run("list", "sleep 3 ; ");
@@ -544,8 +544,9 @@ TEST_F(Scenes, WhatCannotBeTakenUpIsRefused) {
     std::ofstream(broken, std::ios::binary) << good;
   }
   EXPECT_EQ(run("resume " + out.string() + " --set time.steps=20").code, 0);
-  ASSERT_EQ(run("run " + example("kepler_boundary") + " --out " + out.string()).code, 0);
-  EXPECT_EQ(run("resume " + out.string()).code, 2) << "the checkpoint of an earlier run is gone";
+  const fs::path boundary = folder_ / "boundary";
+  ASSERT_EQ(run("run " + example("kepler_boundary") + " --out " + boundary.string()).code, 0);
+  EXPECT_EQ(run("resume " + boundary.string()).code, 2) << "a boundary value keeps no checkpoint";
 }
 
 }  // namespace

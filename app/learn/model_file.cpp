@@ -1,5 +1,6 @@
 #include "model_file.hpp"
 
+#include "../kept_file.hpp"
 #include "../nesting.hpp"
 
 #include <fmt/format.h>
@@ -7,8 +8,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 namespace lagroid::app {
@@ -65,10 +64,9 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& problem) {
     throw ModelError(fmt::format("{}: {}; give a model.json that lagroid learn wrote", file.string(), problem));
   };
-  std::error_code ignored;
-  std::ifstream in(file, std::ios::binary);
-  if (!std::filesystem::is_regular_file(file, ignored) || !in) fail("there is no such file");
-  const auto read = read_json(std::string(std::istreambuf_iterator<char>(in), {}));
+  const auto text = contents(file);
+  if (!text) fail("there is no such file, or it cannot be read");
+  const auto read = read_json(*text);
   if (!read || !read->is_object()) fail("no JSON object");
   const Json& json = *read;
   if (json.value("kind", Json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));

@@ -9,6 +9,7 @@
 #include "../scene_reader.hpp"
 #include "../shell.hpp"
 #include "../text.hpp"
+#include "../written.hpp"
 #include "accuracy.hpp"
 #include "experiment.hpp"
 #include "methods.hpp"
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -84,7 +86,7 @@ std::vector<double> read_steps(const std::string& text, double end) {
 std::unique_ptr<Reference> reference_from(const std::string& file, const Experiment& experiment) {
   const auto refuse = [&](const std::string& why) { return BadOption(fmt::format("--reference {}: {}", file, why)); };
   const auto text = contents(file);
-  if (!text) throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
+  if (!text) throw refuse("no such file, or it cannot be read; give METHOD@STEP or the study.json of an earlier study");
   const auto read = read_json(*text);
   if (!read) throw refuse("is no study.json");
   try {
@@ -183,6 +185,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
 int study(const StudyOptions& options) {
   Findings findings;
   std::string note;
+  std::optional<OutputFolder> folder;
   try {
     if (!std::isfinite(options.target)) throw BadOption("--target: give a number between 1e-15 and 1");
     const Section scene = read_scene(options.scene, options.overrides);
@@ -194,7 +197,8 @@ int study(const StudyOptions& options) {
     }
     findings.methods = chosen_methods("--methods", options.methods, experiment.methods);
     Steps steps{read_steps(options.steps, experiment.end), options.longest};
-    if (!options.out.empty()) require_writable(options.out, study_files);
+    if (!options.out.empty())
+      folder.emplace(options.out, OutputKind::study, OutputSource{{"scene", scene.whole()}}, study_files);
     Progress progress("study", 1000, !options.json);
     const InterruptGuard guard;
     experiment.interrupted = [&guard] { return guard.interrupted(); };
@@ -228,8 +232,6 @@ int study(const StudyOptions& options) {
     findings.interrupted = guard.interrupted();
   } catch (const BadOption& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
-  } catch (const OutputError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const std::domain_error& error) {
     return refuse(options.json, exit_failed, "no_reference", error.what());
   }
@@ -244,7 +246,7 @@ int study(const StudyOptions& options) {
     report += "  (no files written; --out DIR writes page, figures, CSV and JSON)\n";
   }
   print(report);
-  if (!findings.interrupted) return 0;
+  if (!findings.interrupted) return code_after_writing(0, options.scene);
   complain(fmt::format("{}: interrupted; what was measured so far is told", options.scene));
   return exit_interrupted;
 }

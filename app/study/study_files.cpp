@@ -389,24 +389,28 @@ std::string study_json(const Findings& findings) {
 
 std::vector<std::filesystem::path> write_study(const Findings& findings, const std::filesystem::path& folder,
                                                std::string& note) {
-  return write_whole(folder, study_files, [&](const std::filesystem::path& staging) {
-    std::vector<std::string> names{"study.csv", "study.json", "study.md", "study.gp", "study.html"};
+  const auto data = [&](const std::filesystem::path& staging) {
     write_text(csv(findings), staging / "study.csv");
     write_text(study_json(findings) + "\n", staging / "study.json");
     write_text(figure(findings), staging / "study.gp");
-    note = error_panels(findings).empty() ? "no run came near enough to the truth to be drawn"
-                                          : run_gnuplot(staging, "study.gp", {"study.svg", "study.png"});
+    return std::vector<std::string>{"study.csv", "study.json", "study.gp"};
+  };
+  const auto pages = [&](const std::filesystem::path& staging, bool drawn) {
     std::string picture;
-    if (note.empty()) {
-      names.insert(names.end(), {"study.svg", "study.png"});
-      std::ifstream in(staging / "study.svg");
+    if (drawn) {
+      std::ifstream in(folder / "study.svg");
       picture.assign(std::istreambuf_iterator<char>(in), {});
       if (const auto start = picture.find("<svg"); start != std::string::npos) picture.erase(0, start);
     }
-    write_text(markdown(findings, note.empty()), staging / "study.md");
+    write_text(markdown(findings, drawn), staging / "study.md");
     write_text(html(findings, picture), staging / "study.html");
-    return names;
-  });
+    return std::vector<std::string>{"study.md", "study.html"};
+  };
+  if (!error_panels(findings).empty())
+    return write_and_draw(folder, study_files, data, {"study.gp", {"study.svg", "study.png"}}, note, pages);
+  auto written = write_and_draw(folder, study_files, data, {}, note, pages);
+  note = "no run came near enough to the truth to be drawn";
+  return written;
 }
 
 }  // namespace lagroid::app

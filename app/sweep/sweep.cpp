@@ -2,6 +2,7 @@
 
 #include "../clock.hpp"
 #include "../interrupt.hpp"
+#include "../kept_file.hpp"
 #include "../markup.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
@@ -66,7 +67,7 @@ Plan prepare(const SweepOptions& options) {
   require_writable(options.out, sweep_files);
   const bool accurate = sweep.scene.has("accuracy");
   if (!accurate) try_out(sweep, options);
-  plan.folder = std::make_unique<SweepFolder>(options.out, sweep);
+  plan.folder = std::make_unique<SweepFolder>(options.out, sweep, options.other_build);
   if (plan.folder->finished()) return plan;
   if (plan.folder->begun()) {
     plan.folder->restore(sweep);
@@ -124,7 +125,7 @@ int conclude(Plan& plan, const SweepOptions& options, const std::string& took) {
   text += took;
   tell_written(files, note, text, json);
   print(options.json ? json_text(json) + "\n" : text);
-  return told_of_failed(options, result.failed(), result.members.count());
+  return code_after_writing(told_of_failed(options, result.failed(), result.members.count()), options.scene);
 }
 
 /// Rank 0.
@@ -139,9 +140,6 @@ int lead(Ranks& ranks, const SweepOptions& options) {
       missing = plan->folder->missing(plan->sweep);
       if (ranks.size() > 1) told = packed(plan->sweep);
     }
-  } catch (const OutputError& error) {
-    ranks.broadcast("");
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (...) {
     ranks.broadcast("");
     throw;
@@ -184,7 +182,7 @@ int follow(Ranks& ranks, const SweepOptions& options) {
   SweepScene sweep;
   std::function<bool(long)> work;
   try {
-    sweep = unpacked(text);
+    sweep = unpacked(text, options.other_build);
     work = worker(sweep, options.out);
   } catch (const std::exception& error) {
     // Rank 0 tells it.
@@ -204,6 +202,8 @@ void add_sweep_options(CLI::App& command, SweepOptions& options) {
       ->check(CLI::Range(1, 4096));
   command.add_option("--set", options.overrides, "override a key: --set design.count=100 (repeatable)")
       ->allow_extra_args(false);
+  command.add_flag("--other-build", options.other_build,
+                   "go on with parts that another build of lagroid ran; the same bits are not promised then");
   command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
 }
 
@@ -212,6 +212,8 @@ int sweep(const SweepOptions& options) {
     const auto ranks = join_ranks();
     const InterruptGuard guard;
     return ranks->rank() == 0 ? lead(*ranks, options) : follow(*ranks, options);
+  } catch (const FolderRefused&) {
+    throw;
   } catch (const OutputError& error) {
     return refuse(options.json, exit_failed, "output_failed", error.what());
   } catch (const RunError& error) {

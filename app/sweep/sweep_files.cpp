@@ -262,7 +262,8 @@ Json sweep_json(const SweepScene& sweep, const SweepResult& result) {
 
 std::vector<fs::path> write_sweep(const SweepScene& sweep, const SweepResult& result, const fs::path& folder,
                                   std::string& note) {
-  return write_whole(folder, sweep_files, [&](const fs::path& staging) {
+  Drawing drawing;
+  const auto make = [&](const fs::path& staging) {
     const Part& members = result.members;
     std::vector<std::string> names{"sweep.h5", "summary.json", "summary.txt"};
     write_data(sweep, result, staging / "sweep.h5");
@@ -276,10 +277,10 @@ std::vector<fs::path> write_sweep(const SweepScene& sweep, const SweepResult& re
     if (plot.quantity.empty() || members.count() > most_points_in_picture) return names;
     write_text(gnuplot_script(sweep, plot), staging / "plot.gp");
     names.emplace_back("plot.gp");
-    note = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"});
-    if (note.empty()) names.insert(names.end(), {"plot.svg", "plot.png"});
+    drawing = {"plot.gp", {"plot.svg", "plot.png"}};
     return names;
-  });
+  };
+  return write_and_draw(folder, sweep_files, make, drawing, note);
 }
 
 }  // namespace lagroid::app

@@ -31,7 +31,8 @@ using app::Endpoint, app::LedgerEntry, app::Minimum, app::RunResult, app::Series
 /// Runs the scene; with a folder, keeps checkpoints there and leaves the files of a run.
 std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std::optional<fs::path>& folder,
                                bool resume) {
-  if (folder) app::require_writable(*folder);
+  std::optional<app::OutputFolder> held;
+  if (folder) held.emplace(resume ? app::folder_of_run(*folder) : app::folder_for_run(*folder, scene));
   bool interrupted = false;
   auto result = computing(
       [&] {
@@ -45,10 +46,11 @@ std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std
   return result;
 }
 
-std::shared_ptr<RunResult> resume(const fs::path& folder, std::optional<long> steps) {
+std::shared_ptr<RunResult> resume(const fs::path& folder, std::optional<long> steps, bool other_build) {
   std::vector<std::string> overrides;
   if (steps) overrides.push_back(fmt::format("time.steps={}", *steps));
   const std::string text = app::Checkpoint::scene_of(folder);
+  if (!other_build) app::Checkpoint::require_this_build(folder);
   return run(app::parse_scene(text, folder.string() + "/checkpoint/scene.toml", overrides), true, folder, true);
 }
 
@@ -231,8 +233,10 @@ void bind_scenes(py::module_& module) {
       .def(
           "write",
           [](RunResult& self, const fs::path& folder) {
-            const py::gil_scoped_release unlocked;
-            return app::write_outputs(self, folder);
+            return computing([&] {
+              const app::OutputFolder held = app::folder_for_result(folder, self);
+              return app::write_outputs(self, folder);
+            });
           },
           py::arg("folder"), "Writes trajectory, summary and plots into the folder. Raises OutputError.")
       .def("__repr__", [](const RunResult& r) {
@@ -246,7 +250,7 @@ void bind_scenes(py::module_& module) {
         return run(scene.read(), record, folder, false);
       },
       py::arg("scene"), py::arg("record"), py::arg("folder"));
-  module.def("resume", resume, py::arg("folder"), py::arg("steps"));
+  module.def("resume", resume, py::arg("folder"), py::arg("steps"), py::arg("other_build"));
 }
 
 }  // namespace lagroid::python

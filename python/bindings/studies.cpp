@@ -36,7 +36,9 @@ std::string study(const Scene& scene, const std::string& methods, std::vector<do
       throw py::value_error("steps: must be positive, and no longer than the scene lasts");
   if (!(seconds > 0)) throw py::value_error("budget: must be positive");
   std::sort(steps.rbegin(), steps.rend());
-  if (folder) app::require_writable(*folder, app::study_files);
+  std::optional<app::OutputFolder> held;
+  if (folder)
+    held.emplace(*folder, app::OutputKind::study, app::OutputSource{{"scene", read.whole()}}, app::study_files);
   app::Findings findings;
   findings.scene = scene.name;
   findings.name = experiment.name;

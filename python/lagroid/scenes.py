@@ -89,10 +89,10 @@ def run(
     return _finished(_lagroid.run(made(scene, set), record, out))
 
 
-def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None) -> Run:
+def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None, other_build: bool = False) -> Run:
     """Goes on with a run that was broken off, or with a finished one to more steps. Raises OutputError where the folder
-    holds none."""
-    return _finished(_lagroid.resume(folder, steps))
+    holds none, or one by another build of lagroid, unless `other_build`: the same bits are not promised then."""
+    return _finished(_lagroid.resume(folder, steps, other_build))
 
 
 def _finished(result: Run) -> Run:

@@ -132,6 +132,10 @@ class Scenes(unittest.TestCase):
             longer = lagroid.resume(folder, steps=150)
             with self.assertRaises(lagroid.OutputError):
                 lagroid.resume(Path(folder) / "elsewhere")
+            with self.assertRaisesRegex(lagroid.OutputError, "it holds a run of another scene"):
+                lagroid.run(PENDULUM, set={"time.steps": 7}, out=folder)
+            with self.assertRaisesRegex(lagroid.OutputError, "it holds a run"):
+                longer.write(folder)
         np.testing.assert_array_equal(longer["q"], lagroid.run(PENDULUM, set={"time.steps": 150})["q"])
 
     def test_threads_run_at_once(self) -> None:
