@@ -30,6 +30,7 @@ Task<DrivenBody> read_driven_body(const Section& scene, const RunContext& contex
               {"energy", "t", "H", "t", {"H"}},
               {"energy less work, error", "t", "deviation", "t", {"drift energy less work"}}};
 
+  refuse_boundary<DrivenBody>(scene);
   const Section initial = scene.section("initial", "attitude and momentum");
   const State<SO3> state = read_turning(initial);
   const Matrix<double, 3, 3> attitude = read_rotation(initial);
