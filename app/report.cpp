@@ -121,7 +121,8 @@ std::string text_report(const RunResult& r) {
   if (!r.minima.empty()) {
     line("  stationary paths");
     for (const auto& m : r.minima)
-      line(fmt::format("    cost {:<18.12g} {}  initial momentum {}", m.cost, kind(m), numbers(m.momentum)));
+      line(fmt::format("    cost {:<18.12g} {}  found by {} of {} starts  initial momentum {}", m.cost, kind(m),
+                       m.starts, r.starts, numbers(m.momentum)));
   }
   for (const auto& note : r.notes) line("  note: " + note);
   line("  ledger");
@@ -156,9 +157,11 @@ std::string json_report(const RunResult& r) {
   out["initial"] = json(r.initial);
   out["final"] = json(r.final);
   out["multipliers"] = {{"first", r.first_multipliers}, {"last", r.last_multipliers}};
+  if (r.starts > 0) out["starts"] = r.starts;
   Json minima = Json::array();
   for (const auto& m : r.minima)
     minima.push_back({{"cost", m.cost},
+                      {"starts", m.starts},
                       {"momentum", m.momentum},
                       {"is_minimum", m.is_minimum},
                       {"isolated", m.isolated},

@@ -40,6 +40,7 @@ struct Endpoint {
 
 struct Minimum {
   double cost = 0;
+  int starts = 0;  ///< that led to it; none where a way down from a saddle did
   std::vector<double> momentum;
   bool is_minimum = false;
   bool isolated = true;
@@ -98,6 +99,7 @@ struct RunResult {
   Endpoint final;
   std::vector<double> first_multipliers;
   std::vector<double> last_multipliers;
+  int starts = 0;  ///< of a boundary value, all that were made
   std::vector<Minimum> minima;
   std::vector<std::string> notes;
   Ledger ledger;

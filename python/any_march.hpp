@@ -78,6 +78,7 @@ struct Rows {
 /// A stationary path between two ends.
 struct BoundaryPath {
   double cost = 0;  ///< sum of the Lagrangian over the arrows
+  int starts = 0;   ///< that led to it
   bool is_minimum = false;
   bool isolated = true;
   bool normal = true;

@@ -400,6 +400,7 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
   std::vector<BoundaryPath> out;
   for (const auto& solution : found.solutions) {
     BoundaryPath path{solution.cost,
+                      solution.starts,
                       solution.kind.is_minimum,
                       solution.kind.isolated,
                       solution.kind.normal,
@@ -491,8 +492,8 @@ template <DiscreteSystem Sys> void bind_boundary(py::class_<Sys>& made) {
       },
       py::arg("arrow"), py::arg("steps"), py::kw_only(), py::arg("method") = "newton", py::arg("starts") = 40,
       py::arg("seed") = 1,
-      "The stationary paths of `steps` arrows whose product is `arrow`, cheapest first. Raises SolveError where no\n"
-      "start leads to one.");
+      "The stationary paths of `steps` arrows whose product is `arrow`, the cheapest of those found first; `starts`\n"
+      "of each says how many led to it. Raises SolveError where no start leads to one.");
 }
 
 }  // namespace lagroid::python

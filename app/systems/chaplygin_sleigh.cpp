@@ -40,6 +40,7 @@ Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunConte
               {"energy error", "t", "|E - E_0|", "t", {"drift energy"}},
               {"momentum equation, error", "t", "deviation", "t", {"drift momentum equation of turning"}}};
 
+  refuse_boundary<ChaplyginSleigh>(scene);
   const Section initial = scene.section("initial", "position and velocity");
   const Matrix<double, 3, 3> pose = read_pose(initial);
   const auto velocity = initial.numbers("velocity", 2, "turning (rad/s), ahead (m/s)");

@@ -31,6 +31,7 @@ Task<DrivenBody> read_driven_body(const Section& scene, const RunContext& contex
   p.panels.push_back({"energy", "t", "H", "t", {"H"}});
   p.panels.push_back({"energy less work, error", "t", "deviation", "t", {"drift energy less work"}});
 
+  refuse_boundary<DrivenBody>(scene);
   const Section initial = scene.section("initial", "attitude and momentum");
   const State<SO3> state = read_turning(initial);
   const Matrix<double, 3, 3> attitude = read_rotation(initial);

@@ -58,6 +58,7 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
 
 Task<RollingBall> read_rolling_ball(const Section& scene, const RunContext& context) {
   const RollingBall system = read_system(scene);
+  refuse_boundary<RollingBall>(scene);
   const Section initial = scene.section("initial", "position, velocity, spin and attitude");
   const auto position = initial.numbers("position", 2, "x, y");
   const auto velocity = initial.numbers("velocity", 2, "dx/dt, dy/dt");

@@ -50,6 +50,7 @@ Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& cont
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
               {"energy error", "t", "|E - E_0|", "t", {"drift energy"}}};
 
+  refuse_boundary<RollingDisk>(scene);
   const Section initial = scene.section("initial", "position and rates");
   const Matrix<double, 3, 3> pose = read_pose(initial);
   const auto rates = initial.numbers("rates", 2, "turning, rolling (rad/s)");

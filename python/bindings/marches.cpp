@@ -314,6 +314,8 @@ void bind_marches(py::module_& module) {
 
   py::class_<BoundaryPath> path(module, "BoundaryPath", "A stationary path between two ends.");
   path.def_readonly("cost", &BoundaryPath::cost, "The sum of the Lagrangian over its arrows.")
+      .def_readonly("starts", &BoundaryPath::starts,
+                    "How many starts led to it; none where a way down from a saddle did.")
       .def_readonly("is_minimum", &BoundaryPath::is_minimum, "Whether its second variation is positive.")
       .def_readonly("isolated", &BoundaryPath::isolated, "False: one of a continuous family.")
       .def_readonly("normal", &BoundaryPath::normal, "False: abnormal, its multipliers are not unique.")

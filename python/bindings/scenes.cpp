@@ -138,6 +138,7 @@ void bind_scenes(py::module_& module) {
 
   py::class_<Minimum>(module, "Minimum", "A stationary path of a boundary value.")
       .def_readonly("cost", &Minimum::cost, "The sum of the Lagrangian over its arrows.")
+      .def_readonly("starts", &Minimum::starts, "How many starts led to it; none where a way down from a saddle did.")
       .def_property_readonly(
           "momentum", [](const py::object& self) { return view(self.cast<const Minimum&>().momentum, self); },
           "At its start.")
@@ -190,7 +191,8 @@ void bind_scenes(py::module_& module) {
           "last_multipliers",
           [](const py::object& self) { return view(self.cast<const RunResult&>().last_multipliers, self); },
           "Of the last arrow.")
-      .def_readonly("minima", &RunResult::minima, "Of a boundary value: all stationary paths, cheapest first.")
+      .def_readonly("starts", &RunResult::starts, "Of a boundary value: how many there were; else 0.")
+      .def_readonly("minima", &RunResult::minima, "Of a boundary value: the stationary paths found, cheapest first.")
       .def_readonly("notes", &RunResult::notes, "What else there is to say.")
       .def_property_readonly(
           "ledger", [](const RunResult& r) { return r.ledger.entries; }, "What was promised and found.")
