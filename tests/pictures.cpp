@@ -166,7 +166,7 @@ TEST_F(Pictures, ShowWhatTurns) {
       {"rolling_disk", {"heading", "roll", "w", "s"}},
       {"unicycle", {"heading", "w"}},
       {"chaplygin_sleigh", {"heading", "w"}},
-      {"pendulum_chain", {"w2x", "w2y", "w2z"}},
+      {"pendulum_chain", {"w3x", "w3y", "w3z"}},
       {"tops", of("free")},
       {"tumbling_book", of("book")},
   };
