@@ -79,14 +79,17 @@ Range range_of(const std::vector<Column>& columns, std::size_t nodes) {
   return out;
 }
 
-/// A number near the middle with no more digits than the range asks for.
+/// The number of the fewest digits that is no farther from the middle than the range is wide; 0 where none is needed.
 double offset_of(const Range& range) {
   constexpr double told_apart = 1e-3;
   const double size = std::max(std::abs(range.least), std::abs(range.greatest));
   if (!(range.width() > 0) || !(range.width() < told_apart * size)) return 0;
-  const double digits = std::floor(std::log10(size)) - std::ceil(std::log10(range.width()));
   const double middle = range.least + 0.5 * range.width();
-  return std::strtod(fmt::format("{:.{}e}", middle, std::clamp(int(digits), 0, 16)).c_str(), nullptr);
+  for (int digits = 0; digits < 16; ++digits)
+    if (const double rounded = std::strtod(fmt::format("{:.{}e}", middle, digits).c_str(), nullptr);
+        std::abs(rounded - middle) <= range.width())
+      return rounded;
+  return middle;
 }
 
 bool never_falls(const Column& x, std::size_t nodes) {
