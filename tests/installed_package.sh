@@ -36,13 +36,15 @@ fi
 # A build of the program alone is installed without the Python package; its component is refused.
 if grep -qs lagroid_python "$build/build.ninja"; then
   without=$work/without_python
-  sed "s|\"$build/python/lagroid/_lagroid|\"$work/missing/_lagroid|" "$build/python/cmake_install.cmake" >"$work/python.cmake"
+  sed "s|\"$build/python/lagroid/_lagroid|\"$work/missing/_lagroid|" "$build/python/cmake_install.cmake" \
+    >"$work/python.cmake"
   cmake -DCMAKE_INSTALL_PREFIX="$without" -P "$work/python.cmake" >"$work/python.log" 2>&1 ||
     { cat "$work/python.log" >&2; fail "without the Python module nothing is installed"; }
   grep -q "Without the Python package: its module is not built" "$work/python.log" || fail "it is missing without a word"
   [ -e "$without/include/lagroid/python/system.hpp" ] || fail "without the module, its headers are missing"
   [ -z "$(find "$without" -name '*.py')" ] || fail "a Python package without its module was installed"
-  if cmake -DCMAKE_INSTALL_PREFIX="$without" -DCMAKE_INSTALL_COMPONENT=python -P "$work/python.cmake" 2>"$work/python.log"; then
+  if cmake -DCMAKE_INSTALL_PREFIX="$without" -DCMAKE_INSTALL_COMPONENT=python -P "$work/python.cmake" \
+    2>"$work/python.log"; then
     fail "the component python should have been refused"
   fi
   grep -q "build the target lagroid_python first" "$work/python.log" || fail "refused without saying what to do"
