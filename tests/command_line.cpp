@@ -28,8 +28,8 @@ TEST_F(CommandLine, UnitsDoNotMatterOrTheirLimitIsSaid) {
   const Outcome plain = run(scene);
   EXPECT_EQ(energy(plain).at("verdict"), "bounded");
   for (const std::string mass : {"1e200", "1e300", "1e-160", "1e-280"})
-    for (const std::string more :
-         {"", "--set time.order=4 ", "--set time.method=splitting ", "--set time.mode=controlled "}) {
+    for (const std::string more : {"", "--set time.order=4 ", "--set time.method=splitting ",
+                                   "--set time.mode=controlled ", "--set time.mode=adaptive "}) {
       const Outcome r = run(scene + more + "--set parameters.mass=" + mass);
       ASSERT_EQ(r.code, 0) << r.err;
       EXPECT_EQ(energy(r).at("verdict"), "bounded") << more << mass;
