@@ -39,6 +39,8 @@ double worse(double a, double b) { return a <= b || std::isnan(b) ? b : a; }
 
 double norm_of(const std::vector<double>& values) {
   const Eigen::Map<const Eigen::VectorXd> v(values.data(), Eigen::Index(values.size()));
+  const double square = v.squaredNorm();
+  if (square > 1e-200 && square < 1e200) return std::sqrt(square);  // nearly always, and much faster
   return v.allFinite() ? v.stableNorm() : v.lpNorm<1>();
 }
 

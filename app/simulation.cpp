@@ -25,6 +25,11 @@ TimeGrid read_time(const Section& scene) {
   grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
               : !has_step && time.has("accuracy") ? first_tried
                                                   : time.number("step", positive);
+  const char* const key = has_duration ? "duration" : "step";
+  if (grid.step < std::numeric_limits<double>::min())
+    time.fail(key, fmt::format("makes steps of {:g} s, too short to keep their digits", grid.step));
+  if (!std::isfinite(grid.step * double(grid.steps)))
+    time.fail(key, fmt::format("{} steps of {:g} s have no finite end", grid.steps, grid.step));
   return grid;
 }
 

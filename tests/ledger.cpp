@@ -136,7 +136,7 @@ TEST(Ledger, VerdictsDoNotDependOnUnits) {
     };
     const LedgerEntry plain = in_units(1);
     ASSERT_EQ(plain.verdict, course.verdict);
-    for (int power = -1073; power <= 1023; ++power) {
+    for (int power = -1073; power <= 1023; power += power < -950 || power > 990 ? 1 : 20) {
       const LedgerEntry e = in_units(std::ldexp(1.0, power));
       EXPECT_TRUE(e.verdict == plain.verdict || !e.reason.empty()) << power << ": " << e.verdict;
       if (power < -980) {

@@ -14,6 +14,7 @@ RollingBall read_system(const Section& scene) {
   system.mass = parameters.number_or("mass", 1, positive);
   system.radius = parameters.number_or("radius", 1, positive);
   system.inertia_factor = parameters.number_or("inertia_factor", 0.4, positive);
+  require_digits(parameters, parameters.has("radius") ? "radius" : "mass", "the inertia k m r^2", system.inertia());
   system.plate_rate = parameters.number_or("plate_rate", 0);
   system.h = read_time(scene).step;
   return system;

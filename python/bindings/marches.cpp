@@ -228,7 +228,7 @@ class Integrator {
     for (std::size_t i = 0; i < watches_.size(); ++i) {
       if (march_->watched()[i].on_arrows && march_->index() == 0) continue;
       const double size = march_->watch(i, scratch_[i].data());
-      watches_[i].observe(scratch_[i].data(), size);
+      watches_[i].observe(scratch_[i].data(), march_->watched()[i].sized ? size : app::norm_of(scratch_[i]));
     }
   }
   void record(Marched& out) const {

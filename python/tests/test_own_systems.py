@@ -39,6 +39,22 @@ class OwnSystems(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "^a scene is .*, not Bead: .* a system of your own has integrator"):
                 ask(my_system.Bead())
 
+    def test_no_verdict_on_numbers_that_are_none(self) -> None:
+        for mass in (1e-320, 1e-300, 1e-170, 1e-160, 1e160, 1e200, 1e300):
+            integrator = my_system.Bead(h=0.05, mass=mass).integrator(momentum=[mass], object=[0.0])
+            march = integrator.march(2000)
+            (energy,) = integrator.ledger
+            if energy.verdict == "bounded":
+                self.assertTrue(march.converged, mass)
+                self.assertLess(energy.relative_drift, 0.5, mass)
+                self.assertLess(abs(march.object).max(), 3, mass)
+            else:
+                self.assertIn(energy.verdict, ("BROKEN", "unjudged"), mass)
+                self.assertNotEqual(energy.reason, "", mass)
+        bead = lagroid.require(my_system.Bead(h=0.05, mass=1e120).integrator(momentum=[1e120], object=[0.0]).march(2000))
+        same = lagroid.require(my_system.Bead(h=0.05).integrator(momentum=[1.0], object=[0.0]).march(2000))
+        np.testing.assert_allclose(bead.object, same.object, atol=1e-9)
+
     def test_is_the_prototype(self) -> None:
         class Bead(lagroid.DiscreteLagrangian):
             groupoid = lagroid.Pairs(1)
