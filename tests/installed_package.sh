@@ -61,6 +61,9 @@ if [ -n "$whole" ]; then
   cmake --build "$work/cmake" --target laws >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "no laws"; }
   "$work/cmake/laws" 2>/dev/null
 fi
+if grep -qs '^LAGROID_APP:BOOL=ON' "$build/CMakeCache.txt"; then
+  [ -x "$prefix/bin/lagroid" ] || fail "the program is not installed"
+fi
 if [ -x "$prefix/bin/lagroid" ]; then
   cmake --build "$work/cmake" --target systems >"$work/systems.log" || fail "lagroid::program does not run"
   grep -q rigid_body "$work/systems.log" || fail "lagroid::program lists no rigid_body"

@@ -1,4 +1,5 @@
 // Nonholonomic constraints: circles and closed forms, order, the momentum equation.
+#include "broken.hpp"
 #include "draws.hpp"
 #include "marching.hpp"
 #include "turning_plate.hpp"
@@ -132,7 +133,7 @@ TEST(BrokenReaction, ThatTurnsTheBallTheWrongWay) {
   const double drift = ball.moving_energy({end.state.object, reported_momentum(ball, end)}) - ball.moving_energy(start);
   EXPECT_GT(std::abs(drift), 1e-2);
   const auto report = laws::dalembert_laws(ball, [&] { return start; });
-  EXPECT_FALSE(report.law("the distribution is that of the constraints").holds()) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("the distribution is that of the constraints"))) << report;
 }
 
 TEST(RollingDisk, RatesAndEnergyAreConstantAndTheCircleIsOfOrderTwo) {
@@ -258,15 +259,15 @@ TEST(Nonholonomic, NoVirtualWork) {
 TEST(BrokenReaction, WithATorqueDoesVirtualWork) {
   const ReactionWithTorque sleigh;
   const auto report = laws::dalembert_laws(sleigh, [&] { return sleigh.sliding(1 + 0.5 * laws::draw_uniform(), 1.0); });
-  EXPECT_FALSE(report.law("no virtual work").holds()) << report;
-  EXPECT_FALSE(report.law("reported momenta keep the constraints").holds()) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("no virtual work"))) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("reported momenta keep the constraints"))) << report;
   EXPECT_TRUE(report.law("arrows keep the constraints").holds()) << report;
 }
 
 TEST(BrokenConstraint, ArrowsThatMoveSideways) {
   const Sidling sleigh;
   const auto report = laws::dalembert_laws(sleigh, [&] { return sleigh.sliding(1.0, laws::draw_uniform()); });
-  EXPECT_FALSE(report.law("arrows keep the constraints").holds()) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("arrows keep the constraints"))) << report;
   EXPECT_TRUE(report.law("no virtual work").holds()) << report;
 }
 

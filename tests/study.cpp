@@ -441,7 +441,9 @@ TEST_F(Study, ASceneWithATargetIsRunAndResumed) {
   EXPECT_NE(json.at("notes").at(0).get<std::string>().find("accuracy: for an error of 1e-06"), std::string::npos);
   EXPECT_NE(json.at("notes").at(1).get<std::string>().find("ten times better"), std::string::npos);
   const long steps = json.at("steps");
-  EXPECT_EQ(run("resume " + out.string() + " --set time.steps=" + std::to_string(steps + 7)).code, 0);
+  const Outcome on = run("resume " + out.string() + " --json --set time.steps=" + std::to_string(steps + 7));
+  ASSERT_EQ(on.code, 0) << on.err;
+  EXPECT_EQ(nlohmann::json::parse(on.out).at("steps"), steps + 7);
 }
 
 }  // namespace
