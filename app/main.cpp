@@ -76,9 +76,8 @@ int run(const RunOptions& options, bool resume) {
     report = "  (no files written; --out DIR writes trajectory, plot and summary)\n";
   }
   print(options.json ? json_report(result) + "\n" : text_report(result) + report);
-  if (!result.converged())
-    fmt::print(stderr, "lagroid: {}: {}\n", resume ? *options.out : options.scene, result.message);
-  if (!result.output_error.empty()) fmt::print(stderr, "lagroid: {}\n", result.output_error);
+  if (!result.converged()) complain(fmt::format("{}: {}", resume ? *options.out : options.scene, result.message));
+  if (!result.output_error.empty()) complain(result.output_error);
   if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
   if (!result.converged() || !result.output_error.empty()) return exit_failed;
   return code_after_writing(0, resume ? *options.out : options.scene);
@@ -129,10 +128,11 @@ int main(int argc, char** argv) {
   view_command->add_option("run", view.run, "the folder that lagroid run --out wrote")->required();
   view_command->add_option("--rows", view.most_rows, "of the trajectory, at most (default 4000)")
       ->check(CLI::Range(2L, 1'000'000L));
-  std::string run_to_plot;
+  PlotOptions plot;
   CLI::App* plot_command =
       app.add_subcommand("plot", "draw plot.svg and plot.png of a run anew, by its plot.gp, which may be edited");
-  plot_command->add_option("run", run_to_plot, "the folder that lagroid run --out wrote")->required();
+  plot_command->add_option("run", plot.run, "the folder that lagroid run --out wrote")->required();
+  plot_command->add_flag("--own-script", plot.own_script, "draw by a plot.gp that was edited: it can run anything");
   CLI::App* check_command =
       app.add_subcommand("check", "ask a scene's system every law that applies: lagroid check --help");
   check_command->set_help_flag();
@@ -175,7 +175,7 @@ int main(int argc, char** argv) {
     if (run_command->parsed()) return run(options, false);
     if (resume_command->parsed()) return run(options, true);
     if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });
-    if (plot_command->parsed()) return from_run([&] { return draw_plots(run_to_plot); });
+    if (plot_command->parsed()) return from_run([&] { return draw_plots(plot); });
     if (study_command->parsed()) {
       static_cast<SceneOptions&>(options) = study_options;
       return study(study_options);

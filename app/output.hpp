@@ -5,11 +5,17 @@
 #include "run_result.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace lagroid::app {
 
 class Section;
+
+/// The script that draws the panels, from the columns of trajectory.csv by their names or from what is to be seen of
+/// them, plot.csv: what a run's plot.gp holds. It follows from what the summary says, so that a script by someone else
+/// is told from it.
+std::string plot_script(const std::vector<Panel>& panels, bool by_name);
 
 /// The folder for a run of that scene, or that of a run which is there, to go on with it or to show it; for this
 /// process alone. Throws as OutputFolder does.

@@ -16,6 +16,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -200,6 +201,14 @@ template <DiscreteSystem Sys> class Recorder {
                    {}});
   }
 
+  /// Of the two unit quaternions of a rotation, the one nearer to the last row, so that curves have no jumps.
+  static std::array<double, 4> beside(std::array<double, 4> q, const std::vector<double>& rows) {
+    if (rows.size() < q.size()) return q;
+    if (std::inner_product(q.begin(), q.end(), rows.end() - 4, 0.0) < 0)
+      for (double& component : q) component = -component;
+    return q;
+  }
+
   void record(const TrajectoryPoint<Sys>& point, double residual) {
     trajectory_.time.push_back(point.time);
     std::size_t at = 0;
@@ -209,7 +218,7 @@ template <DiscreteSystem Sys> class Recorder {
     };
     const bool has_step = point.index > 0;
     if (!presentation_.position.empty()) put(presentation_.position_of(point));
-    if (presentation_.has_attitude) put(presentation_.attitude_of(point));
+    if (presentation_.has_attitude) put(beside(presentation_.attitude_of(point), trajectory_.series[at].values));
     put(point.state.momentum);
     if constexpr (Sys::constraints > 0) {
       if (has_step) {

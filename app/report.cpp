@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include "markup.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -56,9 +58,10 @@ Json json(const Shape& s) {
           {"offset", s.offset},     {"to", json(s.to)}, {"trail", s.trail}};
 }
 
+/// `panels_of` reads it.
 Json json(const Panel& p) {
-  return {{"title", p.title}, {"x_label", p.x_label}, {"y_label", p.y_label},
-          {"x", p.x},         {"curves", p.curves},   {"equal_axes", p.equal_axes}};
+  return {{"title", p.title},   {"x_label", p.x_label},       {"y_label", p.y_label},   {"x", p.x},
+          {"curves", p.curves}, {"equal_axes", p.equal_axes}, {"x_offset", p.x_offset}, {"y_offset", p.y_offset}};
 }
 
 template <class T> Json array_of(const std::vector<T>& items) {
@@ -168,11 +171,19 @@ std::string json_report(const RunResult& r) {
   out["ledger"] = ledger;
   out["notes"] = r.notes;
   out["picture"] = {{"shapes", array_of(r.shapes)}, {"panels", array_of(r.panels)}};
-  return out.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json_text(out);
+}
+
+std::vector<Panel> panels_of(const Json& summary) {
+  std::vector<Panel> out;
+  for (const Json& p : summary.at("picture").at("panels"))
+    out.push_back({p.at("title"), p.at("x_label"), p.at("y_label"), p.at("x"), p.at("curves"), p.at("equal_axes"),
+                   p.at("x_offset"), p.at("y_offset")});
+  return out;
 }
 
 std::string json_error(const std::string& status, const std::string& message) {
-  return Json{{"status", status}, {"message", message}}.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json_text({{"status", status}, {"message", message}});
 }
 
 }  // namespace lagroid::app

@@ -1,6 +1,7 @@
 #include "reproduce.hpp"
 
 #include "clock.hpp"
+#include "markup.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "reproductions/accelerated_report.hpp"
@@ -51,7 +52,7 @@ OutputFolder folder_for_report(const std::string& folder, const char* name, std:
 int conclude(nlohmann::ordered_json result, std::string text, const std::vector<std::filesystem::path>& files,
              const std::string& note, bool json) {
   tell_written(files, note, text, result);
-  print(json ? result.dump(2) + "\n" : text);
+  print(json ? json_text(result) + "\n" : text);
   return code_after_writing(0, "reproduce");
 }
 

@@ -74,6 +74,8 @@ struct Panel {
   std::string x;                    ///< column on the x axis
   std::vector<std::string> curves;  ///< columns
   bool equal_axes = false;
+  double x_offset = 0;  ///< shown is the column less this
+  double y_offset = 0;
 };
 
 /// The status of a run that Ctrl-C or SIGTERM ended.

@@ -1,10 +1,13 @@
 #include "view.hpp"
 
 #include "hdf5_file.hpp"
-
 #include "interrupt.hpp"
 #include "kept_file.hpp"
+#include "markup.hpp"
+#include "nesting.hpp"
 #include "output.hpp"
+#include "report.hpp"
+#include "text.hpp"
 #include "viewer/assets.hpp"
 
 #include <H5Cpp.h>
@@ -34,15 +37,27 @@ fs::path file_of_run(const std::string& run, const char* name) {
   return folder / name;
 }
 
-Json read_summary(const fs::path& file) {
-  Json summary = Json::parse(contents(file).value_or(""), nullptr, /*allow_exceptions=*/false);
-  if (summary.is_discarded())
-    throw RunError(fmt::format("{}: is no JSON any more; run the scene again", file.string()));
-  for (const char* key : {"system", "status", "steps", "ledger", "notes", "picture"})
-    if (!summary.contains(key))
-      throw RunError(
-          fmt::format("{}: has no \"{}\"; it is of an older lagroid, run the scene again", file.string(), key));
-  return summary;
+/// Refuses texts that no scene may hold: a summary whose names have them is by someone else.
+void require_plain(const Json& json, const fs::path& file) {
+  if (json.is_string() && visible(json.get_ref<const std::string&>()) != json.get_ref<const std::string&>())
+    throw RunError(fmt::format("{}: has control characters in \"{}\"; run the scene again", file.string(),
+                               json.get_ref<const std::string&>()));
+  if (json.is_structured())
+    for (const Json& inner : json) require_plain(inner, file);
+}
+
+/// What `use` makes of the summary of a run.
+template <class Use> auto from_summary(const std::string& run, const Use& use) {
+  const fs::path file = file_of_run(run, "summary.json");
+  const auto summary = read_json(contents(file).value_or(""));
+  if (!summary) throw RunError(fmt::format("{}: is no JSON any more; run the scene again", file.string()));
+  require_plain(*summary, file);
+  try {
+    return use(*summary);
+  } catch (const Json::exception& error) {
+    throw RunError(fmt::format("{}: is no summary of a run, or that of another lagroid ({}); run the scene again",
+                               file.string(), error.what()));
+  }
 }
 
 std::string text_attribute(const H5::H5Object& object, const char* name) {
@@ -119,20 +134,6 @@ Columns read_columns(const fs::path& file, long most_rows) {
   }
 }
 
-/// The JSON as it may stand inside a script element.
-std::string embedded(const Json& json) {
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 std::string filled(std::string_view page, const std::vector<std::pair<std::string_view, std::string_view>>& places) {
   std::string out;
   for (std::size_t from = 0;;) {
@@ -150,28 +151,33 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
   }
 }
 
-}  // namespace
-
-fs::path write_view(const ViewOptions& options) {
-  const fs::path file = file_of_run(options.run, "summary.json");
-  const OutputFolder held = folder_of_run(options.run);
-  const Json summary = read_summary(file);
+/// What the page shows.
+Json data_of_page(const Json& summary, const ViewOptions& options) {
+  Json run;
+  for (const char* key : {"system", "status", "steps", "notes"}) run[key] = summary.at(key);
+  run["message"] = summary.value("message", "");
+  run["ledger"] = summary.at("ledger").at("entries");
+  run["shapes"] = summary.at("picture").at("shapes");
+  run["panels"] = summary.at("picture").at("panels");
   Columns columns = read_columns(file_of_run(options.run, "trajectory.h5"), options.most_rows);
   if (columns.recorded == 0)
     throw RunError(fmt::format("{}: nothing was computed ({}); there is nothing to show", options.run,
-                               summary.value("message", summary["status"].get<std::string>())));
-  Json run;
-  for (const char* key : {"system", "status", "steps", "notes"}) run[key] = summary[key];
-  run["message"] = summary.value("message", "");
-  run["ledger"] = summary["ledger"]["entries"];
-  run["shapes"] = summary["picture"]["shapes"];
-  run["panels"] = summary["picture"]["panels"];
+                               summary.value("message", summary.at("status").get<std::string>())));
   if (columns.time.size() < columns.recorded)
     run["notes"].push_back(
         fmt::format("{} of {} recorded rows are on this page", columns.time.size(), columns.recorded));
   run["time"] = std::move(columns.time);
   run["columns"] = std::move(columns.by_label);
-  const std::string data = embedded(run);
+  return run;
+}
+
+}  // namespace
+
+fs::path write_view(const ViewOptions& options) {
+  file_of_run(options.run, "summary.json");
+  const OutputFolder held = folder_of_run(options.run);
+  const std::string data =
+      from_summary(options.run, [&](const Json& summary) { return in_script(data_of_page(summary, options)); });
   const std::string page =
       filled(viewer::page(), {{"@STYLE@", viewer::style()}, {"@RUN@", data}, {"@PROGRAM@", viewer::program()}});
   return write_whole(options.run, pages,
@@ -182,15 +188,23 @@ fs::path write_view(const ViewOptions& options) {
       .front();
 }
 
-std::vector<fs::path> draw_plots(const std::string& run) {
-  for (const char* needed : {"plot.gp", "trajectory.csv"}) file_of_run(run, needed);
-  const OutputFolder held = folder_of_run(run);
+std::vector<fs::path> draw_plots(const PlotOptions& options) {
+  for (const char* needed : {"plot.gp", "trajectory.csv"}) file_of_run(options.run, needed);
+  const OutputFolder held = folder_of_run(options.run);
+  const fs::path script = fs::path(options.run) / "plot.gp";
+  const bool by_name = !fs::exists(fs::path(options.run) / "plot.csv");
+  const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), by_name); };
+  if (!options.own_script && contents(script) != from_summary(options.run, its_own))
+    throw RunError(
+        fmt::format("{}: is not the script that summary.json gives: someone changed it, or another lagroid wrote it. "
+                    "A script can do all that you can: --own-script runs it, where you trust it",
+                    script.string()));
   const InterruptGuard guard;
   const Drawing drawing{"plot.gp", {"plot.svg", "plot.png"}};
-  if (const std::string reason = draw(run, drawing, false); !reason.empty())
-    throw RunError(fmt::format("{}: {}", run, reason));
+  if (const std::string reason = draw(options.run, drawing, false); !reason.empty())
+    throw RunError(fmt::format("{}: {}", options.run, reason));
   std::vector<fs::path> written;
-  for (const std::string& picture : drawing.pictures) written.push_back(fs::path(run) / picture);
+  for (const std::string& picture : drawing.pictures) written.push_back(fs::path(options.run) / picture);
   return written;
 }
 

@@ -2,6 +2,7 @@
 /// A march of any system, as the Python module sees it: numbers with shapes.
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/step_solver.hpp>
@@ -52,6 +53,8 @@ class AnyMarch {
   /// The largest |phi| on the arrows of the last step, and the size of its terms there.
   virtual double residual() const = 0;
   virtual double residual_size() const = 0;
+  /// Visits all that the next step goes on from; see March::persist.
+  virtual void persist(Tape& tape) = 0;
 };
 
 /// Rows of numbers of one field, for nodes or arrows. There are as many where a row has no numbers.

@@ -162,6 +162,11 @@ inline void set_attribute(const py::object& self, const py::str& name, const py:
                                    std::string(py::str(py::type::of(value).attr("__name__")))));
 }
 
+/// A copy, which its giver does not change any more.
+inline py::object kept(const std::optional<Array>& array) {
+  return array ? py::object(array->attr("copy")()) : py::object(py::none());
+}
+
 template <class V> void put(const V& v, double* out) { std::copy(v.data(), v.data() + v.size(), out); }
 
 /// One of the words, by its place.
@@ -305,6 +310,10 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
     }
     return 0;
   }
+  void persist(Tape& tape) override {
+    march_->persist(tape);
+    if (tape.reading()) see();
+  }
 
  private:
   /// The node as it is reported: with its momentum tangent to the object constraints.
@@ -435,22 +444,32 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
       "groupoid", [](const Sys&) { return Sys::GroupoidType::name(); }, "The groupoid of its arrows.");
   made.def(
       "integrator",
-      [](const Sys& self, const Array& momentum, const std::optional<Array>& object,
-         const std::optional<Array>& configuration, const std::string& mode, const std::string& method,
-         std::optional<int> order, const std::optional<std::string>& composition, const std::string& without_root,
-         int max_iterations, double tolerance, bool ledger) {
+      [](const Sys& self, const py::args& by_place, const std::optional<Array>& momentum,
+         const std::optional<Array>& object, const std::optional<Array>& configuration, const std::string& mode,
+         const std::string& method, std::optional<int> order, const std::optional<std::string>& composition,
+         const std::string& without_root, int max_iterations, double tolerance, bool ledger) {
+        if (!by_place.empty() || !momentum)
+          throw py::type_error(
+              "integrator: give momentum, and object or configuration, by name, as in momentum=[0, 1]");
         const MarchOptions options =
             detail::march_options(mode, method, order, composition, without_root, max_iterations, tolerance);
+        const auto march = begin_march(self, *momentum, object, configuration, options);
+        // A pickle begins it anew, with the same system and arguments.
+        using namespace py::literals;
+        const py::dict arguments("momentum"_a = detail::kept(momentum), "object"_a = detail::kept(object),
+                                 "configuration"_a = detail::kept(configuration), "mode"_a = mode, "method"_a = method,
+                                 "order"_a = order, "composition"_a = composition, "without_root"_a = without_root,
+                                 "max_iterations"_a = max_iterations, "tolerance"_a = tolerance, "ledger"_a = ledger);
         const py::object integrator = detail::class_of_lagroid("Integrator");
-        return integrator(py::cast(begin_march(self, momentum, object, configuration, options)), ledger);
+        return integrator(py::cast(march), ledger, py::make_tuple(py::cast(Sys(self)), arguments));
       },
-      py::arg("momentum"), py::arg("object") = py::none(), py::kw_only(), py::arg("configuration") = py::none(),
+      py::arg("momentum") = py::none(), py::arg("object") = py::none(), py::arg("configuration") = py::none(),
       py::arg("mode") = "fixed", py::arg("method") = "variational", py::arg("order") = py::none(),
       py::arg("composition") = py::none(), py::arg("without_root") = "stop", py::arg("max_iterations") = 0,
       py::arg("tolerance") = 0.0, py::arg("ledger") = true,
-      "An Integrator at the state (object, momentum). `configuration` is the arrow that ends at the object, in the\n"
-      "coordinates of arrows; it is carried along (an attitude). The keywords are those of [time] and [solver] of\n"
-      "scenes (docs/scenes.md). Raises ValueError for what the system does not have.");
+      "An Integrator at the state (object, momentum), all by name. `configuration` is the arrow that ends at the\n"
+      "object, in the coordinates of arrows; it is carried along (an attitude). The keywords are those of [time] and\n"
+      "[solver] of scenes (docs/scenes.md). Raises ValueError for what the system does not have.");
   return made;
 }
 

@@ -3,6 +3,7 @@
 
 #include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/ceres_manifold.hpp>
+#include <lagroid/solvers/ceres_solve.hpp>
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -76,11 +77,11 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
     kkt.evaluate(system, out.path);
     kkt.choose_scale();
     out.residual = kkt.residual_norm();
-    if (!std::isfinite(out.residual) || !std::isfinite(summary.final_cost)) {
-      out.status = SolveStatus::not_finite;
-    } else if (out.residual <= options_.tolerance) {
+    if (out.residual <= options_.tolerance) {
       out.status = SolveStatus::converged;
       this->describe(system, kkt, out);
+    } else if (!std::isfinite(out.residual) || could_not_begin(summary)) {
+      out.status = SolveStatus::not_finite;
     } else if (summary.termination_type == ceres::NO_CONVERGENCE && still_falling(summary)) {
       out.status = SolveStatus::not_converged;
       out.message = fmt::format(
@@ -144,22 +145,21 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
     ceres_problem.SetParameterBlockConstant(reach.front().data());
     ceres_problem.SetParameterBlockConstant(reach.back().data());
 
-    ceres::Solver::Options ceres_options;
+    auto ceres_options = detail::to_round_off(options_.max_iterations);
     ceres_options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    ceres_options.max_num_iterations = options_.max_iterations;
-    ceres_options.function_tolerance = 0;
-    ceres_options.gradient_tolerance = 0;
     ceres_options.parameter_tolerance = 1e-16;
-    ceres_options.logging_type = ceres::SILENT;
-    ceres_options.num_threads = 1;
-    ceres::Solver::Summary summary;
-    ceres::Solve(ceres_options, &ceres_problem, &summary);
+    const auto summary = detail::solve_by_ceres(ceres_options, ceres_problem);
     for (std::size_t k = 0; k < count; ++k) {
       path[k].arrow = groupoid.project(
           groupoid.compose(groupoid.inverse(manifold.arrow(reach[k].data())), manifold.arrow(reach[k + 1].data())));
       path[k].multipliers = multipliers[k].template head<m>();
     }
     return summary;
+  }
+
+  /// Whether not even the first point had derivatives.
+  static bool could_not_begin(const ceres::Solver::Summary& summary) {
+    return summary.termination_type == ceres::FAILURE && summary.iterations.empty();
   }
 
   /// Whether the last ten iterations lowered the cost by more than a stall does, or there were no ten.

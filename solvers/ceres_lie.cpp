@@ -1,7 +1,9 @@
 #include <lagroid/solvers/ceres_lie.hpp>
+#include <lagroid/solvers/ceres_solve.hpp>
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace lagroid::detail {
@@ -39,17 +41,11 @@ CeresRoot minimise_by_ceres(const ChartFunction& function, Eigen::VectorXd start
   ceres::Problem problem(ownership);
   ChartCost cost(function, int(start.size()));
   problem.AddResidualBlock(&cost, nullptr, start.data());
-  ceres::Solver::Options options;
+  auto options = to_round_off(max_iterations);
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = max_iterations;
-  options.function_tolerance = 0;
-  options.gradient_tolerance = 0;
   options.parameter_tolerance = 1e-16;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return {std::move(start), int(summary.iterations.size()) - 1};
+  const int points = int(solve_by_ceres(options, problem).iterations.size());
+  return {std::move(start), std::max(0, points - 1)};
 }
 
 }  // namespace lagroid::detail

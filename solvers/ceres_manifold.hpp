@@ -9,6 +9,8 @@
 namespace lagroid {
 
 /// Points: arrows with a fixed source, in arrow coordinates. Plus(g, w) = g tau(w), Minus(h, g) = tau^{-1}(g^{-1} h).
+/// As in NewtonStep, iterates are not projected: that would move the source, and arrows that nothing moves. Plus(g, 0)
+/// is g to the bit, because by the distance from g to Plus(g, -gradient) Ceres judges whether it has arrived.
 template <Groupoid G> class AlphaFibreManifold final : public ceres::Manifold {
  public:
   static constexpr int ambient = G::arrow_coordinate_count();
@@ -24,11 +26,10 @@ template <Groupoid G> class AlphaFibreManifold final : public ceres::Manifold {
   int TangentSize() const override { return tangent; }
 
   bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
-    const auto g = arrow(x);
-    const auto moved = groupoid_.project(
-        groupoid_.multiply(g, groupoid_.tau(groupoid_.target(g), Tangent(Eigen::Map<const Tangent>(delta)))));
+    const Tangent w = Eigen::Map<const Tangent>(delta);
     Eigen::Map<Ambient> out(x_plus_delta);
-    out = groupoid_.coordinates_of_arrow(moved);
+    out = Eigen::Map<const Ambient>(x);
+    if (!w.isZero(0)) out = groupoid_.coordinates_of_arrow(groupoid_.extend(arrow(x), w));
     return out.allFinite();
   }
   bool PlusJacobian(const double* x, double* jacobian) const override {

@@ -2,6 +2,7 @@
 /// One implicit step through Ceres.
 
 #include <lagroid/solvers/ceres_manifold.hpp>
+#include <lagroid/solvers/ceres_solve.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
 #include <ceres/ceres.h>
@@ -19,16 +20,11 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
   using E = StepEquations<Sys>;
 
   explicit CeresStep(int max_iterations = 100, double tolerance = 0, const G& groupoid = {})
-      : manifold_(groupoid), tolerance_(tolerance) {
+      : manifold_(groupoid), tolerance_(tolerance), options_(detail::to_round_off(max_iterations)) {
     options_.linear_solver_type = ceres::DENSE_QR;
-    options_.max_num_iterations = max_iterations;
-    options_.function_tolerance = 0;
-    options_.gradient_tolerance = 0;
     options_.parameter_tolerance = 1e-17;
     options_.initial_trust_region_radius = 1e16;
     options_.max_trust_region_radius = 1e32;
-    options_.logging_type = ceres::SILENT;
-    options_.num_threads = 1;
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -53,10 +49,7 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
     cost_.state = &state;
     arrow_ = system.groupoid.coordinates_of_arrow(step.arrow);
     multipliers_.template head<Sys::constraints>() = step.multipliers;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options_, problem_.get(), &summary);
-
-    report.iterations = int(summary.iterations.size());
+    report.iterations = int(detail::solve_by_ceres(options_, *problem_).iterations.size());
     step.arrow = manifold_.arrow(arrow_.data());
     step.multipliers = multipliers_.template head<Sys::constraints>();
     const auto derivative = two_sided(system, step.arrow, step.multipliers);
@@ -99,9 +92,10 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
       const auto d = two_sided(*system, g, lambda);
       Eigen::Map<typename E::Residual> r(residuals);
       r = E::residual(d, state->momentum).cwiseProduct(scaling.row);
-      if (!r.allFinite()) return false;
-      if (jacobians == nullptr) return true;
       const typename E::Jacobian j = scaling.row.asDiagonal() * E::jacobian(d);
+      // A point without derivatives is no point to go on from: Ceres, told so in time, tries a shorter step.
+      if (!r.allFinite() || !j.allFinite()) return false;
+      if (jacobians == nullptr) return true;
       if (jacobians[0] != nullptr) {
         using J = Eigen::Matrix<double, E::size, AlphaFibreManifold<G>::ambient, Eigen::RowMajor>;
         Eigen::Map<J> out(jacobians[0]);

@@ -83,4 +83,30 @@ TEST(BrokenGroupoid, NotAssociative) {
   EXPECT_FALSE(report.law("right-invariant fields are invariant (2)").holds()) << report;
 }
 
+/// A law of a number in [0, 1] that holds, and cannot be asked of the share above `most`.
+laws::Law asked_below(double most) {
+  return laws::check_law("numbers below a bound", 1, [most] {
+    const double x = 0.5 * (1 + laws::draw_uniform());
+    if (x > most) throw laws::NotSampled(x > 0.98 ? "far above" : "above");
+    return x;
+  });
+}
+
+TEST(Laws, OfWhichMoreThanAThirdOfTheSamplesArePassedOverAreUnjudged) {
+  const auto most = asked_below(0.9);
+  EXPECT_TRUE(most.holds()) << most.skipped << " of " << most.skipped + most.samples;
+  EXPECT_GT(most.skipped, 0);
+  const auto eighth = asked_below(0.125);
+  EXPECT_FALSE(eighth.holds()) << eighth.skipped << " of " << eighth.skipped + eighth.samples;
+  EXPECT_EQ(eighth.verdict(), "unjudged");
+  EXPECT_EQ(eighth.skipped_because, "above") << "the commonest reason";
+}
+TEST(Laws, ThatAreBrokenAreNotUnjudgedHoweverManySamplesArePassedOver) {
+  const auto law = laws::check_law("a number is none", 0.5, [] {
+    if (laws::draw_uniform() > -0.8) throw laws::NotSampled("too large");
+    return 1.0;
+  });
+  EXPECT_EQ(law.verdict(), "BROKEN");
+}
+
 }  // namespace

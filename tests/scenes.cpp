@@ -325,7 +325,7 @@ TEST_F(Scenes, DamagedCheckpointsAreRefused) {
       const fs::path kept = out / "checkpoint" / file;
       const std::string good = contents(kept);
       std::string bad = good;
-      bad[random() % bad.size()] ^= char(1 << random() % 7);
+      bad[random() % bad.size()] ^= char(1 << random() % 8);
       std::ofstream(kept, std::ios::binary) << bad;
       EXPECT_EQ(run("resume " + out.string()).code, 2) << file;
       std::ofstream(kept, std::ios::binary) << good;

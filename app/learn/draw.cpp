@@ -1,5 +1,6 @@
 #include "draw.hpp"
 
+#include "../markup.hpp"
 #include "../output_folder.hpp"
 #include "numbers.hpp"
 #include "trajectory_files.hpp"
@@ -80,7 +81,7 @@ int draw(const DrawOptions& options) {
                                     {"points", options.points},
                                     {"files", {options.out}}};
   print(options.json
-            ? json.dump(2) + "\n"
+            ? json_text(json) + "\n"
             : fmt::format("  wrote {}: {} trajectories of {} points\n", options.out, options.count, options.points));
   return 0;
 }

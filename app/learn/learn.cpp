@@ -1,6 +1,7 @@
 #include "learn.hpp"
 
 #include "../interrupt.hpp"
+#include "../markup.hpp"
 #include "../progress.hpp"
 #include "../written.hpp"
 #include "learn_files.hpp"
@@ -138,9 +139,9 @@ int serve(const LearnOptions& options) {
   } else {
     text += "  (no files written; --out DIR writes model, history, plot and summary)\n";
   }
-  print(options.json ? json.dump(2) + "\n" : text);
+  print(options.json ? json_text(json) + "\n" : text);
   if (code != 0)
-    fmt::print(stderr, "lagroid: {}: {}\n", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message);
+    complain(fmt::format("{}: {}", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message));
   return code_after_writing(code, options.data);
 }
 

@@ -2,6 +2,8 @@
 
 #include "../clock.hpp"
 #include "../kept_file.hpp"
+#include "../markup.hpp"
+#include "../text.hpp"
 
 #include <fmt/format.h>
 
@@ -195,8 +197,8 @@ std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder,
       write_text(errors_csv(lesson), staging / "errors.csv");
       names.emplace_back("errors.csv");
     }
-    write_text(lesson_json(lesson).dump(2) + "\n", staging / "summary.json");
-    write_text(lesson_text(lesson), staging / "summary.txt");
+    write_text(json_text(lesson_json(lesson)) + "\n", staging / "summary.json");
+    write_text(visible(lesson_text(lesson), "\n"), staging / "summary.txt");
     write_text(gnuplot_script(lesson), staging / "plot.gp");
     return names;
   };

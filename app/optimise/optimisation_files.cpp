@@ -2,6 +2,8 @@
 
 #include "../clock.hpp"
 #include "../hdf5_file.hpp"
+#include "../markup.hpp"
+#include "../text.hpp"
 
 #include <fmt/format.h>
 
@@ -118,8 +120,8 @@ std::vector<fs::path> write_optimisation(const OptimisationScene& scene, const R
   const auto make = [&](const fs::path& staging) {
     write_text(history_csv(scene, result), staging / "history.csv");
     write_point(scene, result, staging / "result.h5");
-    write_text(optimisation_json(scene, result).dump(2) + "\n", staging / "summary.json");
-    write_text(optimisation_text(scene, result), staging / "summary.txt");
+    write_text(json_text(optimisation_json(scene, result)) + "\n", staging / "summary.json");
+    write_text(visible(optimisation_text(scene, result), "\n"), staging / "summary.txt");
     write_text(gnuplot_script(scene), staging / "plot.gp");
     return std::vector<std::string>{"result.h5", "history.csv", "summary.json", "summary.txt", "plot.gp"};
   };

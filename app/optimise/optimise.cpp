@@ -1,6 +1,7 @@
 #include "optimise.hpp"
 
 #include "../interrupt.hpp"
+#include "../markup.hpp"
 #include "../progress.hpp"
 #include "../written.hpp"
 #include "methods.hpp"
@@ -83,9 +84,9 @@ int run(const OptimiseOptions& options) {
   } else {
     text += "  (no files written; --out DIR writes history, point, plot and summary)\n";
   }
-  print(options.json ? json.dump(2) + "\n" : text);
+  print(options.json ? json_text(json) + "\n" : text);
   if (result.converged()) return code_after_writing(0, options.scene);
-  fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
+  complain(fmt::format("{}: {}", options.scene, result.message));
   return result.outcome == optimisation::Outcome::interrupted ? exit_interrupted : exit_failed;
 }
 

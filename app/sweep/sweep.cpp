@@ -3,6 +3,7 @@
 #include "../clock.hpp"
 #include "../interrupt.hpp"
 #include "../kept_file.hpp"
+#include "../markup.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../run_result.hpp"
@@ -100,7 +101,7 @@ std::function<bool(long)> worker(const SweepScene& sweep, const std::string& out
 /// The exit code where so many members failed.
 int told_of_failed(const SweepOptions& options, long failed, long members) {
   if (failed == 0) return 0;
-  fmt::print(stderr, "lagroid: {}: {} of {} members failed; their rows say why\n", options.scene, failed, members);
+  complain(fmt::format("{}: {} of {} members failed; their rows say why", options.scene, failed, members));
   return exit_failed;
 }
 
@@ -123,7 +124,7 @@ int conclude(Plan& plan, const SweepOptions& options, const std::string& took) {
   plan.folder->finish();
   text += took;
   tell_written(files, note, text, json);
-  print(options.json ? json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n" : text);
+  print(options.json ? json_text(json) + "\n" : text);
   return code_after_writing(told_of_failed(options, result.failed(), result.members.count()), options.scene);
 }
 

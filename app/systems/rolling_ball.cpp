@@ -47,7 +47,8 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
                    {"multipliers", "impulses of the reaction at the object the arrow starts from"}};
   p.shapes = {ball_on_plate(system.radius), turning_plate(system.plate_rate)};
   p.panels = {{"path of the point of contact", "x", "y", "x", {"y"}, true},
-              {"angular velocity", "t", "w", "t", {"w1", "w2", "w3"}},
+              attitude_panel(),
+              {"angular velocity in space", "t", "w", "t", {"w1", "w2", "w3"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
               {energy + ", error", "t", "deviation", "t", {"drift " + energy}}};
   return p;

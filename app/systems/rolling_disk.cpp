@@ -45,6 +45,7 @@ Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& cont
   disk.trail = true;
   p.shapes = {disk, turning_plate(0)};
   p.panels = {{"path of the point of contact", "x", "y", "x", {"y"}, true},
+              {"heading and roll", "t", "angle, rad", "t", {"heading", "roll"}},
               {"rates", "t", "w, s", "t", {"w", "s"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
               {"energy error", "t", "|E - E_0|", "t", {"drift energy"}}};

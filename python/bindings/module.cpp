@@ -9,10 +9,9 @@
 #include <output_folder.hpp>
 #include <scene_reader.hpp>
 #include <study/methods.hpp>
+#include <text.hpp>
 
 #include <lagroid/core/version.hpp>
-
-#include <glog/logging.h>
 
 #include <pybind11/stl/filesystem.h>
 
@@ -26,7 +25,7 @@ namespace {
 
 void raise(const char* name, const char* what) {
   const py::object type = py::module_::import("lagroid.errors").attr(name);
-  PyErr_SetString(type.ptr(), what);
+  PyErr_SetString(type.ptr(), app::visible(what).c_str());
 }
 
 /// The program's mistakes as the classes of lagroid/errors.py, with their one-line messages.
@@ -52,8 +51,6 @@ void translate(std::exception_ptr thrown) {
 
 PYBIND11_MODULE(_lagroid, module) {
   module.doc() = "Discrete mechanics on Lie groupoids: what is compiled. Use the package lagroid.";
-  // What Ceres would say on standard error stands in its summary too, and is judged anew from the residual.
-  FLAGS_minloglevel = google::GLOG_FATAL;
   py::register_exception_translator(translate);
   module.attr("__version__") = LAGROID_VERSION;
   module.def("listing", app::json_listing, "The systems a scene can name, as JSON.");

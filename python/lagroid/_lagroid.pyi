@@ -204,7 +204,9 @@ class March:
 
 @final
 class Integrator:
-    def __init__(self, march: AnyMarch, ledger: bool = True) -> None: ...
+    def __init__(
+        self, march: AnyMarch, ledger: bool = True, origin: Optional[tuple[Any, dict[str, Any]]] = None
+    ) -> None: ...
     def advance(self) -> None: ...
     def march(self, steps: int, every: int = 1) -> March: ...
     @property
@@ -259,9 +261,9 @@ class _System:
     def groupoid(self) -> str: ...
     def integrator(
         self,
+        *,
         momentum: ArrayLike,
         object: Optional[ArrayLike] = None,
-        *,
         configuration: Optional[ArrayLike] = None,
         mode: str = "fixed",
         method: str = "variational",
@@ -329,6 +331,7 @@ def study(
     target: float,
     longest: float,
     reference_time: float,
+    budget: float,
     repetitions: int,
     folder: Optional[_Path],
 ) -> str: ...

@@ -63,6 +63,12 @@ def made(scene: SceneLike, given: Optional[Mapping[str, Any]]) -> _lagroid.Scene
         return _lagroid.Scene.text(scene_text(scene), "<dict>", overrides)
     if isinstance(scene, str) and not is_file(scene):
         return _lagroid.Scene.text(scene, "<text>", overrides)
+    if not isinstance(scene, (str, os.PathLike)):
+        raise TypeError(
+            f"a scene is the name of a file, a TOML text or a dict, not {type(scene).__name__}: runs, studies and "
+            "checks are of lagroid.systems(); a system of your own has integrator(...), and its laws are asked in C++ "
+            "(docs/tutorial.md)"
+        )
     return _lagroid.Scene.file(scene, overrides)
 
 

@@ -1,5 +1,6 @@
 #include <lagroid/solvers/learning/train.hpp>
 
+#include <lagroid/solvers/ceres_solve.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/compressed.hpp>
 
@@ -206,8 +207,7 @@ class Trainer final : public ceres::IterationCallback {
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ownership);
     problem.AddResidualBlock(&cost, nullptr, at_.data());
-    ceres::Solver::Summary summary;
-    ceres::Solve(settings(iterations), &problem, &summary);
+    const auto summary = lagroid::detail::solve_by_ceres(settings(iterations), problem);
     if (summary.termination_type == ceres::CONVERGENCE) out_.end = Outcome::converged;
     const bool good = summary.IsSolutionUsable() && !cost.failed();
     if (!good) out_.end = Outcome::not_finite;
@@ -266,19 +266,13 @@ class Trainer final : public ceres::IterationCallback {
     return squared_error(model_, theta, schedule_, held_out_, [this] { return halted(); }) / held_out_.total_weight();
   }
   ceres::Solver::Options settings(int iterations) {
-    ceres::Solver::Options out;
+    auto out = lagroid::detail::to_round_off(iterations);
     out.linear_solver_type = ceres::DENSE_QR;
     out.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-    out.max_num_iterations = iterations;
     // Bold first steps saturate a network, or blow masses up.
     out.initial_trust_region_radius = first_radius;
     out.max_trust_region_radius = 1 / options_.damping_floor;
-    out.function_tolerance = 0;
-    out.gradient_tolerance = 0;
     out.parameter_tolerance = 1e-16;
-    out.logging_type = ceres::SILENT;
-    out.num_threads = 1;
-    out.update_state_every_iteration = true;
     out.callbacks.push_back(this);
     return out;
   }
