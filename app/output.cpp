@@ -147,8 +147,6 @@ std::string plot_script(const std::vector<Panel>& panels, bool by_name) {
   return out;
 }
 
-}  // namespace
-
 OutputFolder folder_for_run(const fs::path& folder, const Section& scene) {
   return {folder, OutputKind::run, OutputSource{{"scene", scene.whole()}}, output_files};
 }
