@@ -206,7 +206,10 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
   const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
   if (!path.empty()) {
     record_path(system, presentation, path, problem.start, every, observer, result);
-    for (auto& entry : result.ledger.entries) entry.verdict = "unjudged";
+    for (auto& entry : result.ledger.entries) {
+      entry.verdict = "unjudged";
+      entry.reason = "the path is no solution";
+    }
   }
 }
 

@@ -5,9 +5,9 @@
 #include "scene_reader.hpp"
 #include "text.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options,
     const auto* system = dynamic_cast<const std::system_error*>(&error);
     if (system != nullptr && system->code() == std::errc::resource_unavailable_try_again)
       return refuse(options.json, exit_failed, "no_threads",
-                    "no thread could be started (raise ulimit -u, or lower ulimit -s; --threads asks for fewer)");
+                    "no thread could be started; raise ulimit -u, or lower ulimit -s");
     return refuse(options.json, exit_internal_error, "internal_error",
                   fmt::format("internal error: {}; please report it with the scene", error.what()));
   }

@@ -167,11 +167,14 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
   };
   Drawing drawing;
   const auto make = [&](const fs::path& staging) {
-    std::vector<std::string> names{"trajectory.h5", "trajectory.csv"};
+    const bool moves = result.trajectory.time.size() > 1;
+    if (moves)
+      for (Panel& panel : result.panels) take_offsets(panel, result.trajectory);
+    std::vector<std::string> names = summarise(staging);
+    names.insert(names.end(), {"trajectory.h5", "trajectory.csv"});
     write_trajectory(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
-    if (result.trajectory.time.size() > 1) {
-      for (Panel& panel : result.panels) take_offsets(panel, result.trajectory);
+    if (moves) {
       const bool by_name = is_for_gnuplot(result.trajectory);
       if (!by_name) {
         write_text(table_of_visible(result.panels, result.trajectory), staging / "plot.csv");
@@ -181,8 +184,6 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
       names.emplace_back("plot.gp");
       drawing = {"plot.gp", {"plot.svg", "plot.png"}};
     }
-    const auto told = summarise(staging);
-    names.insert(names.end(), told.begin(), told.end());
     return names;
   };
   std::string note;

@@ -29,6 +29,7 @@ Json json(const LedgerEntry& e) {
   out["name"] = e.name;
   out["promise"] = e.promise;
   out["verdict"] = e.verdict;
+  if (!e.reason.empty()) out["reason"] = e.reason;
   out["drift"] = e.drift;
   out["relative_drift"] = e.relative_drift;
   if (e.bound > 0) out["bound"] = e.bound;
@@ -130,8 +131,9 @@ std::string text_report(const RunResult& r) {
       continue;
     }
     const std::string bound = e.bound > 0 ? fmt::format(" (bound {:.1e})", e.bound) : "";
-    line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}", e.name, e.promise, e.drift,
-                     e.relative_drift, bound, e.verdict));
+    const std::string reason = e.reason.empty() ? "" : fmt::format(" ({})", e.reason);
+    line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}{}", e.name, e.promise, e.drift,
+                     e.relative_drift, bound, e.verdict, reason));
   }
   line(fmt::format("    {:<28} mean {:.2f}, most {}: {}", "iterations", r.ledger.mean_iterations,
                    r.ledger.most_iterations, solver_verdict(r)));

@@ -57,6 +57,7 @@ struct LedgerEntry {
   double relative_drift = 0;  ///< the same over the size of the initial value (over one if that vanishes)
   double bound = 0;           ///< on `drift`; zero where none is promised
   std::string verdict;        ///< "kept", "BROKEN", "bounded", "growing", "unjudged", "watched", "counted"
+  std::string reason;         ///< of a verdict that drift and bound do not explain; else empty
   bool broken() const { return verdict == "BROKEN"; }
 };
 

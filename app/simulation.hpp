@@ -138,7 +138,7 @@ template <DiscreteSystem Sys> class SystemRun final : public SteppedRun {
       march_->for_each_inner_stage(
           [&](const Step<Sys>& inner, double from, double size) { recorder_.watch_constraint(inner, from, size); });
     recorder_.observe(reported(system_, march_->point()));
-    return true;
+    return std::isfinite(march_->point().time);
   }
   Trajectory& trajectory() override { return recorder_.trajectory(); }
   void persist(Archive& archive) override {

@@ -122,7 +122,7 @@ void drive(SteppedRun& run, const Pace& pace, const RunContext& context, RunResu
         whole = false;
         result.status = std::string(to_string(SolveStatus::not_finite));
         result.message =
-            fmt::format("step {}: energy or constraints are no finite numbers any more; use a smaller step", k);
+            fmt::format("step {}: time, energy or constraints are no finite numbers any more; use a smaller step", k);
         break;
       }
       progress.update(k);

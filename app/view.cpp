@@ -189,16 +189,15 @@ fs::path write_view(const ViewOptions& options) {
 }
 
 std::vector<fs::path> draw_plots(const PlotOptions& options) {
-  for (const char* needed : {"plot.gp", "trajectory.csv"}) file_of_run(options.run, needed);
+  const fs::path file = file_of_run(options.run, "plot.gp");
+  const fs::path excerpt = file_of_run(options.run, "trajectory.csv").parent_path() / "plot.csv";
   const OutputFolder held = folder_of_run(options.run);
-  const fs::path script = fs::path(options.run) / "plot.gp";
-  const bool by_name = !fs::exists(fs::path(options.run) / "plot.csv");
-  const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), by_name); };
-  if (!options.own_script && contents(script) != from_summary(options.run, its_own))
+  const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), !fs::exists(excerpt)); };
+  if (!options.own_script && contents(file) != from_summary(options.run, its_own))
     throw RunError(
         fmt::format("{}: is not the script that summary.json gives: someone changed it, or another lagroid wrote it. "
                     "A script can do all that you can: --own-script runs it, where you trust it",
-                    script.string()));
+                    file.string()));
   const InterruptGuard guard;
   const Drawing drawing{"plot.gp", {"plot.svg", "plot.png"}};
   if (const std::string reason = draw(options.run, drawing, false); !reason.empty())

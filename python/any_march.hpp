@@ -31,6 +31,7 @@ struct Watched {
   std::vector<std::string> components;
   Promise promise = Promise::bounded;
   bool on_arrows = false;
+  bool sized = false;  ///< whether the size of its terms is known; else its own norm stands for it
 };
 
 /// Virtual, because users bring systems in modules of their own: a call for every step and every number asked for.

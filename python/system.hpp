@@ -250,7 +250,7 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
                 {"step_size", {1}, true}} {
     if constexpr (requires { system.quantities(); })
       for (auto& q : system.quantities()) {
-        watched_.push_back({q.name, q.components, q.promise, q.needs_step});
+        watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size != nullptr});
         quantities_.push_back(std::move(q));
       }
     see();
@@ -287,7 +287,7 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
   double watch(std::size_t i, double* out) const override {
     quantities_[i].evaluate(at_, out);
     if (quantities_[i].size) return quantities_[i].size(at_);
-    return std::sqrt(std::inner_product(out, out + watched_[i].components.size(), out, 0.0));
+    return Eigen::Map<const Eigen::VectorXd>(out, Eigen::Index(watched_[i].components.size())).stableNorm();
   }
   bool constrained() const override { return Sys::constraints > 0; }
   double residual() const override {

@@ -22,7 +22,8 @@ TEST(EffectLaws, HoldOfEveryEffect) {
         laws::effect_laws(InverseSquare{{}, -1.5, 0.5}, "inverse square"),
         laws::effect_laws(Spring{{}, 2, 0.1}, "spring"), laws::effect_laws(Spring{{}, 2, 0}, "spring of no length"),
         laws::effect_laws(TorsionSpring{{}, {}, {0, 0.6, 0.8}, {1, 0, 0}, 2}, "torsion spring"),
-        laws::effect_laws(Centrifugal{{}, 1.5, {0.3, -0.4, 1.2}}, "centrifugal")})
+        laws::effect_laws(Centrifugal{{}, 1.5, {0.3, -0.4, 1.2}}, "centrifugal"),
+        laws::effect_laws(PlanarTorsionSpring{{}, 2, 0.3}, "torsion spring of planar bodies")})
     EXPECT_TRUE(report.holds()) << report;
 }
 

@@ -207,6 +207,14 @@ TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
            "0, 0]]\nrate = 7\n" +
            grid,
        "joint.0.rate: the second body turns against the first at"},
+      {brick + card + "[[effect]]\nkind = \"motor\"\nbetween = [\"brick\", \"card\"]\ntorque = [0, 0, 1]\n" + grid,
+       "two bodies that turn in space, or on two in the plane"},
+      {bob + "[[effect]]\nkind = \"torque\"\nbody = \"bob\"\ntorque = [0, 0, 1]\n" + grid, "does not turn"},
+      {card + "[[effect]]\nkind = \"torque\"\nbody = \"card\"\ntorque = [0, 1, 0]\n" + grid, "first parts of 0"},
+      {"[[body]]\nkind = \"point\"\nname = \"a\"\nmass = 1\nposition = [1e-200, 0, 0]\n[[joint]]\nkind = \"rod\"\n"
+       "between = [\"ground\", \"a\"]\n" +
+           grid,
+       "too small"},
       {"[[body]]\nkind = \"point\"\nname = \"a b\"\nmass = 1\nposition = [0, 0, 0]\n" + grid, "use letters"},
   };
   for (const auto& [text, words] : cases) {
@@ -217,6 +225,102 @@ TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
     EXPECT_NE(r.err.find(words), std::string::npos) << text << "says: " << r.err;
     EXPECT_NE(r.err.find("scene.toml"), std::string::npos) << r.err;
     EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+}
+
+TEST_F(Scenes, PlanarBodiesAreTurnedAsBodiesInSpaceAre) {
+  const auto momentum = [&](const std::string& body, const std::string& joint, const std::string& spring) {
+    const fs::path file =
+        write(body + "[[joint]]\n" + joint + "points = [[0, 0, 0], [-1, 0, 0]]\nbetween = [\"ground\", \"it\"]\n" +
+              "[[effect]]\nkind = \"torque\"\nbody = \"it\"\ntorque = [0, 0, 0.3]\n"
+              "[[effect]]\nkind = \"motor\"\nbetween = [\"ground\", \"it\"]\ntorque = [0, 0, 0.5]\nrate = 2\n"
+              "[[effect]]\nkind = \"torsion_spring\"\nbetween = [\"ground\", \"it\"]\nstiffness = 0.7\n" +
+              spring + grid);
+    const Outcome r = run("run " + file.string() + " --json --set time.steps=300");
+    EXPECT_EQ(r.code, 0) << r.err;
+    return nlohmann::json::parse(r.out).at("final").at("momentum").get<std::vector<double>>();
+  };
+  const auto flat = momentum("[[body]]\nkind = \"planar\"\nname = \"it\"\nmass = 1\ninertia = 1\nposition = [1, 0]\n",
+                             "kind = \"ball\"\n", "");
+  const auto solid =
+      momentum("[[body]]\nkind = \"rigid\"\nname = \"it\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [1, 0, 0]\n",
+               "kind = \"hinge\"\naxis = [0, 0, 1]\n", "direction = [1, 0, 0]\n");
+  ASSERT_EQ(flat.size(), 3U);
+  ASSERT_EQ(solid.size(), 6U);
+  EXPECT_NEAR(flat[0], solid[0], 1e-10);
+  EXPECT_NEAR(flat[1], solid[1], 1e-10);
+  EXPECT_NEAR(flat[2], solid[5], 1e-10);
+  EXPECT_GT(std::abs(flat[2]), 1e-2);
+}
+
+/// A torque that does not change has a potential: with its work the energy is kept, and it is where nothing else acts.
+TEST_F(Scenes, AConstantTorqueOnAPlanarBodyKeepsTheEnergy) {
+  const fs::path file = write(card + "[[effect]]\nkind = \"torque\"\nbody = \"card\"\ntorque = [0, 0, 0.3]\n" + grid);
+  const Outcome r = run("run " + file.string() + " --json --set time.steps=2000 --set body.0.angular_velocity=1");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_NEAR(json.at("final").at("momentum").at(2).get<double>(), 1 + 0.3 * 20, 1e-10);
+  EXPECT_EQ(json.at("ledger").at("entries").at(0).at("verdict"), "bounded") << r.out;
+}
+
+/// A snakeboard goes ahead, although all that acts on it acts between its parts.
+TEST_F(Scenes, ASnakeboardGoesAhead) {
+  const Outcome r = run("run " + example("snakeboard") + " --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_GT(json.at("final").at("position").at(0).get<double>(), 5);
+  EXPECT_LT(std::abs(json.at("final").at("position").at(1).get<double>()), 0.5);
+  EXPECT_EQ(json.at("ledger").at("entries").at(0).at("verdict"), "kept") << "its wheels do not slide";
+  const Outcome still =
+      run("run " + example("snakeboard") + " --json --set body.1.angular_velocity=0 --set effect.0.torque=[0,0,0]");
+  ASSERT_EQ(still.code, 0) << still.err;
+  EXPECT_LT(std::abs(nlohmann::json::parse(still.out).at("final").at("position").at(0).get<double>()), 0.1);
+}
+
+TEST_F(Scenes, ATautLineIsRefusedAtTheFirstStepHoweverSmall) {
+  const fs::path file = write(
+      "[[body]]\nkind = \"point\"\nname = \"a\"\nmass = 1\nposition = [1, 0, 0]\n"
+      "[[body]]\nkind = \"point\"\nname = \"b\"\nmass = 1\nposition = [2, 0, 0]\n"
+      "[[joint]]\nkind = \"rod\"\nbetween = [\"ground\", \"a\"]\n"
+      "[[joint]]\nkind = \"rod\"\nbetween = [\"a\", \"b\"]\n"
+      "[[joint]]\nkind = \"rod\"\nbetween = [\"b\", \"ground\"]\npoints = [[0, 0, 0], [3, 0, 0]]\n"
+      "[[effect]]\nkind = \"gravity\"\n" +
+      grid);
+  for (const char* step : {"0.1", "1e-3", "1e-5"}) {
+    const Outcome r = run("run " + file.string() + " --json --set time.step=" + step);
+    EXPECT_EQ(r.code, 3);
+    EXPECT_EQ(nlohmann::json::parse(r.out).at("steps"), 0) << step;
+    EXPECT_NE(r.out.find("singular position"), std::string::npos) << r.out;
+  }
+}
+
+/// In any unit of mass a bob swings alike and is judged alike; at the ends of the range that is said.
+TEST_F(Scenes, MassesInEveryUnitMoveAndAreJudgedAlike) {
+  const fs::path file = write(
+      "[[body]]\nkind = \"point\"\nname = \"bob\"\nmass = 1\nposition = [0.6, 0, -0.8]\n"
+      "[[joint]]\nkind = \"rod\"\nbetween = [\"ground\", \"bob\"]\n[[effect]]\nkind = \"gravity\"\n"
+      "[time]\nstep = 0.01\nsteps = 2000\n");
+  const auto place = [](const Outcome& r) {
+    return nlohmann::json::parse(r.out).at("final").at("position").at(0).get<double>();
+  };
+  const auto energy = [](const Outcome& r) { return nlohmann::json::parse(r.out).at("ledger").at("entries").at(1); };
+  const Outcome plain = run("run " + file.string() + " --json");
+  EXPECT_EQ(energy(plain).at("verdict"), "bounded");
+  for (const char* mass : {"1e300", "1e200", "1e-160", "1e-280", "1e-300", "1e-310"}) {
+    const Outcome r = run("run " + file.string() + " --json --set body.0.mass=" + mass);
+    if (r.code == 3) {
+      EXPECT_EQ(std::string(mass), "1e-310");
+      EXPECT_NE(r.out.find("too small to keep its digits"), std::string::npos) << r.out;
+      continue;
+    }
+    EXPECT_NEAR(place(r), place(plain), 1e-9) << mass;
+    if (std::string(mass) == "1e-300") {
+      EXPECT_EQ(energy(r).at("verdict"), "unjudged");
+      EXPECT_TRUE(energy(r).contains("reason"));
+    } else {
+      EXPECT_EQ(energy(r).at("verdict"), "bounded") << mass;
+      EXPECT_NEAR(energy(r).at("relative_drift").get<double>(), energy(plain).at("relative_drift").get<double>(), 1e-9);
+    }
   }
 }
 

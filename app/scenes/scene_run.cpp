@@ -49,14 +49,14 @@ struct Node {
   /// Sizes of the terms of the momenta.
   double momentum_size() const {
     double size = 0;
-    for (const Vec& p : momenta.linear) size += p.norm();
+    for (const Vec& p : momenta.linear) size += p.stableNorm();
     return size;
   }
   double angular_size() const {
     double size = 0;
     for (std::size_t f = 0; f < momenta.linear.size(); ++f)
-      size += momenta.linear[f].norm() * motion.configuration().x[f].norm();
-    for (const Vec& spin : momenta.spin) size += spin.norm();
+      size += momenta.linear[f].stableNorm() * motion.configuration().x[f].stableNorm();
+    for (const Vec& spin : momenta.spin) size += spin.stableNorm();
     return size;
   }
 
@@ -369,7 +369,7 @@ class Run final : public SteppedRun {
             .fail("mode",
                   "\"controlled\" needs a time scale: a scene with central_gravity or mutual_gravity, and "
                   "without joints and other effects");
-      scene.fail("", fmt::format("{}: a position, a length or a point is too large", error.what()));
+      scene.fail("", fmt::format("{}: a position, a length or a point is too large or too small", error.what()));
     }
     if (bodies_.projects) motion_->make_tangent();
     if (const double defect = motion_->velocity_defect(); !(defect < 1e-8))

@@ -31,6 +31,7 @@ LedgerEntry unpromised(LedgerEntry entry) {
   entry.promise = "none";
   entry.bound = 0;
   entry.verdict = "watched";
+  entry.reason.clear();
   return entry;
 }
 

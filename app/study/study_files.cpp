@@ -406,10 +406,11 @@ std::vector<std::filesystem::path> write_study(const Findings& findings, const s
     write_text(html(findings, picture), staging / "study.html");
     return std::vector<std::string>{"study.md", "study.html"};
   };
-  const bool drawable = !error_panels(findings).empty();
-  if (!drawable) note = "no run came near enough to the truth to be drawn";
-  const Drawing drawing = drawable ? Drawing{"study.gp", {"study.svg", "study.png"}} : Drawing{};
-  return write_and_draw(folder, study_files, data, drawing, note, pages);
+  if (!error_panels(findings).empty())
+    return write_and_draw(folder, study_files, data, {"study.gp", {"study.svg", "study.png"}}, note, pages);
+  auto written = write_and_draw(folder, study_files, data, {}, note, pages);
+  note = "no run came near enough to the truth to be drawn";
+  return written;
 }
 
 }  // namespace lagroid::app

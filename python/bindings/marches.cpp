@@ -69,7 +69,9 @@ class Integrator {
       : march_(std::move(march)), ledger_(ledger), origin_(std::move(origin)) {
     for (const Watched& each : march_->watched()) {
       scratch_.emplace_back(each.components.size());
-      if (ledger) watches_.emplace_back(each.name, each.promise, each.components.size());
+      if (ledger)
+        watches_.emplace_back(each.name, each.promise, each.components.size(),
+                              each.sized ? app::SizeOf::terms : app::SizeOf::value);
     }
     observe();
   }
@@ -220,7 +222,7 @@ class Integrator {
       // The size of the constraints' terms changes slowly: looked at where a residual stands out.
       if (!(residual <= largest_residual_) || residual_size_ == 0) {
         residual_size_ = std::max(residual_size_, march_->residual_size());
-        largest_residual_ = residual;
+        largest_residual_ = app::worse(largest_residual_, residual);
       }
     }
     for (std::size_t i = 0; i < watches_.size(); ++i) {

@@ -130,6 +130,7 @@ void bind_scenes(py::module_& module) {
       .def_readonly("relative_drift", &LedgerEntry::relative_drift, "The same over the size of the initial value.")
       .def_readonly("bound", &LedgerEntry::bound, "On the drift; zero where none is promised.")
       .def_readonly("verdict", &LedgerEntry::verdict, "kept, BROKEN, bounded, growing, unjudged, watched or counted")
+      .def_readonly("reason", &LedgerEntry::reason, "Of a verdict that drift and bound do not explain; else empty.")
       .def_property_readonly("broken", &LedgerEntry::broken, "Whether the promise was.")
       .def("__repr__", [](const LedgerEntry& e) {
         return fmt::format("<{}: {}, drift {:.2e}: {}>", e.name, e.promise, e.drift, e.verdict);
