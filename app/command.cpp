@@ -50,14 +50,14 @@ int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options,
     return refuse(asks_for_json(argc, argv), exit_bad_input, "invalid_command_line", error.what());
   } catch (const OutputError&) {
     throw;
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::resource_unavailable_try_again) throw;
-    return refuse(options.json, exit_failed, "no_threads",
-                  "no thread could be started (raise ulimit -u, or lower ulimit -s; --threads asks for fewer)");
   } catch (const std::bad_alloc&) {
     return refuse(options.json, exit_failed, "out_of_memory",
                   fmt::format("{}: out of memory; lower time.steps, or raise output.every", options.scene));
   } catch (const std::exception& error) {
+    const auto* system = dynamic_cast<const std::system_error*>(&error);
+    if (system != nullptr && system->code() == std::errc::resource_unavailable_try_again)
+      return refuse(options.json, exit_failed, "no_threads",
+                    "no thread could be started; raise ulimit -u, or lower ulimit -s");
     return refuse(options.json, exit_internal_error, "internal_error",
                   fmt::format("internal error: {}; please report it with the scene", error.what()));
   }

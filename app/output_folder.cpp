@@ -127,6 +127,14 @@ int wait_for_gnuplot(pid_t child, bool before) {
   throw FolderRefused(line);
 }
 
+/// Whether a picture (SVG or PNG) is there to its end: gnuplot does not notice a full disk.
+bool is_whole(const fs::path& picture) {
+  const std::string bytes = contents(picture).value_or("");
+  const std::string_view end = picture.extension() == ".svg" ? "</svg>" : "IEND";
+  constexpr std::size_t last = 16;  // what may follow it
+  return bytes.find(end, bytes.size() - std::min(bytes.size(), last)) != std::string::npos;
+}
+
 /// Runs gnuplot on a script in `folder`. Empty, or the reason why one of the pictures is missing.
 std::string run_gnuplot(const fs::path& folder, const Drawing& drawing, bool before) {
   const auto stopped = [&] {
@@ -148,7 +156,7 @@ std::string run_gnuplot(const fs::path& folder, const Drawing& drawing, bool bef
   const int status = wait_for_gnuplot(child, before);
   if (const std::string why = stopped(); !why.empty()) return why;
   const bool drawn = std::all_of(drawing.pictures.begin(), drawing.pictures.end(),
-                                 [&](const std::string& picture) { return fs::exists(folder / picture); });
+                                 [&](const std::string& picture) { return is_whole(folder / picture); });
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && drawn) return "";
   std::ifstream log(folder / "plot.log");
   std::string first;
@@ -158,7 +166,7 @@ std::string run_gnuplot(const fs::path& folder, const Drawing& drawing, bool bef
     return fmt::format(
         "gnuplot is not installed (Debian package gnuplot-nox); run `gnuplot {}` in the output folder later",
         drawing.script);
-  return fmt::format("gnuplot failed{}", first.empty() ? "" : ": " + first);
+  return fmt::format("gnuplot failed{}", first.empty() ? "; is the disk full?" : ": " + first);
 }
 
 }  // namespace
