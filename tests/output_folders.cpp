@@ -65,9 +65,9 @@ class Folders : public CommandLine {
     const std::string learn = " --model polynomial:1 --starts 1 --iterations 3";
     const std::string steps = " --methods splitting --repetitions 1 --steps 0.1,0.05";
     const std::string short_scene = example("kepler") + " --set time.steps=20";
-    return {{"a run", "run " + short_scene, "run " + short_scene + " --set time.step=0.01"},
+    return {{"a run", "run " + short_scene, "run " + short_scene + " --set time.step=0.02"},
             {"a sweep", "sweep " + sweep, "sweep " + sweep + " --set vary.0.count=41"},
-            {"a study", "study " + short_scene + steps, "study " + short_scene + " --set time.step=0.01" + steps},
+            {"a study", "study " + short_scene + steps, "study " + short_scene + " --set time.step=0.02" + steps},
             {"an optimisation", "optimize " + optimum, "optimize " + optimum + " --set data.A.seed=2"},
             {"a learned model", "learn " + path("data1.csv") + learn, "learn " + path("data2.csv") + learn},
             {"a report", "reproduce constrained-maps --refinements 2", ""}};
