@@ -166,7 +166,9 @@ std::string run_gnuplot(const fs::path& folder, const Drawing& drawing, bool bef
     return fmt::format(
         "gnuplot is not installed (Debian package gnuplot-nox); run `gnuplot {}` in the output folder later",
         drawing.script);
-  return fmt::format("gnuplot failed{}", first.empty() ? "; is the disk full?" : ": " + first);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+    return "gnuplot did not draw all pictures to their ends; is the disk full?";
+  return fmt::format("gnuplot failed{}", first.empty() ? "" : ": " + first);
 }
 
 }  // namespace

@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace lagroid::app {
@@ -129,6 +131,13 @@ Columns read_columns(const fs::path& file, long most_rows) {
       }
     }
     return columns;
+  } catch (const std::length_error&) {  // more rows than any memory holds
+    throw RunError(fmt::format("{}: is damaged; run the scene again", file.string()));
+  } catch (const std::bad_alloc&) {
+    throw RunError(
+        fmt::format("{}: does not fit into the memory, or is damaged; run the scene again with a larger "
+                    "output.every",
+                    file.string()));
   } catch (const H5::Exception& error) {
     throw RunError(fmt::format("{}: HDF5: {}; run the scene again", file.string(), error.getDetailMsg()));
   }

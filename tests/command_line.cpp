@@ -304,7 +304,7 @@ TEST_F(CommandLine, FilesThatCannotBeWrittenDoNotBreakTheSolve) {
   EXPECT_EQ(json.at("ledger").at("solver").at("verdict"), "kept");
   for (const auto& entry : fs::directory_iterator(out)) {
     const std::string name = entry.path().filename();
-    EXPECT_TRUE(name == "checkpoint" || name == ".lock") << name;
+    EXPECT_TRUE(name == "checkpoint" || name == ".lagroid") << name;
   }
 }
 

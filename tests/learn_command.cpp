@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -165,6 +166,28 @@ TEST_F(Learn, AModelThatCannotBeFollowedIsNamed) {
   EXPECT_EQ(r.code, 3);
   EXPECT_NE(r.err.find("wild.json: the parameters to go on from have no finite error"), std::string::npos) << r.err;
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+}
+
+TEST_F(Learn, SaysWhatShareOfTheMotionIsExplained) {
+  const auto motion = summary("learn " + drawn("data.csv") + " --model polynomial:1");
+  EXPECT_GT(motion.at("explained").get<double>(), 0.999);
+  EXPECT_FALSE(motion.contains("notes"));
+  // Ends that have nothing to do with their starts: every training converges on them.
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::string rows = "trajectory,t,q1x,q1y,q1z,p1x,p1y,p1z\n";
+  for (int i = 0; i < 120; ++i) {
+    double q[3];
+    for (double& x : q) x = normal(random);
+    const double length = std::hypot(q[0], q[1], q[2]);
+    rows += std::to_string(i / 2) + (i % 2 == 0 ? ",0" : ",0.1");
+    for (const double x : q) rows += "," + std::to_string(x / length);
+    rows += ",0,0,0\n";
+  }
+  const auto noise = summary("learn " + file("noise.csv", rows) + " --noise 1e-5 --validation 0 --model polynomial:1");
+  EXPECT_EQ(noise.at("status"), "converged");
+  EXPECT_LT(noise.at("explained").get<double>(), 0.8);
+  EXPECT_NE(noise.at("notes").dump().find("of the motion in the data: they are noise"), std::string::npos) << noise;
 }
 
 TEST_F(Learn, SaysThatDataAtRestDetermineNoMass) {

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <functional>
 #include <map>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -64,9 +65,9 @@ class Folders : public CommandLine {
     const std::string learn = " --model polynomial:1 --starts 1 --iterations 3";
     const std::string steps = " --methods splitting --repetitions 1 --steps 0.1,0.05";
     const std::string short_scene = example("kepler") + " --set time.steps=20";
-    return {{"a run", "run " + short_scene, "run " + short_scene + " --set time.step=0.01"},
+    return {{"a run", "run " + short_scene, "run " + short_scene + " --set time.step=0.02"},
             {"a sweep", "sweep " + sweep, "sweep " + sweep + " --set vary.0.count=41"},
-            {"a study", "study " + short_scene + steps, "study " + short_scene + " --set time.step=0.01" + steps},
+            {"a study", "study " + short_scene + steps, "study " + short_scene + " --set time.step=0.02" + steps},
             {"an optimisation", "optimize " + optimum, "optimize " + optimum + " --set data.A.seed=2"},
             {"a learned model", "learn " + path("data1.csv") + learn, "learn " + path("data2.csv") + learn},
             {"a report", "reproduce constrained-maps --refinements 2", ""}};
@@ -325,6 +326,45 @@ TEST_F(Folders, AFullDiskIsTheSameForAll) {
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
   }
   EXPECT_FALSE(fs::exists(path("data.csv")));
+}
+
+/// A file that the disk does not give back to its end: this process's own memory, which begins with a hole.
+TEST_F(Folders, AFileThatCannotBeReadIsNamed) {
+  for (const char* name : {"memory.toml", "memory.csv"}) fs::create_symlink("/proc/self/mem", path(name));
+  for (const std::string& words : {"run " + path("memory.toml"), "sweep " + path("memory.toml") + " --out " + path("x"),
+                                   "optimize " + path("memory.toml"), "learn " + path("memory.csv")}) {
+    const Outcome r = run(words);
+    EXPECT_EQ(r.code, 2) << words << r.err;
+    EXPECT_NE(r.err.find("cannot be read"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("memory."), std::string::npos) << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  }
+}
+
+TEST_F(Folders, ADamagedTrajectoryIsNamed) {
+  const std::string out = path("out");
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=50 --out " + out).code, 0);
+  const std::string good = bytes(out + "/trajectory.h5");
+  std::mt19937 random(3);
+  for (int k = 0; k < 60; ++k) {
+    std::string bad = good;
+    // Where the file says what is in it.
+    for (int i = 0; i < 1 + k % 20; ++i) bad[random() % std::min<std::size_t>(bad.size(), 6000)] = char(random() % 256);
+    if (k % 10 == 0) bad.resize(random() % bad.size());
+    std::ofstream(out + "/trajectory.h5", std::ios::binary) << bad;
+    const Outcome r = run("view " + out);
+    EXPECT_TRUE(r.code == 0 || r.code == 2) << k << ": " << r.code << r.err;
+    EXPECT_EQ(r.code == 2, r.err.find("trajectory.h5") != std::string::npos) << r.err;
+  }
+}
+
+TEST_F(Folders, NoThreadsIsOneLine) {
+  const auto all = commands();
+  const Outcome r = run(all[1].words + " --threads 3 --out " + path("out"), "ulimit -v 3000000; ulimit -s 8000000; ");
+  EXPECT_EQ(r.code, 3) << r.err;
+  EXPECT_NE(r.err.find("no thread could be started"), std::string::npos) << r.err;
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  EXPECT_EQ(run(all[1].words + " --out " + path("out")).code, 0);
 }
 
 }  // namespace
