@@ -144,11 +144,12 @@ template <DiscreteSystem Sys> class SystemRun final : public SteppedRun {
     return step_failure(report, step, march_->point().time, mode_);
   }
   bool observe(long step) override {
+    if (!std::isfinite(march_->point().time)) return false;
     if (step > 0)
       march_->for_each_inner_stage(
           [&](const Step<Sys>& inner, double from, double size) { recorder_.watch_constraint(inner, from, size); });
     recorder_.observe(reported(system_, march_->point()));
-    return std::isfinite(march_->point().time);
+    return true;
   }
   Trajectory& trajectory() override { return recorder_.trajectory(); }
   void persist(Archive& archive) override {
