@@ -9,7 +9,7 @@ namespace lagroid::app {
 
 int code_after_writing(int code, const std::string& what) {
   if (code != 0 || !InterruptGuard::interrupted()) return code;
-  fmt::print(stderr, "lagroid: {}: interrupted after the results were there\n", what);
+  complain(fmt::format("{}: interrupted after the results were there", what));
   return exit_interrupted;
 }
 
