@@ -2,6 +2,7 @@
 
 #include "interrupt.hpp"
 #include "kept_file.hpp"
+#include "nesting.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view staging_prefix = ".partial-";
 constexpr const char* mark_file = ".lagroid";
 constexpr const char* lock_file = ".lock";
+constexpr const char* gnuplot_log = "plot.log";
 
 /// How a kind is called, and the files of which one at least is there as soon as anything of it is.
 struct KindOfOutput {
@@ -85,7 +87,7 @@ Json mark_of(OutputKind kind, const OutputSource& source) {
 
 /// The mark of a folder; null where there is none, or none that can be read.
 Json read_mark(const fs::path& folder) {
-  const Json mark = Json::parse(contents(folder / mark_file).value_or(""), nullptr, /*allow_exceptions=*/false);
+  const Json mark = read_json(contents(folder / mark_file).value_or("")).value_or(Json());
   const bool whole = mark.is_object() && mark.contains("kind") && mark["kind"].is_string() && mark.contains("of") &&
                      mark["of"].is_object();
   return whole ? mark : Json();
@@ -148,7 +150,7 @@ std::string run_gnuplot(const fs::path& folder, const Drawing& drawing, bool bef
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // killed with us
     if (chdir(folder.c_str()) != 0) _exit(126);
-    if (std::freopen("plot.log", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
+    if (std::freopen(gnuplot_log, "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
       _exit(126);
     execlp("gnuplot", "gnuplot", drawing.script.c_str(), static_cast<char*>(nullptr));
     _exit(127);
@@ -158,7 +160,7 @@ std::string run_gnuplot(const fs::path& folder, const Drawing& drawing, bool bef
   const bool drawn = std::all_of(drawing.pictures.begin(), drawing.pictures.end(),
                                  [&](const std::string& picture) { return is_whole(folder / picture); });
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && drawn) return "";
-  std::ifstream log(folder / "plot.log");
+  std::ifstream log(folder / gnuplot_log);
   std::string first;
   for (std::string line; std::getline(log, line);)
     if (line.find("line") != std::string::npos && first.empty()) first = line;
@@ -326,11 +328,14 @@ std::string draw(const fs::path& folder, const Drawing& drawing, bool interrupte
   std::error_code ignored;
   try {
     fs::create_directories(staging);
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.is_regular_file() && entry.path().filename().string().front() != '.' &&
-          std::find(drawing.pictures.begin(), drawing.pictures.end(), entry.path().filename()) ==
-              drawing.pictures.end())
-        fs::create_symlink(fs::absolute(entry.path()), staging / entry.path().filename());
+    // What gnuplot writes is no link: it would write into what stands in the folder, or where that leads.
+    std::vector<std::string> made = drawing.pictures;
+    made.emplace_back(gnuplot_log);
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (entry.is_regular_file() && name.front() != '.' && std::find(made.begin(), made.end(), name) == made.end())
+        fs::create_symlink(fs::absolute(entry.path()), staging / name);
+    }
     std::string reason = run_gnuplot(staging, drawing, interrupted_before);
     if (reason.empty())
       for (const std::string& picture : drawing.pictures) fs::rename(staging / picture, folder / picture);

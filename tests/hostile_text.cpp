@@ -263,6 +263,18 @@ TEST_F(HostileText, AScriptThatTheRunDidNotWriteIsNotRunUnasked) {
   EXPECT_TRUE(fs::exists(folder_ / "owned")) << "asked for";
 }
 
+TEST_F(HostileText, PicturesAreNotWrittenThroughTheFolder) {
+  ASSERT_EQ(tame("run --out run " + example("kepler") + " --set time.steps=20").code, 0);
+  const fs::path kept = write("kept", "of someone");
+  for (const char* name : {"plot.svg", "plot.png", "plot.log", "view.html"}) {
+    fs::remove(folder_ / "run" / name);
+    fs::create_symlink(kept, folder_ / "run" / name);
+  }
+  EXPECT_EQ(tame("plot run").code, 0);
+  EXPECT_EQ(tame("view run").code, 0);
+  EXPECT_EQ(bytes(kept), "of someone");
+}
+
 TEST_F(HostileText, DeepNestingIsRefused) {
   string dotted = "a";
   for (int i = 1; i < 40'000; ++i) dotted += ".a";
@@ -290,6 +302,8 @@ TEST_F(HostileText, DeepNestingIsRefused) {
   write("run/summary.json", deep);
   expect_refused("view run");
   expect_refused("plot run");
+  write("run/.lagroid", "{\"kind\": \"run\", \"of\": {\"scene\": " + deep + "}}");
+  EXPECT_EQ(tame("run --out run " + example("kepler") + " --set time.steps=20").code, 0);
   for (const string& json : {deep, "{\"kind\": " + deep + "}"}) {
     write("model.json", json);
     expect_refused("run " + write("learned.toml",

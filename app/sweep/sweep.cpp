@@ -4,6 +4,7 @@
 #include "../interrupt.hpp"
 #include "../kept_file.hpp"
 #include "../markup.hpp"
+#include "../nesting.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../run_result.hpp"
@@ -107,11 +108,19 @@ int told_of_failed(const SweepOptions& options, long failed, long members) {
 
 int tell_finished(const SweepOptions& options) {
   const std::filesystem::path folder = options.out;
+  long failed = 0;
+  long members = 0;
+  try {
+    const auto json = read_json(contents(folder / "summary.json").value_or("")).value_or(nullptr);
+    json.at("failed").get_to(failed);
+    json.at("members").get_to(members);
+  } catch (const nlohmann::json::exception&) {
+    throw RunError(fmt::format("--out {}: summary.json is damaged; remove the folder and run the same command again",
+                               options.out));
+  }
   const std::string text = contents(folder / (options.json ? "summary.json" : "summary.txt")).value_or("");
   print(options.json ? text : text + fmt::format("  (finished before; the files are in {})\n", options.out));
-  const auto json = nlohmann::json::parse(contents(folder / "summary.json").value_or("{}"), nullptr, false);
-  if (!json.is_object()) return exit_failed;
-  return told_of_failed(options, json.value("failed", 0L), json.value("members", 0L));
+  return told_of_failed(options, failed, members);
 }
 
 /// Joins the parts, writes the files, tells what was found. Returns the exit code.
