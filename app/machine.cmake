@@ -25,11 +25,11 @@ file(GLOB sources_of_numbers CONFIGURE_DEPENDS
 list(FILTER sources_of_numbers EXCLUDE REGEX "/testing/|/certificates/")
 list(APPEND sources_of_numbers ${PROJECT_SOURCE_DIR}/CMakeLists.txt)  # flags of single files
 
-set(folder ${CMAKE_CURRENT_BINARY_DIR}/machine)
+set(machine_folder ${PROJECT_BINARY_DIR}/machine)
 string(TOUPPER "${CMAKE_BUILD_TYPE}" configuration)
 list(JOIN sources_of_numbers "\n" lines)
-file(CONFIGURE OUTPUT ${folder}/sources.txt CONTENT "${lines}" @ONLY)
-file(GENERATE OUTPUT ${folder}/build.txt CONTENT
+file(CONFIGURE OUTPUT ${machine_folder}/sources.txt CONTENT "${lines}" @ONLY)
+file(GENERATE OUTPUT ${machine_folder}/build.txt CONTENT
 "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}
 ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${configuration}}
 $<FILTER:$<TARGET_PROPERTY:lagroid,COMPILE_OPTIONS>,EXCLUDE,^-W>
@@ -39,14 +39,14 @@ Eigen ${Eigen3_VERSION}, Ceres ${Ceres_VERSION}, Boost ${Boost_VERSION}
 Spectra ${Spectra_VERSION}, xsimd ${xsimd_VERSION}
 ")
 add_custom_command(
-  OUTPUT ${folder}/build_hash.cpp
-  COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} -D ROOT=${PROJECT_SOURCE_DIR} -D COMPILER=${CMAKE_CXX_COMPILER}
+  OUTPUT ${machine_folder}/build_hash.cpp
+  COMMAND ${CMAKE_COMMAND} -D FOLDER=${machine_folder} -D ROOT=${PROJECT_SOURCE_DIR} -D COMPILER=${CMAKE_CXX_COMPILER}
           -D COMPILER_ID=${CMAKE_CXX_COMPILER_ID} -D ARCH=${LAGROID_ARCH} -P ${CMAKE_CURRENT_LIST_DIR}/build_hash.cmake
-  DEPENDS ${sources_of_numbers} ${folder}/sources.txt ${folder}/build.txt ${CMAKE_CURRENT_LIST_DIR}/build_hash.cmake
+  DEPENDS ${sources_of_numbers} ${machine_folder}/sources.txt ${machine_folder}/build.txt ${CMAKE_CURRENT_LIST_DIR}/build_hash.cmake
   COMMENT "Hash of what enters numbers"
   VERBATIM)
 
-add_library(lagroid_machine STATIC ${CMAKE_CURRENT_LIST_DIR}/machine.cpp ${folder}/build_hash.cpp)
+add_library(lagroid_machine STATIC ${CMAKE_CURRENT_LIST_DIR}/machine.cpp ${machine_folder}/build_hash.cpp)
 set_target_properties(lagroid_machine PROPERTIES POSITION_INDEPENDENT_CODE ON)
 target_include_directories(lagroid_machine PRIVATE ${CMAKE_CURRENT_LIST_DIR})
 target_link_libraries(lagroid_machine PRIVATE lagroid lagroid_warnings)
