@@ -84,7 +84,7 @@ Style style_of(std::size_t method) {
   const auto* colour = colours[method % colours.size()];
   const int point = points[(method + method / colours.size()) % points.size()];
   return {fmt::format("linecolor rgb '#{}' linewidth 2.2 pointtype {} pointsize 0.9", colour, point),
-          fmt::format("linecolor rgb '#b0{}' linewidth 0.8 pointtype {} pointsize 0.5", colour, point)};
+          fmt::format("linecolor rgb '#80{}' linewidth 1 pointtype {} pointsize 0.6", colour, point)};
 }
 
 /// What a panel draws: errors of an axis over a cost.

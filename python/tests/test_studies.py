@@ -31,8 +31,8 @@ class Studies(unittest.TestCase):
 
     def test_a_study_keeps_its_budget(self) -> None:
         start = time.monotonic()
-        found = lagroid.study(EXAMPLES / "kepler.toml", budget=6)
-        self.assertLess(time.monotonic() - start, 15)
+        found = lagroid.study(EXAMPLES / "kepler.toml", budget=10)
+        self.assertLess(time.monotonic() - start, 30)
         self.assertTrue(found["not_measured"])
         with self.assertRaises(ValueError):
             lagroid.study(EXAMPLES / "kepler.toml", budget=0)
