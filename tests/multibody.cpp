@@ -850,6 +850,31 @@ TEST(Multibody, PlanarBodiesAreTurnedAsBodiesInSpaceAre) {
   EXPECT_LT((run(true) - run(false)).norm(), 1e-10);
 }
 
+/// Masses in another unit change nothing of the motion, and energies by that unit alone.
+TEST(Multibody, MovesAlikeInEveryUnitOfMass) {
+  const auto run = [](double unit) {
+    Scene scene;
+    const Body top =
+        scene.rigid_body(unit, unit * Vec(1, 2, 2.5), {0, 0, -0.3}, upright, {-0.6, 0.03, 0}, {0.1, 2, 0.1});
+    const Body bob = scene.point_mass(0.3 * unit, {0.5, 0, -0.3}, {-0.6, 0, -1});
+    scene.add(Coincidence{{scene.ground(Vec::Zero()), scene.point_of(top, {0, 0, 0.3})}});
+    scene.add(Rod{{top.centre, bob.centre}, 0.5});
+    scene.add(ConstantForce{{top.centre}, {0, 0, -9.81 * unit}});
+    scene.add(ConstantForce{{bob.centre}, {0, 0, -0.3 * 9.81 * unit}});
+    scene.damp(top, 0, 0.1 * unit);
+    Multibody motion(std::move(scene), 0.01);
+    motion.make_tangent();
+    advance(motion, 200);
+    Vector<double, 4> out;
+    out << motion.configuration()(motion(bob.centre)), energy(motion) / unit;
+    return out;
+  };
+  const Vector<double, 4> plain = run(1);
+  EXPECT_GT((plain.head<3>() - Vec(0.5, 0, -0.3)).norm(), 0.1);
+  for (const int power : {-990, -700, -520, -300, 300, 520, 700, 1000})
+    EXPECT_LT((run(std::ldexp(1.0, power)) - plain).norm(), 1e-9) << power;
+}
+
 TEST(Multibody, AStepAllocatesNothing) {
   Machine machine(0.1);
   Multibody motion(std::move(machine.scene), 0.01);
