@@ -171,10 +171,10 @@ TEST_F(Pictures, ShowWhatTurns) {
       {"tumbling_book", of("book")},
   };
   for (const auto& [scene, wanted] : shown) {
-    const auto drawn = curves(panels(scene, "--set time.steps=5 --set solver.starts=2"));
+    const auto drawn = curves(panels(scene, "--set time.steps=20"));
     for (const std::string& column : wanted) EXPECT_TRUE(drawn.contains(column)) << scene << ": " << column;
   }
-  const auto bars = curves(panels("six_bar", "--set time.steps=5"));
+  const auto bars = curves(panels("steering", "--set time.steps=5"));
   const auto has = [&](const std::string& what) {
     return std::any_of(bars.begin(), bars.end(), [&](const std::string& column) { return column.ends_with(what); });
   };
