@@ -113,13 +113,18 @@ struct BoundaryGuesses {
   template <DiscreteSystem Sys>
   Path<Sys> wound_by_chance(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int index,
                             std::mt19937_64& generator) const {
+    constexpr std::array<int, 3> ways{0, 1, -1};
     Vector<double, detail::windings<Sys>> turns;
-    auto shuffler = generator_of(1, (index - 1) / 3);
+    const int block = (index - 1) / 3;
+    auto shuffler = generator_of(1, block);
+    std::array<int, 3> order{0, 1, 2};
+    std::shuffle(order.begin(), order.end(), shuffler);
+    std::uniform_int_distribution<int> any(0, 2);
     std::geometric_distribution<int> more(0.85);
-    for (double& k : turns) {
-      std::array<int, 3> ways{0, 1, -1};
-      std::shuffle(ways.begin(), ways.end(), shuffler);
-      k = ways[std::size_t((index - 1) % 3)] * (1 + more(generator));
+    for (int i = 0; i < turns.size(); ++i) {
+      // Of three loops any two go through all ways to combine theirs in nine starts.
+      const int shift = i < 3 ? i * block : any(shuffler);
+      turns(i) = ways[std::size_t((order[std::size_t((index - 1) % 3)] + shift) % 3)] * (1 + more(generator));
     }
     // About the straight line's own direction, and about any other.
     AlgebroidVector<typename Sys::GroupoidType> axis = problem.system.groupoid.tau_inverse(problem.boundary);
