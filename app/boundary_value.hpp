@@ -150,12 +150,13 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
 /// Says which path was chosen, and records it; or why there is none.
 template <DiscreteSystem Sys>
 void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, Seek seek,
-                      const MultistartResult<Sys>& found, long starts, long every, const Observer<Sys>& observer,
+                      const MultistartResult<Sys>& found, long every, const Observer<Sys>& observer,
                       RunResult& result) {
   const Sys& system = problem.stage.problem.system;
   for (const auto& s : found.solutions) {
     const auto momentum = tangent_momentum(system, legendre_minus(system, s.path.front()));
     result.minima.push_back({s.cost,
+                             s.starts,
                              {momentum.data(), momentum.data() + momentum.size()},
                              s.kind.is_minimum,
                              s.kind.isolated,
@@ -168,6 +169,8 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
     record_path(system, presentation, best->path, problem.start, every, observer, result);
     result.cost = best->cost;
     result.steps = long(best->path.size());
+    result.notes.push_back(
+        fmt::format("the cheapest of those found: {} of {} starts led to it", best->starts, found.starts));
     if (best != found.solutions.begin())
       result.notes.push_back(
           fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
@@ -194,19 +197,22 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
                     found.solutions.size());
   } else if (result.message.empty()) {
     result.status = std::string(to_string(failure.status));
-    result.message =
-        failure.message.empty()
-            ? fmt::format(
-                  "boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
-                  "more starts{} or a longer duration",
-                  starts, failure.residual,
-                  failure.status == SolveStatus::not_converged ? ", a larger solver.max_iterations" : "")
-            : fmt::format("boundary value: none of {} starts converged; the best of them: {}", starts, failure.message);
+    result.message = failure.message.empty()
+                         ? fmt::format(
+                               "boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
+                               "more starts{} or a longer duration",
+                               found.starts, failure.residual,
+                               failure.status == SolveStatus::not_converged ? ", a larger solver.max_iterations" : "")
+                         : fmt::format("boundary value: none of {} starts converged; the best of them: {}",
+                                       found.starts, failure.message);
   }
   const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
   if (!path.empty()) {
     record_path(system, presentation, path, problem.start, every, observer, result);
-    for (auto& entry : result.ledger.entries) entry.verdict = "unjudged";
+    for (auto& entry : result.ledger.entries) {
+      entry.verdict = "unjudged";
+      entry.reason = "the path is no solution";
+    }
   }
 }
 
@@ -229,10 +235,9 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
   const auto clock = std::chrono::steady_clock::now();
   const auto solver = make_boundary_solver<Sys>(choice.method, choice.options, choice.seek.value_or(natural_seek<Sys>));
   MultistartOptions multistart = choice.multistart;
-  const long starts = multistart.starts;
   MultistartResult<Sys> found;
   {
-    Progress progress("starts", starts, context.progress);
+    Progress progress("starts", multistart.starts, context.progress);
     multistart.report = [&](int done) { progress.update(done); };
     found = search(*solver, first, multistart);
   }
@@ -242,7 +247,8 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
   std::string counted;
   for (const auto& [status, count] : found.outcomes)
     counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", count, to_string(status));
-  result.notes.push_back(fmt::format("{} starts: {}", starts, counted));
+  result.starts = found.starts;
+  result.notes.push_back(fmt::format("{} starts: {}", found.starts, counted));
   if (found.lost > 0)
     result.notes.push_back(
         fmt::format("{} solution(s) of the coarse problem could not be continued to this one", found.lost));
@@ -252,8 +258,8 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
   result.iterations = found.iterations;
   // Where nothing arrived, the farthest path is one of the problem it was solved for.
   report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation, solver->seek(),
-                   found, starts, every, observer, result);
-  result.ledger.mean_iterations = double(found.start_iterations) / double(starts);
+                   found, every, observer, result);
+  result.ledger.mean_iterations = double(found.start_iterations) / double(found.starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return result;
@@ -271,6 +277,7 @@ Task<Sys> boundary_value(const Section& scene, const RunContext& context, const 
                        read_continuation(scene),
                        context.record ? read_every(scene) : 0};
   refuse_accuracy(scene);
+  scene.section_or_empty("time").choice_or("mode", "fixed", {"fixed"});
   scene.finish();
   const auto& problem = run.problem.stage;
   if (const auto why = inadmissible_ends(problem.problem)) scene.section_or_empty("boundary").fail("", *why);

@@ -1,5 +1,7 @@
 #include "certificate.hpp"
 
+#include "markup.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -77,7 +79,7 @@ std::string json_certificate(const Certificate& c) {
            {"states", c.states},   {"samples", c.samples},     {"seed", c.seed},
            {"seconds", c.seconds}, {"symmetries", symmetries}, {"suites", suites}};
   if (!c.failure.empty()) out["message"] = c.failure;
-  return out.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json_text(out);
 }
 
 }  // namespace lagroid::app

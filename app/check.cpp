@@ -162,7 +162,7 @@ int check(const CheckOptions& options) {
   if (scene.has("accuracy")) scene = choose_by_accuracy(scene).scene;
   const Certificate certificate = certificate_of(scene, options);
   print(options.json ? json_certificate(certificate) + "\n" : text_certificate(certificate));
-  if (!certificate.failure.empty()) fmt::print(stderr, "lagroid: {}: {}\n", options.scene, certificate.failure);
+  if (!certificate.failure.empty()) complain(fmt::format("{}: {}", options.scene, certificate.failure));
   return certificate.holds() ? 0 : exit_failed;
 }
 

@@ -1,5 +1,7 @@
 #include "checkpoint.hpp"
 
+#include "kept_file.hpp"
+#include "machine.hpp"
 #include "output_folder.hpp"
 
 #include <fmt/format.h>
@@ -21,9 +23,7 @@ Json read(const fs::path& file) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(const fs::path& run, long steps) : folder_(run / "checkpoint"), lock_(run), steps_(steps) {}
-
-Checkpoint::~Checkpoint() = default;
+Checkpoint::Checkpoint(const fs::path& run, long steps) : folder_(run / "checkpoint"), steps_(steps) {}
 
 fs::path Checkpoint::part(long k) const { return folder_ / fmt::format("rows-{:06}.cbor", k); }
 
@@ -31,7 +31,7 @@ void Checkpoint::remove() {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
     const std::string name = entry.path().filename();
-    if (name == "scene.toml" || name.starts_with("state.cbor") || name.starts_with("rows-"))
+    if (name.starts_with("scene.toml") || name.starts_with("state.cbor") || name.starts_with("rows-"))
       fs::remove(entry.path(), ignored);
   }
   fs::remove(folder_, ignored);  // where nothing of a user's is in it
@@ -50,6 +50,16 @@ std::string Checkpoint::scene_of(const fs::path& run) {
   if (const auto text = contents(run / "checkpoint" / "scene.toml")) return *text;
   throw RunError(
       fmt::format("\"{}\" holds no run that can be taken up; lagroid run SCENE --out DIR makes one", run.string()));
+}
+
+void Checkpoint::require_this_build(const fs::path& run) {
+  const Json json = read(run / "checkpoint" / "state.cbor");
+  const std::string made_by = json.value("program", "an earlier lagroid");
+  if (made_by == program()) return;
+  throw RunError(
+      fmt::format("{}: its checkpoint was made by another build of lagroid ({}; this one is {}); run the scene again, "
+                  "or let resume --other-build go on without the promise of the same bits",
+                  run.string(), made_by, program()));
 }
 
 Json Checkpoint::restore(Trajectory& trajectory) {
@@ -75,6 +85,9 @@ Json Checkpoint::restore(Trajectory& trajectory) {
     }
     rows_ = trajectory.time.size();
     for (const auto& s : trajectory.series) values_.push_back(s.values.size());
+    others_ = json.value("others", others_);
+    if (const std::string made_by = json.value("program", "an earlier lagroid"); made_by != program())
+      others_.push_back(made_by);
     return json.at("state");
   } catch (const Json::exception&) {
     throw RunError(fmt::format("{}: is damaged, or of another lagroid; run the scene again", folder_.string()));
@@ -103,7 +116,9 @@ void Checkpoint::keep(const Trajectory& trajectory, const Json& state) {
     for (std::size_t i = 0; i < values_.size(); ++i) series.push_back(from(trajectory.series[i].values, values_[i]));
     replace_by_cbor(part(parts_++), Json{{"time", from(trajectory.time, rows_)}, {"series", series}});
   }
-  replace_by_cbor(folder_ / "state.cbor", Json{{"parts", parts_}, {"scene", scene_}, {"state", state}});
+  replace_by_cbor(
+      folder_ / "state.cbor",
+      Json{{"parts", parts_}, {"scene", scene_}, {"program", program()}, {"others", others_}, {"state", state}});
   rows_ = trajectory.time.size();
   for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = trajectory.series[i].values.size();
   last_ = std::chrono::steady_clock::now();

@@ -1,10 +1,14 @@
 #include "command.hpp"
 
-#include "output.hpp"
+#include "output_folder.hpp"
 #include "report.hpp"
 #include "scene_reader.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,10 +16,18 @@
 #include <new>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 namespace lagroid::app {
 
 namespace {
+
+/// Of standard input, output and error what is closed is held by something that cannot be written to, so that no file
+/// that is opened later takes its place and is told what is meant for a terminal.
+void hold_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(descriptor, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);  // takes the lowest that is free
+}
 
 int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
   try {
@@ -34,12 +46,18 @@ int parse_and_serve(CLI::App& app, int argc, char** argv, SceneOptions& options,
                   fmt::format("{}; see {} --help", error.what(), app.get_name()));
   } catch (const SceneError& error) {
     return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
+  } catch (const FolderRefused& error) {
+    return refuse(asks_for_json(argc, argv), exit_bad_input, "invalid_command_line", error.what());
   } catch (const OutputError&) {
     throw;
   } catch (const std::bad_alloc&) {
     return refuse(options.json, exit_failed, "out_of_memory",
                   fmt::format("{}: out of memory; lower time.steps, or raise output.every", options.scene));
   } catch (const std::exception& error) {
+    const auto* system = dynamic_cast<const std::system_error*>(&error);
+    if (system != nullptr && system->code() == std::errc::resource_unavailable_try_again)
+      return refuse(options.json, exit_failed, "no_threads",
+                    "no thread could be started; raise ulimit -u, or lower ulimit -s");
     return refuse(options.json, exit_internal_error, "internal_error",
                   fmt::format("internal error: {}; please report it with the scene", error.what()));
   }
@@ -58,22 +76,28 @@ bool asks_for_json(int argc, char** argv) {
   return std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
 }
 
-void print(const std::string& text) {
+void print(const std::string& written) {
+  const std::string text = visible(written, "\n");
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw OutputError("standard output could not be written");
 }
 
+void complain(const std::string& message) {
+  std::fputs(fmt::format("lagroid: {}\n", visible(message)).c_str(), stderr);
+}
+
 int refuse(bool json, int code, const std::string& status, const std::string& message) {
-  fmt::print(stderr, "lagroid: {}\n", message);
+  complain(message);
   if (json) print(json_error(status, message) + "\n");
   return code;
 }
 
 int command_line(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
+  hold_standard_descriptors();
   try {
     return parse_and_serve(app, argc, argv, options, serve);
   } catch (const OutputError& error) {
-    fmt::print(stderr, "lagroid: {}\n", error.what());
+    complain(error.what());
     return exit_failed;
   }
 }

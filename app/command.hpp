@@ -26,8 +26,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options);
 /// Whether --json stands anywhere on the command line.
 bool asks_for_json(int argc, char** argv);
 
-/// Prints on standard output, or throws OutputError.
+/// Prints on standard output what a terminal shows and does not obey (text.hpp), or throws OutputError.
 void print(const std::string& text);
+
+/// Says in one line on standard error what went wrong. Where that is closed or full nobody is told.
+void complain(const std::string& message);
 
 /// Ends a command that has no result: one line, and one JSON object where `json` is asked for. Returns `code`.
 int refuse(bool json, int code, const std::string& status, const std::string& message);

@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -51,9 +50,12 @@ std::optional<std::string> contents(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (!in) return std::nullopt;
-  return bytes;
+  try {
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  } catch (const std::ios_base::failure&) {
+    return std::nullopt;
+  }
 }
 
 std::optional<Json> read_cbor(const fs::path& file) {
@@ -67,20 +69,5 @@ std::optional<Json> read_cbor(const fs::path& file) {
   if (json.is_discarded()) return std::nullopt;
   return json;
 }
-
-FolderLock::FolderLock(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  const fs::path file = folder / ".lock";
-  lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-  const bool busy = lock_ >= 0 && errno == EWOULDBLOCK;
-  if (lock_ >= 0) ::close(lock_);
-  throw OutputError(
-      busy ? fmt::format("{}: another run is at work there; wait for it, or choose another folder", folder.string())
-           : fmt::format("{}: cannot be written; choose another place", file.string()));
-}
-
-FolderLock::~FolderLock() { ::close(lock_); }
 
 }  // namespace lagroid::app

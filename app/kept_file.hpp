@@ -26,17 +26,4 @@ void replace_by_cbor(const std::filesystem::path& file, const nlohmann::json& js
 /// What `replace_by_cbor` wrote; none where that is missing or damaged.
 std::optional<nlohmann::json> read_cbor(const std::filesystem::path& file);
 
-/// A folder in which nobody else is at work as long as this lives.
-class FolderLock {
- public:
-  /// Makes the folder where it is missing. Throws OutputError where another process holds it, or it cannot be written.
-  explicit FolderLock(const std::filesystem::path& folder);
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock();
-
- private:
-  int lock_ = -1;
-};
-
 }  // namespace lagroid::app

@@ -10,10 +10,29 @@
 
 namespace lagroid::app {
 
+/// The Euclidean norm. Squares that would overflow or underflow do not matter; where a number is not finite, it is not.
+double norm_of(const std::vector<double>& values);
+
+/// The larger of the two; a NaN wins, so that it is never overlooked.
+double worse(double a, double b);
+
+/// What a watched quantity's sizes are: of the terms that it is made of, or, where these are not known, its own norm,
+/// which may be smaller.
+enum class SizeOf { terms, value };
+
 /// Follows one quantity: its first and last values, its largest deviation, and whether that still grows.
+///
+/// A conserved one is held to a random walk of round-off in its terms. A bounded one is held to half of its size along
+/// the motion, the geometric mean over the nodes (so that a passage near a singularity counts for no more than its
+/// nodes): an energy that is farther off says nothing of the motion, whether it still grows or not. Where only its own
+/// norm is known that bound may be too narrow, and what exceeds it is unjudged.
+///
+/// Numbers that are none are never kept or bounded: a drift that is not finite is BROKEN; terms that are not finite, or
+/// so small that their round-off is below the normal numbers, are unjudged. A power of two on all values and sizes
+/// changes no verdict but to one of these.
 class QuantityWatch {
  public:
-  QuantityWatch(std::string name, Promise promise, std::size_t width);
+  QuantityWatch(std::string name, Promise promise, std::size_t width, SizeOf size_of = SizeOf::terms);
   /// `size` is the size of the terms the quantity is made of; round-off is relative to it. `noise` is what one
   /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not carried along.
   void observe(const double* values, double size, double noise = 0);
@@ -28,19 +47,30 @@ class QuantityWatch {
     archive("first size", first_size_);
     archive("size", size_);
     archive("noise", noise_);
+    archive("sized", sized_);
+    archive("logarithms", logarithms_);
   }
 
  private:
+  double typical_size() const;
+  void judge_conserved(LedgerEntry& entry) const;
+  void judge_bounded(LedgerEntry& entry, double first_half, double second_half) const;
+  double round_off_walk() const;
+
   std::string name_;
   Promise promise_;
+  SizeOf size_of_;
   long samples_ = 0;
   std::vector<double> first_;
   std::vector<double> last_;
+  std::vector<double> deviation_;
   std::vector<double> envelope_;  // largest deviation in consecutive chunks of equal length
   long chunk_ = 1;
   double first_size_ = 0;
-  double size_ = 0;   // the largest
-  double noise_ = 0;  // the largest
+  double size_ = 0;        // the largest
+  double noise_ = 0;       // the largest
+  long sized_ = 0;         // samples whose size is not zero
+  double logarithms_ = 0;  // the sum of those of their sizes
 };
 
 /// The entry for a constraint residual: the largest |phi| met, against round-off in its terms, which have the given

@@ -15,6 +15,7 @@
 #include "study/study.hpp"
 #include "sweep/sweep.hpp"
 #include "view.hpp"
+#include "written.hpp"
 
 #include <lagroid/core/version.hpp>
 
@@ -35,6 +36,7 @@ using namespace lagroid::app;
 
 struct RunOptions : SceneOptions {
   std::optional<std::string> out;
+  bool other_build = false;
 };
 
 /// The scene of a run that is taken up, of which only the number of steps may change.
@@ -49,16 +51,16 @@ Section kept_scene(const std::string& folder, const std::vector<std::string>& ov
 /// Runs the scene, or takes up the run in the folder `out`.
 int run(const RunOptions& options, bool resume) {
   RunResult result;
+  std::optional<OutputFolder> folder;
   try {
     const Section scene =
         resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
-    if (options.out) require_writable(*options.out);
+    if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene));
+    if (resume && !options.other_build) Checkpoint::require_this_build(*options.out);
     result = run_scene(scene, {.record = options.out.has_value(),
                                .progress = !options.json,
                                .folder = options.out.value_or(""),
                                .resume = resume});
-  } catch (const OutputError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_scene", error.what());
   } catch (const RunError& error) {
     return refuse(options.json, exit_bad_input, "invalid_run", error.what());
   }
@@ -74,11 +76,11 @@ int run(const RunOptions& options, bool resume) {
     report = "  (no files written; --out DIR writes trajectory, plot and summary)\n";
   }
   print(options.json ? json_report(result) + "\n" : text_report(result) + report);
-  if (!result.converged())
-    fmt::print(stderr, "lagroid: {}: {}\n", resume ? *options.out : options.scene, result.message);
-  if (!result.output_error.empty()) fmt::print(stderr, "lagroid: {}\n", result.output_error);
+  if (!result.converged()) complain(fmt::format("{}: {}", resume ? *options.out : options.scene, result.message));
+  if (!result.output_error.empty()) complain(result.output_error);
   if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
-  return result.converged() && result.output_error.empty() ? 0 : exit_failed;
+  if (!result.converged() || !result.output_error.empty()) return exit_failed;
+  return code_after_writing(0, resume ? *options.out : options.scene);
 }
 
 /// Writes something from a run's folder: `make` returns the files.
@@ -117,6 +119,8 @@ int main(int argc, char** argv) {
   resume_command->add_option("run", options.out, "the folder that lagroid run --out wrote")->required();
   resume_command->add_option("--set", options.overrides, "time.steps=N: go on to so many steps")
       ->allow_extra_args(false);
+  resume_command->add_flag("--other-build", options.other_build,
+                           "go on with the work of another build of lagroid; the same bits are not promised then");
   resume_command->add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand(
@@ -124,10 +128,11 @@ int main(int argc, char** argv) {
   view_command->add_option("run", view.run, "the folder that lagroid run --out wrote")->required();
   view_command->add_option("--rows", view.most_rows, "of the trajectory, at most (default 4000)")
       ->check(CLI::Range(2L, 1'000'000L));
-  std::string run_to_plot;
+  PlotOptions plot;
   CLI::App* plot_command =
       app.add_subcommand("plot", "draw plot.svg and plot.png of a run anew, by its plot.gp, which may be edited");
-  plot_command->add_option("run", run_to_plot, "the folder that lagroid run --out wrote")->required();
+  plot_command->add_option("run", plot.run, "the folder that lagroid run --out wrote")->required();
+  plot_command->add_flag("--own-script", plot.own_script, "draw by a plot.gp that was edited: it can run anything");
   CLI::App* check_command =
       app.add_subcommand("check", "ask a scene's system every law that applies: lagroid check --help");
   check_command->set_help_flag();
@@ -170,7 +175,7 @@ int main(int argc, char** argv) {
     if (run_command->parsed()) return run(options, false);
     if (resume_command->parsed()) return run(options, true);
     if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });
-    if (plot_command->parsed()) return from_run([&] { return draw_plots(run_to_plot); });
+    if (plot_command->parsed()) return from_run([&] { return draw_plots(plot); });
     if (study_command->parsed()) {
       static_cast<SceneOptions&>(options) = study_options;
       return study(study_options);

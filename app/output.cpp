@@ -1,7 +1,12 @@
 #include "output.hpp"
 
+#include "curves.hpp"
+#include "gnuplot.hpp"
 #include "hdf5_file.hpp"
+#include "markup.hpp"
 #include "report.hpp"
+#include "scene_reader.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +26,9 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 8> output_files{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt",
                                                   "plot.csv",      "plot.gp",        "plot.svg",     "plot.png"};
 
-/// gnuplot looks for a column by its name in every row: of wide files it gets an excerpt.
+/// gnuplot reads the whole file for every curve, and looks for its columns by their names in every row: of long and of
+/// wide files it gets what can be seen.
+constexpr std::size_t most_rows_for_gnuplot = 10'000;
 constexpr std::size_t most_columns_for_gnuplot = 200;
 
 /// Row `node` of a series; series on arrows have none at the first node.
@@ -37,7 +44,7 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
   std::ofstream out(file);
   out << 't';
   for (const auto& s : trajectory.series)
-    for (const auto& c : s.components) out << ',' << c;
+    for (const auto& c : s.components) out << ',' << in_csv(c);
   out << '\n';
   fmt::memory_buffer line;
   for (std::size_t node = 0; node < trajectory.time.size(); ++node) {
@@ -90,47 +97,50 @@ void write_trajectory(const RunResult& result, const fs::path& file) {
   });
 }
 
-/// A text as a gnuplot string: single quotes, no enhanced-text surprises.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
+bool is_for_gnuplot(const Trajectory& trajectory) {
+  std::size_t columns = 0;
+  for (const auto& s : trajectory.series) columns += s.width();
+  return trajectory.time.size() <= most_rows_for_gnuplot && columns <= most_columns_for_gnuplot;
 }
 
-/// The time, and the series that hold a column of a panel.
-Trajectory excerpt_for_plots(const RunResult& result) {
-  const auto plotted = [&](const std::string& column) {
-    return std::any_of(result.panels.begin(), result.panels.end(), [&](const Panel& panel) {
-      return panel.x == column || std::find(panel.curves.begin(), panel.curves.end(), column) != panel.curves.end();
-    });
+/// What gnuplot takes for x and y of a curve of the panel: columns of the trajectory by their names, or those of the
+/// panel's block of the excerpt by their numbers.
+std::string gnuplot_columns(const Panel& panel, std::size_t curve, bool by_name) {
+  const auto shown = [](const std::string& column, double offset) {
+    return offset == 0 ? fmt::format("({})", column) : fmt::format("({}-({}))", column, offset);
   };
-  Trajectory out;
-  out.time = result.trajectory.time;
-  for (const auto& s : result.trajectory.series)
-    if (std::any_of(s.components.begin(), s.components.end(), plotted)) out.series.push_back(s);
-  return out;
+  const std::string x = by_name ? fmt::format("column({})", gnuplot_string(panel.x)) : "$1";
+  const std::string y =
+      by_name ? fmt::format("column({})", gnuplot_string(panel.curves[curve])) : fmt::format("${}", curve + 2);
+  return shown(x, panel.x_offset) + ":" + shown(y, panel.y_offset);
 }
 
-std::string gnuplot_script(const RunResult& result, const std::string& data) {
-  const std::size_t panels = result.panels.size();
-  const std::size_t columns = panels > 1 ? 2 : 1;
-  const std::size_t rows = (panels + columns - 1) / columns;
+}  // namespace
+
+std::string plot_script(const std::vector<Panel>& panels, bool by_name) {
+  const std::string data = by_name ? "trajectory.csv" : "plot.csv";
+  const std::size_t columns = panels.size() > 1 ? 2 : 1;
+  const std::size_t rows = (panels.size() + columns - 1) / columns;
   std::string out = fmt::format("# Draws {}; run by lagroid, or by hand: gnuplot plot.gp\n", data);
-  out += "set datafile separator ','\nset grid\n";
+  // A constant at the end of an axis is not to lie on the frame.
+  out += "set datafile separator ','\nset grid\nset offsets graph 0, 0, 0.03, 0.03\n";
   const std::pair<const char*, std::string> terminals[] = {
       {"plot.svg", fmt::format("svg size {},{} background 'white' noenhanced", 520 * columns, 400 * rows)},
       {"plot.png", fmt::format("pngcairo size {},{} noenhanced", 520 * columns, 400 * rows)}};
   for (const auto& [file, terminal] : terminals) {
     out +=
         fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout {},{}\n", terminal, file, rows, columns);
-    for (const auto& panel : result.panels) {
+    for (std::size_t p = 0; p < panels.size(); ++p) {
+      const Panel& panel = panels[p];
       out += panel.curves.size() > 1 ? "set key below\n" : "unset key\n";
-      out += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n{}\nplot ", quoted(panel.title),
-                         quoted(panel.x_label), quoted(panel.y_label),
+      out += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n{}\nplot ", gnuplot_string(panel.title),
+                         gnuplot_string(label_of(panel.x_label, panel.x_offset)),
+                         gnuplot_string(label_of(panel.y_label, panel.y_offset)),
                          panel.equal_axes ? "set size ratio -1" : "set size noratio");
       for (std::size_t i = 0; i < panel.curves.size(); ++i)
-        out += fmt::format("{}'{}' using (column({})):(column({})) with lines linewidth 1.5 title {}", i ? ", " : "",
-                           data, quoted(panel.x), quoted(panel.curves[i]), quoted(panel.curves[i]));
+        out += fmt::format("{}'{}'{} using {} with lines linewidth 1.5 title {}", i ? ", " : "", data,
+                           by_name ? "" : fmt::format(" index {}", p), gnuplot_columns(panel, i, by_name),
+                           gnuplot_string(panel.curves[i]));
       out += "\n";
     }
     out += "unset multiplot\nset output\n";
@@ -138,36 +148,51 @@ std::string gnuplot_script(const RunResult& result, const std::string& data) {
   return out;
 }
 
-}  // namespace
+OutputFolder folder_for_run(const fs::path& folder, const Section& scene) {
+  return {folder, OutputKind::run, OutputSource{{"scene", scene.whole()}}, output_files};
+}
 
-void require_writable(const fs::path& folder) { require_writable(folder, output_files); }
+OutputFolder folder_for_result(const fs::path& folder, const RunResult& result) {
+  // No two runs take equally long.
+  const std::string which = fmt::format("{} {} {} {:.17g}", result.system, result.method, result.steps, result.seconds);
+  return {folder, OutputKind::run, OutputSource{{"result", which}}, output_files};
+}
+
+OutputFolder folder_of_run(const fs::path& folder) { return {folder, OutputKind::run, std::nullopt, output_files}; }
 
 std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
-  return write_whole(folder, output_files, [&](const fs::path& staging) {
-    std::vector<std::string> names{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt"};
+  const auto summarise = [&](const fs::path& staging) {
+    write_text(json_report(result) + "\n", staging / "summary.json");
+    write_text(visible(text_report(result), "\n"), staging / "summary.txt");
+    return std::vector<std::string>{"summary.json", "summary.txt"};
+  };
+  Drawing drawing;
+  const auto make = [&](const fs::path& staging) {
+    const bool moves = result.trajectory.time.size() > 1;
+    if (moves)
+      for (Panel& panel : result.panels) take_offsets(panel, result.trajectory);
+    std::vector<std::string> names = summarise(staging);
+    names.insert(names.end(), {"trajectory.h5", "trajectory.csv"});
     write_trajectory(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
-    if (result.trajectory.time.size() > 1) {
-      std::size_t columns = 0;
-      for (const auto& s : result.trajectory.series) columns += s.width();
-      std::string data = "trajectory.csv";
-      if (columns > most_columns_for_gnuplot) {
-        data = "plot.csv";
-        write_csv(excerpt_for_plots(result), staging / data);
-        names.push_back(data);
+    if (moves) {
+      const bool by_name = is_for_gnuplot(result.trajectory);
+      if (!by_name) {
+        write_text(table_of_visible(result.panels, result.trajectory), staging / "plot.csv");
+        names.emplace_back("plot.csv");
       }
-      write_text(gnuplot_script(result, data), staging / "plot.gp");
+      write_text(plot_script(result.panels, by_name), staging / "plot.gp");
       names.emplace_back("plot.gp");
-      if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); reason.empty()) {
-        names.insert(names.end(), {"plot.svg", "plot.png"});
-      } else {
-        result.notes.push_back("no pictures: " + reason);
-      }
+      drawing = {"plot.gp", {"plot.svg", "plot.png"}};
     }
-    write_text(json_report(result) + "\n", staging / "summary.json");
-    write_text(text_report(result), staging / "summary.txt");
     return names;
-  });
+  };
+  std::string note;
+  auto written = write_and_draw(folder, output_files, make, drawing, note);
+  if (note.empty()) return written;
+  result.notes.push_back("no pictures: " + visible(note));
+  write_whole(folder, {}, summarise);
+  return written;
 }
 
 }  // namespace lagroid::app

@@ -5,16 +5,28 @@
 #include "run_result.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace lagroid::app {
 
-/// Throws OutputError, with the remedy, unless `folder` can be created and written to. Leaves nothing behind.
-void require_writable(const std::filesystem::path& folder);
+class Section;
+
+/// The script that draws the panels, from the columns of trajectory.csv by their names or from what is to be seen of
+/// them, plot.csv: what a run's plot.gp holds. It follows from what the summary says, so that a script by someone else
+/// is told from it.
+std::string plot_script(const std::vector<Panel>& panels, bool by_name);
+
+/// The folder for a run of that scene, or that of a run which is there, to go on with it or to show it; for this
+/// process alone. Throws as OutputFolder does.
+OutputFolder folder_for_run(const std::filesystem::path& folder, const Section& scene);
+OutputFolder folder_of_run(const std::filesystem::path& folder);
+/// The same for a result whose scene nobody knows: it may be written again, another one may not.
+OutputFolder folder_for_result(const std::filesystem::path& folder, const RunResult& result);
 
 /// Writes trajectory.h5, trajectory.csv, summary.json, summary.txt, plot.gp, plot.svg and plot.png into `folder`
-/// (`write_whole`). Returns the files written; a missing or failing gnuplot costs the pictures only and is added to the
-/// result's notes.
+/// (`write_and_draw`), which the caller holds. Returns the files written; a missing or failing gnuplot, or a signal
+/// while it draws, costs the pictures only and is added to the result's notes.
 std::vector<std::filesystem::path> write_outputs(RunResult& result, const std::filesystem::path& folder);
 
 }  // namespace lagroid::app

@@ -1,5 +1,7 @@
 #include "progress.hpp"
 
+#include "text.hpp"
+
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -10,10 +12,10 @@
 namespace lagroid::app {
 
 Progress::Progress(std::string what, long total, bool enabled)
-    : what_(std::move(what)), total_(total), enabled_(enabled && isatty(STDERR_FILENO) != 0) {}
+    : what_(visible(what)), total_(total), enabled_(enabled && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::update(long done) {
@@ -31,8 +33,9 @@ void Progress::draw(long done) const {
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
   const int filled = int(fraction * width);
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} %, {:.0f} s left", what_, "", filled, "", width - filled,
-             100 * fraction, left);
+  const std::string line = fmt::format("\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} %, {:.0f} s left", what_, "", filled, "",
+                                       width - filled, 100 * fraction, left);
+  std::fputs(line.c_str(), stderr);
   std::fflush(stderr);
 }
 

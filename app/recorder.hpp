@@ -12,10 +12,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,7 +63,7 @@ template <DiscreteSystem Sys> class Recorder {
         every_(every),
         observer_(std::move(observer)) {
     for (const auto& q : quantities_) {
-      watches_.emplace_back(q.name, q.promise, q.components.size());
+      watches_.emplace_back(q.name, q.promise, q.components.size(), q.size ? SizeOf::terms : SizeOf::value);
       first_.emplace_back(q.components.size());
       now_.emplace_back(q.components.size());
     }
@@ -80,7 +80,7 @@ template <DiscreteSystem Sys> class Recorder {
       if (q.needs_step && !has_step) continue;
       q.evaluate(point, now_[i].data());
       if (point.index == (q.needs_step ? 1 : 0)) first_[i] = now_[i];
-      const double size = q.size ? q.size(point) : norm(now_[i]);
+      const double size = q.size ? q.size(point) : norm_of(now_[i]);
       watches_[i].observe(now_[i].data(), size, noise * size);
     }
     const double residual = has_step ? watch_constraint(point.step, point.time - point.step_size, point.step_size) : 0;
@@ -107,7 +107,7 @@ template <DiscreteSystem Sys> class Recorder {
         constraint_size_ =
             std::max(constraint_size_,
                      (d.constraint_target.cwiseAbs() * system_.groupoid.coordinate_scale(step.arrow)).maxCoeff());
-        largest_residual_ = residual;
+        largest_residual_ = worse(largest_residual_, residual);
       }
       return residual;
     }
@@ -151,11 +151,6 @@ template <DiscreteSystem Sys> class Recorder {
 
  private:
   template <class V> static std::vector<double> list(const V& v) { return {v.data(), v.data() + v.size()}; }
-  static double norm(const std::vector<double>& v) {
-    double square = 0;
-    for (const double x : v) square += x * x;
-    return std::sqrt(square);
-  }
 
   Endpoint endpoint(const TrajectoryPoint<Sys>& point) const {
     Endpoint e;
@@ -200,6 +195,14 @@ template <DiscreteSystem Sys> class Recorder {
                    {}});
   }
 
+  /// Of the two unit quaternions of a rotation, the one nearer to the last row, so that curves have no jumps.
+  static std::array<double, 4> beside(std::array<double, 4> q, const std::vector<double>& rows) {
+    if (rows.size() < q.size()) return q;
+    if (std::inner_product(q.begin(), q.end(), rows.end() - 4, 0.0) < 0)
+      for (double& component : q) component = -component;
+    return q;
+  }
+
   void record(const TrajectoryPoint<Sys>& point, double residual) {
     trajectory_.time.push_back(point.time);
     std::size_t at = 0;
@@ -209,7 +212,7 @@ template <DiscreteSystem Sys> class Recorder {
     };
     const bool has_step = point.index > 0;
     if (!presentation_.position.empty()) put(presentation_.position_of(point));
-    if (presentation_.has_attitude) put(presentation_.attitude_of(point));
+    if (presentation_.has_attitude) put(beside(presentation_.attitude_of(point), trajectory_.series[at].values));
     put(point.state.momentum);
     if constexpr (Sys::constraints > 0) {
       if (has_step) {
@@ -233,10 +236,9 @@ template <DiscreteSystem Sys> class Recorder {
         ++at;
         continue;
       }
-      double square = 0;
-      for (std::size_t j = 0; j < now_[i].size(); ++j)
-        square += (now_[i][j] - first_[i][j]) * (now_[i][j] - first_[i][j]);
-      put(std::vector{std::sqrt(square)});
+      std::vector<double> deviation = now_[i];
+      for (std::size_t j = 0; j < deviation.size(); ++j) deviation[j] -= first_[i][j];
+      put(std::vector{norm_of(deviation)});
     }
   }
 

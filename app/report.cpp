@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include "markup.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -27,6 +29,7 @@ Json json(const LedgerEntry& e) {
   out["name"] = e.name;
   out["promise"] = e.promise;
   out["verdict"] = e.verdict;
+  if (!e.reason.empty()) out["reason"] = e.reason;
   out["drift"] = e.drift;
   out["relative_drift"] = e.relative_drift;
   if (e.bound > 0) out["bound"] = e.bound;
@@ -56,9 +59,10 @@ Json json(const Shape& s) {
           {"offset", s.offset},     {"to", json(s.to)}, {"trail", s.trail}};
 }
 
+/// `panels_of` reads it.
 Json json(const Panel& p) {
-  return {{"title", p.title}, {"x_label", p.x_label}, {"y_label", p.y_label},
-          {"x", p.x},         {"curves", p.curves},   {"equal_axes", p.equal_axes}};
+  return {{"title", p.title},   {"x_label", p.x_label},       {"y_label", p.y_label},   {"x", p.x},
+          {"curves", p.curves}, {"equal_axes", p.equal_axes}, {"x_offset", p.x_offset}, {"y_offset", p.y_offset}};
 }
 
 template <class T> Json array_of(const std::vector<T>& items) {
@@ -117,7 +121,8 @@ std::string text_report(const RunResult& r) {
   if (!r.minima.empty()) {
     line("  stationary paths");
     for (const auto& m : r.minima)
-      line(fmt::format("    cost {:<18.12g} {}  initial momentum {}", m.cost, kind(m), numbers(m.momentum)));
+      line(fmt::format("    cost {:<18.12g} {}  found by {} of {} starts  initial momentum {}", m.cost, kind(m),
+                       m.starts, r.starts, numbers(m.momentum)));
   }
   for (const auto& note : r.notes) line("  note: " + note);
   line("  ledger");
@@ -127,8 +132,9 @@ std::string text_report(const RunResult& r) {
       continue;
     }
     const std::string bound = e.bound > 0 ? fmt::format(" (bound {:.1e})", e.bound) : "";
-    line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}", e.name, e.promise, e.drift,
-                     e.relative_drift, bound, e.verdict));
+    const std::string reason = e.reason.empty() ? "" : fmt::format(" ({})", e.reason);
+    line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}{}", e.name, e.promise, e.drift,
+                     e.relative_drift, bound, e.verdict, reason));
   }
   line(fmt::format("    {:<28} mean {:.2f}, most {}: {}", "iterations", r.ledger.mean_iterations,
                    r.ledger.most_iterations, solver_verdict(r)));
@@ -151,9 +157,11 @@ std::string json_report(const RunResult& r) {
   out["initial"] = json(r.initial);
   out["final"] = json(r.final);
   out["multipliers"] = {{"first", r.first_multipliers}, {"last", r.last_multipliers}};
+  if (r.starts > 0) out["starts"] = r.starts;
   Json minima = Json::array();
   for (const auto& m : r.minima)
     minima.push_back({{"cost", m.cost},
+                      {"starts", m.starts},
                       {"momentum", m.momentum},
                       {"is_minimum", m.is_minimum},
                       {"isolated", m.isolated},
@@ -168,11 +176,19 @@ std::string json_report(const RunResult& r) {
   out["ledger"] = ledger;
   out["notes"] = r.notes;
   out["picture"] = {{"shapes", array_of(r.shapes)}, {"panels", array_of(r.panels)}};
-  return out.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json_text(out);
+}
+
+std::vector<Panel> panels_of(const Json& summary) {
+  std::vector<Panel> out;
+  for (const Json& p : summary.at("picture").at("panels"))
+    out.push_back({p.at("title"), p.at("x_label"), p.at("y_label"), p.at("x"), p.at("curves"), p.at("equal_axes"),
+                   p.at("x_offset"), p.at("y_offset")});
+  return out;
 }
 
 std::string json_error(const std::string& status, const std::string& message) {
-  return Json{{"status", status}, {"message", message}}.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json_text({{"status", status}, {"message", message}});
 }
 
 }  // namespace lagroid::app

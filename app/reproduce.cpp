@@ -1,6 +1,7 @@
 #include "reproduce.hpp"
 
 #include "clock.hpp"
+#include "markup.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "reproductions/accelerated_report.hpp"
@@ -18,6 +19,8 @@
 #include <chrono>
 #include <filesystem>
 #include <iterator>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -41,12 +44,16 @@ nlohmann::ordered_json solved(const NewtonFindings& findings) {
   return out;
 }
 
+OutputFolder folder_for_report(const std::string& folder, const char* name, std::span<const char* const> files) {
+  return {folder, OutputKind::report, OutputSource{{"experiment", name}}, files};
+}
+
 /// Prints what was found, with the files that were written; returns the exit code.
 int conclude(nlohmann::ordered_json result, std::string text, const std::vector<std::filesystem::path>& files,
              const std::string& note, bool json) {
   tell_written(files, note, text, result);
-  print(json ? result.dump(2) + "\n" : text);
-  return 0;
+  print(json ? json_text(result) + "\n" : text);
+  return code_after_writing(0, "reproduce");
 }
 
 int reproduce_newton(const ReproduceOptions& options, bool json) {
@@ -54,11 +61,7 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
   if (study.smallest > study.largest)
     return refuse(json, exit_bad_input, "invalid_command_line",
                   fmt::format("--smallest {} is above --largest {}", study.smallest, study.largest));
-  try {
-    require_writable(options.newton_out, newton_report_files);
-  } catch (const OutputError& error) {
-    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
-  }
+  const OutputFolder folder = folder_for_report(options.newton_out, newton_name, newton_report_files);
   const auto start = std::chrono::steady_clock::now();
   NewtonFindings findings;
   findings.study = study;
@@ -91,11 +94,7 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
 }
 
 int reproduce_time_steps(const ReproduceOptions& options, bool json) {
-  try {
-    require_writable(options.time_out, time_report_files);
-  } catch (const OutputError& error) {
-    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
-  }
+  const OutputFolder folder = folder_for_report(options.time_out, time_name, time_report_files);
   const auto start = std::chrono::steady_clock::now();
   TimeFindings findings;
   {
@@ -125,11 +124,7 @@ int reproduce_time_steps(const ReproduceOptions& options, bool json) {
 }
 
 int reproduce_accelerated(const ReproduceOptions& options, bool json) {
-  try {
-    require_writable(options.accelerated_out, accelerated_report_files);
-  } catch (const OutputError& error) {
-    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
-  }
+  const OutputFolder folder = folder_for_report(options.accelerated_out, accelerated_name, accelerated_report_files);
   const AcceleratedStudy& study = options.accelerated;
   const auto start = std::chrono::steady_clock::now();
   AcceleratedFindings findings;
@@ -165,11 +160,7 @@ int reproduce_accelerated(const ReproduceOptions& options, bool json) {
 }
 
 int reproduce_maps(const ReproduceOptions& options, bool json) {
-  try {
-    require_writable(options.maps_out, map_report_files);
-  } catch (const OutputError& error) {
-    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
-  }
+  const OutputFolder folder = folder_for_report(options.maps_out, maps_name, map_report_files);
   std::vector<MapMethod> methods;
   {
     Progress progress(maps_name, 100, !json);
@@ -196,11 +187,7 @@ int reproduce_maps(const ReproduceOptions& options, bool json) {
 }
 
 int reproduce_learning(const ReproduceOptions& options, bool json) {
-  try {
-    require_writable(options.learning_out, learning_report_files);
-  } catch (const OutputError& error) {
-    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
-  }
+  const OutputFolder folder = folder_for_report(options.learning_out, learning_name, learning_report_files);
   const LearningStudy& study = options.learning;
   const auto start = std::chrono::steady_clock::now();
   LearningFindings findings;
@@ -241,6 +228,13 @@ int reproduce_scaling(const ReproduceOptions& options, bool json) {
       return refuse(
           json, exit_bad_input, "invalid_command_line",
           fmt::format("one process has nobody to hand parts to: mpirun -n 4 lagroid reproduce {}", scaling_name));
+    std::optional<OutputFolder> folder;
+    try {
+      if (ranks->rank() == 0) folder.emplace(folder_for_report(options.scaling_out, scaling_name, sweep_scaling_files));
+    } catch (const OutputError& error) {
+      ranks->abort(error.what());
+      throw;
+    }
     const SweepCosts costs = measure_sweep(*ranks, start, options.scaling_out);
     if (ranks->rank() != 0) return 0;
     std::string note;
@@ -259,8 +253,6 @@ int reproduce_scaling(const ReproduceOptions& options, bool json) {
     for (const auto& [name, seconds] : result["seconds"].items())
       text += fmt::format("  {:<12} {}\n", name, duration(seconds.get<double>()));
     return conclude(std::move(result), std::move(text), files, note, json);
-  } catch (const OutputError& error) {
-    return refuse(json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const RunError& error) {
     return refuse(json, exit_bad_input, "invalid_run", error.what());
   }

@@ -40,6 +40,7 @@ struct Endpoint {
 
 struct Minimum {
   double cost = 0;
+  int starts = 0;  ///< that led to it; none where a way down from a saddle did
   std::vector<double> momentum;
   bool is_minimum = false;
   bool isolated = true;
@@ -57,6 +58,7 @@ struct LedgerEntry {
   double relative_drift = 0;  ///< the same over the size of the initial value (over one if that vanishes)
   double bound = 0;           ///< on `drift`; zero where none is promised
   std::string verdict;        ///< "kept", "BROKEN", "bounded", "growing", "unjudged", "watched", "counted"
+  std::string reason;         ///< of a verdict that drift and bound do not explain; else empty
   bool broken() const { return verdict == "BROKEN"; }
 };
 
@@ -74,6 +76,8 @@ struct Panel {
   std::string x;                    ///< column on the x axis
   std::vector<std::string> curves;  ///< columns
   bool equal_axes = false;
+  double x_offset = 0;  ///< shown is the column less this
+  double y_offset = 0;
 };
 
 /// The status of a run that Ctrl-C or SIGTERM ended.
@@ -95,6 +99,7 @@ struct RunResult {
   Endpoint final;
   std::vector<double> first_multipliers;
   std::vector<double> last_multipliers;
+  int starts = 0;  ///< of a boundary value, all that were made
   std::vector<Minimum> minima;
   std::vector<std::string> notes;
   Ledger ledger;

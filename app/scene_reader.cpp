@@ -1,12 +1,16 @@
 #include "scene_reader.hpp"
 
+#include "kept_file.hpp"
+#include "nesting.hpp"
+#include "text.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <boost/algorithm/string.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 
@@ -50,16 +54,25 @@ std::string type_name(const toml::node& node) {
   return "a date or time";
 }
 
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return text;
+/// The beginning of a text that may be very long.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t enough = 60;
+  return text.size() <= enough ? text : text.substr(0, enough) + "...";
 }
 
+/// Throws SceneError where it is too deep to be read, and toml::parse_error.
+toml::table parsed(std::string_view text, const std::string& what) {
+  if (toml_nests_too_deep(text))
+    throw SceneError(
+        fmt::format("{}: tables and arrays are nested more than {} deep; no scene needs that", what, most_nested));
+  return toml::parse(text, what);
+}
+
+/// The steps of a dotted path; none where one of them is empty, or where they go deeper than a scene can.
 std::vector<std::string> steps_of(const std::string& path) {
-  std::istringstream parts(path);
   std::vector<std::string> names;
-  for (std::string part; std::getline(parts, part, '.');) names.push_back(part);
+  boost::split(names, path, [](char c) { return c == '.'; });
+  if (names.size() > most_nested || std::count(names.begin(), names.end(), "") > 0) return {};
   return names;
 }
 
@@ -68,14 +81,16 @@ std::optional<std::size_t> place_in(const toml::array& array, const std::string&
   std::size_t index = 0;
   const char* end = name.data() + name.size();
   const auto [rest, error] = std::from_chars(name.data(), end, index);
-  if (error != std::errc{} || rest != end || index >= array.size()) return std::nullopt;
+  const bool one_way_to_write_it = name == "0" || !name.starts_with('0');
+  if (error != std::errc{} || rest != end || index >= array.size() || !one_way_to_write_it) return std::nullopt;
   return index;
 }
 
 /// What stands at a dotted path, or null.
 const toml::node* node_at(const toml::table& root, const std::string& path) {
-  const toml::node* at = &root;
-  for (const std::string& name : steps_of(path)) {
+  const std::vector<std::string> names = steps_of(path);
+  const toml::node* at = names.empty() ? nullptr : &root;
+  for (const std::string& name : names) {
     if (const toml::table* table = at->as_table()) {
       at = table->get(name);
     } else if (const toml::array* array = at->as_array()) {
@@ -89,10 +104,17 @@ const toml::node* node_at(const toml::table& root, const std::string& path) {
   return at;
 }
 
-/// Puts a value at a dotted path; what is missing on the way becomes a table, a number counts in an array.
-void override_at(toml::table& root, const std::string& path, const toml::node& value) {
+/// Puts a value at a dotted path; what is missing on the way becomes a table, a number counts in an array. Messages
+/// call it by `overrider` and the path.
+void override_at(toml::table& root, const std::string& path, const toml::node& value, const std::string& overrider) {
   toml::node* at = &root;
   const std::vector<std::string> names = steps_of(path);
+  if (names.empty())
+    throw SceneError(fmt::format("{}{}: no key; write one as in time.steps, of at most {} parts", overrider,
+                                 shortened(path), most_nested));
+  for (const std::string& name : names)
+    if (const std::string problem = key_problem(name); !problem.empty())
+      throw SceneError(fmt::format("{}{}: {}", overrider, shortened(path), problem));
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool last = i + 1 == names.size();
     if (toml::table* table = at->as_table()) {
@@ -105,11 +127,11 @@ void override_at(toml::table& root, const std::string& path, const toml::node& v
       continue;
     }
     toml::array* array = at->as_array();
-    if (array == nullptr) throw SceneError(fmt::format("--set {}: \"{}\" is not a table", path, names[i - 1]));
+    if (array == nullptr) throw SceneError(fmt::format("{}{}: \"{}\" is not a table", overrider, path, names[i - 1]));
     const auto index = place_in(*array, names[i]);
     if (!index)
-      throw SceneError(fmt::format("--set {}: \"{}\" is no place in the array \"{}\" of {}, counted from 0", path,
-                                   names[i], names[i - 1], array->size()));
+      throw SceneError(fmt::format("{}{}: \"{}\" is no place in the array \"{}\" of {}, counted from 0", overrider,
+                                   path, names[i], names[i - 1], array->size()));
     if (last) {
       array->replace(array->cbegin() + std::ptrdiff_t(*index), value);
       return;
@@ -133,6 +155,9 @@ void list_leaves(const toml::table& table, const std::string& prefix, std::vecto
 
 }  // namespace
 
+SceneError::SceneError(const std::string& message, const std::string& problem)
+    : std::runtime_error(visible(message)), problem_(visible(problem)) {}
+
 std::string Section::full(std::string_view key) const {
   if (path_.empty()) return std::string(key);
   return key.empty() ? path_ : fmt::format("{}.{}", path_, key);
@@ -146,14 +171,14 @@ void Section::fail(std::string_view key, const std::string& problem) const {
     const auto dot = origin.rfind('.');
     origin = dot == std::string::npos ? "" : origin.substr(0, dot);
   }
-  const std::string said = one_line(name.empty() ? problem : fmt::format("{}: {}", name, problem));
+  const std::string said = name.empty() ? problem : fmt::format("{}: {}", name, problem);
   if (!origin.empty() && origin != name)
-    throw SceneError(fmt::format("{}{}: {}", one_line(source_->overrider), one_line(origin), said), said);
-  if (!origin.empty()) throw SceneError(fmt::format("{}{}", one_line(source_->overrider), said), said);
+    throw SceneError(fmt::format("{}{}: {}", source_->overrider, origin, said), said);
+  if (!origin.empty()) throw SceneError(fmt::format("{}{}", source_->overrider, said), said);
   const toml::node* node = table_ && !key.empty() ? table_->get(key) : nullptr;
   const int line = node ? int(node->source().begin.line) : line_;
   const std::string where = line > 0 ? fmt::format("{}:{}", source_->file, line) : source_->file;
-  throw SceneError(fmt::format("{}: {}", one_line(where), said), said);
+  throw SceneError(fmt::format("{}: {}", where, said), said);
 }
 
 const toml::node* Section::find(std::string_view key) const {
@@ -303,15 +328,46 @@ Section Section::copied() const {
   return copy;
 }
 
+Section Section::below(std::string_view key, const toml::node& node) const {
+  Section out;
+  out.source_ = source_;
+  out.path_ = full(key);
+  out.table_ = node.as_table();
+  out.line_ = int(node.source().begin.line);
+  return out;
+}
+
+void Section::require_plain(std::string_view key, const toml::node& node) const {
+  if (const auto* text = node.as_string())
+    if (const std::string problem = text_problem(text->get()); !problem.empty()) fail(key, problem);
+  if (node.is_table()) below(key, node).require_plain();
+  if (const toml::array* array = node.as_array())
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const toml::node& entry = (*array)[i];
+      if (entry.is_table())
+        below(fmt::format("{}.{}", key, i), entry).require_plain();
+      else
+        require_plain(key, entry);
+    }
+}
+
+void Section::require_plain() const {
+  for (const auto& [key, node] : *table_) {
+    if (const std::string problem = key_problem(key.str()); !problem.empty())
+      below("", node).fail("", fmt::format("\"{}\": {}", shortened(std::string(key.str())), problem));
+    require_plain(key.str(), node);
+  }
+}
+
 Section Section::with(std::string_view path, const std::vector<double>& values) const {
   Section out = copied();
   const toml::node* before = node_at(source_->root, std::string(path));
   toml::array array;
   for (const double x : values) array.push_back(x);
   if (before != nullptr && before->is_array())
-    override_at(out.source_->root, std::string(path), array);
+    override_at(out.source_->root, std::string(path), array, source_->overrider);
   else
-    override_at(out.source_->root, std::string(path), toml::value<double>(values.front()));
+    override_at(out.source_->root, std::string(path), toml::value<double>(values.front()), source_->overrider);
   return out;
 }
 
@@ -323,16 +379,16 @@ Section Section::with(const std::vector<Change>& changes) const {
     if (before != nullptr && before->is_array()) {
       toml::array array;
       for (const double x : values) array.push_back(x);
-      override_at(root, path, array);
+      override_at(root, path, array, source_->overrider);
       continue;
     }
     const double x = values.front();
     constexpr double largest_whole = 9007199254740992;  // of a double
     const bool may_be_whole = before == nullptr || before->is_integer();
     if (may_be_whole && x == std::floor(x) && std::abs(x) <= largest_whole)
-      override_at(root, path, toml::value<std::int64_t>(std::int64_t(x)));
+      override_at(root, path, toml::value<std::int64_t>(std::int64_t(x)), source_->overrider);
     else
-      override_at(root, path, toml::value<double>(x));
+      override_at(root, path, toml::value<double>(x), source_->overrider);
   }
   return out;
 }
@@ -400,14 +456,13 @@ Section Section::section(std::string_view key, std::string_view purpose) const {
 }
 
 Section Section::section_or_empty(std::string_view key) const {
+  if (const toml::node* node = find(key)) {
+    if (!node->is_table()) fail(key, fmt::format("expected a table, got {}", type_name(*node)));
+    return below(key, *node);
+  }
   Section out;
   out.source_ = source_;
   out.path_ = full(key);
-  if (const toml::node* node = find(key)) {
-    out.table_ = node->as_table();
-    out.line_ = int(node->source().begin.line);
-    if (out.table_ == nullptr) fail(key, fmt::format("expected a table, got {}", type_name(*node)));
-  }
   return out;
 }
 
@@ -420,14 +475,9 @@ std::vector<Section> Section::tables(std::string_view key) const {
     fail(key, fmt::format("expected tables [[{}]] in double brackets, got {}", full(key), type_name(*node)));
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& entry = (*array)[i];
-    Section table;
-    table.source_ = source_;
-    table.path_ = fmt::format("{}.{}", full(key), i);
-    table.table_ = entry.as_table();
-    table.line_ = int(entry.source().begin.line);
-    if (table.table_ == nullptr)
+    if (!entry.is_table())
       fail(key, fmt::format("expected tables [[{}]] in double brackets, got {}", full(key), type_name(entry)));
-    out.push_back(std::move(table));
+    out.push_back(below(fmt::format("{}.{}", key, i), entry));
   }
   return out;
 }
@@ -481,10 +531,9 @@ Section read_scene(const std::filesystem::path& file, const std::vector<std::str
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     throw SceneError(fmt::format("{}: no such scene file; examples are in examples/", file.string()));
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw SceneError(fmt::format("{}: cannot be read", file.string()));
-  return parse_scene(text, file.string(), overrides, overrider);
+  const auto text = contents(file);
+  if (!text) throw SceneError(fmt::format("{}: cannot be read", file.string()));
+  return parse_scene(*text, file.string(), overrides, overrider);
 }
 
 Section parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
@@ -494,28 +543,29 @@ Section parse_scene(std::string_view text, const std::string& file, const std::v
   scene.source_->file = file;
   scene.source_->overrider = overrider;
   try {
-    scene.source_->root = toml::parse(text, file);
+    scene.source_->root = parsed(text, file);
   } catch (const toml::parse_error& e) {
     throw SceneError(
-        fmt::format("{}:{}: not valid TOML: {}", file, e.source().begin.line, one_line(std::string(e.description()))));
+        fmt::format("{}:{}: not valid TOML: {}", file, e.source().begin.line, std::string(e.description())));
   }
   for (const std::string& given : overrides) {
     const auto equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw SceneError(fmt::format("--set {}: expected key=value, as in --set time.steps=100", given));
+      throw SceneError(fmt::format("--set {}: expected key=value, as in --set time.steps=100", shortened(given)));
     const std::string key = given.substr(0, equals);
-    toml::table parsed;
+    toml::table held;
     try {
-      parsed = toml::parse("value = " + given.substr(equals + 1));
+      held = parsed("value = " + given.substr(equals + 1), overrider + shortened(key));
     } catch (const toml::parse_error&) {
       // A bare word is taken as a string, so that quotes need not survive the shell.
-      parsed.insert("value", given.substr(equals + 1));
+      held.insert("value", given.substr(equals + 1));
     }
-    if (parsed.size() != 1) throw SceneError(fmt::format("--set {}: expected one value", key));
-    override_at(scene.source_->root, key, *parsed.get("value"));
+    if (held.size() != 1) throw SceneError(fmt::format("{}{}: expected one value", overrider, shortened(key)));
+    override_at(scene.source_->root, key, *held.get("value"), overrider);
     scene.source_->overridden.insert(key);
   }
   scene.table_ = &scene.source_->root;
+  scene.require_plain();
   return scene;
 }
 

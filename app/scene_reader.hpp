@@ -21,8 +21,7 @@ namespace lagroid::app {
 class SceneError : public std::runtime_error {
  public:
   explicit SceneError(const std::string& message) : SceneError(message, message) {}
-  SceneError(const std::string& message, std::string problem)
-      : std::runtime_error(message), problem_(std::move(problem)) {}
+  SceneError(const std::string& message, const std::string& problem);
   /// The message without the place in the file: key and what is wrong with it.
   const std::string& problem() const { return problem_; }
 
@@ -125,6 +124,11 @@ class Section {
 
   /// A copy of the whole scene that shares nothing with it.
   Section copied() const;
+  /// What stands at a key of this table, as a table; empty where it is none.
+  Section below(std::string_view key, const toml::node& node) const;
+  /// Refuses keys and texts, in this table and below it, that `key_problem` and `text_problem` do.
+  void require_plain() const;
+  void require_plain(std::string_view key, const toml::node& node) const;
   const toml::node* find(std::string_view key) const;
   const toml::node& require(std::string_view key, std::string_view what) const;
   double checked(std::string_view key, const toml::node& node, const NumberRule& rule) const;
@@ -136,8 +140,8 @@ class Section {
   int line_ = 0;
 };
 
-/// Reads a scene file and applies overrides "key.subkey=value", which messages call by `overrider` and the key. Throws
-/// SceneError.
+/// Reads a scene file and applies overrides "key.subkey=value", which messages call by `overrider` and the key. Keys
+/// and texts are plain afterwards (text.hpp). Throws SceneError.
 Section read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                    const std::string& overrider = "--set ");
 /// The same of a text; `file` is what messages call it.

@@ -1,6 +1,8 @@
 #include "simulation.hpp"
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 namespace lagroid::app {
 
@@ -23,6 +25,11 @@ TimeGrid read_time(const Section& scene) {
   grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
               : !has_step && time.has("accuracy") ? first_tried
                                                   : time.number("step", positive);
+  const char* const key = has_duration ? "duration" : "step";
+  if (grid.step < std::numeric_limits<double>::min())
+    time.fail(key, fmt::format("makes steps of {:g} s, too short to keep their digits", grid.step));
+  if (!std::isfinite(grid.step * double(grid.steps)))
+    time.fail(key, fmt::format("{} steps of {:g} s have no finite end", grid.steps, grid.step));
   return grid;
 }
 
@@ -190,7 +197,10 @@ std::string step_failure(const StepReport& report, long step, double time, TimeM
       return fmt::format(
           "{}: the step's matrix is singular, the system is not regular here; change the step or the state", where);
     case SolveStatus::not_finite:
-      return fmt::format("{}: a number overflowed or became NaN; use a smaller step", where);
+      return fmt::format(
+          "{}: a number overflowed, became NaN or is too small to keep its digits; use a smaller step, or units in "
+          "which masses, lengths and times are nearer one",
+          where);
     case SolveStatus::no_step:
       return mode == TimeMode::controlled
                  ? fmt::format("{}: the motion changes too fast for steps of this size; use a smaller time.step", where)

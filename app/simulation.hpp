@@ -33,6 +33,16 @@ TimeGrid read_time(const Section& scene);
 /// Where the step is not searched for.
 void refuse_accuracy(const Section& scene);
 
+/// Refuses [boundary] of a system that has no boundary values.
+template <DiscreteSystem Sys> void refuse_boundary(const Section& scene) {
+  if (!scene.has("boundary")) return;
+  scene.fail("boundary", TimeDependent<Sys> ? "the equal steps of a boundary value have no time of their own, on which "
+                                              "this system depends (from C++ take FixedStep); give [initial]"
+                         : Forced<Sys>
+                             ? "the motions of a forced system make no action stationary; give [initial]"
+                             : "the motions of a nonholonomic system make no action stationary; give [initial]");
+}
+
 /// How time goes on in an initial-value run: the rest of [time], and [solver].
 struct MarchChoice {
   MarchOptions options;
@@ -134,6 +144,7 @@ template <DiscreteSystem Sys> class SystemRun final : public SteppedRun {
     return step_failure(report, step, march_->point().time, mode_);
   }
   bool observe(long step) override {
+    if (!std::isfinite(march_->point().time)) return false;
     if (step > 0)
       march_->for_each_inner_stage(
           [&](const Step<Sys>& inner, double from, double size) { recorder_.watch_constraint(inner, from, size); });

@@ -50,6 +50,8 @@ void restore(Checkpoint& checkpoint, SteppedRun& run, RunResult& result, Clock& 
         fmt::format("{}: its checkpoint is of another {}; run the scene again", context.folder.string(), of));
   };
   Archive archive(checkpoint.restore(rows));
+  for (const std::string& build : checkpoint.other_builds())
+    result.notes.push_back("goes on from another build (" + build + "), without the promise of the same bits");
   try {
     persist(archive, run, result, clock);
   } catch (const nlohmann::json::exception&) {
@@ -120,7 +122,7 @@ void drive(SteppedRun& run, const Pace& pace, const RunContext& context, RunResu
         whole = false;
         result.status = std::string(to_string(SolveStatus::not_finite));
         result.message =
-            fmt::format("step {}: energy or constraints are no finite numbers any more; use a smaller step", k);
+            fmt::format("step {}: time, energy or constraints are no finite numbers any more; use a smaller step", k);
         break;
       }
       progress.update(k);

@@ -1,8 +1,13 @@
 #include "view.hpp"
 
 #include "hdf5_file.hpp"
-
-#include "output_folder.hpp"
+#include "interrupt.hpp"
+#include "kept_file.hpp"
+#include "markup.hpp"
+#include "nesting.hpp"
+#include "output.hpp"
+#include "report.hpp"
+#include "text.hpp"
 #include "viewer/assets.hpp"
 
 #include <H5Cpp.h>
@@ -11,7 +16,8 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace lagroid::app {
@@ -22,7 +28,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 1> pages{"view.html"};
-constexpr std::array<const char*, 2> pictures{"plot.svg", "plot.png"};
 
 fs::path file_of_run(const std::string& run, const char* name) {
   const fs::path folder(run);
@@ -34,16 +39,27 @@ fs::path file_of_run(const std::string& run, const char* name) {
   return folder / name;
 }
 
-Json read_summary(const fs::path& file) {
-  std::ifstream in(file);
-  Json summary = Json::parse(in, nullptr, /*allow_exceptions=*/false);
-  if (summary.is_discarded())
-    throw RunError(fmt::format("{}: is no JSON any more; run the scene again", file.string()));
-  for (const char* key : {"system", "status", "steps", "ledger", "notes", "picture"})
-    if (!summary.contains(key))
-      throw RunError(
-          fmt::format("{}: has no \"{}\"; it is of an older lagroid, run the scene again", file.string(), key));
-  return summary;
+/// Refuses texts that no scene may hold: a summary whose names have them is by someone else.
+void require_plain(const Json& json, const fs::path& file) {
+  if (json.is_string() && visible(json.get_ref<const std::string&>()) != json.get_ref<const std::string&>())
+    throw RunError(fmt::format("{}: has control characters in \"{}\"; run the scene again", file.string(),
+                               json.get_ref<const std::string&>()));
+  if (json.is_structured())
+    for (const Json& inner : json) require_plain(inner, file);
+}
+
+/// What `use` makes of the summary of a run.
+template <class Use> auto from_summary(const std::string& run, const Use& use) {
+  const fs::path file = file_of_run(run, "summary.json");
+  const auto summary = read_json(contents(file).value_or(""));
+  if (!summary) throw RunError(fmt::format("{}: is no JSON any more; run the scene again", file.string()));
+  require_plain(*summary, file);
+  try {
+    return use(*summary);
+  } catch (const Json::exception& error) {
+    throw RunError(fmt::format("{}: is no summary of a run, or that of another lagroid ({}); run the scene again",
+                               file.string(), error.what()));
+  }
 }
 
 std::string text_attribute(const H5::H5Object& object, const char* name) {
@@ -115,23 +131,16 @@ Columns read_columns(const fs::path& file, long most_rows) {
       }
     }
     return columns;
+  } catch (const std::length_error&) {  // more rows than any memory holds
+    throw RunError(fmt::format("{}: is damaged; run the scene again", file.string()));
+  } catch (const std::bad_alloc&) {
+    throw RunError(
+        fmt::format("{}: does not fit into the memory, or is damaged; run the scene again with a larger "
+                    "output.every",
+                    file.string()));
   } catch (const H5::Exception& error) {
     throw RunError(fmt::format("{}: HDF5: {}; run the scene again", file.string(), error.getDetailMsg()));
   }
-}
-
-/// The JSON as it may stand inside a script element.
-std::string embedded(const Json& json) {
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
 }
 
 std::string filled(std::string_view page, const std::vector<std::pair<std::string_view, std::string_view>>& places) {
@@ -151,26 +160,33 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
   }
 }
 
-}  // namespace
-
-fs::path write_view(const ViewOptions& options) {
-  const Json summary = read_summary(file_of_run(options.run, "summary.json"));
+/// What the page shows.
+Json data_of_page(const Json& summary, const ViewOptions& options) {
+  Json run;
+  for (const char* key : {"system", "status", "steps", "notes"}) run[key] = summary.at(key);
+  run["message"] = summary.value("message", "");
+  run["ledger"] = summary.at("ledger").at("entries");
+  run["shapes"] = summary.at("picture").at("shapes");
+  run["panels"] = summary.at("picture").at("panels");
   Columns columns = read_columns(file_of_run(options.run, "trajectory.h5"), options.most_rows);
   if (columns.recorded == 0)
     throw RunError(fmt::format("{}: nothing was computed ({}); there is nothing to show", options.run,
-                               summary.value("message", summary["status"].get<std::string>())));
-  Json run;
-  for (const char* key : {"system", "status", "steps", "notes"}) run[key] = summary[key];
-  run["message"] = summary.value("message", "");
-  run["ledger"] = summary["ledger"]["entries"];
-  run["shapes"] = summary["picture"]["shapes"];
-  run["panels"] = summary["picture"]["panels"];
+                               summary.value("message", summary.at("status").get<std::string>())));
   if (columns.time.size() < columns.recorded)
     run["notes"].push_back(
         fmt::format("{} of {} recorded rows are on this page", columns.time.size(), columns.recorded));
   run["time"] = std::move(columns.time);
   run["columns"] = std::move(columns.by_label);
-  const std::string data = embedded(run);
+  return run;
+}
+
+}  // namespace
+
+fs::path write_view(const ViewOptions& options) {
+  file_of_run(options.run, "summary.json");
+  const OutputFolder held = folder_of_run(options.run);
+  const std::string data =
+      from_summary(options.run, [&](const Json& summary) { return in_script(data_of_page(summary, options)); });
   const std::string page =
       filled(viewer::page(), {{"@STYLE@", viewer::style()}, {"@RUN@", data}, {"@PROGRAM@", viewer::program()}});
   return write_whole(options.run, pages,
@@ -181,18 +197,23 @@ fs::path write_view(const ViewOptions& options) {
       .front();
 }
 
-std::vector<fs::path> draw_plots(const std::string& run) {
-  const fs::path script = file_of_run(run, "plot.gp");
-  const fs::path data = file_of_run(run, "trajectory.csv");
-  return write_whole(run, pictures, [&](const fs::path& staging) {
-    fs::copy_file(script, staging / "plot.gp");
-    fs::create_symlink(fs::absolute(data), staging / "trajectory.csv");
-    if (const fs::path excerpt = data.parent_path() / "plot.csv"; fs::exists(excerpt))
-      fs::create_symlink(fs::absolute(excerpt), staging / "plot.csv");
-    if (const std::string reason = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"}); !reason.empty())
-      throw RunError(fmt::format("{}: {}", run, reason));
-    return std::vector<std::string>{"plot.svg", "plot.png"};
-  });
+std::vector<fs::path> draw_plots(const PlotOptions& options) {
+  const fs::path file = file_of_run(options.run, "plot.gp");
+  const fs::path excerpt = file_of_run(options.run, "trajectory.csv").parent_path() / "plot.csv";
+  const OutputFolder held = folder_of_run(options.run);
+  const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), !fs::exists(excerpt)); };
+  if (!options.own_script && contents(file) != from_summary(options.run, its_own))
+    throw RunError(
+        fmt::format("{}: is not the script that summary.json gives: someone changed it, or another lagroid wrote it. "
+                    "A script can do all that you can: --own-script runs it, where you trust it",
+                    file.string()));
+  const InterruptGuard guard;
+  const Drawing drawing{"plot.gp", {"plot.svg", "plot.png"}};
+  if (const std::string reason = draw(options.run, drawing, false); !reason.empty())
+    throw RunError(fmt::format("{}: {}", options.run, reason));
+  std::vector<fs::path> written;
+  for (const std::string& picture : drawing.pictures) written.push_back(fs::path(options.run) / picture);
+  return written;
 }
 
 }  // namespace lagroid::app

@@ -19,7 +19,13 @@ struct ViewOptions {
 /// the page cannot be written.
 std::filesystem::path write_view(const ViewOptions& options);
 
-/// Draws plot.svg and plot.png of a run anew, by its plot.gp, which may have been edited. Throws as `write_view`.
-std::vector<std::filesystem::path> draw_plots(const std::string& run);
+struct PlotOptions {
+  std::string run;          ///< the folder
+  bool own_script = false;  ///< draw by plot.gp although it is not the one that the run wrote
+};
+
+/// Draws plot.svg and plot.png of a run anew, by its plot.gp. Scripts of gnuplot can run anything: one that its
+/// summary does not give is refused unless `own_script`. Throws as `write_view`.
+std::vector<std::filesystem::path> draw_plots(const PlotOptions& options);
 
 }  // namespace lagroid::app

@@ -1,8 +1,17 @@
 #include "written.hpp"
 
+#include "command.hpp"
+#include "interrupt.hpp"
+
 #include <fmt/format.h>
 
 namespace lagroid::app {
+
+int code_after_writing(int code, const std::string& what) {
+  if (code != 0 || !InterruptGuard::interrupted()) return code;
+  complain(what + ": interrupted after the results were there");
+  return exit_interrupted;
+}
 
 void tell_written(const std::vector<std::filesystem::path>& files, const std::string& note, std::string& text,
                   nlohmann::ordered_json& json) {

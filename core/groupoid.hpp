@@ -60,9 +60,9 @@ concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
 /// (`object_size`, `object_coordinates(q)`, `object<S>(coordinates)`).
 /// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and, for speed,
 /// `seed` (the translations in closed form), a frame of the whole arrow (arrow_frame.hpp), `extend`, `nudge`, `chart`,
-/// `arrow_in_chart` and `bracket` (algebroid.hpp). For its geometry it supplies `displace_object` and
-/// `object_displacement` where its objects are not an open set of their coordinates, and `bisection` where tau does not
-/// reach every arrow (see below). Everything else is deduced.
+/// `arrow_in_chart` and `bracket` (algebroid.hpp); and `loop`, where paths can wind (loops.hpp). For its geometry it
+/// supplies `displace_object` and `object_displacement` where its objects are not an open set of their coordinates, and
+/// `bisection` where tau does not reach every arrow (see below). Everything else is deduced.
 ///
 /// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
 template <class Derived, int Dimension> class LieGroupoid {

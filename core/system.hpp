@@ -4,6 +4,9 @@
 #include <lagroid/core/groupoid.hpp>
 #include <lagroid/core/types.hpp>
 
+#include <concepts>
+#include <type_traits>
+
 namespace lagroid {
 
 /// What arrow constraints phi(g) = 0 restrict, beside the trajectory itself. The two differ unless the constraints are
@@ -28,6 +31,10 @@ template <class S, int N> struct Forces {
   Vector<S, N> source;
   Vector<S, N> target;
 };
+
+/// The members of a system are those that its base is told of, with the arguments and results that `System` names: what
+/// is there but does not fit would otherwise be passed over without a word. Does not compile where that is not so.
+template <class Sys> void require_members_to_fit();
 
 /// Base of every system: a groupoid G, a discrete Lagrangian L : G -> R and constraints that cut out N.
 ///
@@ -70,6 +77,10 @@ template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraint
 
   using Multipliers = Vector<double, constraints>;
 
+  /// Here the compiler sees a system whole, whatever is then made of it: what does not fit is told in one sentence.
+  /// (Derivatives ask again, for classes derived from systems.)
+  System() { require_members_to_fit<Derived>(); }
+
   [[no_unique_address]] G groupoid;
 };
 
@@ -110,6 +121,11 @@ template <int N, int M> struct TwoSided : Gradients<N, M> {
 template <class Sys, class S = double> using GradientsOf = Gradients<Sys::dimension, Sys::constraints, S>;
 template <class Sys> using TwoSidedOf = TwoSided<Sys::dimension, Sys::constraints>;
 
+/// A vector of N doubles, or an expression that becomes one. (The count is looked at first: Eigen's constructors do not
+/// fail softly.)
+template <class V, int N>
+concept ColumnOf = std::remove_cvref_t<V>::RowsAtCompileTime == N&& std::convertible_to<V, Vector<double, N>>;
+
 /// What the solvers require of a system. Build one by deriving from `System`.
 template <class Sys>
 concept DiscreteSystem = Groupoid<typename Sys::GroupoidType> &&
@@ -117,10 +133,10 @@ concept DiscreteSystem = Groupoid<typename Sys::GroupoidType> &&
              const ObjectOf<typename Sys::GroupoidType>& q) {
   { system.lagrangian(g) } -> std::convertible_to<double>;
   requires Sys::arrow_constraints == 0 || requires {
-    { system.constraint(g) } -> std::convertible_to<Vector<double, Sys::arrow_constraints>>;
+    { system.constraint(g) } -> ColumnOf<Sys::arrow_constraints>;
   };
   requires Sys::object_constraints == 0 || requires {
-    { system.object_constraint(q) } -> std::convertible_to<Vector<double, Sys::object_constraints>>;
+    { system.object_constraint(q) } -> ColumnOf<Sys::object_constraints>;
   };
 };
 
@@ -167,28 +183,94 @@ concept HasTimeStep = requires(Sys& system) {
   system.h = 1.0;
 };
 
-/// Whether `forces` can be called at all, const or not.
+namespace detail {
+
+/// Members that can be called at all, const or not, whatever comes of it.
+template <class Sys>
+concept SpeaksOfConstraint = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  system.constraint(g);
+};
+template <class Sys>
+concept SpeaksOfObjectConstraint = requires(Sys& system, const ObjectOf<typename Sys::GroupoidType>& q) {
+  system.object_constraint(q);
+};
 template <class Sys>
 concept SpeaksOfForces = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
   system.forces(g);
 };
+/// `force` that returns what only `forces` does. (A `force` of another kind is the user's own affair.)
+template <class Sys>
+concept SpeaksOfForce = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  { system.force(g) } -> std::convertible_to<Forces<double, Sys::dimension>>;
+};
+
+template <class Sys>
+concept HasLagrangian = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  { system.lagrangian(g) } -> std::convertible_to<double>;
+};
+template <class Sys>
+concept HasConstraint = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
+  { system.constraint(g) } -> ColumnOf<Sys::arrow_constraints>;
+};
+template <class Sys>
+concept HasObjectConstraint = requires(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q) {
+  { system.object_constraint(q) } -> ColumnOf<Sys::object_constraints>;
+};
+
+/// Whether the numbers that `System` counts are still there, under their names.
+template <class Sys>
+concept CountsAreNumbers = requires {
+  requires std::same_as<decltype(Sys::constraints), const int>;
+  requires std::same_as<decltype(Sys::arrow_constraints), const int>;
+  requires std::same_as<decltype(Sys::object_constraints), const int>;
+};
+
+}  // namespace detail
+
+/// Whether there is a constraint, of either kind, exactly where the base is told of one, with as many components.
+template <class Sys>
+inline constexpr bool arrow_constraint_fits =
+    Sys::arrow_constraints == 0 ? !detail::SpeaksOfConstraint<Sys> : detail::HasConstraint<Sys>;
+template <class Sys>
+inline constexpr bool object_constraint_fits =
+    Sys::object_constraints == 0 ? !detail::SpeaksOfObjectConstraint<Sys> : detail::HasObjectConstraint<Sys>;
+template <class Sys>
+inline constexpr bool forces_fit = !detail::SpeaksOfForce<Sys> && (Forced<Sys> || !detail::SpeaksOfForces<Sys>);
 
 /// Whether every optional member that the system has is one that will be used: a member of the right name that is not
 /// const, or does not take or return what it should, would otherwise be passed over without a word.
 template <class Sys>
-inline constexpr bool optional_members_fit = (HasAnalyticDerivatives<Sys> || !requires { &Sys::two_sided; }) &&
-                                             (HasAnalyticGradients<Sys> || !requires { &Sys::gradients; }) &&
-                                             (HasBranch<Sys> || !requires { &Sys::admissible; }) &&
-                                             (HasFirstGuess<Sys> || !requires { &Sys::first_guess; }) &&
-                                             (HasTimeStep<Sys> || !requires { &Sys::h; }) &&
-                                             (HasAnnihilator<Sys> || !requires { &Sys::annihilator; }) &&
-                                             (Forced<Sys> || !SpeaksOfForces<Sys>);
-template <class Sys> constexpr void require_optional_members_to_fit() {
+inline constexpr bool optional_members_fit =
+    (HasAnalyticDerivatives<Sys> || !requires { &Sys::two_sided; }) &&
+    (HasAnalyticGradients<Sys> || !requires { &Sys::gradients; }) &&
+    (HasBranch<Sys> || !requires { &Sys::admissible; }) && (HasFirstGuess<Sys> || !requires { &Sys::first_guess; }) &&
+    (HasTimeStep<Sys> || !requires { &Sys::h; }) &&
+    (HasAnnihilator<Sys> || !requires { &Sys::annihilator; }) && forces_fit<Sys>;
+
+template <class Sys> void require_members_to_fit() {
   static_assert(
-      optional_members_fit<Sys>,
-      "two_sided, gradients, admissible, first_guess, h, annihilator or forces is there but does not fit (see System): "
-      "is it const, with the right arguments and result?");
-  static_assert(!Nonholonomic<Sys> || Sys::arrow_constraints > 0, "a nonholonomic system has arrow constraints");
+      detail::CountsAreNumbers<Sys>,
+      "constraints, arrow_constraints and object_constraints are the numbers that System counts: the functions "
+      "are called constraint(g) and object_constraint(q)");
+  if constexpr (detail::CountsAreNumbers<Sys>) {
+    static_assert(detail::HasLagrangian<Sys>,
+                  "lagrangian(g) is missing, or not a const template that returns the scalar of g (see System)");
+    static_assert(arrow_constraint_fits<Sys>,
+                  "constraint(g) does not fit ArrowConstraints, the third argument of System<Derived, G, "
+                  "ArrowConstraints, ObjectConstraints>: a const template on the scalar that returns a vector of so "
+                  "many components, and is there exactly when there are any");
+    static_assert(object_constraint_fits<Sys>,
+                  "object_constraint(q) does not fit ObjectConstraints, the fourth argument of System<Derived, G, "
+                  "ArrowConstraints, ObjectConstraints>: a const template on the scalar that returns a vector of so "
+                  "many components, and is there exactly when there are any");
+    static_assert(forces_fit<Sys>,
+                  "discrete forces are a const template forces(g) on the scalar that returns Forces<S, dimension> (see "
+                  "Forces); one called force, or of another kind, would not act");
+    static_assert(optional_members_fit<Sys> || !forces_fit<Sys>,
+                  "two_sided, gradients, admissible, first_guess, h or annihilator is there but does not fit (see "
+                  "System): is it const, with the right arguments and result?");
+    static_assert(!Nonholonomic<Sys> || Sys::arrow_constraints > 0, "a nonholonomic system has arrow constraints");
+  }
 }
 
 }  // namespace lagroid

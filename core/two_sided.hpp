@@ -148,7 +148,7 @@ LAGROID_FLATTEN TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const Arr
 template <DiscreteSystem Sys>
 GradientsOf<Sys> gradients(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                            const typename Sys::Multipliers& lambda) {
-  require_optional_members_to_fit<Sys>();
+  require_members_to_fit<Sys>();
   if constexpr (HasAnalyticGradients<Sys>) {
     return system.gradients(g, lambda);
   } else if constexpr (HasAnalyticDerivatives<Sys>) {
@@ -162,7 +162,7 @@ GradientsOf<Sys> gradients(const Sys& system, const ArrowOf<typename Sys::Groupo
 template <DiscreteSystem Sys>
 TwoSidedOf<Sys> two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                           const typename Sys::Multipliers& lambda) {
-  require_optional_members_to_fit<Sys>();
+  require_members_to_fit<Sys>();
   if constexpr (HasAnalyticDerivatives<Sys>) {
     return system.two_sided(g, lambda);
   } else {

@@ -2,6 +2,7 @@
 /// The action groupoid of a group that acts on a space from the right.
 
 #include <lagroid/core/algebroid.hpp>
+#include <lagroid/core/loops.hpp>
 
 #include <string>
 
@@ -69,6 +70,12 @@ template <class Group, class Space> struct Action : LieGroupoid<Action<Group, Sp
   }
   template <class E, class P> ActionArrow<E, P> bisection(const ActionArrow<E, P>& g, const P& m) const {
     return {g.element, m};
+  }
+  /// Those of the group: on the way from m back to m.
+  static constexpr int loops = loops_of<Group>();
+  Arrow<double> loop(const Object<double>& m, const Vector<double, rank>& axis,
+                     const Vector<double, loops>& turns) const requires(loops > 0) {
+    return {group.loop(Vector<double, 0>(), axis, turns), m};
   }
   template <class P, class U> P displace_object(const P& m, const U& u) const {
     if constexpr (requires { Space::dimension; }) {

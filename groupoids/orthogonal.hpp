@@ -1,7 +1,7 @@
 #pragma once
 /// O(n) and SO(n), for any n.
 
-#include <lagroid/groupoids/matrix_group.hpp>
+#include <lagroid/groupoids/so2.hpp>
 
 #include <string>
 
@@ -53,6 +53,16 @@ template <int N> struct Orthogonal : MatrixGroup<Orthogonal<N>, N, N*(N - 1) / 2
   template <class S> static Vector<S, rank> cayley_inverse(const Matrix<S, N, N>& g) {
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
     return vee(Matrix<S, N, N>(solve<S>(g + one, (g - one) * S(2.0))));
+  }
+
+  /// Turns in the planes of the first two coordinates, the next two, and so on.
+  static constexpr int loops = N / 2;
+  static Matrix<double, N, N> loop(const Vector<double, 0>& q, const Vector<double, rank>&,
+                                   const Vector<double, loops>& turns) {
+    Matrix<double, N, N> g = Matrix<double, N, N>::Identity();
+    for (int i = 0; i < loops; ++i)
+      g.template block<2, 2>(2 * i, 2 * i) = SO2::loop(q, Vector<double, 1>::Zero(), turns.template segment<1>(i));
+    return g;
   }
 
   /// The nearest orthogonal matrix, by one Newton-Schulz step: exact where g is orthogonal up to round-off.

@@ -2,6 +2,7 @@
 /// The pair groupoid G x G => G of a matrix group.
 
 #include <lagroid/core/algebroid.hpp>
+#include <lagroid/core/loops.hpp>
 #include <lagroid/groupoids/pair.hpp>
 
 #include <string>
@@ -39,6 +40,12 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
   template <class E> auto tau_inverse(const ElementPair<E>& g) const { return object_displacement(g.source, g.target); }
   template <class E, class S> auto bracket(const E&, const Vector<S, rank>& x, const Vector<S, rank>& y) const {
     return group.bracket(Vector<S, 0>(), x, y);
+  }
+  /// Those of the group, from a back to a.
+  static constexpr int loops = loops_of<Group>();
+  Arrow<double> loop(const Object<double>& a, const Vector<double, rank>& axis,
+                     const Vector<double, loops>& turns) const requires(loops > 0) {
+    return {a, group.multiply(a, group.loop(Vector<double, 0>(), axis, turns))};
   }
   /// Translation from the left.
   template <class E> ElementPair<E> bisection(const ElementPair<E>& g, const E& a) const {

@@ -3,6 +3,7 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/arrow_frame.hpp>
+#include <lagroid/core/loops.hpp>
 
 #include <array>
 #include <string>
@@ -81,6 +82,20 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   template <class... As, class... Qs> auto bisection(const std::tuple<As...>& g, const std::tuple<Qs...>& q) const {
     return map([](const auto& f, const auto& gi, const auto& qi) { return f.bisection(gi, qi); }, g, q);
   }
+  /// Those of the factors, in order.
+  static constexpr int loops = (loops_of<Gs>() + ...);
+  Arrow<double> loop(const Object<double>& q, const Vector<double, rank>& axis,
+                     const Vector<double, loops>& turns) const requires(loops > 0) {
+    return indexed([&]<std::size_t I>() -> std::tuple_element_t<I, Arrow<double>> {
+      const auto& f = std::get<I>(factor);
+      if constexpr (loop_counts[I] > 0) {
+        return f.loop(std::get<I>(q), segment<dimensions, I>(axis), segment<loop_counts, I>(turns));
+      } else {
+        return f.unit(std::get<I>(q));
+      }
+    });
+  }
+
   /// The objects' chart: those of the factors, side by side.
   static constexpr int object_dimension = (object_dimension_of<Gs>() + ...);
   template <class... Qs, class U> auto displace_object(const std::tuple<Qs...>& q, const U& u) const {
@@ -159,6 +174,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
 
  private:
   static constexpr std::array<int, factors> dimensions{Gs::dimension...};
+  static constexpr std::array<int, factors> loop_counts{loops_of<Gs>()...};
   static constexpr std::array<int, factors> frames{arrow_dimension_of<Gs>()...};
   static constexpr std::array<int, factors> object_dimensions{object_dimension_of<Gs>()...};
   static constexpr std::array<int, factors> arrow_sizes{Gs::arrow_coordinate_count()...};

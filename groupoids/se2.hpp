@@ -62,6 +62,12 @@ struct SpecialEuclidean2 : MatrixGroup<SpecialEuclidean2<Tau>, 3, 3, Tau> {
   static Matrix<double, 3, 3> project(const Matrix<double, 3, 3>& g) {
     return homogeneous<double>(SO2::project(g.topLeftCorner<2, 2>()), g.topRightCorner<2, 1>());
   }
+  /// Of the heading, on the spot.
+  static constexpr int loops = 1;
+  static Matrix<double, 3, 3> loop(const Vector<double, 0>& q, const Vector<double, 3>& axis,
+                                   const Vector<double, 1>& turns) {
+    return homogeneous<double>(SO2::loop(q, axis.head<1>(), turns), Vector<double, 2>::Zero());
+  }
   static std::string name() { return "SE(2)"; }
 
   /// [R p; 0 1].

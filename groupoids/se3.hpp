@@ -53,6 +53,12 @@ struct SpecialEuclidean3 : MatrixGroup<SpecialEuclidean3<Tau>, 4, 6, Tau> {
   static Matrix<double, 4, 4> project(const Matrix<double, 4, 4>& g) {
     return homogeneous<double>(SO3::project(Matrix<double, 3, 3>(g.topLeftCorner<3, 3>())), g.topRightCorner<3, 1>());
   }
+  /// Whole turns about an axis, on the spot.
+  static constexpr int loops = 1;
+  static Matrix<double, 4, 4> loop(const Vector<double, 0>& q, const Vector<double, 6>& axis,
+                                   const Vector<double, 1>& turns) {
+    return homogeneous<double>(SO3::loop(q, axis.head<3>(), turns), Vector<double, 3>::Zero());
+  }
   static std::string name() { return "SE(3)"; }
 
   /// [R p; 0 1].

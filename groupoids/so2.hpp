@@ -4,6 +4,7 @@
 #include <lagroid/groupoids/matrix_group.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace lagroid {
 
@@ -40,6 +41,11 @@ struct SpecialOrthogonal2 : MatrixGroup<SpecialOrthogonal2<Tau>, 2, 1, Tau> {
     Matrix<double, 2, 2> out;
     out << e(0), -e(1), e(1), e(0);
     return out;
+  }
+  /// Of the angle.
+  static constexpr int loops = 1;
+  static Matrix<double, 2, 2> loop(const Vector<double, 0>&, const Vector<double, 1>&, const Vector<double, 1>& turns) {
+    return exp(Vector<double, 1>(2 * std::numbers::pi * turns));
   }
   static std::string name() { return "SO(2)"; }
 };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <numbers>
 
 namespace lagroid {
 
@@ -160,6 +161,12 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   template <class T> static Vector<T, 3> chart(const Matrix<T, 3, 3>& g) { return cayley_inverse(g); }
   template <class T> static Matrix<T, 3, 3> arrow_in_chart(const Vector<T, 0>&, const Vector<T, 3>& v) {
     return cayley(v);
+  }
+  /// Whole turns about an axis.
+  static constexpr int loops = 1;
+  static Matrix<double, 3, 3> loop(const Vector<double, 0>&, const Vector<double, 3>& axis,
+                                   const Vector<double, 1>& turns) {
+    return exp(Vector<double, 3>(2 * std::numbers::pi * turns(0) * axis.normalized()));
   }
   static std::string name() { return "SO(3)"; }
 

@@ -28,6 +28,7 @@ struct OnTimeExtended : System<Derived, TimeExtended<typename Base::GroupoidType
                                Base::arrow_constraints + ExtraConstraints, Base::object_constraints> {
   template <class S> using Arrow = typename TimeExtended<typename Base::GroupoidType>::template Arrow<S>;
   template <class S> using Times = PairArrow<S, 1>;
+  using Untimed = Base;
 
   Base base;
   double origin = 0;
@@ -119,5 +120,14 @@ struct ConstantStep {
 /// `base` at the times t_k = t_0 + k h: nothing but the multiplier, the change of p_t in a step, is gained by solving
 /// the extended system. The integrator solves the other.
 template <Timed Base> using FixedStep = PrescribedStep<Base, ConstantStep>;
+
+/// The boundary arrow of `FixedStep` and its like for a boundary value of `base`: `boundary` from the time `start` on,
+/// in so many steps of size h. So boundary values of systems that depend on time are stated and solved.
+template <Timed Base>
+ArrowOf<TimeExtended<typename Base::GroupoidType>> timed_boundary(const ArrowOf<typename Base::GroupoidType>& boundary,
+                                                                  double start, double h, std::size_t steps) {
+  using Time = Vector<double, 1>;
+  return {PairArrow<double, 1>{Time(start), Time(start + h * double(steps))}, boundary};
+}
 
 }  // namespace lagroid

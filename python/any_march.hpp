@@ -2,6 +2,7 @@
 /// A march of any system, as the Python module sees it: numbers with shapes.
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/step_solver.hpp>
@@ -30,6 +31,7 @@ struct Watched {
   std::vector<std::string> components;
   Promise promise = Promise::bounded;
   bool on_arrows = false;
+  bool sized = false;  ///< whether the size of its terms is known; else its own norm stands for it
 };
 
 /// Virtual, because users bring systems in modules of their own: a call for every step and every number asked for.
@@ -52,6 +54,8 @@ class AnyMarch {
   /// The largest |phi| on the arrows of the last step, and the size of its terms there.
   virtual double residual() const = 0;
   virtual double residual_size() const = 0;
+  /// Visits all that the next step goes on from; see March::persist.
+  virtual void persist(Tape& tape) = 0;
 };
 
 /// Rows of numbers of one field, for nodes or arrows. There are as many where a row has no numbers.
@@ -74,6 +78,7 @@ struct Rows {
 /// A stationary path between two ends.
 struct BoundaryPath {
   double cost = 0;  ///< sum of the Lagrangian over the arrows
+  int starts = 0;   ///< that led to it
   bool is_minimum = false;
   bool isolated = true;
   bool normal = true;

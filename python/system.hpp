@@ -162,6 +162,11 @@ inline void set_attribute(const py::object& self, const py::str& name, const py:
                                    std::string(py::str(py::type::of(value).attr("__name__")))));
 }
 
+/// A copy, which its giver does not change any more.
+inline py::object kept(const std::optional<Array>& array) {
+  return array ? py::object(array->attr("copy")()) : py::object(py::none());
+}
+
 template <class V> void put(const V& v, double* out) { std::copy(v.data(), v.data() + v.size(), out); }
 
 /// One of the words, by its place.
@@ -245,7 +250,7 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
                 {"step_size", {1}, true}} {
     if constexpr (requires { system.quantities(); })
       for (auto& q : system.quantities()) {
-        watched_.push_back({q.name, q.components, q.promise, q.needs_step});
+        watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size != nullptr});
         quantities_.push_back(std::move(q));
       }
     see();
@@ -282,7 +287,7 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
   double watch(std::size_t i, double* out) const override {
     quantities_[i].evaluate(at_, out);
     if (quantities_[i].size) return quantities_[i].size(at_);
-    return std::sqrt(std::inner_product(out, out + watched_[i].components.size(), out, 0.0));
+    return Eigen::Map<const Eigen::VectorXd>(out, Eigen::Index(watched_[i].components.size())).stableNorm();
   }
   bool constrained() const override { return Sys::constraints > 0; }
   double residual() const override {
@@ -304,6 +309,10 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
       return (d.constraint_target.cwiseAbs() * system.groupoid.coordinate_scale(at_.step.arrow)).maxCoeff();
     }
     return 0;
+  }
+  void persist(Tape& tape) override {
+    march_->persist(tape);
+    if (tape.reading()) see();
   }
 
  private:
@@ -391,6 +400,7 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
   std::vector<BoundaryPath> out;
   for (const auto& solution : found.solutions) {
     BoundaryPath path{solution.cost,
+                      solution.starts,
                       solution.kind.is_minimum,
                       solution.kind.isolated,
                       solution.kind.normal,
@@ -435,22 +445,32 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
       "groupoid", [](const Sys&) { return Sys::GroupoidType::name(); }, "The groupoid of its arrows.");
   made.def(
       "integrator",
-      [](const Sys& self, const Array& momentum, const std::optional<Array>& object,
-         const std::optional<Array>& configuration, const std::string& mode, const std::string& method,
-         std::optional<int> order, const std::optional<std::string>& composition, const std::string& without_root,
-         int max_iterations, double tolerance, bool ledger) {
+      [](const Sys& self, const py::args& by_place, const std::optional<Array>& momentum,
+         const std::optional<Array>& object, const std::optional<Array>& configuration, const std::string& mode,
+         const std::string& method, std::optional<int> order, const std::optional<std::string>& composition,
+         const std::string& without_root, int max_iterations, double tolerance, bool ledger) {
+        if (!by_place.empty() || !momentum)
+          throw py::type_error(
+              "integrator: give momentum, and object or configuration, by name, as in momentum=[0, 1]");
         const MarchOptions options =
             detail::march_options(mode, method, order, composition, without_root, max_iterations, tolerance);
+        const auto march = begin_march(self, *momentum, object, configuration, options);
+        // A pickle begins it anew, with the same system and arguments.
+        using namespace py::literals;
+        const py::dict arguments("momentum"_a = detail::kept(momentum), "object"_a = detail::kept(object),
+                                 "configuration"_a = detail::kept(configuration), "mode"_a = mode, "method"_a = method,
+                                 "order"_a = order, "composition"_a = composition, "without_root"_a = without_root,
+                                 "max_iterations"_a = max_iterations, "tolerance"_a = tolerance, "ledger"_a = ledger);
         const py::object integrator = detail::class_of_lagroid("Integrator");
-        return integrator(py::cast(begin_march(self, momentum, object, configuration, options)), ledger);
+        return integrator(py::cast(march), ledger, py::make_tuple(py::cast(Sys(self)), arguments));
       },
-      py::arg("momentum"), py::arg("object") = py::none(), py::kw_only(), py::arg("configuration") = py::none(),
+      py::arg("momentum") = py::none(), py::arg("object") = py::none(), py::arg("configuration") = py::none(),
       py::arg("mode") = "fixed", py::arg("method") = "variational", py::arg("order") = py::none(),
       py::arg("composition") = py::none(), py::arg("without_root") = "stop", py::arg("max_iterations") = 0,
       py::arg("tolerance") = 0.0, py::arg("ledger") = true,
-      "An Integrator at the state (object, momentum). `configuration` is the arrow that ends at the object, in the\n"
-      "coordinates of arrows; it is carried along (an attitude). The keywords are those of [time] and [solver] of\n"
-      "scenes (docs/scenes.md). Raises ValueError for what the system does not have.");
+      "An Integrator at the state (object, momentum), all by name. `configuration` is the arrow that ends at the\n"
+      "object, in the coordinates of arrows; it is carried along (an attitude). The keywords are those of [time] and\n"
+      "[solver] of scenes (docs/scenes.md). Raises ValueError for what the system does not have.");
   return made;
 }
 
@@ -472,8 +492,8 @@ template <DiscreteSystem Sys> void bind_boundary(py::class_<Sys>& made) {
       },
       py::arg("arrow"), py::arg("steps"), py::kw_only(), py::arg("method") = "newton", py::arg("starts") = 40,
       py::arg("seed") = 1,
-      "The stationary paths of `steps` arrows whose product is `arrow`, cheapest first. Raises SolveError where no\n"
-      "start leads to one.");
+      "The stationary paths of `steps` arrows whose product is `arrow`, the cheapest of those found first; `starts`\n"
+      "of each says how many led to it. Raises SolveError where no start leads to one.");
 }
 
 }  // namespace lagroid::python

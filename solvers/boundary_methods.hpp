@@ -1,9 +1,10 @@
 #pragma once
-/// Solvers of a boundary-value problem by name.
+/// Solvers of a boundary-value problem by name, and the search of its solutions: all that a system of your own needs.
 
 #include <lagroid/solvers/boundary_ceres.hpp>
 #include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/boundary_shooting.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
 
 namespace lagroid {
 

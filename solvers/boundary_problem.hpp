@@ -19,8 +19,13 @@ namespace lagroid {
 /// sum_k L(g_k) stationary ([G] section 5). Fixing the product fixes both end objects and, where G has isotropy, the
 /// displacement along it: for plate-ball g = (q_0, q_N, A_0^T A_N).
 template <DiscreteSystem Sys> struct BoundaryProblem {
-  static_assert(Variational<Sys>, "forced and nonholonomic systems have no action that their paths make stationary");
-  static_assert(!TimeDependent<Sys>, "every arrow would be taken at the same time");
+  static_assert(!Forced<Sys>, "a forced system has no boundary values: its motions make no action stationary");
+  static_assert(!Nonholonomic<Sys>,
+                "a nonholonomic system has no boundary values: its motions make no action stationary");
+  static_assert(
+      !TimeDependent<Sys>,
+      "of a system that depends on time take FixedStep<Sys> (groupoids/time_extended.hpp), whose arrows carry "
+      "their times: timed_boundary makes the boundary arrow");
   Sys system;
   ArrowOf<typename Sys::GroupoidType> boundary;
 };
@@ -195,6 +200,7 @@ template <DiscreteSystem Sys> struct BoundarySolution {
   double residual = std::numeric_limits<double>::infinity();  ///< largest scaled component of the KKT equations
   double cost = 0;                                            ///< sum_k L(g_k)
   Classification kind;
+  int starts = 0;  ///< of a multistart, those that led here; none where a way down from a saddle did
   Path<Sys> path;
   std::string message;  ///< of a failure, where more can be said than its status
   bool converged() const { return status == SolveStatus::converged; }

@@ -15,10 +15,21 @@ enum class Seek {
   stationary,  ///< points of any kind: lowers the residual of the equations
 };
 
+namespace detail {
+
+template <class Sys> constexpr Seek natural_seek_of() {
+  if constexpr (requires { typename Sys::Untimed; }) {
+    return natural_seek_of<typename Sys::Untimed>();  // the constraint on the step is none on the motion
+  } else {
+    return Sys::arrow_constraints > 0 ? Seek::minima : Seek::stationary;
+  }
+}
+
+}  // namespace detail
+
 /// Optimal control, with its arrow constraints, asks for minima of the cost. The action of a mechanical system has none
 /// in general: its trajectories are stationary, and minimise only up to the first conjugate point.
-template <DiscreteSystem Sys>
-inline constexpr Seek natural_seek = Sys::arrow_constraints > 0 ? Seek::minima : Seek::stationary;
+template <DiscreteSystem Sys> inline constexpr Seek natural_seek = detail::natural_seek_of<Sys>();
 
 struct BoundaryOptions {
   int max_iterations = 200;

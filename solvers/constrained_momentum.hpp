@@ -1,7 +1,7 @@
 #pragma once
 /// Momenta at an object, with the velocity that keeps the constraints there.
 
-#include <lagroid/core/two_sided.hpp>
+#include <lagroid/core/step_equations.hpp>
 
 #include <Eigen/LU>
 
@@ -9,54 +9,52 @@ namespace lagroid {
 
 /// mu + <nu, omega(q)>, with nu such that the velocity of the result keeps the constraints at q: of the reaction at an
 /// object, half has acted when it is reached. Along sections of D this is mu itself, of order two for a symmetric L and
-/// phi; across D mu lacks the half and is of order one. The dynamics is the same with and without it.
+/// phi; across D mu lacks the half and is of order one. Object constraints are kept in the same way, with dC o rho in
+/// the place of omega (RATTLE's second stage). The dynamics is the same with and without it.
 ///
-/// In terms of the unit arrow e at q, with W = (-d2L/dv dw)^{-1} at e the inverse mass times h: the displacement
-/// w = W (mu + <nu, omega> - mu_0) of one step keeps <omega, w> + phi(e) = 0. phi(e) is the affine term (a plate that
-/// turns); mu_0 = (dL/dw - dL/dv) / 2 is the momentum at rest, zero unless L has terms linear in the velocity. A
-/// potential enters dL/dv and dL/dw alike and leaves it.
+/// In terms of the unit arrow e at q, with M = -d2L/dv dw at e the mass over h, and mu_0 = (dL/dw - dL/dv) / 2 the
+/// momentum at rest, zero unless L has terms linear in the velocity (a potential enters dL/dv and dL/dw alike and
+/// leaves it), the displacement w of one step and the multipliers nu solve the step equations at e, linear ones:
 ///
-/// Object constraints, if there are any, are kept in the same way, with dC o rho in the place of omega.
+///     M w - <nu, omega> = mu - mu_0,    <omega, w> + phi(e) = 0,    <dC o rho, w> = 0.
+///
+/// phi(e) is the affine term (a plate that turns). M need not be regular by itself: directions of which L says nothing,
+/// because constraints determine them, are solved with the constraints. Vakonomic phi stands in the equations with its
+/// own derivatives, but its multipliers are part of the momentum and no reaction: they stay in mu.
 template <DiscreteSystem Sys>
 AlgebroidVector<typename Sys::GroupoidType> constrained_momentum(const Sys& system,
                                                                  const State<typename Sys::GroupoidType>& state) {
-  using V = AlgebroidVector<typename Sys::GroupoidType>;
-  using M = MixedOf<Sys>;
+  using E = StepEquations<Sys>;
   constexpr int n = Sys::dimension;
-  constexpr int k = Sys::constraints;
+  constexpr int phis = Sys::arrow_constraints;
+  constexpr int reactions = Nonholonomic<Sys> ? Sys::constraints : Sys::object_constraints;
   const auto unit = system.groupoid.unit(state.object);
-  const M lagrangian = system.lagrangian(system.groupoid.template seed<M, End::source, End::target>(unit));
-  const Eigen::PartialPivLU<Matrix<double, n, n>> mass(-lagrangian.mixed());
-  const V at_rest = 0.5 * (lagrangian.right() - lagrangian.left());
-  const auto d = two_sided(system, unit, Sys::Multipliers::Zero().eval());
-  const V w = mass.solve(state.momentum - at_rest);
-  const Matrix<double, n, k> w_omega = mass.solve(d.constraint_source);
-  const Matrix<double, k, n> omega = d.constraint_source.transpose();
-  const Vector<double, k> nu = (omega * w_omega).partialPivLu().solve(omega * w + d.constraint);
-  return state.momentum - d.constraint_source * nu;
+  const MixedOf<Sys> lagrangian =
+      system.lagrangian(system.groupoid.template seed<MixedOf<Sys>, End::source, End::target>(unit));
+  auto d = two_sided(system, unit, Sys::Multipliers::Zero().eval());
+  d.mixed = lagrangian.mixed();  // without forces that depend on the velocity
+  if constexpr (Nonholonomic<Sys>)
+    d.constraint_target.template topRows<phis>() = d.constraint_source.template leftCols<phis>().transpose();
+  const auto equations = E::jacobian(d);
+  const auto scaling = Scaling<E::size>::equilibrate(equations);
+  Vector<double, E::size> side = Vector<double, E::size>::Zero();
+  side.template head<n>() = state.momentum - 0.5 * (lagrangian.right() - lagrangian.left());
+  side.template segment<phis>(n) = -d.constraint.template head<phis>();
+  const Eigen::FullPivLU<typename E::Jacobian> factored(scaling.apply(equations));
+  const Vector<double, E::size> solution = scaling.column.cwiseProduct(factored.solve(scaling.row.cwiseProduct(side)));
+  return state.momentum + d.constraint_source.template rightCols<reactions>() * solution.template tail<reactions>();
 }
 
-/// mu with the part removed that leaves C^{-1}(0) (RATTLE's second stage): mu + nu . dC o rho with nu such that
-/// dC o rho W mu = 0, where W = (-d2L/dv dw)^{-1} at the unit arrow is the inverse mass matrix up to a factor.
-/// For nonholonomic and forced systems see constrained_momentum; the identity for others without object constraints.
-/// The dynamics is the same with and without it; the projected momentum is the one in which the map is symplectic on
-/// T*C^{-1}(0).
+/// The momentum over a state as it is reported: with the velocity that keeps object constraints and those of a
+/// nonholonomic system (constrained_momentum); mu itself for others. Of systems with object constraints it is the one
+/// in which the map is symplectic on T*C^{-1}(0).
 template <DiscreteSystem Sys>
 AlgebroidVector<typename Sys::GroupoidType> tangent_momentum(const Sys& system,
                                                              const State<typename Sys::GroupoidType>& state) {
-  if constexpr (Nonholonomic<Sys> || (Forced<Sys> && Sys::arrow_constraints == 0 && Sys::object_constraints > 0)) {
+  if constexpr (Nonholonomic<Sys> || Sys::object_constraints > 0) {
     return constrained_momentum(system, state);
-  } else if constexpr (Sys::object_constraints == 0) {
-    return state.momentum;
   } else {
-    constexpr int k = Sys::object_constraints;
-    const auto d = two_sided(system, system.groupoid.unit(state.object), Sys::Multipliers::Zero().eval());
-    const Matrix<double, Sys::dimension, k> normal = -d.constraint_source.template rightCols<k>();
-    const Eigen::PartialPivLU<Matrix<double, Sys::dimension, Sys::dimension>> mass(-d.mixed);
-    const Matrix<double, Sys::dimension, k> w_normal = mass.solve(normal);
-    const Vector<double, k> nu =
-        (normal.transpose() * w_normal).partialPivLu().solve(w_normal.transpose() * state.momentum);
-    return state.momentum - normal * nu;
+    return state.momentum;
   }
 }
 

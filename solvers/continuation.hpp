@@ -165,6 +165,7 @@ BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundarySta
     iterations += out.iterations;
   }
   out.iterations = iterations;
+  out.starts = from.starts;
   return out;
 }
 

@@ -64,7 +64,8 @@ template <DiscreteSystem Sys> class March {
 
 /// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one
 /// with a time scale for controlled steps, a SplitSystem for splitting, an AttractiveSystem for a transformed time, one
-/// that HasRates for Runge-Kutta steps and a variational one for orders above two (throws std::invalid_argument).
+/// that HasRates for Runge-Kutta steps and a variational one with a step `h` for orders above two (throws
+/// std::invalid_argument).
 /// Include `march_methods.hpp` for a system of your own; those of `systems/` are compiled.
 template <DiscreteSystem Sys>
 std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,

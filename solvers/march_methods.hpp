@@ -88,6 +88,9 @@ std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename S
                                                                      : "Runge-Kutta steps need a system with rates");
   if (options.composition.stages() > 1 && !Variational<Sys>)
     throw std::invalid_argument("orders above two are for variational systems");
+  if (options.composition.stages() > 1 && !HasTimeStep<Sys>)
+    throw std::invalid_argument(
+        "orders above two are composed of steps of several sizes: the system needs its step, h");
   if constexpr (HasTimeStep<Sys> && Variational<Sys>)
     if (options.composition.stages() > 1)
       return std::make_unique<detail::MarchOf<Sys, CompositionIntegrator<Sys>>>(system, initial, configuration,

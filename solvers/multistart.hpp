@@ -14,13 +14,23 @@ namespace lagroid {
 
 /// What a multistart found.
 template <DiscreteSystem Sys> struct MultistartResult {
-  std::vector<BoundarySolution<Sys>> solutions;  ///< distinct stationary points, cheapest first
+  std::vector<BoundarySolution<Sys>> solutions;  ///< distinct stationary points, cheapest of those found first
+  int starts = 0;                                ///< all that were made
   std::map<SolveStatus, int> outcomes;           ///< of the starts, at the first stage
   int lost = 0;                                  ///< solutions of the first stage that could not be continued
   int iterations = 0;
   int start_iterations = 0;            ///< of all starts at the first stage
   int most_iterations = 0;             ///< of one start
   BoundarySolution<Sys> best_failure;  ///< smallest residual among failures
+
+  /// Counts what another multistart of the same problem took as this one's own.
+  void add_effort(const MultistartResult& other) {
+    starts += other.starts;
+    for (const auto& [status, count] : other.outcomes) outcomes[status] += count;
+    iterations += other.iterations;
+    start_iterations += other.start_iterations;
+    most_iterations = std::max(most_iterations, other.most_iterations);
+  }
 };
 
 namespace detail {
@@ -41,11 +51,16 @@ template <DiscreteSystem Sys> void note_failure(MultistartResult<Sys>& result, B
     result.best_failure = std::move(failure);
 }
 
+/// Where a solution is known already, its starts are counted as the known one's.
 template <DiscreteSystem Sys>
 void keep_if_new(std::vector<BoundarySolution<Sys>>& found, const Sys& system, BoundarySolution<Sys>&& solution) {
-  const bool known =
-      std::any_of(found.begin(), found.end(), [&](const auto& f) { return same_solution(system, f, solution); });
-  if (!known) found.push_back(std::move(solution));
+  const auto known =
+      std::find_if(found.begin(), found.end(), [&](const auto& f) { return same_solution(system, f, solution); });
+  if (known == found.end()) {
+    found.push_back(std::move(solution));
+  } else {
+    known->starts += solution.starts;
+  }
 }
 
 /// A saddle has a way down: solves again from paths bent a little away from each, and keeps what is new.
@@ -77,6 +92,7 @@ template <DiscreteSystem Sys, class Guess, class Report>
 MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
                                  int starts, const Guess& guess, const Report& report, int threads = 0) {
   MultistartResult<Sys> result;
+  result.starts = starts;
   std::vector<BoundarySolution<Sys>> found;
   const auto start = [&](long i) {
     return solver.solve(stages.front().problem, guess(int(i)), /*keep_multipliers=*/false);
@@ -87,6 +103,7 @@ MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::v
     result.most_iterations = std::max(result.most_iterations, solution.iterations);
     ++result.outcomes[solution.status];
     if (solution.converged()) {
+      solution.starts = 1;
       detail::keep_if_new(found, stages.front().problem.system, std::move(solution));
     } else {
       detail::note_failure(result, std::move(solution));

@@ -130,6 +130,7 @@ LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G
   }
   // The level follows the step even where the matrix does not: terms may shrink along the trajectory.
   chord_.floor = round_off_level(system, state, step, chord_.jacobian).cwiseInverse();
+  if (!(chord_.floor.minCoeff() > 0)) return false;  // of a level that overflows
   double excess = excess_of(residual);
   chord_.first = excess;
   double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * excess) : chord_.rate;

@@ -5,7 +5,7 @@
 #include <lagroid/core/rates.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/method.hpp>
-#include <lagroid/solvers/step_solver.hpp>
+#include <lagroid/solvers/walk.hpp>
 
 #include <utility>
 
@@ -22,6 +22,7 @@ template <HasRates Sys> class RungeKuttaIntegrator {
   RungeKuttaIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration)
       : system_(std::move(system)) {
     point_.state = initial;
+    detail::require_end(system_.groupoid, configuration, initial.object);
     point_.configuration = configuration;
     point_.step = {system_.groupoid.unit(initial.object), Sys::Multipliers::Zero()};
   }

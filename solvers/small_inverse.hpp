@@ -38,7 +38,7 @@ template <int Size> class SmallInverse {
   }
 
   /// Inverts `a`; false where the result is not to be trusted: an entry of the scaled inverse is beyond `largest_entry`
-  /// or not finite.
+  /// or not finite, or one of `a` is not.
   bool invert(const Square& a) {
     Square m;
     for (int j = 0; j < Size; ++j)
@@ -51,7 +51,7 @@ template <int Size> class SmallInverse {
         negative(column_of_[std::size_t(i)], row_of_[std::size_t(j)]) =
             -inverse(i, j) * column_scale_(i) * row_scale_(j);
     for (int j = 0; j < Size; ++j) columns_[std::size_t(j)] = Lanes<double, Size>::load(negative.col(j).data());
-    return inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < largest_entry;
+    return m.allFinite() && inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < largest_entry;
   }
 
   /// Column j of -a^{-1}.

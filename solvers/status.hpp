@@ -11,7 +11,7 @@ enum class SolveStatus {
   stagnated,        ///< the residual stopped falling above that floor
   singular,         ///< the matrix of the step is singular: the system is not regular here ([G] Def. 3.5)
   left_domain,      ///< converged, but on another branch of the discretisation or outside the retraction's domain
-  not_finite,       ///< a NaN or an infinity appeared
+  not_finite,       ///< a NaN or an infinity appeared, or numbers too small to keep their digits
   not_converged,    ///< the iteration limit was reached
   ill_conditioned,  ///< near a solution, but the method's own arithmetic cannot come closer; another method can
   no_step,          ///< no positive step size does what is asked of it

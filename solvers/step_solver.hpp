@@ -67,7 +67,7 @@ typename StepEquations<Sys, S>::Residual round_off_level(const Sys& system,
   size.template head<n>() += state.momentum.cwiseAbs();
   if constexpr (Sys::constraints > 0)
     size += jacobian.template rightCols<Sys::constraints>().cwiseAbs() * step.multipliers.cwiseAbs();
-  return (std::numeric_limits<double>::epsilon() * size).cwiseMax(1e-300);
+  return (std::numeric_limits<double>::epsilon() * size).cwiseMax(std::numeric_limits<double>::min());
 }
 
 /// The scaled step equations at one point, with an estimate of how far round-off lets them be solved.
@@ -85,11 +85,24 @@ template <DiscreteSystem Sys> struct ScaledResidual {
     if (rescale) scaling = Scaling<E::size>::equilibrate(jacobian);
     norm = residual.cwiseProduct(scaling.row).cwiseAbs().maxCoeff();
 
-    excess = residual.cwiseAbs().cwiseQuotient(round_off_level(system, state, step, jacobian)).maxCoeff();
-    if (!residual.allFinite() || !jacobian.allFinite()) {
+    const typename E::Residual level = round_off_level(system, state, step, jacobian);
+    excess = residual.cwiseAbs().cwiseQuotient(level).maxCoeff();
+    if (!residual.allFinite() || !jacobian.allFinite() || !level.allFinite() || underflows(jacobian, level)) {
       norm = std::numeric_limits<double>::quiet_NaN();
       excess = std::numeric_limits<double>::infinity();
     }
+  }
+
+ private:
+  /// Whether an equation has no digits left: its round-off is below the normal numbers, and not because the state is
+  /// near rest at the origin, but because its coefficients are that small.
+  static bool underflows(const typename E::Jacobian& jacobian, const typename E::Residual& level) {
+    constexpr double small = 1e-100;
+    for (Eigen::Index i = 0; i < level.size(); ++i) {
+      const double largest = jacobian.row(i).template head<Sys::dimension>().cwiseAbs().maxCoeff();
+      if (level(i) <= std::numeric_limits<double>::min() && largest > 0 && largest < small) return true;
+    }
+    return false;
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// One implicit step after another: where each solve starts, and which solution is taken.
 
+#include <lagroid/core/gradient_check.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/extrapolation.hpp>
 #include <lagroid/solvers/step_solver.hpp>
@@ -97,6 +98,7 @@ template <DiscreteSystem Sys>
                                                               const StepReport& before) {
   StepSolution<Sys> solution;
   StepReport report = first_step(state, solution);
+  if constexpr (checked_build) check_gradient(system_, solution.step);
   report.iterations += before.iterations;
   if (report.converged()) {
     found = solution;

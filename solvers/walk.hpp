@@ -4,7 +4,27 @@
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
+#include <stdexcept>
+#include <string>
+
 namespace lagroid {
+
+namespace detail {
+
+/// Throws std::invalid_argument unless the arrow ends at the object, to 1e-9 of its size. What is not finite passes: the
+/// first step's status tells of it.
+template <Groupoid G>
+void require_end(const G& groupoid, const ArrowOf<G>& configuration, const ObjectOf<G>& object) {
+  if constexpr (G::object_coordinate_count() > 0) {
+    const auto end = groupoid.coordinates_of_object(groupoid.target(configuration));
+    const auto start = groupoid.coordinates_of_object(object);
+    if (const double gap = (end - start).norm(); gap > 1e-9 * (1 + start.norm()))
+      throw std::invalid_argument("configuration: the initial arrow ends " + std::to_string(gap) +
+                                  " away from the initial object; it must end there");
+  }
+}
+
+}  // namespace detail
 
 /// The state, configuration and time that a sequence of solved steps leads to.
 ///
@@ -15,8 +35,10 @@ template <DiscreteSystem Sys> class Walk {
  public:
   using G = typename Sys::GroupoidType;
 
-  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint).
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint). Throws
+  /// std::invalid_argument where it ends elsewhere.
   Walk(const G& groupoid, const State<G>& initial, const ArrowOf<G>& configuration, double start = 0) {
+    detail::require_end(groupoid, configuration, initial.object);
     point_.time = start;
     point_.state = initial;
     point_.configuration = configuration;

@@ -71,6 +71,10 @@ struct GalerkinSystem
     : System<Derived,
              Product<typename Base::GroupoidType, VectorGroup<Base::dimension*(Degree > 1 ? Degree - 1 : 1)>>> {
   static_assert(Degree >= 2, "without inner nodes it is the system itself, by the trapezoid");
+  static_assert(Base::constraints == 0,
+                "a curve with inner nodes would keep the constraints of its system at its ends alone: Galerkin systems "
+                "are made of systems without constraints (for higher order with constraints compose steps)");
+  static_assert(Variational<Base>, "Galerkin systems are made of systems without forces");
   static constexpr int n = Base::dimension;
   static constexpr int inner = Degree - 1;
   using Extended = Product<typename Base::GroupoidType, VectorGroup<n * inner>>;

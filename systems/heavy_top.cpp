@@ -34,10 +34,15 @@ std::vector<Symmetry<HeavyTop>> HeavyTop::symmetries() const {
 
 std::vector<Quantity<HeavyTop>> HeavyTop::quantities() const {
   using Point = TrajectoryPoint<HeavyTop>;
-  std::vector<Quantity<HeavyTop>> all{
-      {"energy", {"H"}, Promise::bounded, false, [system = *this](const Point& p, double* out) {
-         *out = system.energy(p.state);
-       }}};
+  std::vector<Quantity<HeavyTop>> all{{"energy",
+                                       {"H"},
+                                       Promise::bounded,
+                                       false,
+                                       [system = *this](const Point& p, double* out) { *out = system.energy(p.state); },
+                                       [system = *this](const Point& p) {
+                                         const double potential = system.weight.dot(p.state.object);
+                                         return system.energy(p.state) - potential + std::abs(potential);
+                                       }}};
   for (const auto& symmetry : symmetries()) all.push_back(symmetry.quantity());
   if (is_kovalevskaya())
     all.push_back(

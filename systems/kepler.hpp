@@ -5,7 +5,10 @@
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
+#include <numbers>
 
 namespace lagroid {
 
@@ -29,6 +32,13 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   /// Of sigma = |q|^(3/2), Kepler's third law.
   double time_scale_rate(const State<Pair<2>>& s) const {
     return 1.5 * s.object.dot(s.momentum) / s.object.squaredNorm();
+  }
+
+  /// Revolutions about the centre.
+  static constexpr int loops = 1;
+  static PairArrow<double, 2> loop(const Vector<double, 2>& q, const Vector<double, 2>&,
+                                   const Vector<double, 1>& turns) {
+    return {q, Eigen::Rotation2Dd(2 * std::numbers::pi * turns(0)) * q};
   }
 
   /// Rotation about the centre.

@@ -8,6 +8,8 @@
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/systems/reference.hpp>
 
+#include <cmath>
+
 namespace lagroid {
 
 /// Where the potential is evaluated on an arrow (q0, q1). Both are symmetric, symplectic and of order 2; the trapezoid
@@ -63,7 +65,8 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
 
   /// H = |p|^2 / (2 m) + U(q).
   double energy(const State<Pair<N>>& s) const { return kinetic_energy(s.momentum) + potential_energy(s.object); }
-  double kinetic_energy(const Vector<double, N>& p) const { return p.squaredNorm() / (2 * self().mass()); }
+  /// By velocities, which neither overflow nor underflow where p^2 does.
+  double kinetic_energy(const Vector<double, N>& p) const { return 0.5 * p.dot(p / self().mass()); }
   double potential_energy(const Vector<double, N>& q) const { return self().potential(q); }
 
  protected:
@@ -84,10 +87,15 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   }
 
   Quantity<Derived> energy_quantity() const {
-    return {
-        "energy", {"H"}, Promise::bounded, false, [system = self()](const TrajectoryPoint<Derived>& p, double* out) {
-          *out = system.energy(p.state);
-        }};
+    using Point = TrajectoryPoint<Derived>;
+    return {"energy",
+            {"H"},
+            Promise::bounded,
+            false,
+            [system = self()](const Point& p, double* out) { *out = system.energy(p.state); },
+            [system = self()](const Point& p) {
+              return system.kinetic_energy(p.state.momentum) + std::abs(system.potential_energy(p.state.object));
+            }};
   }
 
  private:

@@ -86,7 +86,8 @@ template <int K> struct PendulumChain {
     for (int i = 0; i < links(); ++i) {
       place += length(i) * V(z.col(i).template head<3>());
       velocity += length(i) * link_velocity(z, i);
-      sum += place.norm() * (mass(i) * velocity.norm() + carried(i) * std::sqrt(std::abs(gravity) * length(i)));
+      sum += place.stableNorm() *
+             (mass(i) * velocity.stableNorm() + carried(i) * std::sqrt(std::abs(gravity) * length(i)));
     }
     return sum;
   }

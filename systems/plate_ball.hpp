@@ -88,7 +88,8 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// A composable path of `steps` arrows whose product is `boundary`: the contact point moves along the straight line
   /// plus sum_j modes.col(j) sin((j + 1) pi s), the attitude follows the rolling constraint and is then bent, in
   /// proportion to time, to end where it must. A starting guess, not a solution.
-  Arrows path(const ArrowOf<GroupoidType>& boundary, long steps, const Eigen::Matrix2Xd& modes) const;
+  Arrows path(const ArrowOf<GroupoidType>& boundary, long steps,
+              const Eigen::Matrix2Xd& modes = Eigen::Matrix2Xd::Zero(2, 1)) const;
 
   /// E = (u^2 + v^2)/2 + Omega (l1 x - l2 y) - c l3 on a step over the time h, (x, y) its midpoint: the integral of the
   /// continuous problem (Pontryagin).

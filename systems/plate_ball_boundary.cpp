@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 
 namespace lagroid {
@@ -19,8 +18,8 @@ std::optional<std::string> unreachable(const PlateBall& system, long steps) {
 namespace {
 
 constexpr long coarse_steps = 20;
-constexpr int modes = 3;
 
+/// Of a ball of unit radius.
 MultistartResult<PlateBall> run(const BoundarySolver<PlateBall>& solver, const PlateBall& system,
                                 const ArrowOf<PlateBall::GroupoidType>& boundary,
                                 const PlateBallBoundaryOptions& options) {
@@ -31,21 +30,6 @@ MultistartResult<PlateBall> run(const BoundarySolver<PlateBall>& solver, const P
     s.rotation = form;
     return BoundaryStage<PlateBall>{{s, boundary}, std::size_t(steps)};
   };
-  const auto guess = [&](long steps, const PlateBall& s) {
-    return [&, steps](int index) {
-      // Each start has its own generator, so that start i is the same whatever the number of starts.
-      std::seed_seq sequence{std::uint32_t(options.seed), std::uint32_t(options.seed >> 32), std::uint32_t(index)};
-      std::mt19937_64 generator(sequence);
-      std::normal_distribution<double> normal(0, 2 * system.radius);
-      Eigen::Matrix2Xd amplitude = Eigen::Matrix2Xd::Zero(2, modes);
-      if (index > 0)
-        for (int j = 0; j < modes; ++j) amplitude.col(j) << normal(generator) / (j + 1), normal(generator) / (j + 1);
-      Path<PlateBall> path;
-      for (auto& arrow : s.path(boundary, steps, amplitude)) path.push_back({arrow, PlateBall::Multipliers::Zero()});
-      return path;
-    };
-  };
-
   std::vector<BoundaryStage<PlateBall>> stages;
   // Coarse enough to be quick, fine enough that the prescribed spin turns by no more than 1.5 a step.
   const double turns = std::ceil(std::abs(system.spin) * horizon / 1.5);
@@ -59,22 +43,21 @@ MultistartResult<PlateBall> run(const BoundarySolver<PlateBall>& solver, const P
   }
   if (first_form != system.rotation) stages.push_back(stage(steps, system.rotation));
 
-  auto result =
-      multistart(solver, stages, options.starts, guess(long(stages.front().steps), stages.front().problem.system),
-                 options.report, options.threads);
-  // Where the grid cannot be refined towards agreement of the forms, or the easier problem led nowhere, the problem
-  // asked for gets starts of its own.
-  const bool forms_far_apart = first_form != system.rotation && options.steps <= coarse_steps;
-  if (stages.size() > 1 && (forms_far_apart || result.solutions.empty())) {
-    const auto direct = stage(options.steps, system.rotation);
-    auto more = multistart(solver, std::vector{direct}, options.starts, guess(options.steps, direct.problem.system),
-                           options.report, options.threads);
-    more.iterations += result.iterations;
+  const MultistartOptions multistart{.starts = options.starts,
+                                     .seed = options.seed,
+                                     .amplitude = 2,
+                                     .report = options.report,
+                                     .threads = options.threads};
+  auto result = solve_stages(solver, stages, multistart);
+  // Where the grid cannot be refined towards agreement of the forms, the form asked for gets starts of its own.
+  if (first_form != system.rotation && options.steps <= coarse_steps) {
+    auto direct = solve_stages(solver, {stages.back()}, multistart);
+    direct.add_effort(result);
     for (auto& solution : result.solutions)
-      detail::keep_if_new(more.solutions, direct.problem.system, std::move(solution));
-    std::sort(more.solutions.begin(), more.solutions.end(),
+      detail::keep_if_new(direct.solutions, stages.back().problem.system, std::move(solution));
+    std::sort(direct.solutions.begin(), direct.solutions.end(),
               [](const auto& x, const auto& y) { return x.cost < y.cost; });
-    return more;
+    return direct;
   }
   return result;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// The plate-ball boundary-value problem, from guesses to minima.
 
-#include <lagroid/solvers/multistart.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/systems/plate_ball.hpp>
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace lagroid {
 
 struct PlateBallBoundaryOptions {
   long steps = 0;                                ///< N, at least 3
-  int starts = 40;                               ///< the straight line, then straight lines with random sine modes
-  std::uint64_t seed = 1;                        ///< of the random modes
+  int starts = 40;                               ///< the straight line, then straight lines wound and bent
+  std::uint64_t seed = 1;                        ///< of what is drawn
   std::function<void(int)> report = [](int) {};  ///< called with the number of starts done
   int threads = 0;                               ///< solves at a time; 0: as many as there are processors
 };

@@ -6,6 +6,10 @@
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
+#include <Eigen/Geometry>
+
+#include <numbers>
+
 namespace lagroid {
 
 /// A mass m on a rod of length l, q in R^3 with C(q) = (|q|^2 - l^2) / 2 = 0, U = m g q3 (e3 points up).
@@ -64,6 +68,15 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   double time_scale_rate(const State<Pair<3>>& s) const {
     const double unit = bob_mass * length;
     return bob_mass * gravity * s.momentum(2) / (std::abs(gravity) / length * unit * unit + s.momentum.squaredNorm());
+  }
+
+  /// Revolutions about the vertical.
+  static constexpr int loops = 1;
+  static PairArrow<double, 3> loop(const Vector<double, 3>& q, const Vector<double, 3>&,
+                                   const Vector<double, 1>& turns) {
+    Vector<double, 3> turned = q;
+    turned.head<2>() = Eigen::Rotation2Dd(2 * std::numbers::pi * turns(0)) * q.head<2>();
+    return {q, turned};
   }
 
   /// Rotation about the vertical.

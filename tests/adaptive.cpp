@@ -417,6 +417,20 @@ TEST(Controlled, BeatsEqualStepsOnAnEccentricOrbit) {
   EXPECT_LT(5 * error, energy_error(*without, s));
 }
 
+/// A pendulum that keeps its step to itself, as reductions run upwards do.
+struct WithoutStep : System<WithoutStep, Pair<1>> {
+  Pendulum pendulum;
+  template <class S> S lagrangian(const PairArrow<S, 1>& g) const { return pendulum.lagrangian(g); }
+};
+TEST(HigherOrders, AreRefusedWhereThereIsNoStepToCompose) {
+  const WithoutStep system;
+  MarchOptions options;
+  const State<Pair<1>> start{Vector<double, 1>(1.2), Vector<double, 1>(0.3)};
+  EXPECT_NO_THROW(make_march(system, start, system.groupoid.unit(start.object), options));
+  options.composition = compositions::kahan_li_6;
+  EXPECT_THROW(make_march(system, start, system.groupoid.unit(start.object), options), std::invalid_argument);
+}
+
 /// One step of h against two of h / 2, relative to the motion of the momentum and object, as reported.
 template <class Sys> double step_error(Start<Sys> s, double h) {
   const auto end = [&](double size, int steps) {

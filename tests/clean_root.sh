@@ -61,5 +61,7 @@ if inside sh -c 'ls /packages/python3-lagroid_*.deb' >/dev/null 2>&1; then
     inside python3 "${example#"$root"}" >"$work/python.log" 2>&1 || fail "${example#"$root"}: $(tail -n 5 "$work/python.log")"
   done
   say "the Python examples run"
+else
+  say "there is no Python package; nothing is asked of one"
 fi
 say "holds"

@@ -18,6 +18,45 @@ TEST_F(CommandLine, ALastNodeThatIsNotFiniteIsNoSuccess) {
   EXPECT_NE(r.err.find("no finite numbers at the end"), std::string::npos) << r.err;
 }
 
+/// No verdict is passed on numbers that are none, and what has no digits is refused.
+TEST_F(CommandLine, UnitsDoNotMatterOrTheirLimitIsSaid) {
+  const auto energy = [](const Outcome& r) { return nlohmann::json::parse(r.out).at("ledger").at("entries").at(0); };
+  const auto place = [](const Outcome& r) {
+    return nlohmann::json::parse(r.out).at("final").at("position").at(0).get<double>();
+  };
+  const std::string scene = "run " + example("pendulum") + " --json --set time.steps=2000 ";
+  const Outcome plain = run(scene);
+  EXPECT_EQ(energy(plain).at("verdict"), "bounded");
+  for (const std::string mass : {"1e200", "1e300", "1e-160", "1e-280"})
+    for (const std::string more : {"", "--set time.order=4 ", "--set time.method=splitting ",
+                                   "--set time.mode=controlled ", "--set time.mode=adaptive "}) {
+      const Outcome r = run(scene + more + "--set parameters.mass=" + mass);
+      ASSERT_EQ(r.code, 0) << r.err;
+      EXPECT_EQ(energy(r).at("verdict"), "bounded") << more << mass;
+      if (more.empty()) {
+        EXPECT_NEAR(place(r), place(plain), 1e-9) << mass;
+      }
+      EXPECT_LT(energy(r).at("relative_drift").get<double>(), 0.1);
+    }
+  const Outcome light = run(scene + "--set parameters.mass=1e-300");
+  EXPECT_EQ(light.code, 3) << light.out;
+  EXPECT_EQ(nlohmann::json::parse(light.out).at("steps"), 0);
+  for (const std::string key : {"parameters.length=1e-320", "parameters.length=1e-200", "parameters.length=1e200",
+                                "parameters.mass=1e-320", "time.step=1e308", "time.step=1e-320"}) {
+    const Outcome r = run(scene + "--set " + key);
+    EXPECT_EQ(r.code, 2) << key;
+    EXPECT_NE(r.err.find(key.substr(0, key.find('='))), std::string::npos) << r.err;
+  }
+}
+
+TEST_F(CommandLine, AFallThroughTheCentreHasNoBoundedEnergy) {
+  const Outcome r = run("run " + example("kepler") + " --json --set initial.momentum=[0,0]");
+  const auto energy = nlohmann::json::parse(r.out).at("ledger").at("entries").at(0);
+  EXPECT_GT(energy.at("relative_drift").get<double>(), 1);
+  EXPECT_EQ(energy.at("verdict"), "BROKEN") << energy;
+  EXPECT_TRUE(energy.contains("reason"));
+}
+
 TEST_F(CommandLine, EveryExampleRuns) {
   for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
     if (entry.path().extension() != ".toml") continue;
@@ -265,7 +304,7 @@ TEST_F(CommandLine, FilesThatCannotBeWrittenDoNotBreakTheSolve) {
   EXPECT_EQ(json.at("ledger").at("solver").at("verdict"), "kept");
   for (const auto& entry : fs::directory_iterator(out)) {
     const std::string name = entry.path().filename();
-    EXPECT_TRUE(name == "checkpoint" || name == ".lock") << name;
+    EXPECT_TRUE(name == "checkpoint" || name == ".lagroid") << name;
   }
 }
 
@@ -516,7 +555,7 @@ TEST_F(CommandLine, PlotDrawsAnewWhatWasEdited) {
   EXPECT_EQ(run("plot " + out.string()).code, 0);
   EXPECT_TRUE(fs::exists(out / "plot.svg"));
   std::ofstream(out / "plot.gp", std::ios::app) << "set output 'plot.svg'\nnonsense\n";
-  const Outcome r = run("plot " + out.string());
+  const Outcome r = run("plot --own-script " + out.string());
   EXPECT_EQ(r.code, 2);
   EXPECT_NE(r.err.find("gnuplot failed"), std::string::npos) << r.err;
   EXPECT_TRUE(fs::exists(out / "plot.svg")) << "the picture there is stays";

@@ -1,7 +1,9 @@
-// Built with LAGROID_CHECKED: composing arrows that do not compose is caught.
+// Built with LAGROID_CHECKED: arrows that do not compose are caught, and gradients that are not those of L.
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/so3.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +40,39 @@ TEST(CheckedBuild, SeesThroughProducts) {
   const auto r = SO3::exp(Vector<double, 3>(1, 2, 3));
   const ArrowOf<Product<Pair<1>, SO3>> g{PairArrow<double, 1>{Vector<double, 1>(0.0), Vector<double, 1>(1.0)}, r};
   EXPECT_THROW(groupoid.compose(g, g), NotComposable);
+}
+
+/// A particle; `Slip` is what its derivatives forget or double.
+template <int Slip> struct Particle : System<Particle<Slip>, Pair<2>> {
+  double h = 0.1;
+  template <class S> S lagrangian(const PairArrow<S, 2>& g) const {
+    return (g.target - g.source).squaredNorm() * (0.5 / h) - g.target.squaredNorm() * (0.5 * h);
+  }
+  // As a Lagrangian does that refers to numbers that are gone: with one scalar another function than with another.
+  Gradients<2, 0> gradients(const PairArrow<double, 2>& g, const Vector<double, 0>& lambda) const {
+    auto d = automatic_gradients(*this, g, lambda);
+    d.target_gradient(1) += Slip * d.target_gradient(0);
+    return d;
+  }
+};
+template <int Slip> StepReport first_step() {
+  const Particle<Slip> system;
+  const State<Pair<2>> start{{1, 0}, {0.3, 0.4}};
+  Integrator<Particle<Slip>> integrator(system, start, system.groupoid.unit(start.object),
+                                        std::make_unique<NewtonStep<Particle<Slip>>>());
+  return integrator.advance();
+}
+
+TEST(CheckedBuild, RefusesGradientsThatAreNotThoseOfTheLagrangian) {
+  EXPECT_TRUE(first_step<0>().converged());
+  try {
+    first_step<1>();
+    FAIL() << "advanced";
+  } catch (const WrongGradient& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("at the target"), std::string::npos) << message;
+    EXPECT_NE(message.find("derivative_laws"), std::string::npos) << message;
+  }
 }
 
 }  // namespace

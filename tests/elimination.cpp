@@ -90,8 +90,12 @@ TEST(Elimination, SaysWhatIsSingular) {
   EXPECT_FALSE(f.sparse.factorise());
   f.sparse.clear();
   EXPECT_FALSE(f.sparse.factorise());
-  f.sparse.value(f.sparse.index(0, 0)) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(f.sparse.factorise());
+  for (const auto& [i, j] : {std::pair(0, 0), {1, 2}, {2, 2}}) {
+    Filled spoilt = filled(3, {{0, 1}, {1, 2}}, 5);
+    ASSERT_TRUE(Filled(spoilt).sparse.factorise());
+    spoilt.sparse.value(spoilt.sparse.index(i, j)) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(spoilt.sparse.factorise()) << i << ' ' << j;
+  }
 }
 
 TEST(Elimination, LeavesOutRowsThatDependOnOthers) {

@@ -4,6 +4,7 @@
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 
+#include "broken.hpp"
 #include "control_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -201,7 +202,7 @@ TEST(AttitudeControl, TheForbiddenAxisIsOneOfSymmetryForEqualWeightsOnly) {
   uneven.weights(0) = 1.2;
   EXPECT_TRUE(uneven.symmetries().empty());
   const auto broken = laws::noether_laws(uneven, system.symmetries(), draw);
-  EXPECT_FALSE(broken.law("axial momentum M.n is a symmetry").holds()) << broken;
+  EXPECT_TRUE(laws::seen_broken(broken.law("axial momentum M.n is a symmetry"))) << broken;
 }
 
 }  // namespace

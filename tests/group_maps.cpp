@@ -103,6 +103,9 @@ TYPED_TEST(GroupMaps, AdIsTheCommutator) {
   const auto y = TypeParam::hat(eta);
   if constexpr (TypeParam::dimension > 1) {
     EXPECT_LT((TypeParam::ad(xi) * eta - TypeParam::vee((x * y - y * x).eval())).norm(), 1e-14);
+  } else {
+    EXPECT_EQ((TypeParam::ad(xi) * eta).norm(), 0);
+    EXPECT_EQ((x * y - y * x).norm(), 0);
   }
 }
 

@@ -1,4 +1,5 @@
 // The heavy top on the action groupoid, against the continuous one, its integrable cases, and itself unreduced.
+#include "broken.hpp"
 #include "run_watch.hpp"
 
 #include <lagroid/core/testing/derivative_laws.hpp>
@@ -59,7 +60,7 @@ TEST(HeavyTop, OfLagrangeIsSymmetricAboutItsAxisToo) {
   EXPECT_TRUE(report.holds()) << report;
   // The axial symmetry is none of a top that leans.
   const auto false_one = laws::noether_laws(asymmetric(), {top.symmetries()[1]}, draw_state);
-  EXPECT_FALSE(false_one.law("axial momentum M3 is a symmetry").holds()) << false_one;
+  EXPECT_TRUE(laws::seen_broken(false_one.law("axial momentum M3 is a symmetry"))) << false_one;
 }
 
 TEST(HeavyTop, OrderTwoInStateAndAttitude) {

@@ -24,6 +24,32 @@ pc=$(find "$prefix" -name lagroid.pc -not -path '*/_CPack_Packages/*' | head -1)
 [ -n "$pc" ] || fail "no lagroid.pc below $prefix"
 export PKG_CONFIG_PATH=${pc%/*}
 
+# What is installed finds its libraries where the build does.
+run_path() { readelf -d "$1" | sed -n 's/.*R.*PATH.*\[\(.*[^:]\):*\]$/\1/p'; }
+if [ -e "$build/bin/lagroid" ]; then
+  for name in lagroid lagroid-check; do
+    [ ! -e "$build/bin/$name" ] || [ "$(run_path "$build/bin/$name")" = "$(run_path "$prefix/bin/$name")" ] ||
+      fail "$name looks for libraries in [$(run_path "$prefix/bin/$name")], not in [$(run_path "$build/bin/$name")]"
+  done
+fi
+
+# A build of the program alone is installed without the Python package; its component is refused.
+if grep -qs lagroid_python "$build/build.ninja"; then
+  without=$work/without_python
+  sed "s|\"$build/python/lagroid/_lagroid|\"$work/missing/_lagroid|" "$build/python/cmake_install.cmake" \
+    >"$work/python.cmake"
+  cmake -DCMAKE_INSTALL_PREFIX="$without" -P "$work/python.cmake" >"$work/python.log" 2>&1 ||
+    { cat "$work/python.log" >&2; fail "without the Python module nothing is installed"; }
+  grep -q "Without the Python package: its module is not built" "$work/python.log" || fail "it is missing without a word"
+  [ -e "$without/include/lagroid/python/system.hpp" ] || fail "without the module, its headers are missing"
+  [ -z "$(find "$without" -name '*.py')" ] || fail "a Python package without its module was installed"
+  if cmake -DCMAKE_INSTALL_PREFIX="$without" -DCMAKE_INSTALL_COMPONENT=python -P "$work/python.cmake" \
+    2>"$work/python.log"; then
+    fail "the component python should have been refused"
+  fi
+  grep -q "build the target lagroid_python first" "$work/python.log" || fail "refused without saying what to do"
+fi
+
 # By CMake. What takes time is at stake in other tests, hence -O1.
 cmake -S "$consumer" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_FLAGS=-O1 \
   >"$work/configure.log" 2>&1 || { cat "$work/configure.log" >&2; fail "find_package(lagroid) does not work"; }
@@ -34,6 +60,9 @@ cmake --build "$work/cmake" >"$work/build.log" 2>&1 || { cat "$work/build.log" >
 if [ -n "$whole" ]; then
   cmake --build "$work/cmake" --target laws >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "no laws"; }
   "$work/cmake/laws" 2>/dev/null
+fi
+if grep -qs '^LAGROID_APP:BOOL=ON' "$build/CMakeCache.txt"; then
+  [ -x "$prefix/bin/lagroid" ] || fail "the program is not installed"
 fi
 if [ -x "$prefix/bin/lagroid" ]; then
   cmake --build "$work/cmake" --target systems >"$work/systems.log" || fail "lagroid::program does not run"
@@ -54,6 +83,22 @@ if [ -n "$whole" ]; then
     ${CXX:-c++} -std=c++20 -fsyntax-only "${flags[@]}" "$work/header.cpp" 2>"$work/header.log" ||
       fail "$header does not compile on its own: $(head -n 3 "$work/header.log")"
   done <"$work/headers"
+fi
+
+# Without a build type: told so, and the template for Python sets one.
+configured() { # configured SOURCE BUILD ARGUMENTS...
+  cmake -S "$1" -B "$work/$2" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER_WORKS=1 "${@:3}" >"$work/$2.log" 2>&1 ||
+    { cat "$work/$2.log" >&2; fail "$1 is not configured"; }
+}
+configured "$consumer" no_type -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_FLAGS=
+grep -q "no build type is set" "$work/no_type.log" || fail "no build type, and not a word"
+configured "$consumer" release -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=
+! grep -q "no build type is set" "$work/release.log" || fail "a false warning of the build type"
+template=$prefix/share/lagroid/python/template
+if [ -e "$template" ] && [ "$prefix" != "$build" ]; then
+  configured "$template" template -DPython_EXECUTABLE=/usr/bin/python3
+  ! grep -q "no build type is set" "$work/template.log" || fail "the template has no build type"
+  grep -q "^CXX_FLAGS.*-O3" "$work/template/CMakeFiles/my_system.dir/flags.make" || fail "the template is not optimised"
 fi
 
 # What must be refused, and why.

@@ -6,6 +6,7 @@
 #include <lagroid/groupoids/se2.hpp>
 
 #include "affine.hpp"
+#include "broken.hpp"
 
 #include <gtest/gtest.h>
 
@@ -100,7 +101,7 @@ template <CotangentFault Fault> struct BrokenCotangent : CotangentGroupoid<Affin
 template <CotangentFault Fault> void expect_broken(const std::vector<std::string>& names) {
   const auto report = laws::cotangent_laws(
       Affine{}, [] { return Vector<double, 1>(laws::draw_vector<1>(2.0)); }, moderate(), BrokenCotangent<Fault>());
-  for (const auto& law : names) EXPECT_FALSE(report.law(law).holds()) << law << '\n' << report;
+  for (const auto& law : names) EXPECT_TRUE(laws::seen_broken(report.law(law))) << law << '\n' << report;
 }
 
 TEST(BrokenCotangentGroupoid, Product) {
@@ -116,7 +117,7 @@ TEST(BrokenCotangentGroupoid, OfAGroupoidWhoseBisectionsMissTheirArrows) {
   groupoid.fault = Fault::bisection;
   const auto report = laws::cotangent_laws(groupoid, moderate());
   for (const char* law : {"tangent of the product (A.1)", "fibres of source and target are orthogonal"})
-    EXPECT_FALSE(report.law(law).holds()) << report;
+    EXPECT_TRUE(laws::seen_broken(report.law(law))) << report;
 }
 
 }  // namespace

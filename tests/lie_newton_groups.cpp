@@ -1,8 +1,10 @@
-// Newton's iterations on every group of fixed size.
+// Newton's iterations on every group of matrices of fixed size.
 #include <lagroid/groupoids/linear.hpp>
 #include <lagroid/groupoids/orthogonal.hpp>
 #include <lagroid/groupoids/se2.hpp>
 #include <lagroid/groupoids/se3.hpp>
+#include <lagroid/groupoids/so2.hpp>
+#include <lagroid/groupoids/so3.hpp>
 #include <lagroid/solvers/lie_differentials.hpp>
 
 #include <gtest/gtest.h>
@@ -38,6 +40,8 @@ template <class G> void expect_implicit_steps(const ArrowOf<G>& z) {
   }
 }
 TEST(LieNewtonGroups, SolveImplicitSteps) {
+  expect_implicit_steps<SO2>(SO2::exp(Vector<double, 1>(0.3)));
+  expect_implicit_steps<SO3>(SO3::exp(Vector<double, 3>(0.3, -1, 0.5)));
   Matrix<double, 3, 3> reflected = Matrix<double, 3, 3>::Identity();
   reflected(0, 0) = -1;
   expect_implicit_steps<Orthogonal<3>>(reflected);

@@ -8,6 +8,7 @@
 #include <lagroid/systems/plate_ball.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 
+#include "broken.hpp"
 #include "draws.hpp"
 
 #include <gtest/gtest.h>
@@ -92,15 +93,15 @@ struct Lopsided : Morphism<Lopsided, Pair<1>, Pair<1>> {
 };
 TEST(BrokenMorphism, IsFoundOut) {
   const auto wrong = laws::morphism_laws(WrongQuotient{}, draw_attitude, moderate());
-  EXPECT_FALSE(wrong.law("products").holds()) << wrong;
-  EXPECT_FALSE(wrong.law("left-invariant fields").holds()) << wrong;
+  EXPECT_TRUE(laws::seen_broken(wrong.law("products"))) << wrong;
+  EXPECT_TRUE(laws::seen_broken(wrong.law("left-invariant fields"))) << wrong;
   const auto stretched = laws::morphism_laws<Stretched>();
-  EXPECT_FALSE(stretched.law("products").holds()) << stretched;
-  EXPECT_FALSE(stretched.law("units and inverses").holds()) << stretched;
+  EXPECT_TRUE(laws::seen_broken(stretched.law("products"))) << stretched;
+  EXPECT_TRUE(laws::seen_broken(stretched.law("units and inverses"))) << stretched;
   const auto lopsided = laws::morphism_laws<Lopsided>();
   EXPECT_TRUE(lopsided.law("products").holds()) << lopsided;
   for (const auto* law : {"sources and targets", "anchors", "right-invariant fields", "lift"})
-    EXPECT_FALSE(lopsided.law(law).holds()) << law << '\n' << lopsided;
+    EXPECT_TRUE(laws::seen_broken(lopsided.law(law))) << law << '\n' << lopsided;
 }
 
 RigidBody body() {
@@ -182,8 +183,8 @@ TEST(Reduction, PlateBallByTranslations) {
   // On the turning plate translations are no symmetry.
   full.plate_rate = 0.4;
   const auto turning = laws::system_morphism_laws(PlateMorphism{}, full, reduced, [&] { return draw_step(full, 0.3); });
-  EXPECT_FALSE(turning.law("Lagrangians and constraints").holds()) << turning;
-  EXPECT_FALSE(turning.law("Legendre transforms are related").holds()) << turning;
+  EXPECT_TRUE(laws::seen_broken(turning.law("Lagrangians and constraints"))) << turning;
+  EXPECT_TRUE(laws::seen_broken(turning.law("Legendre transforms are related"))) << turning;
 }
 
 TEST(Reduction, OfAnotherBodyIsFoundOut) {
@@ -192,9 +193,9 @@ TEST(Reduction, OfAnotherBodyIsFoundOut) {
   const PulledBack<LeftQuotient<SO3>, RigidBody> full(body());
   const auto report = laws::reduction_laws(LeftQuotient<SO3>{}, full, other,
                                            [] { return std::pair(draw_attitude(), Vector<double, 3>(1, 0.5, -1)); });
-  EXPECT_FALSE(report.law("images of arrows").holds()) << report;
-  EXPECT_FALSE(report.law("related momenta").holds()) << report;
-  EXPECT_FALSE(report.law("reconstruction").holds()) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("images of arrows"))) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("related momenta"))) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("reconstruction"))) << report;
 }
 
 }  // namespace

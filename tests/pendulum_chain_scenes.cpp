@@ -267,6 +267,19 @@ TEST_F(PendulumChains, RattleKeepsWhatItPromises) {
   EXPECT_LT(entry(result, "energy").at("drift"), 0.15);
 }
 
+/// In any unit of mass a chain is judged alike, and where masses leave no digits to energy and momentum that is said.
+TEST_F(PendulumChains, MassesInEveryUnitAreJudgedAlike) {
+  for (const std::string mass : {"1", "1e300", "1e200", "1e-160", "1e-280", "1e-300"}) {
+    const Json result = run_json(example("pendulum_chain") + " --set parameters.masses=" + mass);
+    const bool small = mass == "1e-300";
+    EXPECT_EQ(entry(result, "constraint residual").at("verdict"), "kept") << mass;
+    EXPECT_EQ(entry(result, "vertical angular momentum").at("verdict"), small ? "unjudged" : "kept") << mass;
+    EXPECT_EQ(entry(result, "energy").at("verdict"), small ? "unjudged" : "bounded") << mass;
+    EXPECT_EQ(entry(result, "energy").contains("reason"), small) << mass;
+    EXPECT_LT(entry(result, "energy").at("relative_drift").get<double>(), 1e-2) << mass;
+  }
+}
+
 TEST_F(PendulumChains, OthersPromiseTheSpheresOrNothing) {
   const auto ledger = [&](const std::string& method) {
     return run_json(example("pendulum_chain") + " --set time.steps=2000 --set time.method=" + method);

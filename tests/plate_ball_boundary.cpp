@@ -1,5 +1,7 @@
 // Plate-ball boundary-value problems: reference minima, degenerate cases, Ceres, typed failures.
 #include <lagroid/solvers/boundary_ceres.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/newton_step.hpp>
 #include <lagroid/systems/plate_ball_boundary.hpp>
 
 #include "plate_ball_cases.hpp"
@@ -7,7 +9,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
+#include <memory>
 #include <numbers>
+#include <vector>
 
 using namespace lagroid;
 
@@ -81,7 +85,9 @@ TEST_P(LocalMinima, AllListedOnesAreFound) {
   PlateBall system = cases::system(c, "exp");
   system.h = c.at("T").get<double>() / 20;
   const auto found = solve(system, boundary(c), 20, false, std::uint64_t(seed));
-  for (const auto& listed : c.at("local_minima_found_exp_N20")) {
+  const auto& all = c.at("local_minima_found_exp_N20");
+  ASSERT_EQ(all.size(), 3U);
+  for (const auto& listed : all) {
     const double cost = listed.at("cost");
     const bool met = std::any_of(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
       return std::abs(s.cost - cost) < 1e-9 * cost && s.kind.is_minimum &&
@@ -108,12 +114,16 @@ TEST(Multistart, IsReproducibleWhateverTheThreads) {
     return solve_plate_ball(*make_boundary_solver<PlateBall>(), system, ends, options);
   };
   const auto a = on(1);
+  ASSERT_FALSE(a.solutions.empty());
   for (const int threads : {1, 2, 5}) {
     const auto b = on(threads);
     EXPECT_EQ(a.iterations, b.iterations);
     EXPECT_EQ(a.outcomes, b.outcomes);
     ASSERT_EQ(a.solutions.size(), b.solutions.size());
-    for (std::size_t i = 0; i < a.solutions.size(); ++i) EXPECT_EQ(a.solutions[i].cost, b.solutions[i].cost);
+    for (std::size_t i = 0; i < a.solutions.size(); ++i) {
+      EXPECT_EQ(a.solutions[i].cost, b.solutions[i].cost);
+      EXPECT_EQ(initial_momentum(system, a.solutions[i].path), initial_momentum(system, b.solutions[i].path));
+    }
   }
 }
 
@@ -167,24 +177,53 @@ TEST(Boundary, TurningInPlaceIsAFamily) {
 }
 
 TEST(Boundary, ContinuationInNReachesThousands) {
-  PlateBall system;
-  system.rotation = RotationForm::exponential;
-  system.h = 1.0 / 1000;
-  const auto found = solve(system, boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9}), 1000);
-  ASSERT_FALSE(found.solutions.empty());
   // Second order in 1/N towards the continuous minimum of the case file.
   const double continuous = cases::find("P2-bvp-elastica").at("continuous").at("cost");
-  EXPECT_NEAR(found.solutions.front().cost, continuous, 1e-4);
-  EXPECT_EQ(found.solutions.front().path.size(), 1000U);
+  PlateBall system;
+  system.rotation = RotationForm::exponential;
+  std::vector<double> errors;
+  for (const long steps : {1000, 2000}) {
+    system.h = 1.0 / double(steps);
+    const auto found = solve(system, boundary({0, 0}, {1, 0.5}, {0.6, -0.3, 0.9}), steps);
+    ASSERT_FALSE(found.solutions.empty()) << steps;
+    EXPECT_EQ(found.solutions.front().path.size(), std::size_t(steps));
+    errors.push_back(std::abs(found.solutions.front().cost - continuous));
+  }
+  EXPECT_LT(errors[0], 1e-4);
+  EXPECT_NEAR(errors[0] / errors[1], 4, 0.05);
 }
 
 TEST(Boundary, MinimaSurviveTheirInitialValueProblem) {
-  // The momentum of the boundary solution, integrated forward, arrives at the end.
-  const auto c = cases::find("P3-bvp-rotating");
-  const PlateBall system = cases::system(c, "cay");
-  const auto found = solve(system, boundary(c), c.at("N"));
-  const auto& path = found.solutions.front().path;
-  EXPECT_LT((legendre_plus(system, path[10]).momentum - legendre_minus(system, path[11]).momentum).norm(), 1e-11);
+  // From the start and the momentum of the boundary solution the integrator takes the same steps, to the same end.
+  for (const char* id : {"P2-bvp-elastica", "P3-bvp-rotating"})
+    for (const char* form : {"trace", "exp", "cay"}) {
+      SCOPED_TRACE(std::string(id) + " " + form);
+      const auto c = cases::find(id);
+      const PlateBall system = cases::system(c, form);
+      const auto& groupoid = system.groupoid;
+      const auto ends = boundary(c);
+      const auto found = solve(system, ends, c.at("N"));
+      int minima = 0;
+      for (const auto& solution : found.solutions) {
+        if (!solution.kind.is_minimum) continue;
+        ++minima;
+        const State<G> start{groupoid.source(ends), initial_momentum(system, solution.path)};
+        Integrator<PlateBall> integrator(system, start, groupoid.unit(start.object),
+                                         std::make_unique<NewtonStep<PlateBall>>());
+        for (const auto& step : solution.path) {
+          ASSERT_TRUE(integrator.advance().converged()) << integrator.point().index;
+          const auto& taken = integrator.point().step;
+          EXPECT_LT((groupoid.coordinates_of_arrow(taken.arrow) - groupoid.coordinates_of_arrow(step.arrow)).norm(),
+                    1e-9);
+          EXPECT_LT((taken.multipliers - step.multipliers).norm(), 1e-8);
+        }
+        const auto& end = integrator.point();
+        EXPECT_LT((groupoid.coordinates_of_arrow(end.configuration) - groupoid.coordinates_of_arrow(ends)).norm(),
+                  1e-9);
+        EXPECT_LT((end.state.momentum - final_momentum(system, solution.path)).norm(), 1e-8);
+      }
+      EXPECT_GE(minima, 2);
+    }
 }
 
 TEST(Ceres, FindsTheSameBestMinimum) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -34,9 +35,17 @@ TEST_P(Rotations, ExpIsOrthogonalAndSatisfiesItsEquation) {
     const SkewSpectrum<double> spectrum(x);
     const Eigen::MatrixXd q = spectrum.exp();
     EXPECT_LT((q.transpose() * q - Eigen::MatrixXd::Identity(n(), n())).norm(), 10 * bound());
-    // exp(X) = exp(X/2)^2, and exp(-X) exp(X) = I.
+    // exp(X) = exp(X/2)^2, down to where the series sums to it.
     const Eigen::MatrixXd half = SkewSpectrum<double>(Eigen::MatrixXd(0.5 * x)).exp();
     EXPECT_LT((half * half - q).norm(), 10 * bound() * (1 + size));
+    const double small = std::min(1.0, 0.1 / x.norm());
+    Eigen::MatrixXd term = Eigen::MatrixXd::Identity(n(), n());
+    Eigen::MatrixXd sum = term;
+    for (int k = 1; k < 12; ++k) {
+      term = (term * x * (small / k)).eval();
+      sum += term;
+    }
+    EXPECT_LT((SkewSpectrum<double>(Eigen::MatrixXd(small * x)).exp() - sum).norm(), 10 * bound()) << size;
   }
 }
 

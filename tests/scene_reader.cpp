@@ -115,6 +115,9 @@ TEST_F(Scene, Overrides) {
   expect(valid, {"--set parameters.raduis", "\"radius\""}, {"parameters.raduis=1"});
   expect(valid, {"--set steps", "key=value"}, {"steps"});
   expect(valid, {"--set system.x", "not a table"}, {"system.x=1"});
+  for (const char* key : {"a.", ".a", "time..steps", "."})
+    expect(valid, {std::string("--set ") + key + ": no key"}, {std::string(key) + "=1"});
+  expect("[[body]]\nkind = 'point'\n", {"--set body.00.mass: \"00\" is no place"}, {"body.00.mass=1"});
 }
 
 TEST_F(Scene, OtherSystems) {

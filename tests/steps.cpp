@@ -17,6 +17,7 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <vector>
 
 using namespace lagroid;
 
@@ -130,15 +131,33 @@ TEST(NewtonStep, ReportsSingular) {
   EXPECT_FALSE(condition < 1e15);
 }
 
+/// L = sqrt(1 + d^2), whose momenta are all below one.
+struct Bounded : System<Bounded, Pair<1>> {
+  template <class S> S lagrangian(const PairArrow<S, 1>& g) const {
+    using std::sqrt;
+    const S d = g.target(0) - g.source(0);
+    return sqrt(d * d + 1.0);
+  }
+};
+
 TEST(NewtonStep, ReportsStagnationWhereThereIsNoSolution) {
+  const State<Pair<1>> start{Vector<double, 1>(0.0), Vector<double, 1>(2.0)};
+  Integrator<Bounded> integrator({}, start, {start.object, start.object}, std::make_unique<NewtonStep<Bounded>>());
+  const auto report = integrator.advance();
+  EXPECT_EQ(report.status, SolveStatus::stagnated);
+  EXPECT_GE(report.residual, 1);
+  EXPECT_EQ(integrator.point().index, 0);
+  EXPECT_EQ(integrator.point().state.momentum, start.momentum);
+}
+
+TEST(NewtonStep, ReportsLeftDomainWhereAllSolutionsAreOfAnotherBranch) {
   // The trace form reaches |w| < 1 only: a momentum that asks for more has no step.
   PlateBall system;
   system.h = 1;
   State<G> state = plate_state();
   state.momentum << 40, 30, 0.1, 0.1, 0.1;
   auto integrator = make(system, state);
-  const auto report = integrator.advance();
-  EXPECT_FALSE(report.converged());
+  EXPECT_EQ(integrator.advance().status, SolveStatus::left_domain);
   EXPECT_EQ(integrator.point().index, 0);
   EXPECT_EQ(integrator.point().state.momentum, state.momentum);
 }
@@ -152,6 +171,7 @@ TEST(NewtonStep, RejectsTheOtherRootsOfTheTraceForm) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
   int wrong_branch = 0;
+  int found = 0;
   StepSolution<PlateBall> right;
   right.step = system.first_guess(state);
   ASSERT_TRUE(newton.solve(system, state, right).converged());
@@ -167,32 +187,64 @@ TEST(NewtonStep, RejectsTheOtherRootsOfTheTraceForm) {
       EXPECT_LE(std::get<1>(solution.step.arrow).trace(), 1);
     }
     if (report.converged()) {
+      ++found;
       EXPECT_LT((solution.step.multipliers - right.step.multipliers).norm(), 1e-9) << "a second admissible root";
     }
   }
   EXPECT_GT(wrong_branch, 10);
+  EXPECT_GT(found, 10);
+}
+
+/// The condition number of the equilibrated matrix of T F+ at a step, by differences: F+ and phi as the source moves.
+double condition_of_plus(const PlateBall& system, const Step<PlateBall>& step) {
+  constexpr double e = 1e-6;
+  const Vector<double, 5> still = Vector<double, 5>::Zero();
+  const auto at = [&](const Vector<double, 8>& x) {
+    const Step<PlateBall> moved{system.groupoid.translate(Vector<double, 5>(x.head<5>()), step.arrow, still),
+                                step.multipliers + x.tail<3>()};
+    Vector<double, 8> out;
+    out << legendre_plus(system, moved).momentum, constraint_values(system, moved.arrow);
+    return out;
+  };
+  Matrix<double, 8, 8> j;
+  for (int i = 0; i < 8; ++i) {
+    const Vector<double, 8> x = e * Vector<double, 8>::Unit(i);
+    j.col(i) = (at(x) - at(Vector<double, 8>(-x))) / (2 * e);
+  }
+  const Matrix<double, 8, 8> scaled = Scaling<8>::equilibrate(j).apply(j);
+  const auto sigma = Eigen::JacobiSVD<Matrix<double, 8, 8>>(scaled).singularValues().eval();
+  return sigma(0) / sigma(7);
 }
 
 TEST(Regularity, ConditionIsTheSameForEveryStep) {
+  // And for both ends of it, [G] Corollary 3.4.
+  std::vector<double> conditions;
   for (const double h : {1e-1, 1e-3, 1e-5}) {
     PlateBall system;
     system.h = h;
     auto integrator = make(system, plate_state());
     ASSERT_TRUE(integrator.advance().converged());
-    EXPECT_LT(regularity_condition(system, integrator.point().step), 10) << h;
+    conditions.push_back(regularity_condition(system, integrator.point().step));
+    EXPECT_NEAR(condition_of_plus(system, integrator.point().step) / conditions.back(), 1, 1e-3) << h;
   }
+  EXPECT_LT(conditions[0], 10);
+  for (const double condition : conditions) EXPECT_NEAR(condition / conditions[0], 1, 0.5);
 }
 
 TEST(Integrator, LegendreTransformsMeetAtTheObjects) {
   PlateBall system;
   system.plate_rate = 0.7;
   auto integrator = make(system, plate_state());
-  ASSERT_TRUE(integrator.advance().converged());
-  const auto first = integrator.point().step;
-  EXPECT_LT((legendre_minus(system, first).momentum - plate_state().momentum).norm(), 1e-13);
-  ASSERT_TRUE(integrator.advance().converged());
-  const auto second = integrator.point().step;
-  EXPECT_LT((legendre_plus(system, first).momentum - legendre_minus(system, second).momentum).norm(), 1e-12);
+  auto before = plate_state();
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_TRUE(integrator.advance().converged());
+    const auto& step = integrator.point().step;
+    const auto minus = legendre_minus(system, step);
+    EXPECT_LT((minus.momentum - before.momentum).norm(), 1e-12) << k;
+    EXPECT_LT((std::get<0>(minus.object) - std::get<0>(before.object)).norm(), 1e-12) << k;
+    before = legendre_plus(system, step);
+    EXPECT_LT((integrator.point().state.momentum - before.momentum).norm(), 1e-12) << k;
+  }
 }
 
 TEST(Integrator, LargeTurnsAndSmallBalls) {

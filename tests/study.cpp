@@ -8,14 +8,18 @@
 #include <study/experiment.hpp>
 #include <study/measure.hpp>
 #include <study/methods.hpp>
+#include <study/survey.hpp>
 
 #include <lagroid/solvers/testing/order_laws.hpp>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -194,14 +198,35 @@ TEST(Measurements, SeeConstraintsAndTheGroup) {
 TEST(Measurements, MarkWhatFails) {
   const Experiment experiment = read_experiment(example("rigid_body"));
   const auto reference = extrapolated_reference(experiment, 2);
-  const auto runs = measure(experiment, matching("moser-veselov/10,splitting", experiment.methods), {{5.0, 0.01}, 1},
-                            *reference, 2, [](double) { return true; });
+  const auto found = survey(experiment, matching("moser-veselov/10,splitting", experiment.methods), {{5.0, 0.01}, 1},
+                            *reference, 2, Budget(60), [](double) { return true; });
+  EXPECT_TRUE(found.left_out.empty());
+  const auto& runs = found.runs;
   ASSERT_EQ(runs.size(), 4u);
   EXPECT_EQ(runs[0].status, "refused");
   EXPECT_NE(runs[0].message.find("too long"), std::string::npos) << runs[0].message;
   EXPECT_TRUE(runs[1].converged());
   EXPECT_EQ(runs[1].seconds.size(), 2u);
   EXPECT_TRUE(std::isfinite(runs[1].trajectory));
+}
+
+/// A run that ends farther off than the motion is large has failed; and it is no point of a figure where its error is
+/// larger than that.
+TEST(Measurements, BeyondTheMotionsSizeAreNone) {
+  const Experiment experiment = read_experiment(orbit());
+  const auto reference = extrapolated_reference(experiment, 5);
+  const auto run = measure_once(experiment, method_named(experiment.methods, "runge-kutta"), 1.25, reference.get(), 10);
+  EXPECT_GT(run.trajectory, 2);
+  EXPECT_EQ(run.status, "astray");
+  EXPECT_NE(run.message.find("times the size of the motion"), std::string::npos) << run.message;
+  EXPECT_FALSE(is_point(run, Axis::invariants));
+  Measurement lost = run;
+  lost.status = "converged";
+  lost.trajectory = 1.5;  // out of phase
+  lost.invariants = 1e-3;
+  EXPECT_FALSE(is_point(lost, Axis::trajectory));
+  EXPECT_TRUE(is_point(lost, Axis::invariants));
+  EXPECT_FALSE(is_point(lost, Axis::constraint)) << "there is none";
 }
 
 Measurement made_up(const char* method, double step, double error, double seconds) {
@@ -235,6 +260,36 @@ TEST(Costs, AreInterpolatedAndLeast) {
   all.push_back(made_up("c", 0.1, 1e-9, 0.1));
   all.back().status = "not_finite";
   EXPECT_EQ(least_cost(all, Axis::trajectory, 1e-8)->method, "b");
+}
+
+TEST(Costs, NameTheCheapestMethods) {
+  const std::vector<Measurement> all{made_up("dear", 0.1, 1e-2, 10),  made_up("dear", 0.05, 1e-9, 20),
+                                     made_up("low", 0.1, 2e-2, 0.1),  made_up("low", 0.01, 2e-4, 1),
+                                     made_up("high", 0.1, 1e-2, 0.5), made_up("high", 0.05, 1e-8, 1.2)};
+  EXPECT_EQ(cheapest_methods(all, Axis::trajectory, &Cost::seconds, 1e-7), (std::vector<std::string>{"low", "high"}));
+  EXPECT_EQ(cheapest_methods(all, Axis::trajectory, &Cost::seconds, 1e-9),
+            (std::vector<std::string>{"low", "high", "dear"}));
+}
+
+/// Where time is short it goes to what is cheap: a method of order 2 is given up while one of order 6 goes on.
+TEST(Surveys, SpendTheirTimeWhereItTellsMost) {
+  Experiment experiment = read_experiment(orbit({"time.duration=200", "time.steps=20000"}));
+  const auto reference = extrapolated_reference(experiment, 5);
+  const auto methods = matching("splitting,splitting/nystrom-6", experiment.methods);
+  const Budget budget(3);
+  const Survey found = survey(experiment, methods, {{}, 60}, *reference, 2, budget, [](double) { return true; });
+  EXPECT_LT(budget.spent(), 12);
+  ASSERT_FALSE(found.left_out.empty());
+  const auto least_error = [&](const char* name) {
+    double least = 1;
+    for (const Measurement& m : found.runs)
+      if (m.method == name && m.converged()) least = std::min(least, m.trajectory);
+    return least;
+  };
+  EXPECT_LT(least_error("splitting/nystrom-6"), 0.01 * least_error("splitting"));
+  EXPECT_EQ(found.left_out.front().method, "splitting");
+  EXPECT_FALSE(found.left_out.front().why.empty());
+  for (const Measurement& m : found.runs) EXPECT_FALSE(m.seconds.empty()) << m.method;
 }
 
 /// The error that a scene with a target really has, against a reference far below it.
@@ -319,6 +374,44 @@ TEST_F(Study, WritesItsPage) {
   EXPECT_EQ(other.code, 2);
 }
 
+/// The example as it stands, 62832 steps by 26 methods, in the time that it is given.
+TEST_F(Study, KeepsItsBudgetAndSaysWhatItLeftOut) {
+  const fs::path out = folder_ / "out";
+  const auto start = std::chrono::steady_clock::now();
+  const Outcome r = run("study " + CommandLine::example("kepler") + " --budget 10 --out " + out.string());
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_LT(took, 40);
+  const std::string first = r.out.substr(0, r.out.find('\n'));
+  EXPECT_NE(first.find("within 10 s (--budget)"), std::string::npos) << first;
+  const auto json = nlohmann::json::parse(std::ifstream(out / "study.json"));
+  EXPECT_EQ(json.at("budget"), 10);
+  ASSERT_FALSE(json.at("not_measured").empty());
+  const std::string left_out = json.at("not_measured").at(0).at("method");
+  for (const char* file : {"study.md", "study.html"}) {
+    std::ifstream in(out / file);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(text.find("ot measured: " + left_out), std::string::npos) << file;
+    EXPECT_NE(text.find("the budget was 10 s"), std::string::npos) << file;
+  }
+  EXPECT_NE(json.at("recommendation").at(0).get<std::string>().find("use "), std::string::npos);
+  // No two methods are drawn alike, and the cheapest strongly.
+  std::ifstream script(out / "study.gp");
+  std::map<std::string, std::string> legend;
+  for (std::string line; std::getline(script, line);) {
+    if (!line.starts_with("plot [0:1]")) continue;
+    static const std::regex entry("NaN with linespoints ([^,]*) title '([^']*)'");
+    for (std::sregex_iterator at(line.begin(), line.end(), entry), end; at != end; ++at) legend[(*at)[2]] = (*at)[1];
+  }
+  std::set<std::string> methods, styles;
+  for (const auto& run : json.at("runs")) methods.insert(run.at("method").get<std::string>());
+  for (const auto& [method, style] : legend) styles.insert(style);
+  EXPECT_EQ(legend.size(), methods.size());
+  EXPECT_EQ(styles.size(), methods.size());
+  for (const auto& level : json.at("least_time").at("trajectory"))
+    EXPECT_NE(legend.at(level.at("method")).find("linewidth 2.2"), std::string::npos) << level;
+}
+
 TEST_F(Study, ListsMethods) {
   const Outcome r = run("study " + scene() + " --list");
   EXPECT_EQ(r.code, 0);
@@ -347,7 +440,9 @@ TEST_F(Study, ASceneWithATargetIsRunAndResumed) {
   EXPECT_NE(json.at("notes").at(0).get<std::string>().find("accuracy: for an error of 1e-06"), std::string::npos);
   EXPECT_NE(json.at("notes").at(1).get<std::string>().find("ten times better"), std::string::npos);
   const long steps = json.at("steps");
-  EXPECT_EQ(run("resume " + out.string() + " --set time.steps=" + std::to_string(steps + 7)).code, 0);
+  const Outcome on = run("resume " + out.string() + " --json --set time.steps=" + std::to_string(steps + 7));
+  ASSERT_EQ(on.code, 0) << on.err;
+  EXPECT_EQ(nlohmann::json::parse(on.out).at("steps"), steps + 7);
 }
 
 }  // namespace

@@ -709,6 +709,10 @@ TEST_F(Sweep, EveryExampleRuns) {
   small("kepler", "--set design.count=10 --set scene.time.steps=500", 10);
   small("plate_ball", "--set vary.0.count=2 --set vary.1.count=2", 4);
   small("three_bodies", "--set scene.time.steps=1000", 4);
+  EXPECT_EQ(std::count_if(fs::directory_iterator(fs::path(LAGROID_EXAMPLES) / "sweeps"), fs::directory_iterator(),
+                          [](const auto& entry) { return entry.path().extension() == ".toml"; }),
+            5)
+      << "ask the new one, too";
   // Every angle has come to rest near one of the wells.
   for (const double q : column("basins", "final/q")) EXPECT_LT(std::abs(std::remainder(q, 2 * M_PI)), 0.6);
 }

@@ -98,7 +98,8 @@ TEST(Marches, WithMultipliersGoOnWithTheSameBits) {
 TEST(Balances, GoOnFromATape) {
   DampedPendulum system;
   system.h = 0.05;
-  const auto march = make_march(system, {Vector<double, 1>(1.0), Vector<double, 1>(0.0)}, {}, {});
+  const Vector<double, 1> angle(1.0);
+  const auto march = make_march(system, {angle, Vector<double, 1>(0.0)}, {angle, angle}, {});
   auto seen = energy_balance(system);
   double value = 0;
   for (int k = 0; k < 20; ++k) {

@@ -3,6 +3,7 @@
 #include <lagroid/solvers/testing/variational_laws.hpp>
 
 #include "affine.hpp"
+#include "broken.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,8 @@ TEST(BrokenActionPrinciple, WhereTheBoundaryTermIsAllEveryPathIsCritical) {
       return State<Pair<1>>{Vector<double, 1>(1.0), Vector<double, 1>(p + 0.5 * laws::draw_uniform())};
     });
     EXPECT_TRUE(report.law("trajectories are critical").holds()) << report;
-    EXPECT_EQ(report.law("admissible neighbours are not").holds(), p == 0) << report;
+    const auto& neighbours = report.law("admissible neighbours are not");
+    EXPECT_TRUE(p == 0 ? neighbours.holds() : laws::seen_broken(neighbours)) << report;
   }
 }
 
@@ -54,9 +56,9 @@ TEST(BrokenActionPrinciple, OnAGroupoidThatIsNone) {
   const auto sound = report(Fault::none);
   EXPECT_TRUE(sound.holds()) << sound;
   const auto inverse = report(Fault::inverse);
-  EXPECT_FALSE(inverse.law("displaced nodes keep the product").holds()) << inverse;
+  EXPECT_TRUE(laws::seen_broken(inverse.law("displaced nodes keep the product"))) << inverse;
   const auto target = report(Fault::target);
-  EXPECT_FALSE(target.law("variations of two arrows (Theorem 5.1)").holds()) << target;
+  EXPECT_TRUE(laws::seen_broken(target.law("variations of two arrows (Theorem 5.1)"))) << target;
 }
 
 /// Steps along planes dz = y dx, with derivatives by hand that tilt the planes by a thousandth.
@@ -86,7 +88,7 @@ TEST(BrokenActionPrinciple, VariationsThatLeaveTheConstraintAreFoundOut) {
     EXPECT_TRUE(tilt != 0 || report.holds()) << report;
     for (const char* law : {"variations of two arrows (Theorem 5.1)", "two arrows of the dynamics are critical",
                             "trajectories are critical"})
-      EXPECT_EQ(report.law(law).holds(), tilt == 0) << report;
+      EXPECT_EQ(laws::seen_broken(report.law(law)), tilt != 0) << report;
   }
 }
 

@@ -83,6 +83,12 @@ class Page(unittest.TestCase):
                 points = DRIVER.execute_script("return lagroid.plots.points()")
                 self.assertGreater(len(points), 1)
                 self.assertGreater(min(points), 10)
+                axes = DRIVER.execute_script(
+                    """return lagroid.plots.plots.flatMap(({ chart }) =>
+                       ["x", "y"].map((axis) => chart.scales[axis].ticks.map((tick) => tick.label)));"""
+                )
+                for labels in axes:
+                    self.assertEqual(len(set(labels)), len(labels), f"labels repeat: {labels}")
                 stage = DRIVER.find_element("id", "bodies")
                 self.assertGreater(colours(stage.screenshot_as_base64), 20, "the stage is blank")
                 before = DRIVER.execute_script("return lagroid.player.t")

@@ -1,5 +1,6 @@
 #include "draw.hpp"
 
+#include "../markup.hpp"
 #include "../output_folder.hpp"
 #include "numbers.hpp"
 #include "trajectory_files.hpp"
@@ -53,7 +54,7 @@ int draw(const DrawOptions& options) {
   const std::array<const char*, 1> files{name.c_str()};
   try {
     require_trajectory_file(file);
-    require_writable(folder, files);
+    const OutputFolder held(folder, OutputKind::data, std::nullopt, files);
     const PendulumChain<Eigen::Dynamic> chain(one_each(options.masses, options.links, "masses"),
                                               one_each(options.lengths, options.links, "lengths"), options.gravity);
     const auto rows = draw_trajectories(chain, {.count = options.count,
@@ -67,8 +68,8 @@ int draw(const DrawOptions& options) {
     });
   } catch (const DataError& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
-  } catch (const OutputError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
+  } catch (const OutputError&) {
+    throw;
   } catch (const std::invalid_argument& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const std::runtime_error& error) {
@@ -80,7 +81,7 @@ int draw(const DrawOptions& options) {
                                     {"points", options.points},
                                     {"files", {options.out}}};
   print(options.json
-            ? json.dump(2) + "\n"
+            ? json_text(json) + "\n"
             : fmt::format("  wrote {}: {} trajectories of {} points\n", options.out, options.count, options.points));
   return 0;
 }

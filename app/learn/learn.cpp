@@ -1,7 +1,7 @@
 #include "learn.hpp"
 
 #include "../interrupt.hpp"
-#include "../output_folder.hpp"
+#include "../markup.hpp"
 #include "../progress.hpp"
 #include "../written.hpp"
 #include "learn_files.hpp"
@@ -111,14 +111,13 @@ int serve(const LearnOptions& options) {
         options.json, exit_bad_input, "invalid_command_line",
         fmt::format("--integrator {}: there is none; take one of {}", options.integrator, integrator_names()));
   Lesson lesson;
+  std::optional<OutputFolder> folder;
   try {
     lesson = prepare(options);
-    if (options.out) require_writable_lesson(*options.out);
+    if (options.out) folder.emplace(folder_for_lesson(*options.out, lesson));
   } catch (const DataError& error) {
     return refuse(options.json, exit_bad_input, "invalid_data", error.what());
   } catch (const ModelError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
-  } catch (const OutputError& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   }
   const InterruptGuard guard;
@@ -140,10 +139,10 @@ int serve(const LearnOptions& options) {
   } else {
     text += "  (no files written; --out DIR writes model, history, plot and summary)\n";
   }
-  print(options.json ? json.dump(2) + "\n" : text);
+  print(options.json ? json_text(json) + "\n" : text);
   if (code != 0)
-    fmt::print(stderr, "lagroid: {}: {}\n", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message);
-  return code;
+    complain(fmt::format("{}: {}", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message));
+  return code_after_writing(code, options.data);
 }
 
 }  // namespace

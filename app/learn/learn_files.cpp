@@ -1,13 +1,17 @@
 #include "learn_files.hpp"
 
 #include "../clock.hpp"
-#include "../output_folder.hpp"
+#include "../kept_file.hpp"
+#include "../markup.hpp"
+#include "../text.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace lagroid::app {
@@ -58,6 +62,36 @@ std::string gnuplot_script(const Lesson& lesson) {
   return out;
 }
 
+/// How much of the motion from first points to later ones the model accounts for: one less its mean squared error over
+/// that of a system at rest. NaN where nothing moves.
+double share_explained(const Lesson& lesson) {
+  const learning::Trajectories& data = lesson.data;
+  double motion = 0;
+  for (Eigen::Index j = 0; j < data.count(); ++j)
+    for (Eigen::Index i = 0; i < data.weights.rows(); ++i)
+      motion += data.weights(i, j) *
+                (data.ends.block(i * data.width(), j, data.width(), 1) - data.starts.col(j)).squaredNorm();
+  if (motion == 0) return std::numeric_limits<double>::quiet_NaN();
+  return 1 - lesson.trained.mse * data.total_weight() / motion;
+}
+
+/// What is said where that is little: a training converges on noise too.
+std::string little_explained(const Lesson& lesson) {
+  constexpr double enough = 0.9;
+  const double share = share_explained(lesson);
+  if (!(share < enough)) return "";
+  return fmt::format(
+      "the model explains {:.3g} % of the motion in the data: they are noise for the most part, or of another kind of "
+      "system, or the model is too small",
+      100 * std::max(share, 0.0));
+}
+
+std::vector<std::string> notes_of(const Lesson& lesson) {
+  std::vector<std::string> out = lesson.notes;
+  if (const std::string note = little_explained(lesson); !note.empty()) out.push_back(note);
+  return out;
+}
+
 /// NaN is no JSON.
 nlohmann::ordered_json known(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
@@ -81,6 +115,7 @@ nlohmann::ordered_json lesson_json(const Lesson& lesson) {
                  {"noise", lesson.options.noise}};
   out["parameters"] = trained.parameters.size();
   out["training_mse"] = trained.mse;
+  out["explained"] = known(share_explained(lesson));
   out["validation_mse"] = known(trained.validation);
   out["iterations"] = trained.iterations;
   out["best_seed"] = trained.start;
@@ -104,7 +139,7 @@ nlohmann::ordered_json lesson_json(const Lesson& lesson) {
                        {"momentum_change_data", known(found.momentum_data)},
                        {"lost", found.lost}};
   }
-  if (!lesson.notes.empty()) out["notes"] = lesson.notes;
+  for (const std::string& note : notes_of(lesson)) out["notes"].push_back(note);
   return out;
 }
 
@@ -117,7 +152,9 @@ std::string lesson_text(const Lesson& lesson) {
   out += fmt::format("  data         {}: {} trajectories of {} points, {:g} apart\n", options.data, lesson.data.count(),
                      lesson.data.points, lesson.data.interval);
   out += fmt::format("  parameters   {}\n", trained.parameters.size());
-  out += fmt::format("  training     mean squared error {:.2e}\n", trained.mse);
+  out += fmt::format("  training     mean squared error {:.2e}", trained.mse);
+  const double share = share_explained(lesson);
+  out += std::isfinite(share) ? fmt::format(", {:.6g} % of the motion explained\n", 100 * share) : std::string("\n");
   if (std::isfinite(trained.validation)) out += fmt::format("  validation   {:.2e}\n", trained.validation);
   const Eigen::MatrixXd mass = lesson.learned.model->mass(trained.parameters);
   for (Eigen::Index i = 0; i < mass.rows(); ++i) {
@@ -141,21 +178,18 @@ std::string lesson_text(const Lesson& lesson) {
   out += options.model.ends_with(".json") ? fmt::format("; from {}\n", options.model)
                                           : fmt::format("; the best start was that of seed {}\n", trained.start);
   if (!trained.message.empty()) out += fmt::format("  note: {}\n", trained.message);
-  for (const std::string& note : lesson.notes) out += fmt::format("  note: {}\n", note);
+  for (const std::string& note : notes_of(lesson)) out += fmt::format("  note: {}\n", note);
   return out;
 }
 
-void require_writable_lesson(const fs::path& folder) {
-  require_writable(folder, files);
-  std::error_code ignored;
-  for (const char* name : {"trajectory.csv", "checkpoint"})
-    if (fs::exists(folder / name, ignored))
-      throw OutputError(fmt::format("--out {}: it holds a run ({}), whose summary would be lost; choose another place",
-                                    folder.string(), name));
+OutputFolder folder_for_lesson(const fs::path& folder, const Lesson& lesson) {
+  const OutputSource source{{"data", contents(lesson.options.data).value_or("")},
+                            {"model", lesson.learned.model->name()}};
+  return {folder, OutputKind::model, source, files};
 }
 
 std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder, std::string& note) {
-  return write_whole(folder, files, [&](const fs::path& staging) {
+  const auto make = [&](const fs::path& staging) {
     std::vector<std::string> names{"model.json", "history.csv", "summary.json", "summary.txt", "plot.gp"};
     write_text(model_text(lesson.learned), staging / "model.json");
     write_text(history_csv(lesson), staging / "history.csv");
@@ -163,13 +197,12 @@ std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder,
       write_text(errors_csv(lesson), staging / "errors.csv");
       names.emplace_back("errors.csv");
     }
-    write_text(lesson_json(lesson).dump(2) + "\n", staging / "summary.json");
-    write_text(lesson_text(lesson), staging / "summary.txt");
+    write_text(json_text(lesson_json(lesson)) + "\n", staging / "summary.json");
+    write_text(visible(lesson_text(lesson), "\n"), staging / "summary.txt");
     write_text(gnuplot_script(lesson), staging / "plot.gp");
-    note = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"});
-    if (note.empty()) names.insert(names.end(), {"plot.svg", "plot.png"});
     return names;
-  });
+  };
+  return write_and_draw(folder, files, make, {"plot.gp", {"plot.svg", "plot.png"}}, note);
 }
 
 }  // namespace lagroid::app

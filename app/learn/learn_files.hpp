@@ -1,6 +1,7 @@
 #pragma once
 /// What a training says and leaves.
 
+#include "../output_folder.hpp"
 #include "learn.hpp"
 #include "model_file.hpp"
 
@@ -30,8 +31,9 @@ struct Lesson {
 std::string lesson_text(const Lesson& lesson);
 nlohmann::ordered_json lesson_json(const Lesson& lesson);
 
-/// Throws OutputError unless the files can be written there, or where a run has its own.
-void require_writable_lesson(const std::filesystem::path& folder);
+/// The folder for the files, for this process alone; of the same data and model it is written anew. Throws as
+/// OutputFolder does.
+OutputFolder folder_for_lesson(const std::filesystem::path& folder, const Lesson& lesson);
 /// model.json, history.csv, errors.csv (with held-out data), summaries, plots; each whole or not at all. `note` says
 /// why there are no pictures.
 std::vector<std::filesystem::path> write_lesson(const Lesson& lesson, const std::filesystem::path& folder,

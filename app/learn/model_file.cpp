@@ -1,16 +1,20 @@
 #include "model_file.hpp"
 
+#include "../kept_file.hpp"
+#include "../nesting.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <vector>
 
 namespace lagroid::app {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kind = "learned_hamiltonian";
 constexpr int most_bodies = 1000;
@@ -60,15 +64,15 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& problem) {
     throw ModelError(fmt::format("{}: {}; give a model.json that lagroid learn wrote", file.string(), problem));
   };
-  std::error_code ignored;
-  std::ifstream in(file);
-  if (!std::filesystem::is_regular_file(file, ignored) || !in) fail("there is no such file");
-  const auto json = nlohmann::json::parse(in, nullptr, false);
-  if (json.is_discarded() || !json.is_object()) fail("no JSON object");
-  if (json.value("kind", nlohmann::json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
-  const auto bodies = json.value("bodies", nlohmann::json());
+  const auto text = contents(file);
+  if (!text) fail("there is no such file, or it cannot be read");
+  const auto read = read_json(*text);
+  if (!read || !read->is_object()) fail("no JSON object");
+  const Json& json = *read;
+  if (json.value("kind", Json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
+  const auto bodies = json.value("bodies", Json());
   if (!bodies.is_number_integer() || bodies < 1 || bodies > most_bodies) fail("bodies is no number of bodies");
-  const auto name = json.value("model", nlohmann::json());
+  const auto name = json.value("model", Json());
   if (!name.is_string()) fail("model is no name");
   LearnedHamiltonian out;
   try {
@@ -76,7 +80,7 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   } catch (const ModelError& error) {
     throw ModelError(fmt::format("{}: {}", file.string(), error.what()));
   }
-  const auto parameters = json.value("parameters", nlohmann::json());
+  const auto parameters = json.value("parameters", Json());
   if (!parameters.is_array() || Eigen::Index(parameters.size()) != out.model->size())
     fail(fmt::format("parameters are not the {} numbers of {} for {} bodies", out.model->size(), out.model->name(),
                      out.model->bodies()));

@@ -132,6 +132,7 @@ std::vector<Observation> read_csv(const fs::path& path) {
     if (header.weight != std::string::npos) row.weight = at(header.weight);
     out.push_back(std::move(row));
   }
+  if (in.bad()) throw DataError(fmt::format("{}: cannot be read to its end", file));
   if (header.width == 0)
     throw DataError(fmt::format("{}: no header; the first line names trajectory, t, q1x, q1y, q1z, p1x, ...", file));
   return out;

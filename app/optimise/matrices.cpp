@@ -62,6 +62,7 @@ Dense read_csv(const fs::path& file) {
     columns = column;
     ++rows;
   }
+  if (in.bad()) throw DataError(fmt::format("{}: cannot be read to its end", file.string()));
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(values.data(), Eigen::Index(rows), Eigen::Index(columns));
 }

@@ -2,7 +2,8 @@
 
 #include "../clock.hpp"
 #include "../hdf5_file.hpp"
-#include "../output_folder.hpp"
+#include "../markup.hpp"
+#include "../text.hpp"
 
 #include <fmt/format.h>
 
@@ -110,21 +111,21 @@ std::string optimisation_text(const OptimisationScene& scene, const Result& resu
   return out;
 }
 
-void require_writable_optimisation(const fs::path& folder) { require_writable(folder, files); }
+OutputFolder folder_for_optimisation(const fs::path& folder, const Section& scene) {
+  return {folder, OutputKind::optimum, OutputSource{{"scene", scene.whole()}}, files};
+}
 
 std::vector<fs::path> write_optimisation(const OptimisationScene& scene, const Result& result, const fs::path& folder,
                                          std::string& note) {
-  return write_whole(folder, files, [&](const fs::path& staging) {
-    std::vector<std::string> names{"history.csv", "result.h5", "summary.json", "summary.txt", "plot.gp"};
+  const auto make = [&](const fs::path& staging) {
     write_text(history_csv(scene, result), staging / "history.csv");
     write_point(scene, result, staging / "result.h5");
-    write_text(optimisation_json(scene, result).dump(2) + "\n", staging / "summary.json");
-    write_text(optimisation_text(scene, result), staging / "summary.txt");
+    write_text(json_text(optimisation_json(scene, result)) + "\n", staging / "summary.json");
+    write_text(visible(optimisation_text(scene, result), "\n"), staging / "summary.txt");
     write_text(gnuplot_script(scene), staging / "plot.gp");
-    note = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"});
-    if (note.empty()) names.insert(names.end(), {"plot.svg", "plot.png"});
-    return names;
-  });
+    return std::vector<std::string>{"result.h5", "history.csv", "summary.json", "summary.txt", "plot.gp"};
+  };
+  return write_and_draw(folder, files, make, {"plot.gp", {"plot.svg", "plot.png"}}, note);
 }
 
 }  // namespace lagroid::app

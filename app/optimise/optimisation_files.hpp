@@ -1,6 +1,7 @@
 #pragma once
 /// What a minimisation leaves: words, JSON, files.
 
+#include "../output_folder.hpp"
 #include "optimisation_scene.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,8 +16,8 @@ namespace lagroid::app {
 nlohmann::ordered_json optimisation_json(const OptimisationScene& scene, const optimisation::Result& result);
 std::string optimisation_text(const OptimisationScene& scene, const optimisation::Result& result);
 
-/// Throws OutputError, with the remedy, unless they can be written into `folder`.
-void require_writable_optimisation(const std::filesystem::path& folder);
+/// The folder for them, for this process alone. Throws as OutputFolder does.
+OutputFolder folder_for_optimisation(const std::filesystem::path& folder, const Section& scene);
 
 /// history.csv, result.h5 (the point as the data set /x), summary.json, summary.txt, plot.gp and its pictures. `note`
 /// says why there are no pictures, where there are none.

@@ -1,7 +1,7 @@
 #include "optimise.hpp"
 
 #include "../interrupt.hpp"
-#include "../output_folder.hpp"
+#include "../markup.hpp"
 #include "../progress.hpp"
 #include "../written.hpp"
 #include "methods.hpp"
@@ -55,12 +55,10 @@ int run(const OptimiseOptions& options) {
   }
   if (options.scene.empty())
     return refuse(options.json, exit_bad_input, "invalid_command_line", "name a scene; see lagroid optimize --help");
-  OptimisationScene scene = read_optimisation(read_scene(options.scene, options.overrides), options.scene);
-  try {
-    if (options.out) require_writable_optimisation(*options.out);
-  } catch (const OutputError& error) {
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
-  }
+  const Section file = read_scene(options.scene, options.overrides);
+  OptimisationScene scene = read_optimisation(file, options.scene);
+  std::optional<OutputFolder> folder;
+  if (options.out) folder.emplace(folder_for_optimisation(*options.out, file));
   const InterruptGuard guard;
   optimisation::Result result;
   {
@@ -86,9 +84,9 @@ int run(const OptimiseOptions& options) {
   } else {
     text += "  (no files written; --out DIR writes history, point, plot and summary)\n";
   }
-  print(options.json ? json.dump(2) + "\n" : text);
-  if (result.converged()) return 0;
-  fmt::print(stderr, "lagroid: {}: {}\n", options.scene, result.message);
+  print(options.json ? json_text(json) + "\n" : text);
+  if (result.converged()) return code_after_writing(0, options.scene);
+  complain(fmt::format("{}: {}", options.scene, result.message));
   return result.outcome == optimisation::Outcome::interrupted ? exit_interrupted : exit_failed;
 }
 

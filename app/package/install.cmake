@@ -67,11 +67,13 @@ install(FILES ${PROJECT_BINARY_DIR}/lagroid.pc DESTINATION ${CMAKE_INSTALL_LIBDI
 # program
 set(documentation ${CMAKE_INSTALL_DATAROOTDIR}/doc/lagroid)
 if(LAGROID_APP)
+  # Libraries outside the places that a loader looks in are found by what is installed too, one component at a time.
+  set_target_properties(lagroid_cli lagroid_check PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
   set_target_properties(lagroid_cli PROPERTIES EXPORT_NAME program)
   install(TARGETS lagroid_cli EXPORT lagroid-program-targets COMPONENT program)
   install(EXPORT lagroid-program-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT program)
-  # Where it was built (the target lagroid_check).
-  install(PROGRAMS ${PROJECT_BINARY_DIR}/bin/lagroid-check DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program OPTIONAL)
+  # Where it was built.
+  install(TARGETS lagroid_check COMPONENT program OPTIONAL)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid COMPONENT program
           PATTERN CMakeLists.txt EXCLUDE)
   # Pages that speak of examples/ find them.
@@ -85,11 +87,7 @@ if(LAGROID_APP)
           DESTINATION ${documentation} COMPONENT program)
 endif()
 
-# python: python/CMakeLists.txt installs the module, its examples follow it.
-if(TARGET lagroid_python)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/notebooks DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid/python
-          COMPONENT python FILES_MATCHING PATTERN "*.py")
-endif()
+# python: see python/CMakeLists.txt.
 
 if(PROJECT_IS_TOP_LEVEL)
   include(${CMAKE_CURRENT_LIST_DIR}/debian.cmake)

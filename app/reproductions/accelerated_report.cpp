@@ -154,18 +154,19 @@ std::string report(const AcceleratedFindings& findings, const std::string& comma
 std::vector<std::filesystem::path> write_accelerated_report(const AcceleratedFindings& findings,
                                                             const std::string& command,
                                                             const std::filesystem::path& folder, std::string& note) {
-  return write_whole(folder, accelerated_report_files, [&](const std::filesystem::path& staging) {
-    std::vector<std::string> names{"report.md", "runs.csv", "curves.csv", "costs.csv", "figures.gp"};
-    const std::vector<std::string> pictures{"figure_1.svg", "tuned.svg", "costs.svg"};
+  const auto data = [&](const std::filesystem::path& staging) {
     write_text(runs_csv(findings), staging / "runs.csv");
     write_text(curves_csv(findings), staging / "curves.csv");
     write_text(costs_csv(findings), staging / "costs.csv");
     write_text(figures(), staging / "figures.gp");
-    note = run_gnuplot(staging, "figures.gp", pictures);
-    if (note.empty()) names.insert(names.end(), pictures.begin(), pictures.end());
-    write_text(report(findings, command, note.empty()), staging / "report.md");
-    return names;
-  });
+    return std::vector<std::string>{"runs.csv", "curves.csv", "costs.csv", "figures.gp"};
+  };
+  return write_and_draw(folder, accelerated_report_files, data,
+                        {"figures.gp", {"figure_1.svg", "tuned.svg", "costs.svg"}}, note,
+                        [&](const std::filesystem::path& staging, bool drawn) {
+                          write_text(report(findings, command, drawn), staging / "report.md");
+                          return std::vector<std::string>{"report.md"};
+                        });
 }
 
 }  // namespace lagroid::app

@@ -239,15 +239,16 @@ std::string report(const LearningFindings& findings, const std::string& command,
 
 std::vector<std::filesystem::path> write_learning_report(const LearningFindings& findings, const std::string& command,
                                                          const std::filesystem::path& folder, std::string& note) {
-  return write_whole(folder, learning_report_files, [&](const std::filesystem::path& staging) {
-    std::vector<std::string> names{"report.md", "fits.csv", "figures.gp"};
+  const auto data = [&](const std::filesystem::path& staging) {
     write_text(fits_csv(findings), staging / "fits.csv");
     write_text(figures(findings), staging / "figures.gp");
-    note = run_gnuplot(staging, "figures.gp", {"errors.svg"});
-    if (note.empty()) names.emplace_back("errors.svg");
-    write_text(report(findings, command, note.empty()), staging / "report.md");
-    return names;
-  });
+    return std::vector<std::string>{"fits.csv", "figures.gp"};
+  };
+  return write_and_draw(folder, learning_report_files, data, {"figures.gp", {"errors.svg"}}, note,
+                        [&](const std::filesystem::path& staging, bool drawn) {
+                          write_text(report(findings, command, drawn), staging / "report.md");
+                          return std::vector<std::string>{"report.md"};
+                        });
 }
 
 }  // namespace lagroid::app

@@ -74,15 +74,16 @@ std::string report(const std::vector<MapMethod>& methods, const std::string& com
 
 std::vector<std::filesystem::path> write_map_report(const std::vector<MapMethod>& methods, const std::string& command,
                                                     const std::filesystem::path& folder, std::string& note) {
-  return write_whole(folder, map_report_files, [&](const std::filesystem::path& staging) {
-    std::vector<std::string> names{"report.md", "errors.csv", "figures.gp"};
+  const auto data = [&](const std::filesystem::path& staging) {
     write_text(errors_csv(methods), staging / "errors.csv");
     write_text(figures(methods), staging / "figures.gp");
-    note = run_gnuplot(staging, "figures.gp", {"errors.svg"});
-    if (note.empty()) names.emplace_back("errors.svg");
-    write_text(report(methods, command, note.empty()), staging / "report.md");
-    return names;
-  });
+    return std::vector<std::string>{"errors.csv", "figures.gp"};
+  };
+  return write_and_draw(folder, map_report_files, data, {"figures.gp", {"errors.svg"}}, note,
+                        [&](const std::filesystem::path& staging, bool drawn) {
+                          write_text(report(methods, command, drawn), staging / "report.md");
+                          return std::vector<std::string>{"report.md"};
+                        });
 }
 
 }  // namespace lagroid::app

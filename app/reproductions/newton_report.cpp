@@ -458,23 +458,25 @@ double solved_share(const NewtonFindings& f, NewtonExample example, NewtonMethod
 
 std::vector<std::filesystem::path> write_newton_report(const NewtonFindings& f, const std::filesystem::path& folder,
                                                        std::string& note) {
-  return write_whole(folder, newton_report_files, [&](const std::filesystem::path& staging) {
-    std::vector<std::string> names{"report.md", "tables.md", "cells.csv", "grid.csv", "figures.gp"};
-    std::vector<std::string> pictures{"figure_5_1.svg", "figure_5_2.svg", "solved.svg"};
+  Drawing drawing{"figures.gp", {"figure_5_1.svg", "figure_5_2.svg", "solved.svg"}};
+  if (!f.times.empty()) drawing.pictures.emplace_back("time.svg");
+  const auto data = [&](const std::filesystem::path& staging) {
+    std::vector<std::string> names{"tables.md", "cells.csv", "grid.csv", "figures.gp"};
     write_text(cells_csv(f), staging / "cells.csv");
     write_text(grid_csv(f), staging / "grid.csv");
     if (!f.times.empty()) {
       write_text(times_csv(f), staging / "times.csv");
       names.emplace_back("times.csv");
-      pictures.emplace_back("time.svg");
     }
     write_text(figures(f), staging / "figures.gp");
-    note = run_gnuplot(staging, "figures.gp", pictures);
-    if (note.empty()) names.insert(names.end(), pictures.begin(), pictures.end());
     write_text(tables(f), staging / "tables.md");
-    write_text(report(f, note.empty()), staging / "report.md");
     return names;
-  });
+  };
+  return write_and_draw(folder, newton_report_files, data, drawing, note,
+                        [&](const std::filesystem::path& staging, bool drawn) {
+                          write_text(report(f, drawn), staging / "report.md");
+                          return std::vector<std::string>{"report.md"};
+                        });
 }
 
 }  // namespace lagroid::app

@@ -207,15 +207,16 @@ SweepCosts measure_sweep(Ranks& ranks, double start, const fs::path& folder) {
 
 std::vector<fs::path> write_sweep_scaling(const SweepCosts& costs, const std::string& command, const fs::path& folder,
                                           std::string& note) {
-  return write_whole(folder, sweep_scaling_files, [&](const fs::path& staging) {
-    std::vector<std::string> names{"report.md", "model.csv", "figures.gp"};
+  const auto data = [&](const fs::path& staging) {
     write_text(model_csv(costs), staging / "model.csv");
     write_text(figures(), staging / "figures.gp");
-    note = run_gnuplot(staging, "figures.gp", {"efficiency.svg"});
-    if (note.empty()) names.emplace_back("efficiency.svg");
-    write_text(report(costs, command, note.empty()), staging / "report.md");
-    return names;
-  });
+    return std::vector<std::string>{"model.csv", "figures.gp"};
+  };
+  return write_and_draw(folder, sweep_scaling_files, data, {"figures.gp", {"efficiency.svg"}}, note,
+                        [&](const fs::path& staging, bool drawn) {
+                          write_text(report(costs, command, drawn), staging / "report.md");
+                          return std::vector<std::string>{"report.md"};
+                        });
 }
 
 }  // namespace lagroid::app

@@ -286,18 +286,19 @@ double gain_at_equal_cost(const TimeFindings& findings, const std::string& probl
 
 std::vector<std::filesystem::path> write_time_report(const TimeFindings& findings, const std::string& command,
                                                      const std::filesystem::path& folder, std::string& note) {
-  return write_whole(folder, time_report_files, [&](const std::filesystem::path& staging) {
-    std::vector<std::string> names{"report.md", "runs.csv", "steps.csv", "figures.gp"};
-    const std::vector<std::string> pictures{"cost_kepler.svg", "cost_pendulum.svg", "steps_kepler.svg",
-                                            "steps_pendulum.svg"};
+  const auto data = [&](const std::filesystem::path& staging) {
     write_text(runs_csv(findings), staging / "runs.csv");
     write_text(steps_csv(findings), staging / "steps.csv");
     write_text(figures(findings), staging / "figures.gp");
-    note = run_gnuplot(staging, "figures.gp", pictures);
-    if (note.empty()) names.insert(names.end(), pictures.begin(), pictures.end());
-    write_text(report(findings, command, note.empty()), staging / "report.md");
-    return names;
-  });
+    return std::vector<std::string>{"runs.csv", "steps.csv", "figures.gp"};
+  };
+  const Drawing drawing{"figures.gp",
+                        {"cost_kepler.svg", "cost_pendulum.svg", "steps_kepler.svg", "steps_pendulum.svg"}};
+  return write_and_draw(folder, time_report_files, data, drawing, note,
+                        [&](const std::filesystem::path& staging, bool drawn) {
+                          write_text(report(findings, command, drawn), staging / "report.md");
+                          return std::vector<std::string>{"report.md"};
+                        });
 }
 
 }  // namespace lagroid::app

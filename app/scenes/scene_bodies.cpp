@@ -129,6 +129,7 @@ void read_planar(SceneBodies& bodies, const Section& table) {
   const auto v = table.has("velocity") ? table.numbers("velocity", 2, "m/s") : std::vector<double>{0, 0};
   b.place = {at[0], at[1], 0};
   b.attitude = SO3::exp(Vec(0, 0, angle));
+  b.angle = angle;
   b.velocity = {v[0], v[1], 0};
   b.angular_velocity = {0, 0, table.number_or("angular_velocity", 0)};
   b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], angle}, {v[0], v[1], b.angular_velocity(2)});

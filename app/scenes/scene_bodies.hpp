@@ -24,6 +24,7 @@ struct NamedBody {
   multibody::Site mass_centre;  ///< where its weight acts
   multibody::Vec place = multibody::Vec::Zero();
   multibody::Mat attitude = multibody::Mat::Identity();
+  double angle = 0;  ///< of a planar body
   multibody::Vec velocity = multibody::Vec::Zero();
   multibody::Vec angular_velocity = multibody::Vec::Zero();  ///< in space
   multibody::Vec inertia = multibody::Vec::Zero();           ///< principal moments; zero for a point mass

@@ -18,6 +18,18 @@ using multibody::Vec;
 
 namespace {
 
+/// How a force or a torque follows time: constant, or as cos(rate t + phase).
+struct Drive {
+  bool periodic = false;
+  double rate = 0;
+  double phase = 0;
+};
+
+Drive read_drive(const Section& table) {
+  const double rate = table.number_or("rate", 0);
+  return {rate != 0 || table.has("phase"), rate, table.number_or("phase", 0)};
+}
+
 void read_gravity(SceneBodies& bodies, const Section& table) {
   const Vec g = vector_or(table, "acceleration", "m/s^2", {0, 0, -9.81});
   const auto heavy = bodies.chosen(table, "bodies");
@@ -75,18 +87,54 @@ void read_spring(SceneBodies& bodies, const Section& table) {
   bodies.lines.push_back({ends[0], ends[1], 0.004});
 }
 
-/// The ends of what acts on two attitudes.
+/// Whether what acts on these ends acts in the plane.
+bool turn_in_plane(const std::array<End, 2>& ends) {
+  return std::any_of(ends.begin(), ends.end(), [](const End& end) { return end.body && end.body->planar; });
+}
+
+void require_across_plane(const Section& table, const std::string& name, const Vec& torque) {
+  if (torque(0) != 0 || torque(1) != 0)
+    table.fail("torque", fmt::format("\"{}\" turns in the plane of x and y: give first parts of 0", name));
+}
+
+/// The ends of what acts on two bodies that turn: both in space, or both in the plane; either may be the ground.
 std::array<End, 2> turning_ends(SceneBodies& bodies, const Section& table, std::string_view effect) {
   const auto ends = bodies.ends(table, /*with_points=*/false);
   for (const End& end : ends)
-    if (!end.turns_in_space())
-      table.fail("between",
-                 fmt::format("\"{}\" does not turn in space: {} acts on bodies that do", end.name(), effect));
+    if (!end.turns_in_space() && !end.body->planar)
+      table.fail("between", fmt::format("\"{}\" does not turn: {} acts on bodies that do", end.name(), effect));
+  const auto in_space = [](const End& end) { return end.body && !end.body->planar; };
+  if (turn_in_plane(ends) && std::any_of(ends.begin(), ends.end(), in_space))
+    table.fail("between", fmt::format("{} acts on two bodies that turn in space, or on two in the plane", effect));
   return ends;
+}
+
+/// (x, y, angle) of what turns in the plane; the ground's angle is zero.
+multibody::Site planar_place(SceneBodies& bodies, const End& end) {
+  return end.body ? bodies.scene.planar_place(end.body->body) : bodies.scene.ground(Vec::Zero());
+}
+
+/// A torque on a planar body is the third part of a force on its place, and derived from a potential where it is
+/// constant.
+void turn(SceneBodies& bodies, const End& end, double torque, const Drive& drive) {
+  const Vec force(0, 0, torque);
+  if (drive.periodic) {
+    bodies.scene.add(multibody::PeriodicForce{{planar_place(bodies, end)}, force, drive.rate, drive.phase});
+    bodies.timed = true;
+  } else {
+    bodies.scene.add(multibody::ConstantForce{{planar_place(bodies, end)}, force});
+  }
 }
 
 void read_torsion(SceneBodies& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a torsion spring");
+  if (turn_in_plane(ends)) {
+    const auto angle = [](const End& end) { return end.body ? end.body->angle : 0.0; };
+    bodies.scene.add(multibody::PlanarTorsionSpring{{planar_place(bodies, ends[0]), planar_place(bodies, ends[1])},
+                                                    table.number("stiffness", nonnegative),
+                                                    angle(ends[1]) - angle(ends[0])});
+    return;
+  }
   const Vec axis = vector_of(table, "direction", "in space at the start, fixed in both bodies");
   if (!(axis.norm() > 0)) table.fail("direction", "must not vanish");
   const Vec unit = axis.stableNormalized();
@@ -164,37 +212,48 @@ void read_force(SceneBodies& bodies, const Section& table) {
   const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
   const Vec arm = vector_or(table, "at", "where it acts, in the body's frame, m");
   const Vec force = vector_of(table, "force", "in space, N");
-  const double rate = table.number_or("rate", 0);
+  const Drive drive = read_drive(table);
   if (body.planar && force(2) != 0)
     table.fail("force", fmt::format("\"{}\" moves in the plane: give a third part of 0", body.name));
   const End end = bodies.end_of(table, "at", &body, arm);
-  if (rate == 0 && !table.has("phase")) {
-    bodies.scene.add(multibody::ConstantForce{{end.site}, force});
-  } else {
-    bodies.scene.add(multibody::PeriodicForce{{end.site}, force, rate, table.number_or("phase", 0)});
+  if (drive.periodic) {
+    bodies.scene.add(multibody::PeriodicForce{{end.site}, force, drive.rate, drive.phase});
     bodies.timed = true;
+  } else {
+    bodies.scene.add(multibody::ConstantForce{{end.site}, force});
   }
   bodies.isolated = false;
 }
 
 void read_torque(SceneBodies& bodies, const Section& table) {
   const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
-  if (body.body.attitude.index < 0)
-    table.fail("body", fmt::format("\"{}\" does not turn in space: a torque acts on bodies that do", body.name));
-  bodies.scene.add(
-      multibody::BodyTorque{{}, {body.body.attitude}, vector_of(table, "torque", "in the body's frame, N m")});
-  bodies.driven = true;
+  if (!body.planar && body.body.attitude.index < 0)
+    table.fail("body", fmt::format("\"{}\" does not turn: a torque acts on bodies that do", body.name));
+  const Vec torque = vector_of(table, "torque", "in the body's frame, N m");
   bodies.isolated = false;
+  if (body.planar) {
+    require_across_plane(table, body.name, torque);
+    End end;
+    end.body = &body;
+    turn(bodies, end, torque(2), {});
+    return;
+  }
+  bodies.scene.add(multibody::BodyTorque{{}, {body.body.attitude}, torque});
+  bodies.driven = true;
 }
 
 void read_motor(SceneBodies& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a motor");
   const Vec torque = vector_of(table, "torque", "on the second, in space at the start, fixed in the first, N m");
-  bodies.scene.add(multibody::Motor{{},
-                                    {ends[0].attitude(), ends[1].attitude()},
-                                    ends[0].seen(torque),
-                                    table.number_or("rate", 0),
-                                    table.number_or("phase", 0)});
+  const Drive drive = read_drive(table);
+  if (turn_in_plane(ends)) {
+    require_across_plane(table, ends[ends[0].body ? 0 : 1].name(), torque);
+    turn(bodies, ends[0], -torque(2), drive);
+    turn(bodies, ends[1], torque(2), drive);
+    return;
+  }
+  bodies.scene.add(
+      multibody::Motor{{}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(torque), drive.rate, drive.phase});
   bodies.driven = true;
 }
 

@@ -93,7 +93,7 @@ std::array<End, 2> joined_ends(SceneBodies& bodies, const Section& table, const 
 
 void read_rod(SceneBodies& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
-  const double apart = (ends[1].place - ends[0].place).norm();
+  const double apart = (ends[1].place - ends[0].place).stableNorm();
   const double length = table.number_or("length", apart, positive);
   if (!(length > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
   if (std::abs(length - apart) > 1e-9 * length)

@@ -49,14 +49,14 @@ struct Node {
   /// Sizes of the terms of the momenta.
   double momentum_size() const {
     double size = 0;
-    for (const Vec& p : momenta.linear) size += p.norm();
+    for (const Vec& p : momenta.linear) size += p.stableNorm();
     return size;
   }
   double angular_size() const {
     double size = 0;
     for (std::size_t f = 0; f < momenta.linear.size(); ++f)
-      size += momenta.linear[f].norm() * motion.configuration().x[f].norm();
-    for (const Vec& spin : momenta.spin) size += spin.norm();
+      size += momenta.linear[f].stableNorm() * motion.configuration().x[f].stableNorm();
+    for (const Vec& spin : momenta.spin) size += spin.stableNorm();
     return size;
   }
 
@@ -136,6 +136,16 @@ class Record {
            [a = b.body.attitude](const Node& node, std::vector<double>& row) {
              put(row, node.momenta.spin[std::size_t(node.motion(a).index)]);
            }});
+      series_.push_back({{b.name + ".angular_velocity",
+                          columns(b.name, {"w1", "w2", "w3"}),
+                          "rad/s",
+                          "angular velocity in the body",
+                          false,
+                          {}},
+                         [a = b.body.attitude, inertia = b.inertia](const Node& node, std::vector<double>& row) {
+                           const Vec& spin = node.momenta.spin[std::size_t(node.motion(a).index)];
+                           put(row, spin.cwiseQuotient(inertia));
+                         }});
     }
     if (const int linear = b.linear; linear >= 0) {
       const auto momentum = [linear](const Node& node, std::vector<double>& row) {
@@ -154,6 +164,11 @@ class Record {
                             false,
                             {}},
                            momentum});
+        series_.push_back(
+            {{b.name + ".angular_velocity", {column(b.name, "w")}, "rad/s", "of the body in the plane", false, {}},
+             [linear, inertia = b.inertia(2)](const Node& node, std::vector<double>& row) {
+               row.push_back(node.momenta.linear[std::size_t(node.motion.linear_place(linear))](2) / inertia);
+             }});
       } else {
         series_.push_back(
             {{b.name + ".momentum", columns(b.name, {"px", "py", "pz"}), "kg m/s", "momentum in space", false, {}},
@@ -215,16 +230,43 @@ std::vector<Shape> shapes(const SceneBodies& bodies, const std::set<std::string>
   return out;
 }
 
-std::vector<Panel> panels(const SceneBodies& bodies, const std::set<std::string>& chosen) {
-  std::vector<Panel> out{{"energy", "t", "energy", "t", {"energy"}}};
+bool turns_in_space(const NamedBody& b) { return b.body.attitude.index >= 0; }
+bool moves_about(const NamedBody& b) { return b.linear >= 0; }
+bool moves_in_the_plane(const NamedBody& b) { return moves_about(b) && b.planar; }
+
+/// The last of the bodies that are recorded and of the kind that is asked for, so few that their curves can be told
+/// apart.
+std::vector<const NamedBody*> last_few(const SceneBodies& bodies, const std::set<std::string>& chosen,
+                                       bool (*is_wanted)(const NamedBody&), std::ptrdiff_t most) {
   std::vector<const NamedBody*> few;
   for (const auto& b : bodies.bodies)
-    if (chosen.empty() || chosen.contains(b.name)) few.push_back(&b);
-  if (few.size() > 4) few.erase(few.begin(), few.end() - 4);
-  for (const char* axis : {"x", "y", "z"}) {
-    Panel panel{fmt::format("positions {}", axis), "t", axis, "t", {}};
-    for (const auto* b : few) panel.curves.push_back(column(b->name, axis));
+    if (is_wanted(b) && (chosen.empty() || chosen.contains(b.name))) few.push_back(&b);
+  if (std::ssize(few) > most) few.erase(few.begin(), few.end() - most);
+  return few;
+}
+
+/// Places of the bodies whose centres move, the turning of those that turn, in space and in the plane, and their
+/// momenta.
+std::vector<Panel> panels(const SceneBodies& bodies, const std::set<std::string>& chosen) {
+  std::vector<Panel> out{{"energy", "t", "energy", "t", {"energy"}}};
+  const auto together = [&](const std::vector<const NamedBody*>& few, const std::string& title, const char* what) {
+    Panel panel{title, "t", what, "t", {}};
+    for (const auto* b : few) panel.curves.push_back(column(b->name, what));
     if (!panel.curves.empty()) out.push_back(panel);
+  };
+  const auto moving = last_few(bodies, chosen, moves_about, 4);
+  const auto planar = last_few(bodies, chosen, moves_in_the_plane, 4);
+  together(moving, "positions x", "x");
+  together(moving, "positions y", "y");
+  if (planar.size() < moving.size()) together(moving, "positions z", "z");
+  together(planar, "angles", "angle");
+  together(planar, "angular velocities", "w");
+  together(planar, "angular momenta about the centres", "L");
+  for (const auto* b : last_few(bodies, chosen, turns_in_space, 2)) {
+    out.push_back(attitude_panel(attitude_of(b->name), "attitude of " + b->name));
+    out.push_back({"angular velocity in " + b->name, "t", "w", "t", columns(b->name, {"w1", "w2", "w3"})});
+    out.push_back({"angular momentum in " + b->name, "t", "M", "t", columns(b->name, {"M1", "M2", "M3"})});
+    if (moves_about(*b)) out.push_back({"momentum of " + b->name, "t", "p", "t", columns(b->name, {"px", "py", "pz"})});
   }
   out.push_back({"constraints", "t", "residual", "t", {"residual"}});
   return out;
@@ -327,7 +369,7 @@ class Run final : public SteppedRun {
             .fail("mode",
                   "\"controlled\" needs a time scale: a scene with central_gravity or mutual_gravity, and "
                   "without joints and other effects");
-      scene.fail("", fmt::format("{}: a position, a length or a point is too large", error.what()));
+      scene.fail("", fmt::format("{}: a position, a length or a point is too large or too small", error.what()));
     }
     if (bodies_.projects) motion_->make_tangent();
     if (const double defect = motion_->velocity_defect(); !(defect < 1e-8))

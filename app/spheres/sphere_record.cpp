@@ -31,6 +31,7 @@ LedgerEntry unpromised(LedgerEntry entry) {
   entry.promise = "none";
   entry.bound = 0;
   entry.verdict = "watched";
+  entry.reason.clear();
   return entry;
 }
 
@@ -112,6 +113,15 @@ void SphereRecord::describe(RunResult& result) const {
   for (std::size_t i = k > 4 ? k - 3 : 1; i <= k; ++i) heights.curves.push_back(fmt::format("z{}", i));
   result.panels = {{"the last bob from above", "x", "y", fmt::format("x{}", k), {fmt::format("y{}", k)}, true},
                    heights};
+  const bool velocities = form_ == SphereForm::velocities;
+  Panel last{velocities ? "angular velocity of the last rod" : "momentum of the last direction",
+             "t",
+             velocities ? "w" : "p",
+             "t",
+             {}};
+  for (const char* axis : {"x", "y", "z"})
+    last.curves.push_back(fmt::format("{}{}{}", velocities ? "w" : "p", k, axis));
+  result.panels.push_back(last);
   for (const auto& q : quantities_)
     result.panels.push_back({q.name + " error", "t", "error", "t", {"drift " + q.name}});
   result.panels.push_back({"distance from the spheres", "t", "residual", "t", {"residual"}});

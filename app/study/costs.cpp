@@ -27,6 +27,8 @@ double error_of(const Measurement& m, Axis axis) {
   }
 }
 
+bool is_point(const Measurement& m, Axis axis) { return m.converged() && error_of(m, axis) <= 1; }
+
 std::vector<std::string> methods_of(const std::vector<Measurement>& all) {
   std::vector<std::string> out;
   for (const Measurement& m : all)
@@ -37,8 +39,7 @@ std::vector<std::string> methods_of(const std::vector<Measurement>& all) {
 std::optional<Cost> cost_of(const std::vector<Measurement>& all, const std::string& method, Axis axis, double error) {
   std::vector<const Measurement*> runs;
   for (const Measurement& m : all)
-    if (m.method == method && m.converged() && !m.seconds.empty() && std::isfinite(error_of(m, axis)))
-      runs.push_back(&m);
+    if (m.method == method && !m.seconds.empty() && is_point(m, axis)) runs.push_back(&m);
   std::sort(runs.begin(), runs.end(), [](const auto* a, const auto* b) { return a->step > b->step; });
   const auto below = [&](const Measurement* m) { return error_of(*m, axis) <= error; };
   // From the fine end, past what drowned in round-off: a coarse run may be below the error by chance.
@@ -57,12 +58,30 @@ std::optional<Cost> cost_of(const std::vector<Measurement>& all, const std::stri
               between(double(from.work.evaluations), double(to.work.evaluations))};
 }
 
-std::optional<Cost> least_cost(const std::vector<Measurement>& all, Axis axis, double error) {
+namespace {
+
+std::optional<Cost> least(const std::vector<Measurement>& all, Axis axis, double error, double Cost::*of) {
   std::optional<Cost> best;
   for (const std::string& method : methods_of(all))
-    if (const auto cost = cost_of(all, method, axis, error); cost && (!best || cost->seconds < best->seconds))
-      best = cost;
+    if (const auto cost = cost_of(all, method, axis, error); cost && (!best || (*cost).*of < (*best).*of)) best = cost;
   return best;
+}
+
+}  // namespace
+
+std::optional<Cost> least_cost(const std::vector<Measurement>& all, Axis axis, double error) {
+  return least(all, axis, error, &Cost::seconds);
+}
+
+std::vector<std::string> cheapest_methods(const std::vector<Measurement>& all, Axis axis, double Cost::*cost,
+                                          double least_error) {
+  std::vector<std::string> out;
+  for (double error = 0.1; error >= least_error; error /= std::sqrt(10.0)) {
+    const auto best = least(all, axis, error, cost);
+    if (!best) break;
+    if (std::find(out.begin(), out.end(), best->method) == out.end()) out.push_back(best->method);
+  }
+  return out;
 }
 
 }  // namespace lagroid::app

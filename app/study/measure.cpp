@@ -2,16 +2,12 @@
 
 #include "../clock.hpp"
 
-#include <lagroid/solvers/ensemble/tasks.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -19,6 +15,9 @@
 namespace lagroid::app {
 
 namespace {
+
+/// Two states no larger than the motion are not farther apart, relative to its size.
+constexpr double farthest_apart = 2;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -75,7 +74,7 @@ class Extrapolated final : public Reference {
     int since_least = 0;
     double last_took = 0;
     for (int row = 0; row < 22; ++row) {
-      if (row >= 3 && seconds_since(start) + 2 * last_took > budget) break;
+      if (row > 0 && seconds_since(start) + 2 * last_took > (row >= 3 ? budget : 2 * budget)) break;
       const auto began = std::chrono::steady_clock::now();
       const auto before = table.empty() ? std::vector<Block>() : table.back();
       if (experiment.stopped()) break;
@@ -95,7 +94,9 @@ class Extrapolated final : public Reference {
       }
     }
     if (best_.empty())
-      throw std::domain_error("no reference: the method of highest order did not reach the end with any step");
+      throw std::domain_error(
+          "no reference: the method of highest order did not reach the end with two steps within the time it has; give "
+          "more (--budget), or a shorter scene");
     // The least of several changes is small by chance; one that no later row confirms is doubled.
     uncertainty = std::max(since_least > 0 ? most_after : 2 * least, 1e-15);
     description = fmt::format("{} with {} halved steps from {:.4g}, extrapolated", method_.name, rows_, first_step_);
@@ -270,52 +271,6 @@ class Looks {
   std::minstd_rand draw_{1};
 };
 
-/// One run alone; its seconds, or less than zero where it fails.
-double time_once(const Experiment& experiment, const Method& method, double h) {
-  // A clock takes about a microsecond to read; short runs are repeated until their sum is long against that.
-  constexpr double long_enough = 1e-3;
-  double total = 0;
-  long runs = 0;
-  do {
-    const auto trial = experiment.begin(method, h);
-    Work work;
-    const double start = processor_time();
-    if (!trial->run(experiment.end, work).converged()) return -1;
-    total += processor_time() - start;
-    ++runs;
-  } while (total < long_enough && runs < 20);
-  return total / double(runs);
-}
-
-/// First steps from a large one down, until errors are round-off's or runs take too long.
-void refine(const Experiment& experiment, const Method& method, double longest, const Reference& reference,
-            std::vector<Measurement>& out) {
-  const double coarse = std::min(16 * experiment.step * std::sqrt(double(method.stages)), experiment.end / 4);
-  double least = std::numeric_limits<double>::infinity();
-  int not_better = 0;
-  int failed = 0;
-  for (int k = 0; k < 20 && failed < 6; ++k) {
-    const double h = experiment.end / std::ceil(experiment.end / (coarse * std::pow(0.5, k)) - 1e-9);
-    out.push_back(measure_once(experiment, method, h, &reference, longest));
-    const Measurement& last = out.back();
-    if (last.status == "too slow" || experiment.stopped()) {
-      out.pop_back();
-      return;
-    }
-    if (!last.converged()) {
-      ++failed;
-      continue;
-    }
-    failed = 0;
-    const double floor = std::max(reference.uncertainty, 1e-15);
-    if (last.trajectory < 2 * floor) return;
-    not_better = last.trajectory > 0.7 * least ? not_better + 1 : 0;
-    if (not_better >= 2 && least < 1e-8) return;
-    least = std::min(least, last.trajectory);
-    if (last.seconds.front() > longest / 2) return;
-  }
-}
-
 }  // namespace
 
 std::optional<Reached> reach(const Experiment& experiment, const Method& method, double end, long steps) {
@@ -431,6 +386,9 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
     if (reference != nullptr && method.equal_steps && !std::isfinite(out.trajectory)) {
       out.status = std::string(to_string(SolveStatus::not_finite));
       out.message = "the state at the end is not finite";
+    } else if (out.trajectory > farthest_apart) {
+      out.status = astray_status;
+      out.message = fmt::format("its error is {:.2g} times the size of the motion", out.trajectory);
     }
   } catch (const SceneError& error) {
     out.status = "refused";
@@ -439,46 +397,20 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
   return out;
 }
 
-std::vector<Measurement> measure(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
-                                 const Reference& reference, int repetitions,
-                                 const std::function<bool(double done)>& report) {
-  const auto method_of = [&](const Measurement& m) -> const Method& {
-    return *std::find_if(methods.begin(), methods.end(), [&](const Method& each) { return each.name == m.method; });
-  };
-  constexpr double share_of_looking = 0.4;
-  std::atomic<bool> stopped = false;
-  const auto look = [&](long i) {
-    std::vector<Measurement> seen;
-    if (stopped) return seen;
-    const Method& method = methods[std::size_t(i)];
-    if (steps.sizes.empty()) {
-      refine(experiment, method, steps.longest, reference, seen);
-    } else {
-      for (const double h : steps.sizes) {
-        if (experiment.stopped()) break;
-        const double divides = experiment.end / std::max(1.0, std::round(experiment.end / h));
-        seen.push_back(measure_once(experiment, method, divides, &reference, std::numeric_limits<double>::infinity()));
-      }
-    }
-    return seen;
-  };
-  std::vector<Measurement> out;
-  for (auto& seen : results_of_tasks(long(methods.size()), 0, look, [&](int done) {
-         if (!report(share_of_looking * double(done) / double(methods.size()))) stopped = true;
-       }))
-    out.insert(out.end(), std::make_move_iterator(seen.begin()), std::make_move_iterator(seen.end()));
-  if (stopped) return out;
-  for (Measurement& m : out)
-    if (m.converged()) m.seconds.clear();
-  for (int r = 0; r < repetitions; ++r) {
-    for (Measurement& m : out) {
-      if (!m.converged()) continue;
-      const double took = time_once(experiment, method_of(m), m.step);
-      if (took >= 0) m.seconds.push_back(took);
-    }
-    if (!report(share_of_looking + (1 - share_of_looking) * double(r + 1) / double(repetitions))) break;
-  }
-  return out;
+double time_once(const Experiment& experiment, const Method& method, double h) {
+  // A clock takes about a microsecond to read; short runs are repeated until their sum is long against that.
+  constexpr double long_enough = 1e-3;
+  double total = 0;
+  long runs = 0;
+  do {
+    const auto trial = experiment.begin(method, h);
+    Work work;
+    const double start = processor_time();
+    if (!trial->run(experiment.end, work).converged()) return -1;
+    total += processor_time() - start;
+    ++runs;
+  } while (total < long_enough && runs < 20);
+  return total / double(runs);
 }
 
 }  // namespace lagroid::app

@@ -36,14 +36,18 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
 double distance(const std::vector<Block>& state, const std::vector<Block>& truth);
 
 /// The method of highest order among those with equal steps, extrapolated in even powers of the step, or in all where
-/// its error has those. Steps are halved until two extrapolations differ no less than before, or `budget` seconds are
-/// over.
+/// its error has those. Steps are halved until two extrapolations differ no less than before, or the next would be over
+/// after more than `budget` seconds (three are computed where twice that is enough). Throws std::domain_error where
+/// there are not two.
 std::unique_ptr<Reference> extrapolated_reference(const Experiment& experiment, double budget);
 /// The numbers of one method with one step, and as uncertainty what half the step changes.
 std::unique_ptr<Reference> method_reference(const Experiment& experiment, const Method& method, double h);
 /// A state at the end that was computed elsewhere.
 std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::vector<Block> state, double uncertainty,
                                            std::string description);
+
+/// Of a run that ends farther from the truth than any two states of the motion are from each other.
+inline constexpr const char* astray_status = "astray";
 
 /// One method with one step.
 struct Measurement {
@@ -68,22 +72,11 @@ struct Measurement {
   double spread() const;  ///< distance of the quartiles over the median
 };
 
-struct Steps {
-  /// Given ones; empty: halved from a large one on until errors are those of round-off or a run lasts `longest`
-  /// seconds.
-  std::vector<double> sizes;
-  double longest = 0.25;
-};
-
-/// Runs the methods, first with a look at every node (of long runs, 1e5 of them), as many at a time as there are
-/// processors, then, one after the other and interleaved, `repetitions` times with none. `report` hears what part is
-/// done, and says whether to go on.
-std::vector<Measurement> measure(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
-                                 const Reference& reference, int repetitions,
-                                 const std::function<bool(double done)>& report);
-
 /// One run with a look at every node, or at 1e5 of them where there are more.
 Measurement measure_once(const Experiment& experiment, const Method& method, double h, const Reference* reference,
                          double longest);
+
+/// One run alone; its seconds, or less than zero where it fails.
+double time_once(const Experiment& experiment, const Method& method, double h);
 
 }  // namespace lagroid::app

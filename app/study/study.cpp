@@ -1,11 +1,15 @@
 #include "study.hpp"
 
 #include "../interrupt.hpp"
+#include "../kept_file.hpp"
 #include "../machine.hpp"
+#include "../nesting.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../scene_reader.hpp"
 #include "../shell.hpp"
+#include "../text.hpp"
+#include "../written.hpp"
 #include "accuracy.hpp"
 #include "experiment.hpp"
 #include "methods.hpp"
@@ -18,7 +22,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -82,12 +85,12 @@ std::vector<double> read_steps(const std::string& text, double end) {
 /// The reference state of an earlier study of the same scene.
 std::unique_ptr<Reference> reference_from(const std::string& file, const Experiment& experiment) {
   const auto refuse = [&](const std::string& why) { return BadOption(fmt::format("--reference {}: {}", file, why)); };
-  std::error_code error;
-  std::ifstream in(file);
-  if (!std::filesystem::is_regular_file(file, error) || !in)
-    throw refuse("no such file; give METHOD@STEP or the study.json of an earlier study");
+  const auto text = contents(file);
+  if (!text) throw refuse("no such file, or it cannot be read; give METHOD@STEP or the study.json of an earlier study");
+  const auto read = read_json(*text);
+  if (!read) throw refuse("is no study.json");
   try {
-    const auto json = nlohmann::json::parse(in);
+    const auto& json = *read;
     if (std::abs(json.at("time").get<double>() - experiment.end) > 1e-12 * experiment.end)
       throw refuse(
           fmt::format("is for t = {:g}, this scene lasts {:g}", json.at("time").get<double>(), experiment.end));
@@ -96,8 +99,11 @@ std::unique_ptr<Reference> reference_from(const std::string& file, const Experim
       state.push_back({b.at("name"), b.at("values").get<std::vector<double>>(), b.at("size")});
     const auto own = experiment.begin(experiment.methods.front(), experiment.step)->see().state;
     if (std::isnan(distance(own, state))) throw refuse("is of another system");
+    const std::string method = json.at("reference").at("method");
+    if (const std::string problem = text_problem(method); !problem.empty())
+      throw refuse("reference.method: " + problem);
     return known_reference(experiment, state, json.at("reference").at("uncertainty").get<double>(),
-                           json.at("reference").at("method").get<std::string>() + ", from " + file);
+                           method + ", from " + file);
   } catch (const nlohmann::json::exception&) {
     throw refuse("is no study.json");
   }
@@ -105,7 +111,7 @@ std::unique_ptr<Reference> reference_from(const std::string& file, const Experim
 
 std::unique_ptr<Reference> make_reference(const StudyOptions& options, const Experiment& experiment) {
   const std::string& text = options.reference;
-  if (text.empty()) return extrapolated_reference(experiment, options.reference_time);
+  if (text.empty()) return extrapolated_reference(experiment, share_of_reference * options.budget);
   const auto at = text.rfind('@');
   if (at == std::string::npos) return reference_from(text, experiment);
   if (at == 0) throw BadOption("--reference: name a method before the @, as in splitting@0.001");
@@ -128,6 +134,7 @@ std::string command_of(const StudyOptions& options) {
   const StudyOptions usual;
   if (options.target != usual.target) out += fmt::format(" --target {:g}", options.target);
   if (options.longest != usual.longest) out += fmt::format(" --longest {:g}", options.longest);
+  if (options.budget != usual.budget) out += fmt::format(" --budget {:g}", options.budget);
   if (options.repetitions != usual.repetitions) out += fmt::format(" --repetitions {}", options.repetitions);
   if (!options.out.empty()) out += " --out " + quoted(options.out);
   return out;
@@ -162,6 +169,12 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_option("--longest", options.longest, "seconds that a run may take, where steps are found")
       ->check(CLI::Range(1e-3, 1e5))
       ->capture_default_str();
+  command
+      .add_option("--budget", options.budget,
+                  "seconds of wall clock that all of it may take: spent first on the methods that are the cheapest, "
+                  "or near them; what was not measured for want of time is told")
+      ->check(CLI::Range(0.1, 1e7))
+      ->capture_default_str();
   command.add_option("--repetitions", options.repetitions, "of every run, interleaved, to be timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -172,6 +185,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
 int study(const StudyOptions& options) {
   Findings findings;
   std::string note;
+  std::optional<OutputFolder> folder;
   try {
     if (!std::isfinite(options.target)) throw BadOption("--target: give a number between 1e-15 and 1");
     const Section scene = read_scene(options.scene, options.overrides);
@@ -183,10 +197,19 @@ int study(const StudyOptions& options) {
     }
     findings.methods = chosen_methods("--methods", options.methods, experiment.methods);
     Steps steps{read_steps(options.steps, experiment.end), options.longest};
-    if (!options.out.empty()) require_writable(options.out, study_files);
+    if (!options.out.empty())
+      folder.emplace(options.out, OutputKind::study, OutputSource{{"scene", scene.whole()}}, study_files);
     Progress progress("study", 1000, !options.json);
     const InterruptGuard guard;
     experiment.interrupted = [&guard] { return guard.interrupted(); };
+    const Budget budget(options.budget);
+    if (!options.json)
+      print(
+          fmt::format("{}: {} methods, within {:g} s (--budget): {}then rounds of smaller steps, in which methods far "
+                      "dearer than others drop out\n",
+                      experiment.name, findings.methods.size(), options.budget,
+                      options.reference.empty() ? "a third for the reference at most, " : "the reference, "));
+    experiment = within(std::move(experiment), budget);
     const auto reference = make_reference(options, experiment);
     findings.scene = options.scene;
     findings.name = experiment.name;
@@ -197,14 +220,17 @@ int study(const StudyOptions& options) {
     findings.reference = reference->description;
     findings.uncertainty = reference->uncertainty;
     findings.reference_state = reference->at(experiment.end);
-    findings.runs = measure(experiment, findings.methods, steps, *reference, options.repetitions, [&](double done) {
-      progress.update(long(1000 * done));
-      return !guard.interrupted();
-    });
+    findings.budget = options.budget;
+    findings.repetitions = options.repetitions;
+    Survey found =
+        survey(experiment, findings.methods, steps, *reference, options.repetitions, budget, [&](double spent) {
+          progress.update(long(1000 * std::min(spent, 1.0)));
+          return !guard.interrupted();
+        });
+    findings.runs = std::move(found.runs);
+    findings.left_out = std::move(found.left_out);
     findings.interrupted = guard.interrupted();
   } catch (const BadOption& error) {
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
-  } catch (const OutputError& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const std::domain_error& error) {
     return refuse(options.json, exit_failed, "no_reference", error.what());
@@ -220,8 +246,8 @@ int study(const StudyOptions& options) {
     report += "  (no files written; --out DIR writes page, figures, CSV and JSON)\n";
   }
   print(report);
-  if (!findings.interrupted) return 0;
-  fmt::print(stderr, "lagroid: {}: interrupted; what was measured so far is told\n", options.scene);
+  if (!findings.interrupted) return code_after_writing(0, options.scene);
+  complain(fmt::format("{}: interrupted; what was measured so far is told", options.scene));
   return exit_interrupted;
 }
 

@@ -13,7 +13,7 @@ struct StudyOptions : SceneOptions {
   std::string reference;  ///< METHOD@STEP, or the study.json of an earlier study; empty: extrapolated
   double target = 1e-6;
   double longest = 0.25;  ///< s, a run
-  double reference_time = 20;
+  double budget = 60;     ///< s, all of it
   int repetitions = 5;
   bool list = false;
   std::string out;

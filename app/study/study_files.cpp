@@ -1,7 +1,10 @@
 #include "study_files.hpp"
 
 #include "../clock.hpp"
+#include "../gnuplot.hpp"
+#include "../markup.hpp"
 #include "../output_folder.hpp"
+#include "../text.hpp"
 #include "costs.hpp"
 #include "methods.hpp"
 
@@ -13,6 +16,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <tuple>
 
 namespace lagroid::app {
 
@@ -35,7 +39,7 @@ const Method& method_of(const Findings& findings, const std::string& name) {
 
 bool has(const Findings& findings, Axis axis) {
   return std::any_of(findings.runs.begin(), findings.runs.end(),
-                     [&](const Measurement& m) { return error_of(m, axis) > 0; });
+                     [&](const Measurement& m) { return is_point(m, axis) && error_of(m, axis) > 0; });
 }
 
 /// The errors, from a hundredth down, that the reference can tell apart from none.
@@ -58,113 +62,129 @@ std::string csv(const Findings& findings) {
       "method,order,step,steps,evaluations,seconds,spread,repetitions,trajectory,invariants,constraint,energy_drift,"
       "energy_drift_error,status,message\n";
   for (const Measurement& m : findings.runs)
-    out += fmt::format("{},{},{:.9g},{},{},{},{},{},{},{},{},{},{},{},\"{}\"\n", m.method, m.order, m.step,
-                       m.work.steps, m.work.evaluations, cell(m.median(), "{:.4g}"), cell(m.spread()), m.seconds.size(),
+    out += fmt::format("{},{},{:.9g},{},{},{},{},{},{},{},{},{},{},{},{}\n", m.method, m.order, m.step, m.work.steps,
+                       m.work.evaluations, cell(m.median(), "{:.4g}"), cell(m.spread()), m.seconds.size(),
                        cell(m.trajectory, "{:.4g}"), cell(m.invariants, "{:.4g}"), cell(m.constraint, "{:.4g}"),
-                       cell(m.drift, "{:.4g}"), cell(m.drift_error, "{:.4g}"), m.status, m.message);
+                       cell(m.drift, "{:.4g}"), cell(m.drift_error, "{:.4g}"), m.status, in_csv(m.message));
   return out;
 }
 
-/// As a gnuplot string in single quotes.
-std::string in_quotes(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out;
+constexpr const char* failed_style = "pointtype 2 pointsize 0.8 linecolor 'black'";
+
+/// How a method is drawn: strongly where it is the cheapest at some error, else pale.
+struct Style {
+  std::string strong, pale;
+};
+
+/// Of up to 120 methods no two share both colour and points, and of the first ten none its colour.
+Style style_of(std::size_t method) {
+  constexpr std::array colours{"1f77b4", "d62728", "2ca02c", "9467bd", "ff7f0e",
+                               "17becf", "8c564b", "e377c2", "bcbd22", "556b8d"};
+  constexpr std::array points{7, 5, 9, 13, 4, 6, 8, 12, 1, 3, 10, 11};  // 2 is that of failures
+  const auto* colour = colours[method % colours.size()];
+  const int point = points[(method + method / colours.size()) % points.size()];
+  return {fmt::format("linecolor rgb '#{}' linewidth 2.2 pointtype {} pointsize 0.9", colour, point),
+          fmt::format("linecolor rgb '#80{}' linewidth 1 pointtype {} pointsize 0.6", colour, point)};
 }
 
-/// Methods of a kind (what stands before the stroke in their names) share a colour, and differ in their points.
-std::vector<std::string> line_styles(const std::vector<std::string>& methods) {
-  constexpr std::array points{7, 5, 9, 13, 4, 6, 8, 12, 1, 2, 3, 10, 11};
-  std::vector<std::string> kinds;
-  std::vector<std::size_t> counts;
-  std::vector<std::string> out;
-  for (const std::string& method : methods) {
-    const std::string kind = method.substr(0, method.find('/'));
-    const auto at = std::size_t(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
-    if (at == kinds.size()) {
-      kinds.push_back(kind);
-      counts.push_back(0);
-    }
-    out.push_back(fmt::format("linecolor {} pointtype {} pointsize 0.6", at + 1, points[counts[at]++ % points.size()]));
+/// What a panel draws: errors of an axis over a cost.
+struct ErrorPanel {
+  Axis axis;
+  const char* column;
+  const char* label;
+  std::vector<std::string> cheapest;
+
+  bool is_cheapest(const std::string& method) const {
+    return std::find(cheapest.begin(), cheapest.end(), method) != cheapest.end();
+  }
+};
+
+/// Two for each of the axes that something was measured on.
+std::vector<ErrorPanel> error_panels(const Findings& findings) {
+  std::vector<ErrorPanel> out;
+  for (const Axis axis : axes) {
+    if (!has(findings, axis)) continue;
+    const double least = axis == Axis::trajectory ? std::max(3 * findings.uncertainty, 1e-15) : 1e-15;
+    for (const auto& [column, label, cost] :
+         {std::tuple("seconds", "time, s", &Cost::seconds), {"evaluations", "evaluations", &Cost::evaluations}})
+      out.push_back({axis, column, label, cheapest_methods(findings.runs, axis, cost, least)});
   }
   return out;
 }
 
+/// The methods measured, first those that are the cheapest somewhere.
+std::vector<std::string> cheapest_first(const Findings& findings, const std::vector<ErrorPanel>& panels) {
+  auto out = methods_of(findings.runs);
+  std::stable_partition(out.begin(), out.end(), [&](const std::string& method) {
+    return std::any_of(panels.begin(), panels.end(), [&](const ErrorPanel& p) { return p.is_cheapest(method); });
+  });
+  return out;
+}
+
+std::string draw(const Findings& findings, const ErrorPanel& panel, const std::vector<std::string>& methods) {
+  const char* error = name_of(panel.axis);
+  double most = 0;
+  for (const Measurement& m : findings.runs)
+    if (is_point(m, panel.axis)) most = std::max(most, error_of(m, panel.axis));
+  std::string out = fmt::format(
+      "set xlabel '{}'\nset ylabel 'error: {}'\nset title {}\nplot ", panel.label, error,
+      gnuplot_string(panel.axis == Axis::trajectory ? fmt::format("{}, state at t = {:g}", findings.name, findings.end)
+                                                    : fmt::format("{}, worst at any node", findings.name)));
+  for (const bool strong : {false, true})  // above the others
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+      if (panel.is_cheapest(methods[i]) != strong) continue;
+      const Style style = style_of(i);
+      out += fmt::format(
+          "'study.csv' using (column('{0}')):((strcol('method') eq '{1}') && (strcol('status') eq 'converged') && "
+          "(column('{2}') > 0) && (column('{2}') <= 1) ? column('{2}') : NaN) with linespoints {3}, ",
+          panel.column, methods[i], error, strong ? style.strong : style.pale);
+    }
+  return out + fmt::format(
+                   "'study.csv' using (column('{0}')):((strcol('status') ne 'converged') || (column('{1}') > 1) ? "
+                   "{2:.3g} : NaN) with points {3}\n",
+                   panel.column, error, 3 * most, failed_style);
+}
+
 std::string figure(const Findings& findings) {
   std::string out = "# Draws study.csv; run by lagroid, or by hand: gnuplot study.gp\nset datafile separator ','\n";
-  const auto methods = methods_of(findings.runs);
-  const auto styles = line_styles(methods);
-  const std::string failed = "pointtype 2 pointsize 0.8 linecolor 'black'";
-  std::vector<Axis> drawn;
-  for (const Axis axis : axes)
-    if (has(findings, axis)) drawn.push_back(axis);
+  const auto panels = error_panels(findings);
+  const auto methods = cheapest_first(findings, panels);
+  const std::size_t rows = panels.size() / 2;
   const std::pair<const char*, std::string> terminals[] = {
       {"study.svg", "svg size 1400,{} background 'white' noenhanced font ',11'"},
       {"study.png", "pngcairo size 1400,{} noenhanced"}};
   for (const auto& [file, terminal] : terminals) {
     out += fmt::format("set terminal {}\nset output '{}'\nset multiplot layout {},3\n",
-                       fmt::format(fmt::runtime(terminal), 420 * drawn.size()), file, drawn.size());
-    for (const Axis axis : drawn) {
+                       fmt::format(fmt::runtime(terminal), 420 * rows), file, rows);
+    for (std::size_t p = 0; p < panels.size(); ++p) {
       out += "unset key\nset border\nset grid\nset tics\nset logscale xy\nset format '%.0e'\nset autoscale\n";
-      double most = 0;
-      for (const Measurement& m : findings.runs)
-        if (const double error = error_of(m, axis); m.converged() && std::isfinite(error)) most = std::max(most, error);
-      for (const auto& [column, label] : {std::pair("seconds", "time, s"), std::pair("evaluations", "evaluations")}) {
-        out += fmt::format("set xlabel '{}'\nset ylabel 'error: {}'\nset title '{}'\n", label, name_of(axis),
-                           axis == Axis::trajectory
-                               ? fmt::format("{}, state at t = {:g}", in_quotes(findings.name), findings.end)
-                               : fmt::format("{}, worst at any node", in_quotes(findings.name)));
-        out += "plot ";
-        for (std::size_t i = 0; i < methods.size(); ++i)
-          out += fmt::format(
-              "'study.csv' using (column('{}')):((strcol('method') eq '{}') && (strcol('status') eq 'converged') && "
-              "(column('{}') > 0) ? column('{}') : NaN) with linespoints {}, ",
-              column, methods[i], name_of(axis), name_of(axis), styles[i]);
-        out += fmt::format(
-            "'study.csv' using (column('{}')):(strcol('status') ne 'converged' ? {:.3g} : NaN) with points "
-            "{}\n",
-            column, 3 * most, failed);
-      }
-      if (axis != drawn.front()) {
+      out += draw(findings, panels[p], methods);
+      if (p % 2 == 0) continue;
+      if (p > 1) {
         out += "set multiplot next\n";
         continue;
       }
       // The legend has a place of its own.
       out +=
           "unset logscale\nunset tics\nunset border\nunset grid\nunset xlabel\nunset ylabel\nunset title\n"
-          "set key at graph 0, graph 1 left top Left reverse vertical maxcols 1 samplen 2 font ',9'\nplot [0:1] [0:1] ";
-      for (std::size_t i = 0; i < methods.size(); ++i)
-        out += fmt::format("NaN with linespoints {} title '{}', ", styles[i], methods[i]);
-      out += fmt::format("NaN with points {} title 'failed'\n", failed);
+          "set key at graph 0, graph 1 left top Left reverse vertical maxrows 28 samplen 2 font ',9'\nplot [0:1] "
+          "[0:1] ";
+      for (std::size_t i = 0; i < methods.size(); ++i) {
+        const bool strong = std::any_of(panels.begin(), panels.end(),
+                                        [&](const ErrorPanel& panel) { return panel.is_cheapest(methods[i]); });
+        const Style style = style_of(i);
+        out += fmt::format("NaN with linespoints {} title '{}', ", strong ? style.strong : style.pale, methods[i]);
+      }
+      out += fmt::format("NaN with points {} title 'failed'\n", failed_style);
     }
     out += "unset multiplot\n";
   }
   return out;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
   std::string out = "<tr>";
-  for (const auto& c : cells) out += fmt::format("<{0}>{1}</{0}>", tag, escaped(c));
+  for (const auto& c : cells) out += fmt::format("<{0}>{1}</{0}>", tag, in_html(c));
   return out + "</tr>\n";
 }
 
@@ -193,8 +213,8 @@ std::string html(const Findings& findings, const std::string& picture) {
       "text-align:right}}td:first-child,th:first-child{{text-align:left}}code{{background:#f3f3f3;padding:0 3px}}"
       "svg{{max-width:100%;height:auto}}.failed{{color:#a00}}</style></head><body>\n<h1>{0}: what accuracy "
       "costs</h1>\n",
-      escaped(findings.name));
-  for (const auto& line : recommendation(findings)) out += fmt::format("<p><b>{}</b></p>\n", escaped(line));
+      in_html(findings.name));
+  for (const auto& line : recommendation(findings)) out += fmt::format("<p><b>{}</b></p>\n", in_html(line));
   out += fmt::format(
       "<p>Written by <code>{}</code>. To t = {:g}. Reference: {}, uncertain by {:.1g}. {}.</p>\n"
       "<p>Errors: <i>trajectory</i>, of configuration and momentum at the end, relative to their size along the "
@@ -203,9 +223,12 @@ std::string html(const Findings& findings, const std::string& picture) {
       "their terms; <i>constraint</i>, the largest residual of constraints and of the groupoid's own equations. "
       "<i>Energy drift</i> is the slope of the energy times the time, with its standard error. Evaluations: gradients "
       "of the discrete Lagrangian (Newton's iterations), flows or vector fields of explicit steps. Times are medians "
-      "of interleaved repetitions, the march alone, without records, in processor time of its thread.</p>\n",
-      escaped(findings.command), findings.end, escaped(findings.reference), findings.uncertainty,
-      escaped(findings.machine));
+      "of interleaved repetitions, the march alone, without records, in processor time of its thread. An error beyond "
+      "the motion's own size is a failure (a cross above), no point. Strongly drawn are the methods that are the "
+      "cheapest at some error.</p>\n",
+      in_html(findings.command), findings.end, in_html(findings.reference), findings.uncertainty,
+      in_html(findings.machine));
+  for (const auto& line : not_measured(findings)) out += fmt::format("<p>Not measured: {}</p>\n", in_html(line));
   out += picture;
   out += "<h2>The least time for an error of the trajectory</h2>\n<table>" +
          row({"error", "method", "step", "time", "evaluations"}, "th");
@@ -226,17 +249,17 @@ std::string html(const Findings& findings, const std::string& picture) {
 
 std::string line_of(const std::vector<std::string>& cells) {
   std::string out = "|";
-  for (const auto& c : cells) out += " " + c + " |";
+  for (const auto& c : cells) out += " " + in_markdown(c) + " |";
   return out + "\n";
 }
 
 std::string markdown(const Findings& findings, bool pictures) {
-  std::string out =
-      fmt::format("# {}, to t = {:g}\n\nWritten by\n\n    {}\n\n", findings.name, findings.end, findings.command);
+  std::string out = fmt::format("# {}, to t = {:g}\n\nWritten by\n\n    {}\n\n", in_markdown(findings.name),
+                                findings.end, visible(findings.command));
   out += fmt::format(
       "{}. Reference: {}, uncertain by {:.1g}. What the columns mean: docs/scenes.md, *What accuracy costs a "
       "scene*.\n\n",
-      findings.machine, findings.reference, findings.uncertainty);
+      in_markdown(findings.machine), in_markdown(findings.reference), findings.uncertainty);
   if (pictures) out += "![error over time and evaluations](study.svg)\n\n";
   out += "| error of the trajectory | least time | method | step |\n|---|---|---|---|\n";
   for (const double level : levels(findings)) {
@@ -246,7 +269,8 @@ std::string markdown(const Findings& findings, bool pictures) {
                 : line_of({fmt::format("{:.0e}", level), "not reached", "", ""});
   }
   out += "\n";
-  for (const auto& line : recommendation(findings)) out += fmt::format("- {}\n", line);
+  for (const auto& line : recommendation(findings)) out += fmt::format("- {}\n", in_markdown(line));
+  for (const auto& line : not_measured(findings)) out += fmt::format("- not measured: {}\n", in_markdown(line));
   out += "\n" + line_of(headings) + "|" + [] {
     std::string rule;
     for (std::size_t i = 0; i < headings.size(); ++i) rule += "---|";
@@ -273,9 +297,25 @@ std::vector<std::string> recommendation(const Findings& findings) {
     else
       out.push_back(
           fmt::format("no run came below an error of {:.1e} at t = {:g}: give smaller --steps or more time "
-                      "(--longest)",
+                      "(--longest, --budget)",
                       level, findings.end));
   }
+  return out;
+}
+
+std::vector<std::string> not_measured(const Findings& findings) {
+  std::vector<std::string> out;
+  if (findings.interrupted) return out;  // that was no budget
+  for (const LeftOut& each : findings.left_out)
+    out.push_back(fmt::format("{} with steps of {:.4g} and less: {}", each.method, each.step, each.why));
+  const auto is_short = [&](const Measurement& m) {
+    return m.converged() && m.seconds.size() < std::size_t(findings.repetitions);
+  };
+  if (const auto count = std::count_if(findings.runs.begin(), findings.runs.end(), is_short); count > 0)
+    out.push_back(fmt::format("{} of {} runs were timed less than {} times (the repetitions are in study.json)", count,
+                              findings.runs.size(), findings.repetitions));
+  if (!out.empty())
+    out.push_back(fmt::format("all of this for want of time: the budget was {:g} s (--budget)", findings.budget));
   return out;
 }
 
@@ -296,6 +336,7 @@ std::string study_text(const Findings& findings) {
                          cost->step);
   out += "\n";
   for (const auto& line : recommendation(findings)) out += fmt::format("  {}\n", line);
+  for (const auto& line : not_measured(findings)) out += fmt::format("  not measured: {}\n", line);
   return out;
 }
 
@@ -339,28 +380,37 @@ std::string study_json(const Findings& findings) {
                                                     {"evaluations", cost->evaluations}});
   }
   for (const auto& line : recommendation(findings)) out["recommendation"].push_back(line);
-  return out.dump(2);
+  out["budget"] = findings.budget;
+  out["not_measured"] = Json::array();
+  for (const LeftOut& each : findings.left_out)
+    out["not_measured"].push_back({{"method", each.method}, {"step", each.step}, {"why", each.why}});
+  return json_text(out);
 }
 
 std::vector<std::filesystem::path> write_study(const Findings& findings, const std::filesystem::path& folder,
                                                std::string& note) {
-  return write_whole(folder, study_files, [&](const std::filesystem::path& staging) {
-    std::vector<std::string> names{"study.csv", "study.json", "study.md", "study.gp", "study.html"};
+  const auto data = [&](const std::filesystem::path& staging) {
     write_text(csv(findings), staging / "study.csv");
     write_text(study_json(findings) + "\n", staging / "study.json");
     write_text(figure(findings), staging / "study.gp");
-    note = run_gnuplot(staging, "study.gp", {"study.svg", "study.png"});
+    return std::vector<std::string>{"study.csv", "study.json", "study.gp"};
+  };
+  const auto pages = [&](const std::filesystem::path& staging, bool drawn) {
     std::string picture;
-    if (note.empty()) {
-      names.insert(names.end(), {"study.svg", "study.png"});
-      std::ifstream in(staging / "study.svg");
+    if (drawn) {
+      std::ifstream in(folder / "study.svg");
       picture.assign(std::istreambuf_iterator<char>(in), {});
       if (const auto start = picture.find("<svg"); start != std::string::npos) picture.erase(0, start);
     }
-    write_text(markdown(findings, note.empty()), staging / "study.md");
+    write_text(markdown(findings, drawn), staging / "study.md");
     write_text(html(findings, picture), staging / "study.html");
-    return names;
-  });
+    return std::vector<std::string>{"study.md", "study.html"};
+  };
+  if (!error_panels(findings).empty())
+    return write_and_draw(folder, study_files, data, {"study.gp", {"study.svg", "study.png"}}, note, pages);
+  auto written = write_and_draw(folder, study_files, data, {}, note, pages);
+  note = "no run came near enough to the truth to be drawn";
+  return written;
 }
 
 }  // namespace lagroid::app

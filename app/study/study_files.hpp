@@ -1,7 +1,7 @@
 #pragma once
 /// The files of a study.
 
-#include "measure.hpp"
+#include "survey.hpp"
 
 #include <filesystem>
 #include <string>
@@ -21,6 +21,9 @@ struct Findings {
   double uncertainty = 0;
   std::vector<Block> reference_state;
   std::vector<Measurement> runs;
+  std::vector<LeftOut> left_out;
+  double budget = 0;    ///< s
+  int repetitions = 0;  ///< of each run that there was time for
   std::vector<Method> methods;
   bool interrupted = false;  ///< not all was measured
 };
@@ -29,6 +32,8 @@ extern const std::vector<const char*> study_files;
 
 /// What is recommended, a line each.
 std::vector<std::string> recommendation(const Findings& findings);
+/// What was not measured for want of time, a line each; none where all was.
+std::vector<std::string> not_measured(const Findings& findings);
 /// For the terminal.
 std::string study_text(const Findings& findings);
 std::string study_json(const Findings& findings);

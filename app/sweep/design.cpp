@@ -27,7 +27,8 @@ struct Variation {
   Design::Key key;
   std::size_t dimensions = 1;  ///< of the cube
   std::function<void(const double* uniform, double* out)> at;
-  std::vector<double> grid;  ///< empty where it has none
+  long count = 0;  ///< of the numbers on a grid
+  std::function<double(long)> on_grid;
 };
 
 /// The columns of a key that stands for `size` numbers of the scene; `said` is where the sweep names it.
@@ -74,19 +75,21 @@ void read_range(const Section& vary, Variation& v, bool on_grid) {
   if (!on_grid) return;
   const long count = vary.integer("count", 1, most_members);
   v.key.equally_spaced = !logarithmic && count > 1;
-  for (long i = 0; i < count; ++i) {
+  v.count = count;
+  // Both ends are met, and whole numbers stay whole.
+  v.on_grid = [=](long i) {
     const double last = double(std::max(count - 1, 1L));
-    // Both ends are met, and whole numbers stay whole.
-    v.grid.push_back(logarithmic ? (i == 0           ? from
-                                    : i == count - 1 ? to
-                                                     : whole_if_near(from * std::pow(to / from, double(i) / last)))
-                                 : (from * (last - double(i)) + to * double(i)) / last);
-  }
+    if (!logarithmic) return (from * (last - double(i)) + to * double(i)) / last;
+    if (i == 0) return from;
+    return i == count - 1 ? to : whole_if_near(from * std::pow(to / from, double(i) / last));
+  };
 }
 
 void read_values(const Section& vary, Variation& v) {
-  v.grid = vary.list("values", "the numbers that it takes");
-  v.at = [values = v.grid](const double* u, double* out) {
+  const std::vector<double> values = vary.list("values", "the numbers that it takes");
+  v.count = long(values.size());
+  v.on_grid = [values](long i) { return values[std::size_t(i)]; };
+  v.at = [values](const double* u, double* out) {
     *out = values[std::min(std::size_t(*u * double(values.size())), values.size() - 1)];
   };
 }
@@ -162,15 +165,18 @@ std::vector<Variation> read_variations(const Section& sweep, bool on_grid, const
 void fill_grid(const Section& sweep, const std::vector<Variation>& variations, Design& design) {
   long count = 1;
   for (const Variation& v : variations) {
-    count = long(v.grid.size()) > most_members / count ? most_members + 1 : count * long(v.grid.size());
+    count = v.count > most_members / count ? most_members + 1 : count * v.count;
     if (count > most_members)
       sweep.fail("vary", fmt::format("more than {} members; use smaller counts, or a random design", most_members));
   }
+  std::vector<std::vector<double>> grids;
+  for (const Variation& v : variations)
+    for (auto& grid = grids.emplace_back(); long(grid.size()) < v.count;) grid.push_back(v.on_grid(long(grid.size())));
   for (long i = 0; i < count; ++i) {
     long block = count;
-    for (const Variation& v : variations) {
-      block /= long(v.grid.size());
-      design.values.push_back(v.grid[std::size_t(i / block) % v.grid.size()]);
+    for (const std::vector<double>& grid : grids) {
+      block /= long(grid.size());
+      design.values.push_back(grid[std::size_t(i / block) % grid.size()]);
     }
   }
 }

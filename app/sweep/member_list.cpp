@@ -59,6 +59,7 @@ MemberList read_csv(const fs::path& path) {
     for (std::size_t i = 0; i < words.size(); ++i)
       out.values.push_back(number(words[i], file, line_number, out.columns[i]));
   }
+  if (in.bad()) throw DataError(fmt::format("{}: cannot be read to its end", file));
   return out;
 }
 

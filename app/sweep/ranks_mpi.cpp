@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <string>
 
@@ -64,9 +63,8 @@ class MpiRanks final : public Ranks {
 
   void abort(const std::string& why) override {
     if (size_ == 1) return;
-    fmt::print(stderr, "lagroid: rank {}: {}; the finished parts are kept, and the same command goes on from them\n",
-               rank_, why);
-    std::fflush(stderr);
+    complain(
+        fmt::format("rank {}: {}; the finished parts are kept, and the same command goes on from them", rank_, why));
     MPI_Abort(MPI_COMM_WORLD, exit_failed);
   }
 

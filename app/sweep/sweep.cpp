@@ -2,6 +2,9 @@
 
 #include "../clock.hpp"
 #include "../interrupt.hpp"
+#include "../kept_file.hpp"
+#include "../markup.hpp"
+#include "../nesting.hpp"
 #include "../output_folder.hpp"
 #include "../progress.hpp"
 #include "../run_result.hpp"
@@ -65,7 +68,7 @@ Plan prepare(const SweepOptions& options) {
   require_writable(options.out, sweep_files);
   const bool accurate = sweep.scene.has("accuracy");
   if (!accurate) try_out(sweep, options);
-  plan.folder = std::make_unique<SweepFolder>(options.out, sweep);
+  plan.folder = std::make_unique<SweepFolder>(options.out, sweep, options.other_build);
   if (plan.folder->finished()) return plan;
   if (plan.folder->begun()) {
     plan.folder->restore(sweep);
@@ -99,17 +102,25 @@ std::function<bool(long)> worker(const SweepScene& sweep, const std::string& out
 /// The exit code where so many members failed.
 int told_of_failed(const SweepOptions& options, long failed, long members) {
   if (failed == 0) return 0;
-  fmt::print(stderr, "lagroid: {}: {} of {} members failed; their rows say why\n", options.scene, failed, members);
+  complain(fmt::format("{}: {} of {} members failed; their rows say why", options.scene, failed, members));
   return exit_failed;
 }
 
 int tell_finished(const SweepOptions& options) {
   const std::filesystem::path folder = options.out;
+  long failed = 0;
+  long members = 0;
+  try {
+    const auto json = read_json(contents(folder / "summary.json").value_or("")).value_or(nullptr);
+    json.at("failed").get_to(failed);
+    json.at("members").get_to(members);
+  } catch (const nlohmann::json::exception&) {
+    throw RunError(fmt::format("--out {}: summary.json is damaged; remove the folder and run the same command again",
+                               options.out));
+  }
   const std::string text = contents(folder / (options.json ? "summary.json" : "summary.txt")).value_or("");
   print(options.json ? text : text + fmt::format("  (finished before; the files are in {})\n", options.out));
-  const auto json = nlohmann::json::parse(contents(folder / "summary.json").value_or("{}"), nullptr, false);
-  if (!json.is_object()) return exit_failed;
-  return told_of_failed(options, json.value("failed", 0L), json.value("members", 0L));
+  return told_of_failed(options, failed, members);
 }
 
 /// Joins the parts, writes the files, tells what was found. Returns the exit code.
@@ -122,8 +133,8 @@ int conclude(Plan& plan, const SweepOptions& options, const std::string& took) {
   plan.folder->finish();
   text += took;
   tell_written(files, note, text, json);
-  print(options.json ? json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n" : text);
-  return told_of_failed(options, result.failed(), result.members.count());
+  print(options.json ? json_text(json) + "\n" : text);
+  return code_after_writing(told_of_failed(options, result.failed(), result.members.count()), options.scene);
 }
 
 /// Rank 0.
@@ -138,9 +149,6 @@ int lead(Ranks& ranks, const SweepOptions& options) {
       missing = plan->folder->missing(plan->sweep);
       if (ranks.size() > 1) told = packed(plan->sweep);
     }
-  } catch (const OutputError& error) {
-    ranks.broadcast("");
-    return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (...) {
     ranks.broadcast("");
     throw;
@@ -183,7 +191,7 @@ int follow(Ranks& ranks, const SweepOptions& options) {
   SweepScene sweep;
   std::function<bool(long)> work;
   try {
-    sweep = unpacked(text);
+    sweep = unpacked(text, options.other_build);
     work = worker(sweep, options.out);
   } catch (const std::exception& error) {
     // Rank 0 tells it.
@@ -203,6 +211,8 @@ void add_sweep_options(CLI::App& command, SweepOptions& options) {
       ->check(CLI::Range(1, 4096));
   command.add_option("--set", options.overrides, "override a key: --set design.count=100 (repeatable)")
       ->allow_extra_args(false);
+  command.add_flag("--other-build", options.other_build,
+                   "go on with parts that another build of lagroid ran; the same bits are not promised then");
   command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
 }
 
@@ -211,6 +221,8 @@ int sweep(const SweepOptions& options) {
     const auto ranks = join_ranks();
     const InterruptGuard guard;
     return ranks->rank() == 0 ? lead(*ranks, options) : follow(*ranks, options);
+  } catch (const FolderRefused&) {
+    throw;
   } catch (const OutputError& error) {
     return refuse(options.json, exit_failed, "output_failed", error.what());
   } catch (const RunError& error) {

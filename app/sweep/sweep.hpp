@@ -9,7 +9,8 @@ namespace lagroid::app {
 
 struct SweepOptions : SceneOptions {
   std::string out;
-  int threads = 0;  ///< 0: all that are available
+  int threads = 0;           ///< 0: all that are available
+  bool other_build = false;  ///< go on with parts that another build of lagroid ran
 };
 
 void add_sweep_options(CLI::App& command, SweepOptions& options);

@@ -1,8 +1,11 @@
 #include "sweep_files.hpp"
 
+#include "../gnuplot.hpp"
 #include "../hdf5_file.hpp"
 #include "../machine.hpp"
+#include "../markup.hpp"
 #include "../output_folder.hpp"
+#include "../text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -134,8 +137,8 @@ void write_data(const SweepScene& sweep, const SweepResult& result, const fs::pa
 void write_csv(const SweepScene& sweep, const Part& members, const fs::path& file) {
   std::ofstream out(file);
   out << "member,status";
-  for (const std::string& key : sweep.design.columns()) out << ',' << key;
-  for (const Column& column : members.columns()) out << ',' << column.name;
+  for (const std::string& key : sweep.design.columns()) out << ',' << in_csv(key);
+  for (const Column& column : members.columns()) out << ',' << in_csv(column.name);
   out << '\n';
   fmt::memory_buffer line;
   const std::size_t width = sweep.design.width();
@@ -180,19 +183,20 @@ std::string gnuplot_script(const SweepScene& sweep, const SweepPlot& plot) {
   };
   std::string out = "# Draws members.csv; run by lagroid, or by hand: gnuplot plot.gp\n";
   out += "set datafile separator ','\nset grid\nunset key\n";
-  out += fmt::format("set xlabel '{}'\n", plot.x);
+  out += fmt::format("set xlabel {}\n", gnuplot_string(plot.x));
   if (key(plot.x).logarithmic) out += "set logscale x\n";
   if (key(plot.y).logarithmic) out += "set logscale y\n";
   std::string draw;
   if (plot.y.empty()) {
-    out += fmt::format("set ylabel '{}'\n", plot.quantity);
-    draw = fmt::format("plot 'members.csv' using (column('{}')):(column('{}')) with points pointtype 7 pointsize 0.4",
-                       plot.x, plot.quantity);
+    out += fmt::format("set ylabel {}\n", gnuplot_string(plot.quantity));
+    draw = fmt::format("plot 'members.csv' using (column({})):(column({})) with points pointtype 7 pointsize 0.4",
+                       gnuplot_string(plot.x), gnuplot_string(plot.quantity));
   } else {
     const bool image = keys.size() == 2 && key(plot.x).equally_spaced && key(plot.y).equally_spaced;
-    out += fmt::format("set ylabel '{}'\nset title '{}'\n", plot.y, plot.quantity);
-    draw = fmt::format("plot 'members.csv' using (column('{}')):(column('{}')):(column('{}')) with {}", plot.x, plot.y,
-                       plot.quantity, image ? "image" : "points pointtype 7 pointsize 0.5 palette");
+    out += fmt::format("set ylabel {}\nset title {}\n", gnuplot_string(plot.y), gnuplot_string(plot.quantity));
+    draw = fmt::format("plot 'members.csv' using (column({})):(column({})):(column({})) with {}",
+                       gnuplot_string(plot.x), gnuplot_string(plot.y), gnuplot_string(plot.quantity),
+                       image ? "image" : "points pointtype 7 pointsize 0.5 palette");
   }
   for (const auto& [file, terminal] : {std::pair("plot.svg", "svg size 720,560 background 'white' noenhanced"),
                                        std::pair("plot.png", "pngcairo size 720,560 noenhanced")})
@@ -258,13 +262,13 @@ Json sweep_json(const SweepScene& sweep, const SweepResult& result) {
 
 std::vector<fs::path> write_sweep(const SweepScene& sweep, const SweepResult& result, const fs::path& folder,
                                   std::string& note) {
-  return write_whole(folder, sweep_files, [&](const fs::path& staging) {
+  Drawing drawing;
+  const auto make = [&](const fs::path& staging) {
     const Part& members = result.members;
     std::vector<std::string> names{"sweep.h5", "summary.json", "summary.txt"};
     write_data(sweep, result, staging / "sweep.h5");
-    write_text(sweep_json(sweep, result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
-               staging / "summary.json");
-    write_text(sweep_text(sweep, result), staging / "summary.txt");
+    write_text(json_text(sweep_json(sweep, result)) + "\n", staging / "summary.json");
+    write_text(visible(sweep_text(sweep, result), "\n"), staging / "summary.txt");
     const std::size_t width = sweep.design.width() + members.columns().size() + 2;
     if (members.status().size() > most_cells_in_csv / width) return names;
     write_csv(sweep, members, staging / "members.csv");
@@ -273,10 +277,10 @@ std::vector<fs::path> write_sweep(const SweepScene& sweep, const SweepResult& re
     if (plot.quantity.empty() || members.count() > most_points_in_picture) return names;
     write_text(gnuplot_script(sweep, plot), staging / "plot.gp");
     names.emplace_back("plot.gp");
-    note = run_gnuplot(staging, "plot.gp", {"plot.svg", "plot.png"});
-    if (note.empty()) names.insert(names.end(), {"plot.svg", "plot.png"});
+    drawing = {"plot.gp", {"plot.svg", "plot.png"}};
     return names;
-  });
+  };
+  return write_and_draw(folder, sweep_files, make, drawing, note);
 }
 
 }  // namespace lagroid::app

@@ -1,6 +1,8 @@
 #include "sweep_folder.hpp"
 
-#include "../output_folder.hpp"
+#include "../kept_file.hpp"
+#include "../machine.hpp"
+#include "sweep_files.hpp"
 
 #include <fmt/format.h>
 
@@ -58,23 +60,29 @@ void PartFiles::remove_all() const {
   fs::remove(folder_, ignored);  // not where there is something else in it
 }
 
-SweepFolder::SweepFolder(const fs::path& folder, const SweepScene& sweep)
-    : folder_(folder), lock_(folder), parts_(folder), identity_(identity_of(sweep)), kept_(read_cbor(file())) {
-  if (!kept_ && parts_.any())
+SweepFolder::SweepFolder(const fs::path& folder, const SweepScene& sweep, bool other_build)
+    : folder_(folder),
+      held_(folder, OutputKind::sweep, source_of(sweep), sweep_files),
+      parts_(folder),
+      kept_(read_cbor(file())) {
+  if ((kept_ && !held_.known()) || (!kept_ && parts_.any()))
     throw RunError(
         fmt::format("--out {}: holds parts of a sweep, but {}, which says of which one, is missing or damaged; choose "
                     "another folder, or remove this one",
-                    folder.string(), file().filename().string()));
+                    folder.string(), kept_ ? ".lagroid" : file().filename().string()));
   if (!kept_) return;
-  const Json before = kept_->at("identity");
-  if (before == identity_) return;
-  const auto differs = [&](const char* key) { return before.value(key, Json()) != identity_.at(key); };
-  const char* what = differs("program") ? "by another build of lagroid"
-                     : differs("sweep") ? "of another sweep file, or with other overrides"
-                     : differs("scene") ? "of another scene"
-                                        : "of other members";
-  throw RunError(
-      fmt::format("--out {}: holds a sweep {}; choose another folder, or remove this one", folder.string(), what));
+  if (finished()) parts_.remove_all();  // whoever finished it may have been killed before
+  const std::string made_by = kept_->value("program", "");
+  if (made_by == program()) return;
+  if (!other_build)
+    throw RunError(
+        fmt::format("--out {}: holds a sweep by another build of lagroid ({}; this one is {}); choose another folder, "
+                    "or let --other-build go on without the promise of the same bits",
+                    folder.string(), made_by, program()));
+  (*kept_)["program"] = program();
+  (*kept_)["notes"].push_back(
+      fmt::format("goes on from another build ({}), without the promise of the same bits", made_by));
+  if (!finished()) replace_by_cbor(file(), *kept_);
 }
 
 bool SweepFolder::finished() const {
@@ -95,7 +103,7 @@ void SweepFolder::begin(const SweepScene& sweep) {
   fs::create_directories(folder_ / "parts", error);
   if (error) throw OutputError(fmt::format("--out {}: {}; choose another place", folder_.string(), error.message()));
   if (kept_ && !kept_->value("finished", false)) return;  // else its results were taken away
-  kept_ = Json{{"identity", identity_}, {"scene", sweep.scene.whole()}, {"notes", sweep.notes}};
+  kept_ = Json{{"program", program()}, {"scene", sweep.scene.whole()}, {"notes", sweep.notes}};
   replace_by_cbor(file(), *kept_);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The folder of a sweep while it goes on: what is finished is there, and stays when all else is lost.
 
-#include "../kept_file.hpp"
+#include "../output_folder.hpp"
 #include "part.hpp"
 #include "sweep_scene.hpp"
 
@@ -38,9 +38,9 @@ class PartFiles {
 /// The folder as a whole, which one process holds.
 class SweepFolder {
  public:
-  /// Throws OutputError where it cannot be used, RunError where it holds another sweep, or
-  /// parts of who knows which.
-  SweepFolder(const std::filesystem::path& folder, const SweepScene& sweep);
+  /// Throws as OutputFolder does; RunError where it holds parts of who knows which sweep, and, unless `other_build`,
+  /// where another build of lagroid was at work.
+  SweepFolder(const std::filesystem::path& folder, const SweepScene& sweep, bool other_build = false);
 
   /// Whether an earlier command began this sweep, and whether one finished it.
   bool begun() const { return kept_.has_value(); }
@@ -60,9 +60,8 @@ class SweepFolder {
   std::filesystem::path file() const { return folder_ / "sweep.cbor"; }
 
   std::filesystem::path folder_;
-  FolderLock lock_;
+  OutputFolder held_;
   PartFiles parts_;
-  nlohmann::json identity_;
   std::optional<nlohmann::json> kept_;
 };
 

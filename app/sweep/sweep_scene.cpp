@@ -1,6 +1,5 @@
 #include "sweep_scene.hpp"
 
-#include "../kept_file.hpp"
 #include "../machine.hpp"
 
 #include <fmt/format.h>
@@ -88,7 +87,8 @@ std::string packed(const SweepScene& sweep) {
   for (const Design::Key& key : sweep.design.keys) keys.push_back({key.path, key.columns});
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(sweep.design.values.data());
   const std::vector<std::uint8_t> cbor = nlohmann::json::to_cbor(
-      {{"file", sweep.file},
+      {{"program", program()},
+       {"file", sweep.file},
        {"text", sweep.text},
        {"scene file", sweep.scene.file()},
        {"scene", sweep.scene.whole()},
@@ -97,8 +97,11 @@ std::string packed(const SweepScene& sweep) {
   return {cbor.begin(), cbor.end()};
 }
 
-SweepScene unpacked(const std::string& text) {
+SweepScene unpacked(const std::string& text, bool other_build) {
   const auto json = nlohmann::json::from_cbor(text);
+  if (const std::string leader = json.at("program"); leader != program() && !other_build)
+    throw RunError(fmt::format("is another build of lagroid, or on another kind of processor, than rank 0 ({}, not {})",
+                               program(), leader));
   SweepScene out;
   out.file = json.at("file");
   out.text = json.at("text");
@@ -111,14 +114,11 @@ SweepScene unpacked(const std::string& text) {
   return out;
 }
 
-nlohmann::json identity_of(const SweepScene& sweep) {
+OutputSource source_of(const SweepScene& sweep) {
   const auto& values = sweep.design.values;
-  const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
-  return {{"program", program()},
-          {"sweep", sweep.text},
+  return {{"sweep", sweep.text},
           {"scene", sweep.given},
-          {"members", sweep.design.count()},
-          {"design", sum_of(bytes)}};
+          {"members", {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}}};
 }
 
 }  // namespace lagroid::app

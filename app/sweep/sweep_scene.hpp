@@ -1,6 +1,7 @@
 #pragma once
 /// What a sweep file says.
 
+#include "../output_folder.hpp"
 #include "design.hpp"
 #include "members.hpp"
 
@@ -45,9 +46,10 @@ SweepScene read_sweep(const std::filesystem::path& file, const std::vector<std::
 /// A sweep that was read on one rank, for the others: `scene` included, in which an accuracy has been replaced by the
 /// method and step that were chosen.
 std::string packed(const SweepScene& sweep);
-SweepScene unpacked(const std::string& text);
+/// Throws RunError where the other rank is of another build, unless `other_build`.
+SweepScene unpacked(const std::string& text, bool other_build);
 
-/// What must be the same for two sweeps to have the same results.
-nlohmann::json identity_of(const SweepScene& sweep);
+/// What must be the same for two sweeps to have the same results by one build.
+OutputSource source_of(const SweepScene& sweep);
 
 }  // namespace lagroid::app

@@ -1,6 +1,7 @@
 #pragma once
 /// Attitudes between scenes (quaternions) and systems (rotation matrices), and the moments of what turns.
 
+#include "../run_result.hpp"
 #include "../scene_reader.hpp"
 
 #include <lagroid/groupoids/so3.hpp>
@@ -8,7 +9,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -34,6 +37,12 @@ inline Vector<double, 3> read_positive(const Section& parameters, std::string_vi
 /// `inertia`: three positive principal moments.
 inline Vector<double, 3> read_inertia(const Section& parameters) {
   return read_positive(parameters, "inertia", "principal moments");
+}
+
+/// The attitude over time.
+inline Panel attitude_panel(const std::vector<std::string>& quaternion = attitude_columns,
+                            const std::string& title = "attitude") {
+  return {title + ", unit quaternion", "t", "w, x, y, z", "t", quaternion};
 }
 
 }  // namespace lagroid::app

@@ -43,9 +43,9 @@ Task<AttitudeControl> read_attitude_control(const Section& scene, const RunConte
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"},
                    {"momentum", "body momentum M = W w + lambda n"},
                    {"multipliers", "sign of L + <lambda, phi>, phi = h n.w"}};
-  p.panels = {{"angular velocity in the body", "t", "w", "t", {"w1", "w2", "w3"}},
-              {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
-              {"spatial momentum error", "t", "deviation", "t", {"drift spatial momentum"}}};
+  p.panels = turning_panels();
+  p.panels.push_back({"energy error", "t", "|H - H_0|", "t", {"drift energy"}});
+  p.panels.push_back({"spatial momentum error", "t", "deviation", "t", {"drift spatial momentum"}});
 
   Shape satellite{"box", {0.8, 0.5, 0.3}};
   satellite.attitude = attitude_columns;

@@ -35,10 +35,12 @@ Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunConte
   p.shapes[0].offset[0] = system.offset;
   p.shapes[1].trail = true;
   p.panels = {{"path of the blade", "x", "y", "x", {"y"}, true},
+              {"heading", "t", "angle, rad", "t", {"heading"}},
               {"velocities", "t", "w, v1", "t", {"w", "v1"}},
               {"energy error", "t", "|E - E_0|", "t", {"drift energy"}},
               {"momentum equation, error", "t", "deviation", "t", {"drift momentum equation of turning"}}};
 
+  refuse_boundary<ChaplyginSleigh>(scene);
   const Section initial = scene.section("initial", "position and velocity");
   const Matrix<double, 3, 3> pose = read_pose(initial);
   const auto velocity = initial.numbers("velocity", 2, "turning (rad/s), ahead (m/s)");

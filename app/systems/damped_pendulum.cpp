@@ -19,6 +19,7 @@ Task<DampedPendulum> read_damped_pendulum(const Section& scene, const RunContext
               {"phase plane", "q", "p", "q", {"p"}},
               {"energy", "t", "H", "t", {"H"}},
               {"energy less work, error", "t", "deviation", "t", {"drift energy less work"}}};
+  refuse_boundary<DampedPendulum>(scene);
   const Section section = scene.section("initial", "position and momentum");
   const auto initial = read_vector_state<1>(section, "the angle from the downward vertical", "m l^2 dq/dt");
   return simulation(scene, context, system, p, initial, PairArrow<double, 1>{initial.object, initial.object});

@@ -21,6 +21,7 @@ Task<DrivenPendulum> read_driven_pendulum(const Section& scene, const RunContext
                }}};
   p.shapes = hanging(system.length, "q");
   p.panels = {{"angle", "t", "q", "t", {"q"}}, {"phase plane", "q", "p", "q", {"p"}}, {"energy", "t", "H", "t", {"H"}}};
+  refuse_boundary<DrivenPendulum>(scene);
   const Section section = scene.section("initial", "position and momentum");
   const auto initial = read_vector_state<1>(section, "the angle from the downward vertical", "m l^2 dq/dt");
   return simulation(scene, context, system, p, initial, PairArrow<double, 1>{initial.object, initial.object});

@@ -64,11 +64,13 @@ Task<HeavyTop> read_heavy_top(const Section& scene, const RunContext& context) {
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"},
                    {"position", "the upward vertical seen from the body, A^T e3"},
                    {"momentum", "body angular momentum M"}};
-  p.panels = {{"vertical seen from the body", "t", "v", "t", {"v1", "v2", "v3"}},
-              {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
-              {"vertical momentum error", "t", "|M.v - (M.v)_0|", "t", {"drift vertical momentum M.v"}}};
+  p.panels = turning_panels();
+  p.panels.insert(p.panels.begin() + 1, {"vertical seen from the body", "t", "v", "t", {"v1", "v2", "v3"}});
+  p.panels.push_back({"energy error", "t", "|H - H_0|", "t", {"drift energy"}});
+  p.panels.push_back({"vertical momentum error", "t", "|M.v - (M.v)_0|", "t", {"drift vertical momentum M.v"}});
 
   const HeavyTop system = read_system(scene);
+  p.extras = {angular_velocity_of<HeavyTop>(system.inertia)};
   p.shapes = shapes_of(system);
   if (is_boundary_value(scene, "attitude and momentum"))
     return boundary_value<HeavyTop>(scene, context, p, read_boundary);

@@ -2,6 +2,7 @@
 /// What the scenes of point masses on R^n have in common.
 
 #include "../boundary_value.hpp"
+#include "readers.hpp"
 
 #include <lagroid/systems/mechanical.hpp>
 
@@ -18,6 +19,8 @@ template <class Sys> void read_rod_and_bob(const Section& parameters, Sys& syste
   system.bob_mass = parameters.number_or("mass", 1, positive);
   system.length = parameters.number_or("length", 1, positive);
   system.gravity = parameters.number_or("gravity", 1);
+  require_digits(parameters, parameters.has("length") ? "length" : "mass", "the inertia m l^2",
+                 system.bob_mass * system.length * system.length);
 }
 
 /// [initial] position and momentum as vectors of R^n.

@@ -31,12 +31,20 @@ Presentation<PlateBall> presentation(const PlateBall& system) {
                  const auto& move = std::get<0>(point.step.arrow);
                  Eigen::Map<Vector<double, 2>> u(out);
                  u = (move.target - move.source) / point.step_size;
+               }},
+              {{"angular_velocity", {"w1", "w2", "w3"}, "rad/s", "body velocity of A over the arrow", true, {}},
+               [system](const Point& point, double* out) {
+                 Eigen::Map<Vector<double, 3>> w(out);
+                 w = system.rotation_vector(std::get<1>(point.step.arrow)) / point.step_size;
                }}};
   Shape ball = ball_on_plate(system.radius);
   ball.transposed = true;
   p.shapes = {ball, turning_plate(system.plate_rate)};
   p.panels = {{"path of the contact point", "x", "y", "x", {"y"}, true},
               {"controls", "t", "u, v", "t", {"u", "v"}},
+              attitude_panel(),
+              {"angular velocity", "t", "w", "t", {"w1", "w2", "w3"}},
+              {"momentum of turning", "t", "M", "t", {"M1", "M2", "M3"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
               {"momentum errors", "t", "deviation", "t", {"drift spatial momentum A M", "drift J = x py - y px - M3"}}};
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k (body velocity); the ball one sees has attitude A^T"},

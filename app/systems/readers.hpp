@@ -20,7 +20,19 @@
 #include <lagroid/systems/spherical_pendulum.hpp>
 #include <lagroid/systems/unicycle.hpp>
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
 namespace lagroid::app {
+
+/// Refuses parameters whose product overflows, or is too small to keep its digits.
+inline void require_digits(const Section& parameters, std::string_view key, std::string_view product, double value) {
+  if (!std::isnormal(value))
+    parameters.fail(key, fmt::format("makes {} = {:g}, too {} to keep its digits; choose other units", product, value,
+                                     value < 1 ? "small" : "large"));
+}
 
 Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context);
 Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context);

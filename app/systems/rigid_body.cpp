@@ -29,9 +29,10 @@ template <class Sys> Presentation<Sys> presentation(const Sys& system) {
   p.attitude_of = [](const Point& point) { return quaternion_of(point.configuration); };
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"}, {"momentum", "body angular momentum M"}};
   p.shapes = {box_of({system.inertia(0), system.inertia(1), system.inertia(2)})};
-  p.panels = {{"body angular momentum", "t", "M", "t", {"M1", "M2", "M3"}},
-              {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
-              {"spatial momentum error", "t", "|A M - (A M)_0|", "t", {"drift spatial momentum A M"}}};
+  p.extras = {angular_velocity_of<Sys>(system.inertia)};
+  p.panels = turning_panels();
+  p.panels.push_back({"energy error", "t", "|H - H_0|", "t", {"drift energy"}});
+  p.panels.push_back({"spatial momentum error", "t", "|A M - (A M)_0|", "t", {"drift spatial momentum A M"}});
   return p;
 }
 

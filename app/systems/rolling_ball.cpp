@@ -14,6 +14,7 @@ RollingBall read_system(const Section& scene) {
   system.mass = parameters.number_or("mass", 1, positive);
   system.radius = parameters.number_or("radius", 1, positive);
   system.inertia_factor = parameters.number_or("inertia_factor", 0.4, positive);
+  require_digits(parameters, parameters.has("radius") ? "radius" : "mass", "the inertia k m r^2", system.inertia());
   system.plate_rate = parameters.number_or("plate_rate", 0);
   system.h = read_time(scene).step;
   return system;
@@ -47,7 +48,8 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
                    {"multipliers", "impulses of the reaction at the object the arrow starts from"}};
   p.shapes = {ball_on_plate(system.radius), turning_plate(system.plate_rate)};
   p.panels = {{"path of the point of contact", "x", "y", "x", {"y"}, true},
-              {"angular velocity", "t", "w", "t", {"w1", "w2", "w3"}},
+              attitude_panel(),
+              {"angular velocity in space", "t", "w", "t", {"w1", "w2", "w3"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
               {energy + ", error", "t", "deviation", "t", {"drift " + energy}}};
   return p;
@@ -57,6 +59,7 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
 
 Task<RollingBall> read_rolling_ball(const Section& scene, const RunContext& context) {
   const RollingBall system = read_system(scene);
+  refuse_boundary<RollingBall>(scene);
   const Section initial = scene.section("initial", "position, velocity, spin and attitude");
   const auto position = initial.numbers("position", 2, "x, y");
   const auto velocity = initial.numbers("velocity", 2, "dx/dt, dy/dt");

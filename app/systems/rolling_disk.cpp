@@ -45,10 +45,12 @@ Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& cont
   disk.trail = true;
   p.shapes = {disk, turning_plate(0)};
   p.panels = {{"path of the point of contact", "x", "y", "x", {"y"}, true},
+              {"heading and roll", "t", "angle, rad", "t", {"heading", "roll"}},
               {"rates", "t", "w, s", "t", {"w", "s"}},
               {"constraint residual", "t", "largest |phi|", "t", {"residual"}},
               {"energy error", "t", "|E - E_0|", "t", {"drift energy"}}};
 
+  refuse_boundary<RollingDisk>(scene);
   const Section initial = scene.section("initial", "position and rates");
   const Matrix<double, 3, 3> pose = read_pose(initial);
   const auto rates = initial.numbers("rates", 2, "turning, rolling (rad/s)");

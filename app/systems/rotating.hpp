@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -18,6 +19,22 @@ inline State<SO3> read_turning(const Section& initial) {
   State<SO3> state;
   state.momentum = Eigen::Map<const Vector<double, 3>>(initial.numbers("momentum", 3, "M1, M2, M3").data());
   return state;
+}
+
+/// I^{-1} M at every node.
+template <class Sys> ExtraSeries<Sys> angular_velocity_of(const Vector<double, 3>& inertia) {
+  return {{"angular_velocity", {"w1", "w2", "w3"}, "rad/s", "of the body, in its frame", false, {}},
+          [inertia](const TrajectoryPoint<Sys>& point, double* out) {
+            Eigen::Map<Vector<double, 3>> w(out);
+            w = point.state.momentum.cwiseQuotient(inertia);
+          }};
+}
+
+/// Attitude, angular velocity and momentum of a body with the columns w1... and M1...
+inline std::vector<Panel> turning_panels() {
+  return {attitude_panel(),
+          {"angular velocity in the body", "t", "w", "t", {"w1", "w2", "w3"}},
+          {"angular momentum in the body", "t", "M", "t", {"M1", "M2", "M3"}}};
 }
 
 /// `rotation`: exp, which is the default, or cayley.

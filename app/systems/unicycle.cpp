@@ -57,6 +57,7 @@ Task<Unicycle> read_unicycle(const Section& scene, const RunContext& context) {
   wheel.trail = true;
   p.shapes = {wheel};
   p.panels = {{"path", "x", "y", "x", {"y"}, true},
+              {"heading", "t", "angle, rad", "t", {"heading"}},
               {"turning rate", "t", "w", "t", {"w"}},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"spatial momentum error", "t", "deviation", "t", {"drift spatial momentum"}}};

@@ -7,8 +7,17 @@ Chart.register(Legend, LinearScale, LineElement, PointElement, ScatterController
 
 const palette = ["#2f6fde", "#e4572e", "#2a9d6f", "#8e5bd0", "#d9a514", "#3aa6b9"];
 
-/** Limits that are no round numbers are not written out. */
-const short = (value) => Number(value.toPrecision(3)).toString();
+/** A tick in as few digits as tell it from the next: limits that are no round numbers are not written out. */
+export function tickLabel(value, _, ticks) {
+  const values = ticks.map((tick) => tick.value);
+  const apart = (values.at(-1) - values[0]) / Math.max(1, values.length - 1);
+  const size = Math.max(...values.map(Math.abs));
+  const digits = apart > 0 ? Math.ceil(Math.log10(size / apart)) + 1 : 3;
+  return Number(value.toPrecision(Math.min(Math.max(digits, 3), 15))).toString();
+}
+
+/** What is shown of an axis: the column less an offset, near which all of its numbers lie, or 0. */
+const less = (label, offset) => (offset === 0 ? label : `${label} ${offset > 0 ? "-" : "+"} ${Math.abs(offset)}`);
 
 /** One panel: curves over a column, drawn once; the mark is on a canvas above, drawn at every frame. */
 class Plot {
@@ -20,16 +29,26 @@ class Plot {
     this.cursor.className = "cursor";
     frame.append(canvas, this.cursor);
     parent.append(frame);
+    const { x_offset = 0, y_offset = 0 } = panel;
     const x = run.columns[panel.x];
-    this.x = reader(run, panel.x);
-    this.curves = panel.curves.map((curve) => reader(run, curve));
-    const axis = (text) => ({ type: "linear", title: { display: true, text }, ticks: { maxTicksLimit: 6, callback: short } });
+    const readX = reader(run, panel.x);
+    this.x = (row) => readX(row) - x_offset;
+    this.curves = panel.curves.map((curve) => {
+      const readY = reader(run, curve);
+      return (row) => readY(row) - y_offset;
+    });
+    const shown = (xs, y) => (xs === null || y === null ? [] : [{ x: xs - x_offset, y: y - y_offset }]);
+    const axis = (label, offset) => ({
+      type: "linear",
+      title: { display: true, text: less(label, offset) },
+      ticks: { maxTicksLimit: 6, callback: tickLabel },
+    });
     this.chart = new Chart(canvas, {
       type: "scatter",
       data: {
         datasets: panel.curves.map((curve, i) => ({
           label: curve,
-          data: run.columns[curve].map((y, row) => ({ x: x[row], y })).filter(({ x, y }) => x !== null && y !== null),
+          data: run.columns[curve].flatMap((y, row) => shown(x[row], y)),
           showLine: true,
           pointRadius: 0,
           borderWidth: 1.5,
@@ -41,7 +60,7 @@ class Plot {
         animation: false,
         maintainAspectRatio: false,
         events: [],
-        scales: { x: axis(panel.x_label), y: axis(panel.y_label) },
+        scales: { x: axis(panel.x_label, x_offset), y: axis(panel.y_label, y_offset) },
         plugins: {
           title: { display: true, text: panel.title },
           legend: { display: panel.curves.length > 1, position: "bottom", labels: { boxWidth: 12 } },

@@ -284,14 +284,15 @@ void write_page(const std::vector<Findings>& all) {
   for (const Findings& found : all) pictures.push_back(found.problem.name + ".svg");
   std::vector<const char*> files{"runs.csv", "figures.gp"};
   for (const std::string& name : pictures) files.push_back(name.c_str());
-  lagroid::app::write_whole(docs / "peers", files, [&](const std::filesystem::path& staging) {
+  const auto data = [&](const std::filesystem::path& staging) {
     lagroid::app::write_text(runs_csv(all), staging / "runs.csv");
     lagroid::app::write_text(figures(all), staging / "figures.gp");
-    const std::string reason = lagroid::app::run_gnuplot(staging, "figures.gp", pictures);
-    if (reason.empty()) return std::vector<std::string>(files.begin(), files.end());
-    fmt::print(stderr, "lagroid_peers: no pictures: {}; in docs/peers, gnuplot figures.gp draws them\n", reason);
     return std::vector<std::string>{"runs.csv", "figures.gp"};
-  });
+  };
+  std::string reason;
+  lagroid::app::write_and_draw(docs / "peers", files, data, {"figures.gp", pictures}, reason);
+  if (!reason.empty())
+    fmt::print(stderr, "lagroid_peers: no pictures: {}; in docs/peers, gnuplot figures.gp draws them\n", reason);
   std::string sections;
   for (const Findings& found : all) {
     sections += section(found);

@@ -126,6 +126,7 @@ requires HasArrowFrame<typename Sys::GroupoidType> LawReport second_derivative_l
         const auto one = second_derivatives_in_one_pass(system, s.arrow, s.multipliers);
         const auto three = second_derivatives_in_three_passes(system, s.arrow, s.multipliers);
         const auto gap = [](const auto& a, const auto& b) {
+          if (!a.allFinite() || !b.allFinite()) return std::numeric_limits<double>::infinity();
           return (a - b).cwiseAbs().maxCoeff() / (1 + b.cwiseAbs().maxCoeff());
         };
         return worst({derivative_defect<Sys::dimension, Sys::constraints>(one, three),

@@ -246,7 +246,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     return largest;
   });
   law("nudging an arrow", options.tolerance, [&] {
-    // Thousands of displacements below the spacing of the numbers add up to one that is not.
+    // Thousands of displacements, each a few hundred round-offs, add up to what they are together.
     const A g = arrow();
     constexpr int count = 4096;
     V w = vector();

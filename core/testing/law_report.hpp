@@ -28,10 +28,10 @@ struct Law {
   int samples = 0;
   double worst = 0;
   double tolerance = 0;
-  std::string first_failure;  ///< the exception or the sample that broke it, if any
-  int skipped = 0;            ///< samples of which it could not be asked
-  std::string skipped_because;
-  bool unjudged = false;  ///< nearly all were skipped
+  std::string first_failure;    ///< the exception or the sample that broke it, if any
+  int skipped = 0;              ///< samples of which it could not be asked
+  std::string skipped_because;  ///< of the reasons, the commonest
+  bool unjudged = false;        ///< too many were skipped
 
   bool holds() const { return samples > 0 && first_failure.empty() && worst <= tolerance && !unjudged; }
   std::string verdict() const { return holds() ? "holds" : unjudged ? "unjudged" : "BROKEN"; }

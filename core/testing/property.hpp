@@ -12,6 +12,7 @@
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -38,35 +39,41 @@ struct NotSampled : std::runtime_error {
 };
 
 /// rc::check that is silent where the property holds, and otherwise says why not and what reproduces it.
-inline bool holds_quietly(const std::string& name, const std::function<void()>& property) {
+inline void check_quietly(const std::string& name, const std::function<void()>& property) {
   using namespace rc::detail;
   fix_seed();
   Configuration configuration = configFromString(std::getenv("RC_PARAMS"));
   TestListenerAdapter silent;
   const TestResult result =
       checkTestable(property, TestMetadata{name, name}, configuration.testParams, silent, configuration.reproduce);
-  if (result.is<SuccessResult>()) return true;
+  if (result.is<SuccessResult>()) return;
   std::cerr << "- " << name << '\n';
   printResultMessage(result, std::cerr);
   FailureResult failure;
   if (result.match(failure)) configuration.reproduce = {{name, failure.reproduce}};
   std::cerr << "\nRC_PARAMS=\"" << configToMinimalString(configuration) << "\"\n\n";
-  return false;
 }
 
+/// Of the samples drawn, the share above which passing over some leaves a law unjudged: those that remain are then no
+/// longer the ones that were asked for.
+inline constexpr double most_skipped = 1.0 / 3;
+
 /// Runs `defect` (which draws its sample with RapidCheck and returns a relative error) and records the worst value.
+/// Unjudged, unless broken, where more than `most_skipped` of the samples were passed over; the reason told is the
+/// commonest.
 /// (Any law's defect in one type: RapidCheck's machinery is then compiled once.)
 inline Law check_law(const std::string& name, double tolerance, const std::function<double()>& defect) {
   Law law;
   law.name = name;
   law.tolerance = tolerance;
-  const bool passed = holds_quietly(name, [&] {
+  std::map<std::string, int> reasons;
+  check_quietly(name, [&] {
     double d = std::numeric_limits<double>::infinity();
     try {
       d = defect();
     } catch (const NotSampled& error) {
       ++law.skipped;
-      law.skipped_because = error.what();
+      ++reasons[error.what()];
       RC_DISCARD("not sampled");
     } catch (const std::exception& error) {
       if (law.first_failure.empty()) law.first_failure = error.what();
@@ -76,7 +83,14 @@ inline Law check_law(const std::string& name, double tolerance, const std::funct
     if (!(d <= law.worst)) law.worst = std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
     RC_ASSERT(d <= tolerance);
   });
-  law.unjudged = !passed && law.first_failure.empty() && law.worst <= tolerance;
+  int commonest = 0;
+  for (const auto& [reason, count] : reasons)
+    if (count > commonest) {
+      commonest = count;
+      law.skipped_because = reason;
+    }
+  law.unjudged =
+      law.first_failure.empty() && law.worst <= tolerance && law.skipped > most_skipped * (law.samples + law.skipped);
   return law;
 }
 

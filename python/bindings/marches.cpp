@@ -4,9 +4,11 @@
 #include "bindings.hpp"
 #include "computing.hpp"
 
+#include <archive.hpp>
 #include <ledger.hpp>
 #include <simulation.hpp>
 
+#include <lagroid/core/version.hpp>
 #include <lagroid/python/any_march.hpp>
 
 #include <fmt/format.h>
@@ -17,9 +19,12 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::python {
@@ -59,10 +64,14 @@ struct Marched {
 
 class Integrator {
  public:
-  Integrator(std::shared_ptr<AnyMarch> march, bool ledger) : march_(std::move(march)), ledger_(ledger) {
+  /// `origin`: the system and the arguments of its `integrator`, from which a pickle begins the march anew; or None.
+  Integrator(std::shared_ptr<AnyMarch> march, bool ledger, py::object origin)
+      : march_(std::move(march)), ledger_(ledger), origin_(std::move(origin)) {
     for (const Watched& each : march_->watched()) {
       scratch_.emplace_back(each.components.size());
-      if (ledger) watches_.emplace_back(each.name, each.promise, each.components.size());
+      if (ledger)
+        watches_.emplace_back(each.name, each.promise, each.components.size(),
+                              each.sized ? app::SizeOf::terms : app::SizeOf::value);
     }
     observe();
   }
@@ -99,6 +108,36 @@ class Integrator {
       out->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return out;
     });
+  }
+
+  /// What `resumed` goes on from: the version, the origin, and the state.
+  py::tuple pickled() {
+    const Busy busy(busy_);
+    if (origin_.is_none())
+      throw py::type_error("only an integrator that a system's integrator(...) has made can be pickled or copied");
+    app::Archive archive;
+    persist(archive);
+    const std::vector<std::uint8_t> state = nlohmann::json::to_cbor(archive.fields());
+    const py::bytes bytes(std::string(state.begin(), state.end()));
+    return py::make_tuple(version, origin_, bytes);
+  }
+  static std::unique_ptr<Integrator> resumed(const py::tuple& kept) {
+    if (const auto by = kept[0].cast<std::string>(); by != version)
+      throw py::value_error(fmt::format("an integrator pickled by lagroid {}, this is {}; begin it anew", by, version));
+    const py::tuple origin = kept[1];
+    const py::object anew = origin[0].attr("integrator")(**py::dict(origin[1]));
+    const auto& begun = anew.cast<const Integrator&>();
+    auto out = std::make_unique<Integrator>(begun.march_, begun.ledger_, origin);
+    const auto refuse = [] { return py::value_error("an integrator pickled by another lagroid; begin it anew"); };
+    try {
+      app::Archive archive(nlohmann::json::from_cbor(kept[2].cast<std::string>()));
+      out->persist(archive);
+    } catch (const nlohmann::json::exception&) {
+      throw refuse();
+    } catch (const std::out_of_range&) {
+      throw refuse();
+    }
+    return out;
   }
 
   long index() const {
@@ -162,6 +201,13 @@ class Integrator {
     if (on_arrows && march_->index() == 0) throw py::value_error(name + ": no step was made yet");
     read();
   }
+  /// Visits all that a pickle holds beside the origin.
+  void persist(app::Archive& archive) {
+    archive.tape("march", [&](Tape& tape) { march_->persist(tape); });
+    archive("largest residual", largest_residual_);
+    archive("residual size", residual_size_);
+    for (std::size_t i = 0; i < watches_.size(); ++i) archive(fmt::format("watch {}", i), watches_[i]);
+  }
   StepReport step() {
     const StepReport report = march_->advance();
     if (report.converged()) observe();
@@ -176,13 +222,13 @@ class Integrator {
       // The size of the constraints' terms changes slowly: looked at where a residual stands out.
       if (!(residual <= largest_residual_) || residual_size_ == 0) {
         residual_size_ = std::max(residual_size_, march_->residual_size());
-        largest_residual_ = residual;
+        largest_residual_ = app::worse(largest_residual_, residual);
       }
     }
     for (std::size_t i = 0; i < watches_.size(); ++i) {
       if (march_->watched()[i].on_arrows && march_->index() == 0) continue;
       const double size = march_->watch(i, scratch_[i].data());
-      watches_[i].observe(scratch_[i].data(), size);
+      watches_[i].observe(scratch_[i].data(), march_->watched()[i].sized ? size : app::norm_of(scratch_[i]));
     }
   }
   void record(Marched& out) const {
@@ -197,8 +243,11 @@ class Integrator {
       put(out.quantities[i], [&](double* to) { march_->watch(i, to); });
   }
 
+  static constexpr const char* version = LAGROID_VERSION;
+
   std::shared_ptr<AnyMarch> march_;
   bool ledger_;
+  py::object origin_;
   double largest_residual_ = 0;
   double residual_size_ = 0;
   std::vector<app::QuantityWatch> watches_;
@@ -265,6 +314,8 @@ void bind_marches(py::module_& module) {
 
   py::class_<BoundaryPath> path(module, "BoundaryPath", "A stationary path between two ends.");
   path.def_readonly("cost", &BoundaryPath::cost, "The sum of the Lagrangian over its arrows.")
+      .def_readonly("starts", &BoundaryPath::starts,
+                    "How many starts led to it; none where a way down from a saddle did.")
       .def_readonly("is_minimum", &BoundaryPath::is_minimum, "Whether its second variation is positive.")
       .def_readonly("isolated", &BoundaryPath::isolated, "False: one of a continuous family.")
       .def_readonly("normal", &BoundaryPath::normal, "False: abnormal, its multipliers are not unique.")
@@ -282,7 +333,11 @@ void bind_marches(py::module_& module) {
 
   py::class_<Integrator> integrator(module, "Integrator",
                                     "A trajectory in the making. A step that fails leaves everything as it was.");
-  integrator.def(py::init<std::shared_ptr<AnyMarch>, bool>(), py::arg("march").none(false), py::arg("ledger") = true)
+  integrator
+      .def(py::init<std::shared_ptr<AnyMarch>, bool, py::object>(), py::arg("march").none(false),
+           py::arg("ledger") = true, py::arg("origin") = py::none())
+      .def(py::pickle([](Integrator& self) { return self.pickled(); },
+                      [](const py::tuple& kept) { return Integrator::resumed(kept); }))
       .def("advance", &Integrator::advance, "One step. Raises SolveError, with its status.")
       .def("march", &Integrator::steps, py::arg("steps"), py::arg("every") = 1,
            "So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status.")

@@ -9,6 +9,7 @@
 #include <output_folder.hpp>
 #include <scene_reader.hpp>
 #include <study/methods.hpp>
+#include <text.hpp>
 
 #include <lagroid/core/version.hpp>
 
@@ -24,7 +25,7 @@ namespace {
 
 void raise(const char* name, const char* what) {
   const py::object type = py::module_::import("lagroid.errors").attr(name);
-  PyErr_SetString(type.ptr(), what);
+  PyErr_SetString(type.ptr(), app::visible(what).c_str());
 }
 
 /// The program's mistakes as the classes of lagroid/errors.py, with their one-line messages.

@@ -152,8 +152,10 @@ std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::f
 
 std::shared_ptr<Optimum> minimise_scene(const Scene& scene, bool history,
                                         const std::optional<std::filesystem::path>& folder) {
-  const app::OptimisationScene read = app::read_optimisation(scene.read(), scene.file.value_or(""));
-  if (folder) app::require_writable_optimisation(*folder);
+  const app::Section file = scene.read();
+  const app::OptimisationScene read = app::read_optimisation(file, scene.file.value_or(""));
+  std::optional<app::OutputFolder> held;
+  if (folder) held.emplace(app::folder_for_optimisation(*folder, file));
   const Instance& instance = read.instance;
   auto out = std::make_shared<Optimum>();
   out->layout = {instance.rows, instance.columns, instance.columns > 1};

@@ -31,7 +31,8 @@ using app::Endpoint, app::LedgerEntry, app::Minimum, app::RunResult, app::Series
 /// Runs the scene; with a folder, keeps checkpoints there and leaves the files of a run.
 std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std::optional<fs::path>& folder,
                                bool resume) {
-  if (folder) app::require_writable(*folder);
+  std::optional<app::OutputFolder> held;
+  if (folder) held.emplace(resume ? app::folder_of_run(*folder) : app::folder_for_run(*folder, scene));
   bool interrupted = false;
   auto result = computing(
       [&] {
@@ -45,10 +46,11 @@ std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std
   return result;
 }
 
-std::shared_ptr<RunResult> resume(const fs::path& folder, std::optional<long> steps) {
+std::shared_ptr<RunResult> resume(const fs::path& folder, std::optional<long> steps, bool other_build) {
   std::vector<std::string> overrides;
   if (steps) overrides.push_back(fmt::format("time.steps={}", *steps));
   const std::string text = app::Checkpoint::scene_of(folder);
+  if (!other_build) app::Checkpoint::require_this_build(folder);
   return run(app::parse_scene(text, folder.string() + "/checkpoint/scene.toml", overrides), true, folder, true);
 }
 
@@ -128,6 +130,7 @@ void bind_scenes(py::module_& module) {
       .def_readonly("relative_drift", &LedgerEntry::relative_drift, "The same over the size of the initial value.")
       .def_readonly("bound", &LedgerEntry::bound, "On the drift; zero where none is promised.")
       .def_readonly("verdict", &LedgerEntry::verdict, "kept, BROKEN, bounded, growing, unjudged, watched or counted")
+      .def_readonly("reason", &LedgerEntry::reason, "Of a verdict that drift and bound do not explain; else empty.")
       .def_property_readonly("broken", &LedgerEntry::broken, "Whether the promise was.")
       .def("__repr__", [](const LedgerEntry& e) {
         return fmt::format("<{}: {}, drift {:.2e}: {}>", e.name, e.promise, e.drift, e.verdict);
@@ -135,6 +138,7 @@ void bind_scenes(py::module_& module) {
 
   py::class_<Minimum>(module, "Minimum", "A stationary path of a boundary value.")
       .def_readonly("cost", &Minimum::cost, "The sum of the Lagrangian over its arrows.")
+      .def_readonly("starts", &Minimum::starts, "How many starts led to it; none where a way down from a saddle did.")
       .def_property_readonly(
           "momentum", [](const py::object& self) { return view(self.cast<const Minimum&>().momentum, self); },
           "At its start.")
@@ -187,7 +191,8 @@ void bind_scenes(py::module_& module) {
           "last_multipliers",
           [](const py::object& self) { return view(self.cast<const RunResult&>().last_multipliers, self); },
           "Of the last arrow.")
-      .def_readonly("minima", &RunResult::minima, "Of a boundary value: all stationary paths, cheapest first.")
+      .def_readonly("starts", &RunResult::starts, "Of a boundary value: how many there were; else 0.")
+      .def_readonly("minima", &RunResult::minima, "Of a boundary value: the stationary paths found, cheapest first.")
       .def_readonly("notes", &RunResult::notes, "What else there is to say.")
       .def_property_readonly(
           "ledger", [](const RunResult& r) { return r.ledger.entries; }, "What was promised and found.")
@@ -230,8 +235,10 @@ void bind_scenes(py::module_& module) {
       .def(
           "write",
           [](RunResult& self, const fs::path& folder) {
-            const py::gil_scoped_release unlocked;
-            return app::write_outputs(self, folder);
+            return computing([&] {
+              const app::OutputFolder held = app::folder_for_result(folder, self);
+              return app::write_outputs(self, folder);
+            });
           },
           py::arg("folder"), "Writes trajectory, summary and plots into the folder. Raises OutputError.")
       .def("__repr__", [](const RunResult& r) {
@@ -245,7 +252,7 @@ void bind_scenes(py::module_& module) {
         return run(scene.read(), record, folder, false);
       },
       py::arg("scene"), py::arg("record"), py::arg("folder"));
-  module.def("resume", resume, py::arg("folder"), py::arg("steps"));
+  module.def("resume", resume, py::arg("folder"), py::arg("steps"), py::arg("other_build"));
 }
 
 }  // namespace lagroid::python

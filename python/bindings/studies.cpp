@@ -26,7 +26,7 @@ namespace {
 
 /// How to study; see app/study/study.hpp.
 std::string study(const Scene& scene, const std::string& methods, std::vector<double> steps, double target,
-                  double longest, double reference_time, int repetitions,
+                  double longest, double reference_time, double seconds, int repetitions,
                   const std::optional<std::filesystem::path>& folder) {
   const app::Section read = scene.read();
   if (read.has("accuracy")) app::check_accuracy(read);
@@ -34,8 +34,11 @@ std::string study(const Scene& scene, const std::string& methods, std::vector<do
   for (const double h : steps)
     if (!(h > 0 && h <= experiment.end))
       throw py::value_error("steps: must be positive, and no longer than the scene lasts");
+  if (!(seconds > 0)) throw py::value_error("budget: must be positive");
   std::sort(steps.rbegin(), steps.rend());
-  if (folder) app::require_writable(*folder, app::study_files);
+  std::optional<app::OutputFolder> held;
+  if (folder)
+    held.emplace(*folder, app::OutputKind::study, app::OutputSource{{"scene", read.whole()}}, app::study_files);
   app::Findings findings;
   findings.scene = scene.name;
   findings.name = experiment.name;
@@ -46,12 +49,20 @@ std::string study(const Scene& scene, const std::string& methods, std::vector<do
   findings.methods = app::matching(methods, experiment.methods);
   computing([&] {
     experiment.interrupted = app::InterruptGuard::interrupted;
-    const auto reference = app::extrapolated_reference(experiment, reference_time);
+    const app::Budget budget(seconds);
+    experiment = app::within(std::move(experiment), budget);
+    const auto reference =
+        app::extrapolated_reference(experiment, std::min(reference_time, app::share_of_reference * seconds));
     findings.reference = reference->description;
     findings.uncertainty = reference->uncertainty;
     findings.reference_state = reference->at(experiment.end);
-    findings.runs = app::measure(experiment, findings.methods, {steps, longest}, *reference, repetitions,
-                                 [](double) { return !app::InterruptGuard::interrupted(); });
+    findings.budget = seconds;
+    findings.repetitions = repetitions;
+    app::Survey found = app::survey(experiment, findings.methods, {steps, longest}, *reference, repetitions, budget,
+                                    [](double) { return !app::InterruptGuard::interrupted(); });
+    findings.runs = std::move(found.runs);
+    findings.left_out = std::move(found.left_out);
+    findings.interrupted = app::InterruptGuard::interrupted();
     std::string note;
     if (folder && !app::InterruptGuard::interrupted()) app::write_study(findings, *folder, note);
     return 0;
@@ -63,7 +74,8 @@ std::string study(const Scene& scene, const std::string& methods, std::vector<do
 
 void bind_studies(py::module_& module) {
   module.def("study", study, py::arg("scene"), py::arg("methods"), py::arg("steps"), py::arg("target"),
-             py::arg("longest"), py::arg("reference_time"), py::arg("repetitions"), py::arg("folder"));
+             py::arg("longest"), py::arg("reference_time"), py::arg("budget"), py::arg("repetitions"),
+             py::arg("folder"));
   module.def(
       "methods",
       [](const Scene& scene) {

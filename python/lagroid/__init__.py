@@ -25,19 +25,10 @@ from ._lagroid import (
     __version__,
 )
 from .errors import DataError, Error, Interrupted, OutputError, ProgramError, SceneError, SolveError
+from .groupoids import SE2, SE3, SO3, Groupoid, MatrixGroup, Pairs
 from .learning import LearnedHamiltonian, Measures, Trajectories, learn, trajectories
 from .optimisation import Manifold, Optimum, Product, Sphere, Stiefel, minimise, optimize
-from .prototype import (
-    SE2,
-    SE3,
-    SO3,
-    DiscreteLagrangian,
-    Groupoid,
-    MatrixGroup,
-    Pairs,
-    PrototypeIntegrator,
-    PrototypeMarch,
-)
+from .prototype import DiscreteLagrangian, PrototypeIntegrator, PrototypeMarch
 from .scenes import require, resume, run, scene_text, systems
 from .studies import Method, check, methods, study
 from .sweeps import Sweep, sweep

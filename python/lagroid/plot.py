@@ -1,13 +1,14 @@
-"""Pictures of runs and studies by matplotlib. Each returns the figure; none opens a window or needs one."""
+"""Pictures of runs, marches and studies by matplotlib. Each returns the figure; none opens a window or needs one."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from ._lagroid import LedgerEntry, Run
+from ._lagroid import Integrator, LedgerEntry, March, Run
+from .prototype import PrototypeMarch
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,9 +26,13 @@ def _figure(width: float, height: float) -> Figure:
     return figure
 
 
-def trajectory(run: Run, columns: Optional[Sequence[str]] = None) -> Figure:
-    """The panels of the run, as in its plot.svg; or the given columns against time. Raises ValueError where nothing was
-    recorded."""
+def trajectory(run: Union[Run, March, PrototypeMarch], columns: Optional[Sequence[str]] = None) -> Figure:
+    """Of a run its panels, as in its plot.svg, or the given columns against time; of a march its objects, momenta and
+    quantities, or those of the given names. Raises ValueError where nothing was recorded."""
+    if isinstance(run, (March, PrototypeMarch)):
+        return _marched(run, columns)
+    if not isinstance(run, Run):
+        raise TypeError(f"trajectory: draws a Run, March or PrototypeMarch, not {type(run).__name__}")
     if len(run.time) < 2:
         raise ValueError("nothing was recorded; run the scene with record=True")
     if columns is not None:
@@ -58,9 +63,33 @@ def trajectory(run: Run, columns: Optional[Sequence[str]] = None) -> Figure:
     return figure
 
 
-def ledger(entries: Run | Sequence[LedgerEntry]) -> Figure:
+def _marched(march: Union[March, PrototypeMarch], names: Optional[Sequence[str]]) -> Figure:
+    """A panel for each series, a curve for each of its numbers."""
+    series: dict[str, Any] = dict(march.quantities) if isinstance(march, March) else {}
+    offered = {name: getattr(march, name) for name in ("object", "momentum", "multipliers")} | series
+    for name in names or ():
+        if name not in offered:
+            raise ValueError(f"trajectory: {name} is none of {', '.join(offered)}")
+    if len(march.time) < 2:
+        raise ValueError("nothing was recorded: the march has no step")
+    chosen = names or [name for name in ("object", "momentum", *series) if offered[name].size]
+    figure = _figure(7, 2.6 * len(chosen))
+    for i, name in enumerate(chosen):
+        axes = figure.add_subplot(len(chosen), 1, i + 1)
+        rows = offered[name].reshape(len(offered[name]), -1)
+        for k, values in enumerate(rows.T):
+            axes.plot(march.time[-len(rows) :], values, linewidth=1, label=f"{k + 1}")
+        axes.set_ylabel(name)
+        if rows.shape[1] > 1:
+            axes.legend()
+    axes.set_xlabel("t")
+    return figure
+
+
+def ledger(entries: Union[Run, Integrator, Sequence[LedgerEntry]]) -> Figure:
     """What was promised and found: the drift of each entry beside its bound, where one is promised."""
-    watched = [e for e in (entries.ledger if isinstance(entries, Run) else entries) if e.promise != "counted"]
+    entries = entries.ledger if isinstance(entries, (Run, Integrator)) else entries
+    watched = [e for e in entries if e.promise != "counted"]
     figure = _figure(8, 1 + 0.5 * max(1, len(watched)))
     axes = figure.add_subplot()
     place = np.arange(len(watched))
@@ -80,17 +109,32 @@ def ledger(entries: Run | Sequence[LedgerEntry]) -> Figure:
 
 
 def study(found: Mapping[str, Any]) -> Figure:
-    """Error at the end against seconds, a curve for each method of `lagroid.study`."""
+    """Error at the end against seconds, a curve for each method of `lagroid.study`: drawn strongly where it is the
+    cheapest at some error, else pale. An error beyond the motion's own size is no point."""
     figure = _figure(8, 5)
     axes = figure.add_subplot()
     curves: dict[str, list[tuple[float, float]]] = {}
     for run in found["runs"]:
         error = run.get("trajectory")
-        if run["status"] == "converged" and error and run["seconds"]:
+        if run["status"] == "converged" and error and error <= 1 and run["seconds"]:
             curves.setdefault(run["method"], []).append((run["seconds"], error))
-    for name, points in curves.items():
-        seconds, errors = zip(*sorted(points))
-        axes.loglog(seconds, errors, marker="o", markersize=3, label=name)
+    cheapest = {level["method"] for level in found.get("least_time", {}).get("trajectory", [])}
+    colours = [f"C{i}" for i in range(10)]
+    markers = "osDv^P*Xhd<>"
+    for i, name in enumerate(sorted(curves, key=lambda method: method not in cheapest)):
+        strong = name in cheapest
+        seconds, errors = zip(*sorted(curves[name]))
+        axes.loglog(
+            seconds,
+            errors,
+            color=colours[i % len(colours)],
+            marker=markers[(i + i // len(colours)) % len(markers)],
+            markersize=5 if strong else 3,
+            linewidth=2 if strong else 0.8,
+            alpha=1 if strong else 0.35,
+            zorder=3 if strong else 2,
+            label=name,
+        )
     axes.set_xlabel("processor time, s")
     axes.set_ylabel("relative error at the end")
     if curves:

@@ -1,166 +1,25 @@
 """Discrete Lagrangians written in Python, with numeric derivatives: to try an idea before it is compiled.
 
-A step costs tens of evaluations of the Lagrangian, hundreds of microseconds each rather than nanoseconds: some thousand
-times as slow as a compiled system (docs/python.md). Where the Lagrangian can be evaluated at complex numbers its
-derivatives are those of the complex step, exact to round-off; else they are central differences, extrapolated, good to
-about 1e-11 of the Lagrangian's size, which is then as far as steps are solved."""
+A step costs tens of evaluations of the Lagrangian, microseconds each rather than nanoseconds: docs/python.md has the
+measured times. Where the Lagrangian can be evaluated at complex numbers its derivatives are those of the complex step,
+exact to round-off; else they are central differences, extrapolated, good to about 1e-11 of the Lagrangian's size, which
+is then as far as steps are solved."""
 
 from __future__ import annotations
 
+import copy
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import SolveError
+from .groupoids import Array, Arrow, Groupoid, MatrixGroup, Pairs
+from .members import Members, principles, refuse_unread
 
-__all__ = [
-    "SE2",
-    "SE3",
-    "SO3",
-    "DiscreteLagrangian",
-    "Groupoid",
-    "MatrixGroup",
-    "Pairs",
-    "PrototypeIntegrator",
-    "PrototypeMarch",
-]
-
-Array = NDArray[Any]
-
-
-class Groupoid(Protocol):
-    """What a prototype needs of a groupoid: arrows are tuples of arrays, the arguments of the Lagrangian."""
-
-    @property
-    def dimension(self) -> int:
-        """The rank of its algebroid."""
-
-    def unit(self, q: Array) -> tuple[Array, ...]:
-        """The unit at q."""
-
-    def target(self, g: tuple[Array, ...]) -> Array:
-        """beta(g)."""
-
-    def multiply(self, g: tuple[Array, ...], h: tuple[Array, ...]) -> tuple[Array, ...]:
-        """g h, of composable arrows."""
-
-    def displaced(self, g: tuple[Array, ...], v: Array, w: Array) -> tuple[Array, ...]:
-        """tau(v)^{-1} g tau(w), also for complex v, w of vanishing size."""
-
-
-@dataclass(frozen=True)
-class Pairs:
-    """R^n x R^n: arrows (q0, q1), arrays (n,)."""
-
-    n: int
-
-    @property
-    def dimension(self) -> int:
-        return self.n
-
-    def unit(self, q: Array) -> tuple[Array, ...]:
-        return (q, q)
-
-    def target(self, g: tuple[Array, ...]) -> Array:
-        return g[1]
-
-    def multiply(self, g: tuple[Array, ...], h: tuple[Array, ...]) -> tuple[Array, ...]:
-        return (g[0], h[1])
-
-    def displaced(self, g: tuple[Array, ...], v: Array, w: Array) -> tuple[Array, ...]:
-        return (g[0] + v, g[1] + w)
-
-
-def _exponential(x: Array) -> Array:
-    """exp(X) by Taylor's series, scaled and squared."""
-    size = float(np.abs(x).sum(axis=1).max(initial=0.0))
-    halvings = max(0, int(np.ceil(np.log2(size / 0.25)))) if size > 0.25 else 0
-    y = x / 2.0**halvings
-    total = np.eye(len(x), dtype=y.dtype)
-    term = total
-    for k in range(1, 14):
-        term = term @ y / k
-        total = total + term
-    for _ in range(halvings):
-        total = total @ total
-    return total
-
-
-class MatrixGroup:
-    """A group of matrices over one object: arrows (g,), g an array (N, N); `basis` (n, N, N) of its algebra."""
-
-    def __init__(self, basis: Any) -> None:
-        self.basis: Array = np.asarray(basis, dtype=float)
-
-    @property
-    def dimension(self) -> int:
-        return len(self.basis)
-
-    def hat(self, v: Array) -> Array:
-        """The element of the algebra with coordinates v (n,), an array (N, N)."""
-        return np.tensordot(v, self.basis, axes=1)
-
-    def exp(self, v: Array) -> Array:
-        """exp(hat(v)), (N, N)."""
-        return _exponential(self.hat(np.asarray(v)))
-
-    def unit(self, q: Array) -> tuple[Array, ...]:
-        del q
-        return (np.eye(self.basis.shape[1]),)
-
-    def target(self, g: tuple[Array, ...]) -> Array:
-        del g
-        return np.zeros(0)
-
-    def multiply(self, g: tuple[Array, ...], h: tuple[Array, ...]) -> tuple[Array, ...]:
-        return (g[0] @ h[0],)
-
-    def displaced(self, g: tuple[Array, ...], v: Array, w: Array) -> tuple[Array, ...]:
-        moved = g[0]
-        if v.any():
-            moved = self._near_unit(-v) @ moved
-        if w.any():
-            moved = moved @ self._near_unit(w)
-        return (moved,)
-
-    def _near_unit(self, v: Array) -> Array:
-        """exp(hat(v)), whose square is nothing beside it where v is complex, of vanishing size."""
-        if np.iscomplexobj(v):
-            return np.asarray(np.eye(self.basis.shape[1]) + self.hat(v))
-        return self.exp(v)
-
-
-def _rotations(n: int) -> Array:
-    basis = np.zeros((3, n, n))
-    for i, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
-        basis[i, j, k] = -1
-        basis[i, k, j] = 1
-    return basis
-
-
-def _translations(n: int) -> Array:
-    basis = np.zeros((n, n + 1, n + 1))
-    for i in range(n):
-        basis[i, i, n] = 1
-    return basis
-
-
-def SO3() -> MatrixGroup:
-    """Rotations, in coordinates of the rotation vector."""
-    return MatrixGroup(_rotations(3))
-
-
-def SE3() -> MatrixGroup:
-    """Rigid motions of space, rotations first."""
-    return MatrixGroup(np.concatenate([_rotations(4), _translations(3)]))
-
-
-def SE2() -> MatrixGroup:
-    """Rigid motions of the plane, the rotation first."""
-    return MatrixGroup(np.concatenate([_rotations(3)[2:], _translations(2)]))
+__all__ = ["DiscreteLagrangian", "PrototypeIntegrator", "PrototypeMarch"]
 
 
 class DiscreteLagrangian:
@@ -172,14 +31,19 @@ class DiscreteLagrangian:
             def lagrangian(self, q0, q1):
                 return (q1 - q0) @ (q1 - q0) / (2 * self.h) + self.h * np.cos((q0 + q1) / 2)[0]
 
-    `lagrangian(*arrow)` returns a number. `constraint(*arrow)`, where there is one, an array phi with phi(g) = 0 for
-    the arrows of the paths that compete (vakonomic); `object_constraint(q)` an array C with C(q) = 0. They are
-    evaluated at complex arrays too: np.abs, np.linalg.norm and comparisons spoil that, and cost digits and time.
-    Keywords of the constructor set attributes of the class. Steps are solved by Newton's method, written here."""
+    `lagrangian(*arrow)` returns a number; the others, where they are written, what their docstrings say. Each function
+    of an arrow may take the step h as one more argument, or the time at which the arrow starts and the step.
+    `principle` is "vakonomic", constraint(*arrow) = 0 restricts the paths that compete, or "nonholonomic", it restricts
+    virtual displacements (docs/nonholonomic.md).
+
+    `lagrangian` and `constraint` are evaluated at complex arrays too: np.abs, np.linalg.norm and comparisons spoil
+    that, and cost digits and time. Keywords of the constructor set attributes of the class. Members that look like
+    these and are not read, misspelt ones first, are refused with a TypeError when a trajectory begins. Steps are solved
+    by Newton's method, written here."""
 
     groupoid: Groupoid
     h: float = 0.01
-    principle = "vakonomic"
+    principle: str = "vakonomic"
 
     def __init__(self, **parameters: Any) -> None:
         for name, value in parameters.items():
@@ -192,17 +56,34 @@ class DiscreteLagrangian:
         raise NotImplementedError("write lagrangian(self, ...) of an arrow")
 
     def constraint(self, *arrow: Any, **_: Any) -> Any:
-        """phi, (m,); none by default."""
+        """phi, (m,), zero on admissible arrows; none by default."""
         return np.zeros(0)
 
     def object_constraint(self, q: Any) -> Any:
-        """C, (m,); none by default."""
+        """C, (m,), zero at admissible objects; none by default."""
         return np.zeros(0)
 
-    def integrator(self, momentum: Any, object: Any = None, *, configuration: Any = None) -> PrototypeIntegrator:
+    def forces(self, *arrow: Any, **_: Any) -> Any:
+        """The pair of discrete forces f- and f+, (n,) each, halves of an impulse at source and target; none by
+        default."""
+        raise NotImplementedError
+
+    def annihilator(self, q: Any) -> Any:
+        """omega, (n, m), whose columns annihilate the virtual displacements at q of a nonholonomic system; by default
+        half of dphi/dw - dphi/dv at the unit of q."""
+        raise NotImplementedError
+
+    def integrator(self, *, momentum: Any, object: Any = None, configuration: Any = None) -> PrototypeIntegrator:
         """At the state (object, momentum); `configuration` is the arrow that ends there, a tuple, or for a group the
-        matrix."""
-        return PrototypeIntegrator(self, momentum, object, configuration)
+        matrix. It has a copy of the system: parameters that are set later do not touch it."""
+        return PrototypeIntegrator(self, momentum=momentum, object=object, configuration=configuration)
+
+    def boundary(self, *_: Any, **__: Any) -> NoReturn:
+        """Refused: prototypes only march."""
+        raise NotImplementedError(
+            f"{type(self).__name__}: prototypes have no boundary values; compile the system and bind_boundary "
+            "(docs/python.md)"
+        )
 
 
 @dataclass
@@ -215,7 +96,7 @@ class PrototypeMarch:
     time: Array = field(default_factory=lambda: np.zeros(0))
     object: Array = field(default_factory=lambda: np.zeros(0))
     momentum: Array = field(default_factory=lambda: np.zeros(0))
-    configuration: tuple[Array, ...] = ()
+    configuration: Arrow = ()
     multipliers: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
@@ -224,95 +105,104 @@ class PrototypeMarch:
         return self.status == "converged"
 
 
-class _Derivatives:
-    """First derivatives of f = (L, phi) in displacements (v, w) of the ends of an arrow."""
+def _difference(value: Callable[[Array], Array], direction: Array) -> Array:
+    """The derivative of `value` at zero, by central differences and Richardson's extrapolation."""
+    step = float(np.finfo(float).eps) ** 0.2
 
-    def __init__(self, system: DiscreteLagrangian) -> None:
-        self.system = system
+    def central(h: float) -> Array:
+        return np.asarray((value(h * direction) - value(-h * direction)) / (2 * h))
+
+    return np.asarray((4 * central(step / 2) - central(step)) / 3)
+
+
+def _gradient(value: Callable[[Array], Array], n: int) -> Array:
+    """Its derivatives at the zero of R^n, a row for each coordinate."""
+    return np.array([_difference(value, d) for d in np.eye(n)])
+
+
+class _Derivatives:
+    """First derivatives of `value`, an array of numbers of an arrow, in displacements (v, w) of its ends."""
+
+    def __init__(self, groupoid: Groupoid, value: Callable[[Arrow], Array]) -> None:
+        self.groupoid = groupoid
+        self.value = value
         self.complex: bool | None = None  # not known before the first arrow
         self.size = 0.0  # of what is differentiated, where differences are
 
-    def value(self, g: tuple[Array, ...]) -> Array:
-        lagrangian = np.asarray(self.system.lagrangian(*g))
-        if lagrangian.size != 1 or lagrangian.dtype.kind not in "biufc":
-            found = f"an array {lagrangian.shape}" if lagrangian.dtype.kind in "biufc" else f"{lagrangian.item()!r}"
-            raise ValueError(f"lagrangian: expected a number, got {found}")
-        return np.concatenate([lagrangian.ravel(), np.atleast_1d(self.system.constraint(*g)).ravel()])
+    def _displaced(self, g: Arrow, by: Array) -> Array:
+        n = self.groupoid.dimension
+        return self.value(self.groupoid.displaced(g, by[:n], by[n:]))
 
-    def _along(self, g: tuple[Array, ...], direction: Array) -> Array:
-        n = self.system.groupoid.dimension
+    def _complex_steps(self, g: Arrow) -> Array:
         tiny = 1e-100
-        moved = self.system.groupoid.displaced(g, 1j * tiny * direction[:n], 1j * tiny * direction[n:])
-        out = self.value(moved)
+        out = np.array([self._displaced(g, 1j * tiny * d) for d in np.eye(2 * self.groupoid.dimension)])
         if not np.iscomplexobj(out):
             raise TypeError
         return np.asarray(out.imag / tiny)
 
-    def _difference(self, g: tuple[Array, ...], direction: Array) -> Array:
-        n = self.system.groupoid.dimension
-        step = float(np.finfo(float).eps) ** 0.2
+    def _differences(self, g: Arrow) -> Array:
+        return _gradient(lambda by: self._displaced(g, by), 2 * self.groupoid.dimension)
 
-        def central(h: float) -> Array:
-            ends = [
-                self.value(self.system.groupoid.displaced(g, s * direction[:n], s * direction[n:])) for s in (h, -h)
-            ]
-            return np.asarray((ends[0] - ends[1]) / (2 * h))
-
-        return np.asarray((4 * central(step / 2) - central(step)) / 3)
-
-    def __call__(self, g: tuple[Array, ...]) -> Array:
-        """(2 n, 1 + m): a row for each displacement, of the source first."""
-        directions = np.eye(2 * self.system.groupoid.dimension)
+    def __call__(self, g: Arrow) -> Array:
+        """(2 n, numbers): a row for each displacement, of the source first."""
         if self.complex is None:
-            self.complex = self._complex_step_holds(g, directions)
-        along = self._along if self.complex else self._difference
-        if not self.complex:
-            self.size = float(np.abs(self.value(g)).max())
-        return np.array([along(g, d) for d in directions])
+            self.complex = self._complex_step_holds(g)
+        if self.complex:
+            return self._complex_steps(g)
+        self.size = float(np.abs(self.value(g)).max())
+        return self._differences(g)
 
-    def _complex_step_holds(self, g: tuple[Array, ...], directions: Array) -> bool:
+    def _complex_step_holds(self, g: Arrow) -> bool:
         """Whether the function is analytic as it is written, seen at a generic arrow near g."""
-        n = self.system.groupoid.dimension
+        n = self.groupoid.dimension
         off = 1e-3 * np.sin(1.0 + np.arange(2 * n))
-        near = self.system.groupoid.displaced(g, off[:n], off[n:])
+        near = self.groupoid.displaced(g, off[:n], off[n:])
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
-                by_complex = np.array([self._along(near, d) for d in directions])
+                by_complex = self._complex_steps(near)
         except (TypeError, ValueError, Warning):
             return False
-        by_difference = np.array([self._difference(near, d) for d in directions])
+        by_difference = self._differences(near)
         size = np.abs(by_difference).max(axis=0) + np.abs(self.value(near)) + 1e-300
         return bool((np.abs(by_complex - by_difference) <= 1e-7 * size).all())
 
 
 class PrototypeIntegrator:
-    """A trajectory in the making. A step that fails leaves everything as it was."""
+    """A trajectory in the making. A step that fails leaves everything as it was. It can be pickled where its system can
+    be, and goes on with the same bits."""
 
-    def __init__(self, system: DiscreteLagrangian, momentum: Any, object: Any, configuration: Any) -> None:
-        self.system = system
+    def __init__(
+        self, system: DiscreteLagrangian, *, momentum: Any, object: Any = None, configuration: Any = None
+    ) -> None:
+        refuse_unread(system, DiscreteLagrangian)
+        if system.principle not in principles:
+            raise ValueError(f"principle: {system.principle!r} is none of {', '.join(principles)}")
+        if not np.isfinite(system.h) or system.h == 0:
+            raise ValueError("h: the step must be finite and not zero")
+        self.system = copy.copy(system)
         self.groupoid = system.groupoid
         self.index = 0
-        self._derivatives = _Derivatives(system)
         if configuration is not None:
             if object is not None:
                 raise ValueError("give object or configuration, not both: an arrow has its target")
             self.configuration = self._arrow(configuration)
         else:
             self.configuration = self.groupoid.unit(self._object(object))
-        self.momentum: Array = np.array(momentum, dtype=float).reshape(-1)
-        if len(self.momentum) != self.groupoid.dimension:
-            raise ValueError(f"momentum: expected {self.groupoid.dimension} numbers, got {len(self.momentum)}")
-        for name, numbers in (("momentum", self.momentum), ("object", self.object)):
+        # As the last step left it: without the reaction at the object, which the next one solves for.
+        self._momentum: Array = np.array(momentum, dtype=float).reshape(-1)
+        if len(self._momentum) != self.groupoid.dimension:
+            raise ValueError(f"momentum: expected {self.groupoid.dimension} numbers, got {len(self._momentum)}")
+        for name, numbers in (("momentum", self._momentum), ("object", self.object)):
             if not np.isfinite(numbers).all():
                 raise ValueError(f"{name}: must be finite")
-        if not np.isfinite(system.h) or system.h == 0:
-            raise ValueError("h: the step must be finite and not zero")
-        unit = self.groupoid.unit(self.object)
-        self._arrow_constraints = len(np.atleast_1d(system.constraint(*unit)))
-        self._object_constraints = len(np.atleast_1d(system.object_constraint(self.object)))
-        self.arrow = unit
-        self.multipliers: Array = np.zeros(self._arrow_constraints + self._object_constraints)
+        self.arrow = self.groupoid.unit(self.object)
+        self._members = Members(self.system, DiscreteLagrangian, self.arrow)
+        self._derivatives = _Derivatives(self.groupoid, self._members.varied)
+        self.multipliers: Array = np.zeros(self._members.arrow_constraints + self._members.object_constraints)
+        off = float(np.abs(self._members.object_constraint(self.object)).max(initial=0.0))
+        if not off <= 1e-8 * (1 + float(self.object @ self.object)):
+            raise ValueError(f"object: off the constraint C(q) = 0 by {off:.6g}")
 
     def _object(self, given: Any) -> Array:
         """The coordinates of an object, of the number that the groupoid asks for, where that is known."""
@@ -326,7 +216,7 @@ class PrototypeIntegrator:
             raise ValueError(f"object: a group has none, got {len(q)} numbers")
         return q
 
-    def _arrow(self, given: Any) -> tuple[Array, ...]:
+    def _arrow(self, given: Any) -> Arrow:
         arrow = tuple(np.array(each, dtype=float) for each in (given if isinstance(given, tuple) else (given,)))
         shapes = [each.shape for each in arrow]
         if isinstance(self.groupoid, Pairs):
@@ -345,6 +235,31 @@ class PrototypeIntegrator:
         return self.groupoid.target(self.configuration)
 
     @property
+    def momentum(self) -> Array:
+        """mu, with the part of the reaction at the object that makes the velocity there keep the constraints
+        (constrained_momentum of the library). Raises SolveError where that is not determined."""
+        self._members.start = self.time
+        reaction = self._reaction(self.object)
+        if not reaction.any():
+            return self._momentum
+        k, n = self._members.arrow_constraints, self.groupoid.dimension
+        unit = self.groupoid.unit(self.object)
+        gradient = self._derivatives(unit)
+        at_rest = (gradient[n:, 0] - gradient[:n, 0]) / 2
+        tangent = reaction.copy()
+        if not self._members.nonholonomic:
+            tangent[:, :k] = gradient[n:, 1:]
+        off = np.concatenate([self._members.constraint(unit), self._members.object_constraint(self.object)])
+        matrix = np.block([[-self._mixed(unit), tangent], [tangent.T, np.zeros((len(off), len(off)))]])
+        try:
+            found = np.linalg.solve(matrix, np.concatenate([self._momentum - at_rest, -off]))
+        except np.linalg.LinAlgError:
+            found = np.array([np.nan])
+        if not np.isfinite(found).all():
+            raise self._fail("singular", "no single velocity at the object keeps the constraints")
+        return np.asarray(self._momentum - reaction @ found[n:])
+
+    @property
     def time(self) -> float:
         """s"""
         return self.index * self.system.h
@@ -354,34 +269,47 @@ class PrototypeIntegrator:
         """(object, momentum)."""
         return self.object, self.momentum
 
-    def _object_gradient(self, q: Array) -> Array:
-        """d(C o beta)/dw at the unit of q, (n, m)."""
-        if self._object_constraints == 0:
-            return np.zeros((self.groupoid.dimension, 0))
+    def _mixed(self, g: Arrow) -> Array:
+        """d2L/dv dw, (n, n)."""
         n = self.groupoid.dimension
-        step = float(np.finfo(float).eps) ** 0.2
+
+        def target_gradient(v: Array) -> Array:
+            return np.asarray(self._derivatives(self.groupoid.displaced(g, v, np.zeros(n)))[n:, 0])
+
+        return _gradient(target_gradient, n)
+
+    def _reaction(self, q: Array) -> Array:
+        """The covectors of the reactions at an object, (n, constraints): omega of nonholonomic constraints, nothing of
+        vakonomic ones, whose multipliers are those of the arrow, and d(C o beta)/dw at the unit."""
+        n, k = self.groupoid.dimension, self._members.arrow_constraints
+        out = np.zeros((n, k + self._members.object_constraints))
         unit = self.groupoid.unit(q)
+        if self._members.nonholonomic:
+            written = self._members.annihilator(q)
+            if written is None:
+                gradient = self._derivatives(unit)
+                written = (gradient[n:, 1:] - gradient[:n, 1:]) / 2
+            out[:, :k] = written
+        if self._members.object_constraints:
 
-        def at(w: Array) -> Array:
-            return np.asarray(self.system.object_constraint(self.groupoid.target(
-                self.groupoid.displaced(unit, np.zeros(n), w))))
+            def at(w: Array) -> Array:
+                moved = self.groupoid.displaced(unit, np.zeros(n), w)
+                return self._members.object_constraint(self.groupoid.target(moved))
 
-        def central(d: Array, h: float) -> Array:
-            return np.asarray((at(h * d) - at(-h * d)) / (2 * h))
+            out[:, k:] = _gradient(at, n)
+        return out
 
-        return np.array([(4 * central(d, step / 2) - central(d, step)) / 3 for d in np.eye(n)])
-
-    def _equations(self, g: tuple[Array, ...], multipliers: Array, reaction: Array) -> tuple[Array, Array]:
+    def _equations(self, g: Arrow, multipliers: Array, reaction: Array) -> tuple[Array, Array]:
         """F-(g, lambda) - mu, phi(g), C(beta(g)); and F+."""
-        n = self.groupoid.dimension
-        weights = np.concatenate([[1.0], multipliers[: self._arrow_constraints]])
+        n, k = self.groupoid.dimension, self._members.arrow_constraints
+        weights = np.concatenate([[1.0], np.zeros(k) if self._members.nonholonomic else multipliers[:k]])
         gradient = self._derivatives(g) @ weights
-        minus = -gradient[:n] - reaction @ multipliers[self._arrow_constraints :]
-        constraints = [np.atleast_1d(self.system.constraint(*g)), np.atleast_1d(
-            self.system.object_constraint(self.groupoid.target(g)))]
-        return np.concatenate([minus - self.momentum, *constraints]), gradient[n:]
+        at_source, at_target = self._members.forces(g)
+        minus = -gradient[:n] - at_source - reaction @ multipliers
+        constraints = [self._members.constraint(g), self._members.object_constraint(self.groupoid.target(g))]
+        return np.concatenate([minus - self._momentum, *constraints]), gradient[n:] + at_target
 
-    def _jacobian(self, g: tuple[Array, ...], multipliers: Array, reaction: Array) -> Array:
+    def _jacobian(self, g: Arrow, multipliers: Array, reaction: Array) -> Array:
         n = self.groupoid.dimension
         step = float(np.finfo(float).eps) ** (1 / 3)
         columns = []
@@ -407,7 +335,8 @@ class PrototypeIntegrator:
         n = self.groupoid.dimension
         g = self._carried(start)
         multipliers = self.multipliers.copy()
-        reaction = self._object_gradient(start)
+        self._members.start = self.time
+        reaction = self._reaction(start)
         residual, plus = self._equations(g, multipliers, reaction)
         matrix = self._jacobian(g, multipliers, reaction)
         renewed = True
@@ -452,12 +381,12 @@ class PrototypeIntegrator:
         else:
             raise self._fail("not_converged", "no convergence after 60 iterations; use a smaller step")
         # By increments, which leaves the residual of the solve out of the momentum.
-        self.momentum = plus - residual[:n]
+        self._momentum = plus - residual[:n]
         self.arrow, self.multipliers = g, multipliers
         self.configuration = self.groupoid.multiply(self.configuration, g)
         self.index += 1
 
-    def _carried(self, start: Array) -> tuple[Array, ...]:
+    def _carried(self, start: Array) -> Arrow:
         if self.index == 0:
             return self.groupoid.unit(start)
         if isinstance(self.groupoid, Pairs):
@@ -466,11 +395,11 @@ class PrototypeIntegrator:
             return self.arrow
         return self.groupoid.unit(start)
 
-    def _floor(self, matrix: Array, g: tuple[Array, ...]) -> float:
+    def _floor(self, matrix: Array, g: Arrow) -> float:
         """What rounding leaves of the equations: of their terms, and of the differences where those are taken."""
         eps = float(np.finfo(float).eps)
         coordinates = max([1.0, *(float(np.abs(each).max(initial=0.0)) for each in g)])
-        own = 4 * eps * (float(np.abs(matrix).max()) * coordinates + float(np.abs(self.momentum).max(initial=0.0)))
+        own = 4 * eps * (float(np.abs(matrix).max()) * coordinates + float(np.abs(self._momentum).max(initial=0.0)))
         return own if self._derivatives.complex else own + 10 * float(eps**0.8) * self._derivatives.size
 
     def march(self, steps: int, every: int = 1) -> PrototypeMarch:
@@ -479,7 +408,7 @@ class PrototypeIntegrator:
             raise ValueError("steps: must not be negative")
         if every < 1:
             raise ValueError("every: must be at least 1")
-        rows: list[tuple[float, Array, Array, tuple[Array, ...], Array]] = []
+        rows: list[tuple[float, Array, Array, Arrow, Array]] = []
 
         def record() -> None:
             rows.append((self.time, self.object, self.momentum, self.configuration, self.multipliers))

@@ -63,6 +63,12 @@ def made(scene: SceneLike, given: Optional[Mapping[str, Any]]) -> _lagroid.Scene
         return _lagroid.Scene.text(scene_text(scene), "<dict>", overrides)
     if isinstance(scene, str) and not is_file(scene):
         return _lagroid.Scene.text(scene, "<text>", overrides)
+    if not isinstance(scene, (str, os.PathLike)):
+        raise TypeError(
+            f"a scene is the name of a file, a TOML text or a dict, not {type(scene).__name__}: runs, studies and "
+            "checks are of lagroid.systems(); a system of your own has integrator(...), and its laws are asked in C++ "
+            "(docs/tutorial.md)"
+        )
     return _lagroid.Scene.file(scene, overrides)
 
 
@@ -83,10 +89,10 @@ def run(
     return _finished(_lagroid.run(made(scene, set), record, out))
 
 
-def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None) -> Run:
+def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None, other_build: bool = False) -> Run:
     """Goes on with a run that was broken off, or with a finished one to more steps. Raises OutputError where the folder
-    holds none."""
-    return _finished(_lagroid.resume(folder, steps))
+    holds none, or one by another build of lagroid, unless `other_build`: the same bits are not promised then."""
+    return _finished(_lagroid.resume(folder, steps, other_build))
 
 
 def _finished(result: Run) -> Run:

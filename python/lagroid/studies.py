@@ -37,6 +37,7 @@ def study(
     target: float = 1e-6,
     longest: float = 0.25,
     reference_time: float = 20.0,
+    budget: float = 60.0,
     repetitions: int = 5,
     out: Optional[str | os.PathLike[str]] = None,
 ) -> dict[str, Any]:
@@ -44,12 +45,14 @@ def study(
     `lagroid study --json` tells it (docs/which_method.md).
 
     `steps`: sizes in s, or found: halved until errors are those of round-off or a run lasts `longest` s. `target`: the
-    error for which a method is recommended. `reference_time`: seconds that the reference may take. `out`: a folder for
-    its page and figures. Raises KeyboardInterrupt after Ctrl-C."""
+    error for which a method is recommended. `budget`: seconds of wall clock that all of it may take, spent first on the
+    methods that are the cheapest, or near them; "not_measured" tells what was left out. `reference_time`: seconds that
+    the reference may take, of a third of the budget. `out`: a folder for its page and figures. Raises KeyboardInterrupt
+    after Ctrl-C."""
     patterns = [methods] if isinstance(methods, str) else methods
     found: dict[str, Any] = json.loads(
         _lagroid.study(
-            made(scene, set), ",".join(patterns), list(steps), target, longest, reference_time, repetitions, out
+            made(scene, set), ",".join(patterns), list(steps), target, longest, reference_time, budget, repetitions, out
         )
     )
     return found

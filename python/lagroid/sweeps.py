@@ -66,14 +66,17 @@ def sweep(
     set: Optional[Mapping[str, Any]] = None,
     threads: int = 0,
     ranks: int = 1,
+    other_build: bool = False,
 ) -> Sweep:
     """Runs a sweep file (docs/sweeps.md) into the folder `out`, where the same call goes on after an interrupt.
-    `threads` of each process, all by default; more than one of `ranks` are started by mpirun. Members that failed are
-    NaN: see `summary`. Raises SceneError, OutputError, and KeyboardInterrupt after Ctrl-C."""
+    `threads` of each process, all by default; more than one of `ranks` are started by mpirun. With `other_build` it goes
+    on from what another build of lagroid left, without the promise of the same bits. Members that failed are NaN: see
+    `summary`. Raises SceneError, OutputError, and KeyboardInterrupt after Ctrl-C."""
     name = os.fspath(file)
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command += [program("lagroid", "LAGROID_PROGRAM", "lagroid_cli"), "sweep", name, "--out", os.fspath(out), "--json"]
     command += ["--threads", str(threads)] if threads else []
+    command += ["--other-build"] if other_build else []
     for each in settings(set):
         command += ["--set", each]
     summary = json.loads(output_of(command, name, name))

@@ -34,6 +34,6 @@ assert max(entry.relative_drift for entry in run.ledger if entry.promise == "con
 ball = lagroid.PlateBall(h=float(run.time[1]), rotation="exp")
 path = ball.boundary(ball.arrow([0, 0], [1, 0.5], np.eye(3)), 20, starts=5)[0]
 print(path)
-march = lagroid.require(ball.integrator(path.momentum[0], path.object[0]).march(20))
+march = lagroid.require(ball.integrator(momentum=path.momentum[0], object=path.object[0]).march(20))
 print("the march ends", np.abs(march.object[-1] - path.object[-1]).max(), "from the path's end")
 assert np.allclose(march.object[-1], path.object[-1], atol=1e-6)

@@ -42,7 +42,7 @@ class Interrupts(unittest.TestCase):
             time.sleep(20)
 
     def test_a_march_keeps_its_place(self) -> None:
-        integrator = lagroid.Pendulum(h=0.01).integrator([1], [0])
+        integrator = lagroid.Pendulum(h=0.01).integrator(momentum=[1], object=[0])
         interrupt(0.2)
         with self.assertRaises(KeyboardInterrupt):
             integrator.march(10**9, every=10**9)

@@ -37,6 +37,7 @@ class Optimisation(unittest.TestCase):
 
         found = lagroid.minimise(lagroid.Stiefel(8, 3), brockett, hessian=hessian)
         self.assertTrue(found.converged)
+        self.assertGreater(asked, 0)
         self.assertEqual(asked, found.evaluations[2])
 
     def test_keys_of_a_method(self) -> None:

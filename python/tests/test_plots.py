@@ -31,12 +31,36 @@ class Plots(unittest.TestCase):
         with self.assertRaises(ValueError):
             lagroid.plot.trajectory(lagroid.run(EXAMPLES / "kepler.toml", record=False))
 
+    def test_marches(self) -> None:
+        march = lagroid.SphericalPendulum(h=0.02).integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0]).march(20)
+        figure = lagroid.plot.trajectory(march)
+        self.assertEqual([axes.get_ylabel() for axes in figure.axes], ["object", "momentum", *march.quantities])
+        np.testing.assert_array_equal(figure.axes[0].lines[2].get_ydata(), march.object[:, 2])
+        figure = lagroid.plot.trajectory(march, ["multipliers"])
+        self.assertEqual(len(figure.axes[0].lines[0].get_xdata()), 20)
+        body = lagroid.RigidBody(h=0.1).integrator(momentum=[1, 2, 3]).march(5)
+        self.assertNotIn("object", [axes.get_ylabel() for axes in lagroid.plot.trajectory(body).axes])
+
+        class Free(lagroid.DiscreteLagrangian):
+            groupoid = lagroid.Pairs(2)
+
+            def lagrangian(self, q0, q1):  # type: ignore[no-untyped-def]
+                return (q1 - q0) @ (q1 - q0) / (2 * self.h)
+
+        prototype = Free().integrator(momentum=[1, 0], object=[0, 0]).march(5)
+        self.assertEqual([len(axes.lines) for axes in lagroid.plot.trajectory(prototype).axes], [2, 2])
+        with self.assertRaisesRegex(ValueError, "^trajectory: energi is none of object, momentum"):
+            lagroid.plot.trajectory(march, ["energi"])
+        with self.assertRaisesRegex(TypeError, "^trajectory: draws a Run, March or PrototypeMarch, not Kepler$"):
+            lagroid.plot.trajectory(lagroid.Kepler())  # type: ignore[arg-type]
+
     def test_ledger(self) -> None:
         figure = lagroid.plot.ledger(self.run_)
         self.assertEqual(len(figure.axes[0].patches), len(self.run_.ledger))
-        integrator = lagroid.Kepler(h=0.01).integrator([0, 1], [1, 0])
+        integrator = lagroid.Kepler(h=0.01).integrator(momentum=[0, 1], object=[1, 0])
         integrator.march(10)
-        self.assertEqual(len(lagroid.plot.ledger(integrator.ledger).axes[0].patches), 2)
+        for entries in (integrator, integrator.ledger):
+            self.assertEqual(len(lagroid.plot.ledger(entries).axes[0].patches), 2)
 
     def test_study(self) -> None:
         found = lagroid.study(
@@ -49,6 +73,8 @@ class Plots(unittest.TestCase):
         )
         figure = lagroid.plot.study(found)
         self.assertEqual({line.get_label() for line in figure.axes[0].lines}, {"splitting", "runge-kutta"})
+        styles = {(line.get_color(), line.get_marker()) for line in figure.axes[0].lines}
+        self.assertEqual(len(styles), 2)
 
 
 if __name__ == "__main__":

@@ -100,6 +100,14 @@ class Scenes(unittest.TestCase):
             lagroid.run("missing.toml")
         with self.assertRaisesRegex(lagroid.SceneError, "time.thing"):
             lagroid.run({"time": {"thing": object()}})
+        for text in ["x\n!touch owned", "x\x1b[31m", "x\x7f", "x\x9b", "x\u202e", "x" * 100_000]:
+            with self.assertRaisesRegex(lagroid.SceneError, "^--set system: system: a text") as caught:
+                lagroid.run(PENDULUM, set={"system": text})
+            self.assertTrue(str(caught.exception).isprintable())
+            with self.assertRaisesRegex(lagroid.SceneError, "name: a text"):
+                lagroid.run({"name": text})
+        with self.assertRaisesRegex(lagroid.SceneError, "no key"):
+            lagroid.run({"time.steps": 3})
         with self.assertRaises(lagroid.OutputError):
             lagroid.run(PENDULUM, out="/proc/nowhere")
 
@@ -124,6 +132,10 @@ class Scenes(unittest.TestCase):
             longer = lagroid.resume(folder, steps=150)
             with self.assertRaises(lagroid.OutputError):
                 lagroid.resume(Path(folder) / "elsewhere")
+            with self.assertRaisesRegex(lagroid.OutputError, "it holds a run of another scene"):
+                lagroid.run(PENDULUM, set={"time.steps": 7}, out=folder)
+            with self.assertRaisesRegex(lagroid.OutputError, "it holds a run"):
+                longer.write(folder)
         np.testing.assert_array_equal(longer["q"], lagroid.run(PENDULUM, set={"time.steps": 150})["q"])
 
     def test_threads_run_at_once(self) -> None:

@@ -46,7 +46,7 @@ class Systems(unittest.TestCase):
             }
         )
         system = lagroid.Kepler(h=0.05, quadrature="trapezoid")
-        integrator = system.integrator([0, 2], [0.4, 0])
+        integrator = system.integrator(momentum=[0, 2], object=[0.4, 0])
         march = integrator.march(500)
         np.testing.assert_array_equal(march.object, run["position"])
         np.testing.assert_array_equal(march.momentum, run["momentum"])
@@ -56,7 +56,7 @@ class Systems(unittest.TestCase):
 
     def test_the_ledger_holds_the_constraints(self) -> None:
         ball = lagroid.PlateBall(h=0.05, plate_rate=0.3)
-        integrator = ball.integrator([0.5, 0.2, 0.1, 0.2, 0.3], [0.1, 0])
+        integrator = ball.integrator(momentum=[0.5, 0.2, 0.1, 0.2, 0.3], object=[0.1, 0])
         integrator.march(200)
         run = lagroid.run(
             {
@@ -69,7 +69,7 @@ class Systems(unittest.TestCase):
         told = [(entry.name, entry.drift, entry.bound, entry.verdict) for entry in integrator.ledger]
         self.assertEqual(told[0][0], "constraint residual")
         self.assertEqual(told, [(entry.name, entry.drift, entry.bound, entry.verdict) for entry in run.ledger])
-        self.assertEqual(ball.integrator([0.5, 0.2, 0.1, 0.2, 0.3], [0.1, 0], ledger=False).ledger, [])
+        self.assertEqual(ball.integrator(momentum=[0.5, 0.2, 0.1, 0.2, 0.3], object=[0.1, 0], ledger=False).ledger, [])
 
     def test_bodies_are_those_of_scenes(self) -> None:
         angle = 0.3
@@ -81,7 +81,7 @@ class Systems(unittest.TestCase):
         }
         run = lagroid.run(scene)
         top = lagroid.HeavyTop(inertia=[1.0, 1.2, 0.5], weight=[0.1, 0, 1], h=0.02, rotation="exp")
-        march = top.integrator([0.1, 0.2, 1.5], configuration=top.arrow(turned(angle))).march(200)
+        march = top.integrator(momentum=[0.1, 0.2, 1.5], configuration=top.arrow(turned(angle))).march(200)
         np.testing.assert_allclose(march.object, run["position"], atol=1e-13)
         np.testing.assert_allclose(march.momentum, run["momentum"], atol=1e-13)
         self.assertEqual(march.configuration.shape, (201, 12))
@@ -89,7 +89,7 @@ class Systems(unittest.TestCase):
     def test_attitudes_are_matrices(self) -> None:
         start = turned(1.0)
         body = lagroid.RigidBody(inertia=[1, 2, 3], h=0.01)
-        march = body.integrator([1, 0.5, 2], configuration=start).march(300)
+        march = body.integrator(momentum=[1, 0.5, 2], configuration=start).march(300)
         np.testing.assert_allclose(march.configuration[0], start, atol=1e-15)
         spatial = np.einsum("kij,kj->ki", march.configuration, march.momentum)
         np.testing.assert_allclose(spatial, np.broadcast_to(spatial[0], spatial.shape), atol=1e-13)
@@ -97,8 +97,8 @@ class Systems(unittest.TestCase):
 
     def test_one_step_at_a_time(self) -> None:
         system = lagroid.SphericalPendulum(h=0.02)
-        together = system.integrator([0.1, 0.5, 0], [1, 0, 0]).march(50)
-        one = system.integrator([0.1, 0.5, 0], [1, 0, 0])
+        together = system.integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0]).march(50)
+        one = system.integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0])
         for k in range(1, 51):
             one.advance()
             np.testing.assert_array_equal(one.object, together.object[k])
@@ -109,13 +109,13 @@ class Systems(unittest.TestCase):
         self.assertEqual(one.quantity("energy").shape, (1,))
 
     def test_every_nth_node_and_the_last(self) -> None:
-        march = lagroid.Pendulum(h=0.1).integrator([1], [0]).march(25, every=10)
+        march = lagroid.Pendulum(h=0.1).integrator(momentum=[1], object=[0]).march(25, every=10)
         np.testing.assert_allclose(march.time, [0, 1, 2, 2.5])
         self.assertEqual(march.arrow.shape, (3, 2))
         self.assertEqual(march.quantities["energy"].shape, (4, 1))
 
     def test_arrays_are_the_marchs_own_numbers(self) -> None:
-        march = lagroid.Pendulum().integrator([1], [0]).march(10)
+        march = lagroid.Pendulum().integrator(momentum=[1], object=[0]).march(10)
         self.assertTrue(np.shares_memory(march.object, march.object))
         self.assertFalse(march.object.flags.writeable)
         kept = march.object
@@ -125,30 +125,30 @@ class Systems(unittest.TestCase):
 
     def test_modes_and_orders(self) -> None:
         system = lagroid.Kepler(h=0.1)
-        self.assertIn("order 8", system.integrator([0, 1.2], [1, 0], order=8).method)
-        self.assertIn("explicit", system.integrator([0, 1.2], [1, 0], method="splitting").method)
-        march = system.integrator([0, 1.2], [1, 0], mode="controlled").march(20)
+        self.assertIn("order 8", system.integrator(momentum=[0, 1.2], object=[1, 0], order=8).method)
+        self.assertIn("explicit", system.integrator(momentum=[0, 1.2], object=[1, 0], method="splitting").method)
+        march = system.integrator(momentum=[0, 1.2], object=[1, 0], mode="controlled").march(20)
         self.assertGreater(np.ptp(march.step_size), 1e-3)
         wrongs = ({"mode": "fast"}, {"order": 3}, {"composition": "none"}, {"order": 4, "composition": "kahan-li-8"})
         for wrong in wrongs:
             with self.assertRaises(ValueError):
-                system.integrator([0, 1.2], [1, 0], **wrong)  # type: ignore[arg-type]
+                system.integrator(momentum=[0, 1.2], object=[1, 0], **wrong)  # type: ignore[arg-type]
 
     def test_mistakes(self) -> None:
         with self.assertRaisesRegex(TypeError, "Kepler has no parameter mass"):
             lagroid.Kepler(mass=1)
         with self.assertRaisesRegex(ValueError, "momentum: expected 2 numbers, got 1"):
-            lagroid.Kepler().integrator([1], [0, 0])
+            lagroid.Kepler().integrator(momentum=[1], object=[0, 0])
         with self.assertRaisesRegex(ValueError, "object: must be finite"):
-            lagroid.Kepler().integrator([1, 0], [0, np.nan])
+            lagroid.Kepler().integrator(momentum=[1, 0], object=[0, np.nan])
         with self.assertRaisesRegex(ValueError, "give object"):
-            lagroid.Kepler().integrator([1, 0])
+            lagroid.Kepler().integrator(momentum=[1, 0])
         with self.assertRaisesRegex(ValueError, "off the constraint"):
-            lagroid.SphericalPendulum().integrator([0, 0, 0], [2, 0, 0])
+            lagroid.SphericalPendulum().integrator(momentum=[0, 0, 0], object=[2, 0, 0])
         with self.assertRaisesRegex(ValueError, "no arrow of SO"):
-            lagroid.RigidBody().integrator([0, 0, 1], configuration=2 * np.eye(3))
+            lagroid.RigidBody().integrator(momentum=[0, 0, 1], configuration=2 * np.eye(3))
         with self.assertRaisesRegex(ValueError, "h: the step"):
-            lagroid.Kepler(h=0).integrator([1, 0], [1, 0])
+            lagroid.Kepler(h=0).integrator(momentum=[1, 0], object=[1, 0])
         for h in (0, np.nan, np.inf):
             with self.assertRaisesRegex(ValueError, "h: the step"):
                 lagroid.Kepler(h=h).boundary([1, 0, 0, 1], 10)
@@ -160,13 +160,14 @@ class Systems(unittest.TestCase):
             lagroid.Integrator(None)  # type: ignore[arg-type]
 
     def test_fields_without_numbers_have_rows(self) -> None:
-        body = lagroid.RigidBody(h=0.1).integrator([1, 2, 3])
+        body = lagroid.RigidBody(h=0.1).integrator(momentum=[1, 2, 3])
         q, momentum = body.state
         self.assertEqual((q.shape, body.object.shape, momentum.shape), ((0,), (0,), (3,)))
         march = body.march(4)
         self.assertEqual((march.object.shape, march.multipliers.shape), ((5, 0), (4, 0)))
         self.assertEqual(body.multipliers.shape, (0,))
-        self.assertEqual(lagroid.Kepler().integrator([0, 1], [1, 0]).march(3, every=2).multipliers.shape, (2, 0))
+        kepler = lagroid.Kepler().integrator(momentum=[0, 1], object=[1, 0])
+        self.assertEqual(kepler.march(3, every=2).multipliers.shape, (2, 0))
         path = lagroid.RigidBody(h=0.1).boundary(turned(0.5), 5)[0]
         self.assertEqual((path.object.shape, path.multipliers.shape), ((6, 0), (5, 0)))
 
@@ -176,19 +177,19 @@ class Systems(unittest.TestCase):
         wrongs = (np.zeros((3, 3)), -np.eye(3), reflection, turned(0.3) @ reflection, 2 * np.eye(3), np.ones((3, 3)))
         for wrong in wrongs:
             with self.assertRaisesRegex(ValueError, "^configuration: no arrow of SO"):
-                body.integrator([1, 2, 3], configuration=wrong)
+                body.integrator(momentum=[1, 2, 3], configuration=wrong)
             with self.assertRaisesRegex(ValueError, "^arrow: no arrow of SO"):
                 body.boundary(wrong, 10)
             with self.assertRaisesRegex(ValueError, "^configuration: no arrow of SO"):
                 top = lagroid.HeavyTop()
-                top.integrator([1, 2, 3], configuration=top.arrow(wrong))
+                top.integrator(momentum=[1, 2, 3], configuration=top.arrow(wrong))
             with self.assertRaisesRegex(ValueError, "^arrow: no arrow of "):
                 lagroid.PlateBall().boundary(lagroid.PlateBall.arrow([0, 0], [1, 0], wrong), 10)
         for shape in ((1, 9), (9, 1), (3, 3, 1)):
             with self.assertRaisesRegex(ValueError, r"configuration: expected 9 numbers or shape \(3, 3\)"):
-                body.integrator([1, 2, 3], configuration=np.eye(3).reshape(shape))
+                body.integrator(momentum=[1, 2, 3], configuration=np.eye(3).reshape(shape))
         with self.assertRaisesRegex(ValueError, "object: no object of"):
-            lagroid.HeavyTop().integrator([1, 2, 3], [0, 0, 2])
+            lagroid.HeavyTop().integrator(momentum=[1, 2, 3], object=[0, 0, 2])
 
     def test_every_arrow_is_taken(self) -> None:
         """Half turns too, which a retraction may miss, and arrows far from the units."""
@@ -200,9 +201,9 @@ class Systems(unittest.TestCase):
             hat = np.cross(np.eye(3), n)
             for angle in (np.pi, np.pi - 1e-7, np.pi - 1e-4, rng.uniform(0, np.pi)):
                 turn = np.eye(3) + np.sin(angle) * hat + (1 - np.cos(angle)) * hat @ hat
-                body.integrator([1, 2, 3], configuration=turn)
-                top.integrator([1, 2, 3], configuration=top.arrow(turn))
-                ball.integrator([1, 2, 3, 4, 5], configuration=ball.arrow([1e6, 0], [0, -1e6], turn))
+                body.integrator(momentum=[1, 2, 3], configuration=turn)
+                top.integrator(momentum=[1, 2, 3], configuration=top.arrow(turn))
+                ball.integrator(momentum=[1, 2, 3, 4, 5], configuration=ball.arrow([1e6, 0], [0, -1e6], turn))
         self.assertTrue(lagroid.RigidBody(h=0.1).boundary(turned(np.pi), 10))
 
     def test_parameters_are_held_to_the_rules_of_scenes(self) -> None:
@@ -226,7 +227,7 @@ class Systems(unittest.TestCase):
             ({"max_iterations": -1}, "max_iterations: must be from 0 to 100000, got -1"),
         ):
             with self.assertRaisesRegex(ValueError, f"^{message}$"):
-                lagroid.Kepler().integrator([0, 1], [1, 0], **wrong)  # type: ignore[arg-type]
+                lagroid.Kepler().integrator(momentum=[0, 1], object=[1, 0], **wrong)  # type: ignore[arg-type]
         for steps, starts, message in ((1, 1, "steps: must be at least 2, got 1"), (9, 0, "starts: must be at least 1")):
             with self.assertRaisesRegex(ValueError, f"^{message}"):
                 lagroid.Kepler().boundary([1, 0, 0, 1], steps, starts=starts)
@@ -262,7 +263,7 @@ class Systems(unittest.TestCase):
 
     def test_a_step_that_fails_changes_nothing(self) -> None:
         ball = lagroid.PlateBall(h=40.0)
-        integrator = ball.integrator([1, 1, 1, 1, 1], [0, 0])
+        integrator = ball.integrator(momentum=[1, 1, 1, 1, 1], object=[0, 0])
         before = integrator.state
         with self.assertRaises(lagroid.SolveError) as caught:
             integrator.advance()
@@ -312,8 +313,60 @@ class Systems(unittest.TestCase):
             other.name = "second"
             self.assertEqual(system.name, "first")
 
+    def test_an_integrators_pickle_goes_on_with_the_same_bits(self) -> None:
+        for integrator in (
+            lagroid.Kepler(h=0.1).integrator(momentum=[0, 1.2], object=[1, 0], order=8),
+            lagroid.Kepler(h=0.1).integrator(momentum=[0, 1.2], object=[1, 0], mode="controlled"),
+            lagroid.SphericalPendulum(h=0.05).integrator(momentum=[0, 0.5, 0], object=[1, 0, 0]),
+            lagroid.RigidBody(inertia=[1, 2, 3], h=0.1).integrator(momentum=[1, 0.1, 2], configuration=turned(0.5)),
+            lagroid.PlateBall(h=0.05).integrator(momentum=[0.5, 0.2, 0.1, 0.2, 0.3], object=[0.1, 0]),
+            lagroid.Pendulum().integrator(momentum=[1], object=[0], ledger=False),
+        ):
+            integrator.march(30)
+            for again in (pickle.loads(pickle.dumps(integrator)), copy.deepcopy(integrator)):
+                self.assertEqual((again.index, again.time, again.method), (30, integrator.time, integrator.method))
+                np.testing.assert_array_equal(again.arrow, integrator.arrow)
+                self.assertEqual(*([entry.drift for entry in each.ledger] for each in (again, integrator)))
+            rest, same = integrator.march(40), again.march(40)
+            for name in ("time", "object", "momentum", "configuration", "multipliers", "step_size"):
+                np.testing.assert_array_equal(getattr(rest, name), getattr(same, name))
+            for one, other in zip(integrator.ledger, again.ledger):
+                self.assertEqual((one.name, one.drift, one.verdict), (other.name, other.drift, other.verdict))
+
+    def test_what_was_given_to_an_integrator_may_change(self) -> None:
+        system, momentum = lagroid.Pendulum(h=0.1), np.array([1.0])
+        integrator = system.integrator(momentum=momentum, object=[0])
+        system.length, momentum[0] = 2.0, 5.0
+        again = pickle.loads(pickle.dumps(integrator))
+        np.testing.assert_array_equal(again.march(10).object, integrator.march(10).object)
+
+    def test_a_damaged_pickle_is_refused(self) -> None:
+        version, origin, state = lagroid.Kepler().integrator(momentum=[0, 1], object=[1, 0]).__reduce_ex__(2)[2]
+        for kept, message in (
+            (("0.0.1", origin, state), "pickled by lagroid 0.0.1, this is .*; begin it anew"),
+            ((version, origin, state[:-3]), "another lagroid; begin it anew"),
+            ((version, (lagroid.Kepler(), {**origin[1], "order": 8}), state), "another lagroid; begin it anew"),
+        ):
+            with self.assertRaisesRegex(ValueError, message):
+                lagroid.Integrator.__new__(lagroid.Integrator).__setstate__(kept)  # type: ignore[attr-defined]
+
+    def test_states_are_given_by_name(self) -> None:
+        for make in (
+            lambda: lagroid.Kepler().integrator([0, 1], [1, 0]),  # type: ignore[misc]
+            lambda: lagroid.Kepler().integrator([0, 1], object=[1, 0]),  # type: ignore[misc]
+            lambda: lagroid.Kepler().integrator(object=[1, 0]),  # type: ignore[call-arg]
+        ):
+            with self.assertRaisesRegex(TypeError, "^integrator: give momentum, and object or configuration, by name"):
+                make()
+
+    def test_what_is_of_scenes_names_what_it_takes(self) -> None:
+        for ask in (lagroid.study, lagroid.check, lagroid.run, lagroid.methods):
+            for given in (lagroid.Kepler(), lagroid.Kepler().integrator(momentum=[0, 1], object=[1, 0]), 3):
+                with self.assertRaisesRegex(TypeError, f"^a scene is .*, not {type(given).__name__}: .*$"):
+                    ask(given)  # type: ignore[operator]
+
     def test_one_thread_at_a_time(self) -> None:
-        integrator = lagroid.Pendulum(h=0.01).integrator([1], [0])
+        integrator = lagroid.Pendulum(h=0.01).integrator(momentum=[1], object=[0])
         started = threading.Event()
 
         def long() -> None:

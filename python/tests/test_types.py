@@ -29,8 +29,11 @@ class Checked(unittest.TestCase):
         self.assertEqual(found.returncode, 0, found.stdout)
 
     def test_a_mistake_is_found(self) -> None:
-        found = self.mypy("lagroid", "-c", "import lagroid\nlagroid.run('a', steps=3)")
-        self.assertNotEqual(found.returncode, 0)
+        sound = self.mypy("-c", "import lagroid\nlagroid.run('a', record=False)")
+        self.assertEqual(sound.returncode, 0, sound.stdout + sound.stderr)
+        found = self.mypy("-c", "import lagroid\nlagroid.run('a', steps=3)")
+        self.assertEqual(found.returncode, 1, found.stderr)
+        self.assertIn('Unexpected keyword argument "steps"', found.stdout)
 
 
 class Stubs(unittest.TestCase):

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -437,6 +438,8 @@ void Multibody::leave_out_dependent() {
     for (const Entry& e : entries) {
       const double size = gradients_[std::size_t(e.gradient)].squaredNorm();
       if (!std::isfinite(size)) throw std::invalid_argument("the gradient of a joint is not finite");
+      if (size < std::numeric_limits<double>::min() && !gradients_[std::size_t(e.gradient)].isZero(0))
+        throw std::invalid_argument("the gradient of a joint vanishes in round-off");
       unit[std::size_t(e.factor)] = std::max(unit[std::size_t(e.factor)], size);
     }
     std::vector<Vec> out;

@@ -131,6 +131,26 @@ struct TorsionSpring {
   }
 };
 
+/// The same between planar bodies, of angles a and b: U = k (1 - cos(b - a - rest)).
+struct PlanarTorsionSpring {
+  std::array<Site, 2> sites;  ///< Scene::planar_place of the bodies; the ground's angle is zero at the origin
+  double stiffness = 1;       ///< k, N m
+  double rest = 0;            ///< b - a at rest, rad
+
+  double energy(const Configuration& at) const {
+    const double half = std::sin(0.5 * twist(at));
+    return 2 * stiffness * half * half;
+  }
+  void add_loads(const Configuration& at, Loads& f) const {
+    const double torque = stiffness * std::sin(twist(at));
+    f(sites[0])(2) += torque;
+    f(sites[1])(2) -= torque;
+  }
+
+ private:
+  double twist(const Configuration& at) const { return at(sites[1])(2) - at(sites[0])(2) - rest; }
+};
+
 /// What a frame that turns about an axis through the origin puts on a mass at rest in it: U = -m |Omega x x|^2 / 2. The
 /// other part, on a mass that moves, is `Scene::deflect` by 2 m Omega.
 struct Centrifugal {

@@ -15,6 +15,19 @@ Quaternion turned(const Quaternion& q, const Turn& turn, const Vec& xi) {
   return product(q, turn.quaternion(xi)).normalized();
 }
 
+/// |v|, also where squares overflow or underflow.
+LAGROID_INLINE inline double size_of(const Vec& v) {
+  const double largest = v.lpNorm<Eigen::Infinity>();
+  return largest == 0 || (largest > 1e-150 && largest < 1e150) ? v.norm() : v.stableNorm();
+}
+
+/// The inverse, also where the determinant overflows or underflows.
+Mat inverse(const Mat& a) {
+  const double size = a.lpNorm<Eigen::Infinity>();
+  if (size > 1e-90 && size < 1e90) return a.inverse();
+  return Mat(a / size).inverse() / size;
+}
+
 /// sum += increment with what earlier sums lost.
 LAGROID_INLINE inline void add(Vec& sum, Vec& carry, const Vec& increment) {
   const Vec step = carry + increment;
@@ -160,7 +173,7 @@ bool Multibody::factorise(Island& island) {
     const auto i = std::size_t(r);
     Mat a = turns_[i].derivative(turned_[i]);
     if (!damped_turns_.empty()) a.diagonal() += 0.5 * turn_damping_[i];
-    turn_inverse_[i] = a.inverse();
+    turn_inverse_[i] = inverse(a);
     turn_frame_[i] = turns_[i].target_frame(turned_[i]);
   }
   for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
@@ -264,7 +277,7 @@ StepReport Multibody::solve(Island& island) {
       for (int r = island.rotations.first; r < island.rotations.last; ++r) {
         const auto i = std::size_t(r);
         spin_total_[i] = spin_kicked_[i];
-        spin_size_[i] = spin_[i].norm() + spin_impulse_[i].norm() +
+        spin_size_[i] = size_of(spin_[i]) + size_of(spin_impulse_[i]) +
                         turns_[i].inertia_over_h.cwiseAbs().maxCoeff() * (turned_[i].norm() + round_off);
       }
       for (int i = island.rotation_entries.first; i < island.rotation_entries.last; ++i) {
@@ -359,7 +372,7 @@ StepReport Multibody::turn_freely(int rotation) {
   for (report.iterations = 1; report.iterations <= options_.max_iterations; ++report.iterations) {
     Vec residual = turn.momentum(xi) - momentum;
     if (!damped_turns_.empty()) residual += 0.5 * turn_damping_[i].cwiseProduct(xi);
-    report.residual = residual.lpNorm<Eigen::Infinity>() / momentum.norm();
+    report.residual = residual.lpNorm<Eigen::Infinity>() / size_of(momentum);
     report.excess = report.residual / (4 * round_off);
     if (!std::isfinite(report.residual)) {
       report.status = SolveStatus::not_finite;
@@ -374,7 +387,7 @@ StepReport Multibody::turn_freely(int rotation) {
     }
     Mat a = turn.derivative(xi);
     if (!damped_turns_.empty()) a.diagonal() += 0.5 * turn_damping_[i];
-    xi -= a.inverse() * residual;
+    xi -= inverse(a) * residual;
     if (last && report.residual < 1e-12) return report;
     previous = report.residual;
   }
@@ -418,6 +431,11 @@ StepReport Multibody::advance_by_stages() {
 
 StepReport Multibody::advance_by(double end) {
   const double step_before = h_;
+  if (index_ == 0 && dependent_rows_ > 0 && !dependence_lasts()) {
+    StepReport refused;
+    refused.status = SolveStatus::singular;
+    return refused;
+  }
   next_.time = end;
   if (has_vakonomic_) reactions_ = gradients_;
   const StepReport report = solve_all();
@@ -428,6 +446,64 @@ StepReport Multibody::advance_by(double end) {
   if (has_vakonomic_) gradients_ = reactions_;
   if (control_) set_step(step_before);
   return report;
+}
+
+// A small step leaves a singular position by no more than its square, which may be below round-off, and the next ones
+// would lead further off. So one that is long enough is tried, and not taken.
+bool Multibody::dependence_lasts() {
+  constexpr double noticed = 1e-2;  // whose square is seen
+  constexpr int most_doublings = 30;
+  const double step = h_;
+  double change = 0;
+  dependence_ended_ = false;
+  for (int doubling = 0; doubling <= most_doublings && change < noticed; ++doubling) {
+    set_step(std::ldexp(step, doubling));
+    change = bent();
+  }
+  next_.time = now_.time + h_;
+  if (has_vakonomic_) reactions_ = gradients_;
+  if (change > 0) solve_all();
+  if (has_vakonomic_) gradients_ = reactions_;
+  act(now_);
+  set_step(step);
+  return !dependence_ended_;
+}
+
+double Multibody::bent() {
+  std::fill(impulse_.begin(), impulse_.end(), Vec::Zero());
+  std::fill(spin_impulse_.begin(), spin_impulse_.end(), Vec::Zero());
+  kick();
+  for (std::size_t f = 0; f < momentum_.size(); ++f)
+    displacement_[f] = response_[f].cwiseProduct(momentum_[f] + impulse_[f]);
+  for (std::size_t r = 0; r < spin_.size(); ++r)
+    turned_[r] = (spin_[r] + spin_impulse_[r]).cwiseQuotient(turns_[r].inertia_over_h);
+  double most = 0;
+  for (const Island& island : islands_) {
+    try_place(island);
+    for (int b = island.batches.first; b < island.batches.last; ++b) {
+      const Batch& batch = batches_[std::size_t(b)];
+      batch.joints->gradients(motion(), batch.first, batch.count, next_gradients_.data() + batch.gradient);
+    }
+    pull_back(next_, island, next_gradients_);
+    // Points and turns apart, whose gradients have other units.
+    const auto look = [&](const std::vector<Entry>& entries, const Range& range) {
+      std::fill(right_.begin() + island.rows.first, right_.begin() + island.rows.last, 0.0);
+      for (int i = range.first; i < range.last; ++i) {
+        const Entry& e = entries[std::size_t(i)];
+        double& size = right_[std::size_t(e.row)];
+        size = std::max(size, size_of(gradients_[std::size_t(e.gradient)]));
+      }
+      for (int i = range.first; i < range.last; ++i) {
+        const Entry& e = entries[std::size_t(i)];
+        const double size = right_[std::size_t(e.row)];
+        const auto g = std::size_t(e.gradient);
+        if (size > 0) most = std::max(most, size_of(Vec(next_gradients_[g] - gradients_[g])) / size);
+      }
+    };
+    look(linear_entries_, island.linear_entries);
+    look(rotation_entries_, island.rotation_entries);
+  }
+  return most;
 }
 
 StepReport Multibody::solve_all() {
@@ -583,7 +659,7 @@ void Multibody::set_step(double h) {
   for (Dragged& d : dragged_) {
     Mat inertia = 0.5 * d.drag;
     inertia.diagonal() += inertia_[std::size_t(d.factor)] / h_;
-    d.response = inertia.inverse();
+    d.response = inverse(inertia);
   }
   for (std::size_t r = 0; r < moments_.size(); ++r) turns_[r].inertia_over_h = moments_[r] / h_;
 }
@@ -899,7 +975,7 @@ double Multibody::velocity_defect() const {
   const auto look = [&](const Entry& e, const Vec& velocity) {
     const Vec& g = gradients_[std::size_t(e.gradient)];
     rate[std::size_t(e.row)] += g.dot(velocity);
-    size[std::size_t(e.row)] += g.norm() * velocity.norm();
+    size[std::size_t(e.row)] += size_of(g) * size_of(velocity);
   };
   for (const Entry& e : linear_entries_)
     look(e, linear[std::size_t(e.factor)].cwiseQuotient(inertia_[std::size_t(e.factor)]));

@@ -40,9 +40,9 @@ struct Options {
 class Multibody {
  public:
   /// The scene at its first node. Rows of joints that depend on others there are left out (`dependent_rows`), and
-  /// joints that touch nothing that moves. Throws std::invalid_argument where a gradient is not finite, and where steps
-  /// are to be controlled or composed and the scene does not allow that; std::domain_error where one island obeys two
-  /// principles.
+  /// joints that touch nothing that moves. Throws std::invalid_argument where a gradient is not finite or so small that
+  /// its square is no normal number, and where steps are to be controlled or composed and the scene does not allow
+  /// that; std::domain_error where one island obeys two principles.
   Multibody(Scene scene, double h, const Options& options = {});
 
   /// One step. Where it does not converge nothing changes, and the report says why.
@@ -132,7 +132,8 @@ class Multibody {
   int islands() const { return int(islands_.size()); }
   int rows() const { return int(values_.size()); }
   int dependent_rows() const { return dependent_rows_; }
-  /// Whether the last step was refused because rows left out as dependent no longer follow from the others.
+  /// Whether the last step was refused because rows left out as dependent no longer follow from the others. The first
+  /// is, where they do not along the motion that begins with it.
   bool dependence_ended() const { return dependence_ended_; }
   /// Multipliers lambda of the constraints C, in the order of the islands' joints, of the last step (per h).
   const std::vector<double>& multipliers() const { return stages_.empty() ? earlier_[0] : stages_.back().earlier[0]; }
@@ -270,6 +271,10 @@ class Multibody {
   bool stages_fit(const State& state) const;
   /// Solves all islands; what a step leaves behind that is not accepted is put right by `advance`.
   StepReport solve_all();
+  /// Whether rows left out still follow from the others a good way along the motion that begins here.
+  bool dependence_lasts();
+  /// How far a step would change the gradients of the rows, over their size, were there no joints.
+  double bent();
   void accept();
   /// The momentum that vakonomic rows take away again at the target; the forces of dampers there.
   void end_vakonomic();

@@ -154,8 +154,9 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
     report.laws.push_back(check_law("points stay on the spheres", 1e-13, [&] {
       return off_spheres(detail::marched(*begun(detail::drawn_beside(subject)), steps));
     }));
-  ask_law("at least the order declared", 0.1,
-          [&] { return std::max(0.0, traits.order - detail::observed_order(subject)); });
+  ask_law("at least the order declared", 0.1, [&] {
+    return worst({0.0, traits.order - detail::observed_order(subject)});
+  });
   if (subject.forms.size() > 1)
     report.laws.push_back(check_law("all forms are one motion", 1e-9, [&] {
       const Points z = detail::drawn_beside(subject);

@@ -6,7 +6,6 @@
 #include <lagroid/solvers/optimisation/minimise.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -55,7 +54,7 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
     manifold.project(x, pw);
     Vector again = pv;
     manifold.project(x, again);
-    return std::max((again - pv).norm(), std::abs(pv.dot(w) - v.dot(pw))) / (v.norm() * w.norm());
+    return worst({(again - pv).norm(), std::abs(pv.dot(w) - v.dot(pw))}) / (v.norm() * w.norm());
   });
   law("projected vectors are tangent", 1e-4, [&] {
     constexpr double e = 1e-6;
@@ -73,7 +72,7 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
     Vector unused = Vector::Zero(manifold.size());
     const double slope =
         (manifold.penalty(moved + e * v, 1, unused) - manifold.penalty(moved - e * v, 1, unused)) / (2 * e);
-    return std::max(-penalty, std::abs(slope - pull.dot(v)) / (1 + v.squaredNorm() * v.norm()));
+    return worst({-penalty, std::abs(slope - pull.dot(v)) / (1 + v.squaredNorm() * v.norm())});
   });
   for (const Retraction retraction :
        {Retraction::exponential, Retraction::qr, Retraction::polar, Retraction::orthographic, Retraction::cayley}) {
@@ -84,7 +83,7 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
       Point to;
       const double size = *rc::gen::element(0.0, 1e-12, 1e-6, 0.1, 0.4);
       if (!manifold.retract(retraction, x, draw_tangent(manifold, x, size), to)) return 1.0;
-      return std::max(manifold.residual(to), size == 0 ? (to - x).norm() : 0.0);
+      return worst({manifold.residual(to), size == 0 ? (to - x).norm() : 0.0});
     });
     law("retraction " + name + " begins along its vector", 1e-8, [&] {
       constexpr double e = 1e-5;
@@ -110,7 +109,7 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
     if (!manifold.orthographic(x, z, to, moved)) return 1.0;
     Vector normal = to - x - z;
     manifold.project(x, normal);
-    return std::max(normal.norm(), (to - x - moved).norm());
+    return worst({normal.norm(), (to - x - moved).norm()});
   });
   if (manifold.offers(Retraction::exponential)) {
     law("the logarithm inverts the exponential", 1e-11, [&] {

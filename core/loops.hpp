@@ -1,0 +1,31 @@
+#pragma once
+/// How the paths of a groupoid can wind.
+
+#include <lagroid/core/groupoid.hpp>
+
+namespace lagroid {
+
+/// The number of loops that X, a groupoid or a system, says there are; zero where it says nothing.
+template <class X> constexpr int loops_of() {
+  if constexpr (requires { X::loops; }) {
+    return X::loops;
+  } else {
+    return 0;
+  }
+}
+
+/// A groupoid, or a system on one, whose paths from one arrow to another can wind: it writes
+///
+///     static constexpr int loops                                        how many numbers of turns there are
+///     Arrow<double> loop(q, axis, turns) const                          in the alpha-fibre over q
+///         const Object<double>& q, const Vector<double, dimension>& axis, const Vector<double, loops>& turns
+///
+/// unit(q) where all turns are integers, and smooth in them, so that t -> loop(q, axis, t k) is a closed curve for
+/// integers k. `axis` is any vector of A_qG: it tells loops of the same number of turns from one another, as rotations
+/// about different axes. On a group they are one-parameter subgroups through the kernel of exp. A system writes its own
+/// where what is to be gone around is no matter of the groupoid: the centre of attraction in the plane.
+template <class X>
+concept Winding = loops_of<X>()
+> 0;
+
+}  // namespace lagroid
