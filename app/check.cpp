@@ -155,7 +155,7 @@ Certificate certificate_of(const Section& scene, const CheckOptions& options) {
 }
 
 int check(const CheckOptions& options) {
-  // RapidCheck reads its options from here, and reports each law on std::cerr: the certificate does.
+  // RapidCheck reads its options from here; laws that fail are told on std::cerr, here by the certificate.
   ::setenv("RC_PARAMS", fmt::format("seed={} max_success={}", options.seed, options.samples).c_str(), 1);
   std::cerr.setstate(std::ios::failbit);
   Section scene = read_scene(options.scene, options.overrides);

@@ -362,6 +362,27 @@ TEST_F(CommandLine, CeresKeepsQuietOnStandardError) {
   EXPECT_EQ(r.err, "");
 }
 
+/// What Newton's method marches, Ceres marches: two thousand steps of every example that says who solves its steps.
+TEST_F(CommandLine, CeresDoesAllStepsOfEveryExample) {
+  int asked = 0;
+  for (const auto& file : fs::directory_iterator(LAGROID_EXAMPLES)) {
+    if (file.path().extension() != ".toml") continue;
+    std::ifstream in(file.path());
+    const std::string scene{std::istreambuf_iterator<char>(in), {}};
+    if (scene.find("\n[initial]") == std::string::npos) continue;
+    const std::string arguments = "run " + file.path().string() + " --set time.steps=2000";
+    const Outcome by_ceres = run(arguments + " --set solver.method=ceres");
+    if (by_ceres.code == 2) continue;  // explicit steps
+    ++asked;
+    EXPECT_EQ(by_ceres.code, run(arguments).code) << file.path() << ": " << by_ceres.err;
+    EXPECT_EQ(by_ceres.err.find("trust_region"), std::string::npos) << by_ceres.err;
+  }
+  EXPECT_GE(asked, 10);
+  const Outcome shorter = run("run " + example("heavy_top") + " --set solver.method=ceres --set time.step=0.01");
+  EXPECT_EQ(shorter.code, 0) << shorter.err;
+  EXPECT_EQ(shorter.err, "");
+}
+
 TEST_F(CommandLine, WhereAContinuationCannotBeginItsFromIsBlamed) {
   const std::string scene = "run " + example("plate_ball_continuation") + " --set continuation.parameter=";
   for (const std::string& arguments : std::vector<std::string>{

@@ -5,6 +5,7 @@
 #include <lagroid/systems/spherical_pendulum.hpp>
 
 #include "broken.hpp"
+#include "hasty_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,30 +52,74 @@ struct NotLagrangian : GeneratedSubmanifold<Kepler> {
     return t;
   }
 };
+State<Pair<2>> draw_orbit() { return {{1, 0.2 * laws::draw_uniform()}, {0.1, 1}}; }
+State<Pair<3>> draw_swing() {
+  const Vector<double, 3> q = (laws::draw_vector<3>(0.5) - Vector<double, 3>::UnitZ()).normalized();
+  return {q, q.cross(Vector<double, 3>(0.3, 0.5, laws::draw_uniform()))};
+}
+AttitudeControl uneven_control() {
+  AttitudeControl control;
+  control.weights << 1, 1.7, 0.6;
+  return control;
+}
+State<SO3> draw_turn() { return {{}, Vector<double, 3>(0.9, -0.4, 1.1) + laws::draw_vector<3>(0.3)}; }
+
 TEST(BrokenDynamics, FailsTheLawsItBreaks) {
-  const auto draw = [] { return State<Pair<2>>{{1, 0.2 * laws::draw_uniform()}, {0.1, 1}}; };
-  const auto rubbed = laws_with_friction(Kepler{}, draw);
+  const auto rubbed = laws_with_friction(Kepler{}, draw_orbit);
   EXPECT_TRUE(laws::seen_broken(rubbed.law("the step is Poisson"))) << rubbed;
-  const auto twisted = laws::dynamics_laws<Kepler, decltype(draw), NotLagrangian>(Kepler{}, draw);
+  const auto twisted = laws::dynamics_laws<Kepler, decltype(draw_orbit), NotLagrangian>(Kepler{}, draw_orbit);
   EXPECT_TRUE(laws::seen_broken(twisted.law("Sigma_L is Lagrangian"))) << twisted;
   EXPECT_TRUE(laws::seen_broken(twisted.law("Legendre transforms have equal rank"))) << twisted;
 }
 
 TEST(BrokenDynamics, FrictionUnderConstraintsIsNotPoisson) {
-  const auto swing = laws_with_friction(SphericalPendulum{}, [] {
-    const Vector<double, 3> q = (laws::draw_vector<3>(0.5) - Vector<double, 3>::UnitZ()).normalized();
-    return State<Pair<3>>{q, q.cross(Vector<double, 3>(0.3, 0.5, laws::draw_uniform()))};
-  });
-  AttitudeControl control;
-  control.weights << 1, 1.7, 0.6;
-  const auto turn = laws_with_friction(control, [] {
-    return State<SO3>{{}, Vector<double, 3>(0.9, -0.4, 1.1) + laws::draw_vector<3>(0.3)};
-  });
+  const auto swing = laws_with_friction(SphericalPendulum{}, draw_swing);
+  const auto turn = laws_with_friction(uneven_control(), draw_turn);
   for (const auto& report : {swing, turn}) {
     EXPECT_TRUE(laws::seen_broken(report.law("the step is Poisson"))) << report;
     EXPECT_TRUE(report.law("Sigma_L is Lagrangian").holds()) << report;
     EXPECT_TRUE(report.law("the step reverses").holds()) << report;
   }
+}
+
+/// Steps that L generates are Poisson whatever a solver makes of them.
+void expect_computed_steps_not_poisson(const laws::MakeStepSolver<Kepler>& make) {
+  Kepler system;
+  system.h = 0.5;
+  const auto report = laws::dynamics_laws(system, draw_orbit, 1e-10, make);
+  EXPECT_TRUE(laws::seen_broken(report.law("the computed step is Poisson"))) << report;
+  EXPECT_TRUE(report.law("the step is Poisson").holds()) << report;
+}
+TEST(BrokenSolver, ThatStopsEarly) {
+  expect_computed_steps_not_poisson([] { return std::make_unique<Hasty<Kepler>>(); });
+}
+
+/// Loses a thousandth of the change of momentum.
+class Lossy final : public StepSolver<Kepler> {
+ public:
+  StepReport solve(const Kepler& system, const State<Pair<2>>& state, StepSolution<Kepler>& solution) override {
+    const StepReport report = newton_.solve(system, state, solution);
+    solution.momentum_change *= 0.999;
+    return report;
+  }
+
+ private:
+  NewtonStep<Kepler> newton_;
+};
+TEST(BrokenSolver, WhoseStepIsNotPoisson) {
+  expect_computed_steps_not_poisson([] { return std::make_unique<Lossy>(); });
+}
+
+/// By Ceres, under object constraints and arrow constraints too.
+TEST(ComputedStep, IsPoisson) {
+  const auto expect = [](const auto& system, const auto& draw) {
+    const auto report =
+        laws::dynamics_laws(system, draw, 1e-10, [&] { return make_step_solver(system, StepMethod::ceres); });
+    EXPECT_TRUE(report.law("the computed step is Poisson").holds()) << report;
+  };
+  expect(Kepler{}, draw_orbit);
+  expect(SphericalPendulum{}, draw_swing);
+  expect(uneven_control(), draw_turn);
 }
 
 /// A spring whose derivatives by hand lose a thousandth of F+.

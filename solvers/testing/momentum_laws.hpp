@@ -7,17 +7,25 @@
 #include <lagroid/solvers/newton_step.hpp>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
 namespace lagroid::laws {
 
+/// Where a law takes the solvers of steps from.
+template <DiscreteSystem Sys> using MakeStepSolver = std::function<std::unique_ptr<StepSolver<Sys>>()>;
+
+template <DiscreteSystem Sys> std::unique_ptr<StepSolver<Sys>> newton_solver() {
+  return std::make_unique<NewtonStep<Sys>>();
+}
+
 namespace detail {
 
 template <DiscreteSystem Sys>
 Integrator<Sys> newton_integrator(const Sys& system, const State<typename Sys::GroupoidType>& start) {
-  return Integrator<Sys>(system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>());
+  return Integrator<Sys>(system, start, system.groupoid.unit(start.object), newton_solver<Sys>());
 }
 
 /// The round-off of the momenta of a step, which small arrows divide by h: as the size of terms of which a hundred
