@@ -11,10 +11,9 @@ namespace lagroid {
 
 namespace detail {
 
-/// Throws std::invalid_argument unless the arrow ends at the object, to 1e-9 of its size. What is not finite passes: the
-/// first step's status tells of it.
-template <Groupoid G>
-void require_end(const G& groupoid, const ArrowOf<G>& configuration, const ObjectOf<G>& object) {
+/// Throws std::invalid_argument unless the arrow ends at the object, to 1e-9 of its size. What is not finite passes:
+/// the first step's status tells of it.
+template <Groupoid G> void require_end(const G& groupoid, const ArrowOf<G>& configuration, const ObjectOf<G>& object) {
   if constexpr (G::object_coordinate_count() > 0) {
     const auto end = groupoid.coordinates_of_object(groupoid.target(configuration));
     const auto start = groupoid.coordinates_of_object(object);

@@ -19,7 +19,8 @@ inline BoundaryStage<Unicycle> unicycle_to(double x, double y, double heading) {
   return {{system, pose(x, y, heading)}, 60};
 }
 
-/// An end of the unicycle's whose cheapest path winds once, and what that costs: the best of 1000 starts.
+/// An end of the unicycle's whose cheapest path winds once, and what that costs: the best found by any number of
+/// starts (1000 among them: `boundary_ends`, nightly).
 struct WoundEnd {
   BoundaryStage<Unicycle> stage;
   double cost;
