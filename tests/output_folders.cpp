@@ -241,7 +241,9 @@ TEST_F(Folders, ClosedDescriptorsTouchNoFile) {
         const std::string& other = usual.at(name);
         EXPECT_EQ(text.substr(0, text.find('\n')), other.substr(0, other.find('\n'))) << name;
       }
-      EXPECT_EQ(closed_files.size(), usual.size());
+      // A study says what it will do, and where it cannot it does nothing.
+      const bool study = each.words.starts_with("study");
+      EXPECT_EQ(closed_files.size(), study ? 0 : usual.size());
     }
 }
 

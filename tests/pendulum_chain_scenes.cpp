@@ -164,6 +164,7 @@ TEST_F(PendulumChains, GoOnWithTheSameBits) {
         " --set time.method=commutator-free-4", " --set time.method=runge-kutta-4 --set time.form=momenta"}) {
     const fs::path whole = folder_ / "whole";
     const fs::path parts = folder_ / "parts";
+    for (const fs::path& folder : {whole, parts}) fs::remove_all(folder);
     const std::string scene =
         "run " + example("pendulum_chain") + settings + " --set output.every=7 --set output.checkpoint=50 ";
     ASSERT_EQ(run(scene + "--set time.steps=300 --out " + whole.string()).code, 0) << settings;
@@ -244,6 +245,7 @@ TEST_F(PendulumChains, WhatIsWrongIsSaidInOneLine) {
 TEST_F(PendulumChains, StepsThatFailAreNamed) {
   const fs::path out = folder_ / "out";
   const auto fails = [&](const std::string& settings, double step, const std::string& status, const char* words) {
+    fs::remove_all(out);
     const Outcome r = run("run " + example("pendulum_chain") + settings + " --set time.step=" + std::to_string(step) +
                           " --json --out " + out.string());
     EXPECT_EQ(r.code, 3) << settings;

@@ -67,7 +67,7 @@ TEST_F(Scene, Mistakes) {
   expect(with("system = \"plate_ball\"", "# none"), {"missing key \"system\""});
   expect(with("system =", "sytem ="), {".toml:1", "sytem", "unknown key; did you mean \"system\""});
   expect(with("momentum =", "momenta ="), {".toml:13", "initial.momenta", "did you mean \"momentum\""});
-  expect(with("radius = 1.0", "radius = 1.0\n\"a\\nb\" = 3"), {"unknown key"});
+  expect(with("radius = 1.0", "radius = 1.0\n\"a\\nb\" = 3"), {"control character"});
   expect(with("step = 0.05", "step = -0.05"), {".toml:8", "time.step", "positive", "-0.05"});
   expect(with("step = 0.05", "step = 0"), {"time.step", "positive"});
   expect(with("step = 0.05", "step = nan"), {"time.step", "finite"});

@@ -99,6 +99,7 @@ class Extrapolated final : public Reference {
           "more (--budget), or a shorter scene");
     // The least of several changes is small by chance; one that no later row confirms is doubled.
     uncertainty = std::max(since_least > 0 ? most_after : 2 * least, 1e-15);
+    seconds_elsewhere = 2 * last_took;  // the last rows anew
     description = fmt::format("{} with {} halved steps from {:.4g}, extrapolated", method_.name, rows_, first_step_);
   }
 

@@ -21,6 +21,7 @@ class Reference {
   virtual std::vector<Block> at(double time) const = 0;
   /// Of the state at the end, in the measure of `distance`: errors below a few times this are not told apart.
   double uncertainty = 0;
+  double seconds_elsewhere = 0;  ///< of wall clock that `at` takes, about, at another time than the end
   std::string description;
 };
 

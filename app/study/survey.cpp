@@ -28,8 +28,11 @@ bool has_error(const Measurement& m) { return m.converged() && std::isfinite(m.t
 /// A method on its way to smaller steps.
 class Descent {
  public:
-  Descent(const Experiment& experiment, const Method& method, const Steps& steps)
-      : experiment_(experiment), method_(method), steps_(steps) {}
+  Descent(const Experiment& experiment, const Method& method, const Steps& steps, const Reference& reference)
+      : experiment_(experiment),
+        method_(method),
+        steps_(steps),
+        compared_in_(method.equal_steps ? 0 : reference.seconds_elsewhere) {}
 
   const Method& method() const { return method_; }
   bool done() const { return done_; }
@@ -41,8 +44,11 @@ class Descent {
     return experiment_.end / std::ceil(experiment_.end / (coarse * std::pow(0.5, level_)) - 1e-9);
   }
 
-  /// What the next run takes, by the last one: wall time with all that is looked at; 0 where there was none.
-  double next_takes() const { return runs.empty() ? 0 : took_ * runs.back().step / next_step(); }
+  /// What the next run takes, by the last one: wall time with all that is looked at, and with the reference's where the
+  /// run will not end at the end.
+  double next_takes() const {
+    return compared_in_ + (runs.empty() ? 0 : std::max(0.0, took_ - compared_in_) * runs.back().step / next_step());
+  }
   /// Its processor time alone, and the error that the order promises; none where the last run says nothing of it.
   struct Expected {
     double seconds, error;
@@ -104,6 +110,7 @@ class Descent {
   const Experiment& experiment_;
   const Method& method_;
   const Steps& steps_;
+  double compared_in_;
   bool done_ = false;
   bool out_of_time_ = false;
   int level_ = 0;
@@ -152,9 +159,13 @@ double seconds_of(const std::vector<Prospect>& round) {
 /// What is worth its time; the rest is stopped, and said to be left out.
 std::vector<Prospect> worth_a_run(std::vector<Descent>& all, bool may_give_up, double time,
                                   std::vector<LeftOut>& left_out) {
+  // For each run that does not end at the end the reference is computed anew, which may take as long as all others
+  // together: methods of unequal steps have what time the others leave.
+  const bool equal_left = std::any_of(all.begin(), all.end(),
+                                      [](const Descent& each) { return !each.done() && each.method().equal_steps; });
   std::vector<Prospect> round;
   for (Descent& each : all)
-    if (!each.done()) round.push_back(prospect_of(each, all));
+    if (!each.done() && each.method().equal_steps == equal_left) round.push_back(prospect_of(each, all));
   const auto leave_out = [&](const Prospect& p, const std::string& why) {
     left_out.push_back({p.descent->method().name, p.descent->next_step(), why});
     p.descent->stop();
@@ -205,7 +216,7 @@ Survey survey(const Experiment& experiment, const std::vector<Method>& methods, 
               const Reference& reference, int repetitions, const Budget& budget,
               const std::function<bool(double spent)>& report) {
   std::vector<Descent> all;
-  for (const Method& method : methods) all.emplace_back(experiment, method, steps);
+  for (const Method& method : methods) all.emplace_back(experiment, method, steps, reference);
   Survey out;
   bool go_on = true;
   while (go_on) {

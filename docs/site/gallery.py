@@ -58,7 +58,7 @@ def page():
         for name, settings in scenes.items():
             lines += ["", f"### {name.replace('_', ' ').capitalize()}", "", caption(root / f"examples/{name}.toml"),
                       f"([scene](../examples/{name}.toml))", "",
-                      f"    ./lagroid {' '.join(command(name, settings))} --out out/{name}", "",
+                      f"    ./lagroid {' '.join(command(name, settings))} --out out/gallery/{name}", "",
                       f"![{name}](gallery/{name}.svg)"]
     return "\n".join(lines) + "\n"
 

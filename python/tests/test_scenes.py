@@ -101,7 +101,7 @@ class Scenes(unittest.TestCase):
         with self.assertRaisesRegex(lagroid.SceneError, "time.thing"):
             lagroid.run({"time": {"thing": object()}})
         for text in ["x\n!touch owned", "x\x1b[31m", "x\x7f", "x\x9b", "x\u202e", "x" * 100_000]:
-            with self.assertRaisesRegex(lagroid.SceneError, "^--set system: system: a text") as caught:
+            with self.assertRaisesRegex(lagroid.SceneError, "^--set system: a text") as caught:
                 lagroid.run(PENDULUM, set={"system": text})
             self.assertTrue(str(caught.exception).isprintable())
             with self.assertRaisesRegex(lagroid.SceneError, "name: a text"):
