@@ -1,4 +1,5 @@
 // Two thousand steps by Ceres from random states of every system of the library, in every form it has.
+#include <lagroid/solvers/step_methods.hpp>  // Moser-Veselov's are compiled here alone
 #include <lagroid/solvers/testing/solver_laws.hpp>
 #include <lagroid/systems/chaplygin_sleigh.hpp>
 #include <lagroid/systems/damped_pendulum.hpp>
