@@ -1,12 +1,12 @@
 #pragma once
 /// Boundary-value runs of any system.
 
-#include "checkpoint.hpp"
-#include "progress.hpp"
-#include "recorder.hpp"
 #include "scene_reader.hpp"
 #include "simulation.hpp"
 
+#include <lagroid/run/checkpoint.hpp>
+#include <lagroid/run/progress.hpp>
+#include <lagroid/run/recorder.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 

@@ -1,6 +1,6 @@
 #include "certificate.hpp"
 
-#include "markup.hpp"
+#include <lagroid/run/markup.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,10 @@
 #include "command.hpp"
 
-#include "output_folder.hpp"
-#include "report.hpp"
 #include "scene_reader.hpp"
-#include "text.hpp"
+
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/report.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -21,6 +23,12 @@
 namespace lagroid::app {
 
 namespace {
+
+/// A pipe that nobody reads any more, and a file as large as is allowed, are errors of writing as a full disk is.
+void take_failed_writes_for_errors() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
 
 /// Of standard input, output and error what is closed is held by something that cannot be written to, so that no file
 /// that is opened later takes its place and is told what is meant for a terminal.
@@ -94,6 +102,7 @@ int refuse(bool json, int code, const std::string& status, const std::string& me
 
 int command_line(CLI::App& app, int argc, char** argv, SceneOptions& options, const std::function<int()>& serve) {
   hold_standard_descriptors();
+  take_failed_writes_for_errors();
   try {
     return parse_and_serve(app, argc, argv, options, serve);
   } catch (const OutputError& error) {

@@ -1,16 +1,12 @@
 /// The program lagroid.
 
-#include "checkpoint.hpp"
 #include "cite/cite.hpp"
 #include "command.hpp"
-#include "interrupt.hpp"
 #include "learn/draw.hpp"
 #include "learn/learn.hpp"
 #include "listing.hpp"
 #include "optimise/optimise.hpp"
-#include "output.hpp"
 #include "registry.hpp"
-#include "report.hpp"
 #include "reproduce.hpp"
 #include "study/study.hpp"
 #include "sweep/sweep.hpp"
@@ -18,6 +14,10 @@
 #include "written.hpp"
 
 #include <lagroid/core/version.hpp>
+#include <lagroid/run/checkpoint.hpp>
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/output.hpp>
+#include <lagroid/run/report.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -32,6 +32,7 @@
 
 namespace {
 
+using namespace lagroid;
 using namespace lagroid::app;
 
 struct RunOptions : SceneOptions {
@@ -55,7 +56,7 @@ int run(const RunOptions& options, bool resume) {
   try {
     const Section scene =
         resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
-    if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene));
+    if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene.whole()));
     if (resume && !options.other_build) Checkpoint::require_this_build(*options.out);
     result = run_scene(scene, {.record = options.out.has_value(),
                                .progress = !options.json,
@@ -66,12 +67,8 @@ int run(const RunOptions& options, bool resume) {
   }
   std::string report;
   if (options.out) {
-    const InterruptGuard guard;
-    try {
-      for (const auto& file : write_outputs(result, *options.out)) report += fmt::format("  wrote {}\n", file.string());
-    } catch (const OutputError& error) {
-      result.output_error = error.what();
-    }
+    for (const auto& file : write_outputs_if_possible(result, *options.out))
+      report += fmt::format("  wrote {}\n", file.string());
   } else {
     report = "  (no files written; --out DIR writes trajectory, plot and summary)\n";
   }
@@ -91,7 +88,8 @@ int from_run(const std::function<std::vector<std::filesystem::path>()>& make) {
     print(report);
     return 0;
   } catch (const RunError& error) {
-    return refuse(false, exit_bad_input, "invalid_run", error.what());
+    return refuse(false, InterruptGuard::interrupted() ? exit_interrupted : exit_bad_input, "invalid_run",
+                  error.what());
   }
 }
 

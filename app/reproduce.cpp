@@ -1,9 +1,5 @@
 #include "reproduce.hpp"
 
-#include "clock.hpp"
-#include "markup.hpp"
-#include "output_folder.hpp"
-#include "progress.hpp"
 #include "reproductions/accelerated_report.hpp"
 #include "reproductions/constrained_maps.hpp"
 #include "reproductions/newton_report.hpp"
@@ -11,6 +7,11 @@
 #include "reproductions/time_steps.hpp"
 #include "shell.hpp"
 #include "written.hpp"
+
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/progress.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 #include "scene_reader.hpp"
 
-#include "kept_file.hpp"
-#include "nesting.hpp"
-#include "text.hpp"
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/nesting.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

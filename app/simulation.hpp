@@ -1,15 +1,13 @@
 #pragma once
 /// Initial-value runs of any system.
 
-#include "recorder.hpp"
 #include "scene_reader.hpp"
-#include "stepped_run.hpp"
 #include "study/system_trial.hpp"
 #include "task.hpp"
 
-#include <lagroid/core/discrete_energy.hpp>
 #include <lagroid/core/rates.hpp>
 #include <lagroid/core/split_system.hpp>
+#include <lagroid/run/system_run.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/splitting.hpp>
@@ -18,7 +16,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <span>
 
@@ -88,82 +85,6 @@ void refuse_duration(const Section& time);
 /// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint.
 Pace read_pace(const Section& scene, const RunContext& context);
 
-/// What to say of a step that failed.
-std::string step_failure(const StepReport& report, long step, double time, TimeMode mode);
-/// What to say of steps whose size was not what the mode asks for.
-std::string without_root_note(long count, long steps, WithoutRoot instead);
-/// In words, what a method declares of itself.
-std::string description(const MethodTraits& method);
-
-/// The point with its momentum made tangent to the object constraints, as it is reported.
-template <DiscreteSystem Sys> TrajectoryPoint<Sys> reported(const Sys& system, TrajectoryPoint<Sys> point) {
-  point.state.momentum = tangent_momentum(system, point.state);
-  return point;
-}
-
-/// What the ledger watches: the system's own quantities, and E_d where the steps keep it or vary.
-template <DiscreteSystem Sys> std::vector<Quantity<Sys>> watched(const Sys& system, const MarchOptions& options) {
-  auto all = system.quantities();
-  if constexpr (Timed<Sys>) {
-    if (options.mode == TimeMode::adaptive && !TimeDependent<Sys>) {
-      const bool kept = options.without_root == WithoutRoot::stop;
-      all.push_back(discrete_energy_quantity(system, kept ? Promise::conserved : Promise::bounded));
-    }
-  }
-  return all;
-}
-
-/// The presentation with the step sizes, where they vary: a series and a panel.
-template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys> p, const MarchOptions& options) {
-  if (options.mode == TimeMode::fixed) return p;
-  p.extras.push_back({{"step_size", {"h"}, "s", "step size of the arrow", true, {}},
-                      [](const TrajectoryPoint<Sys>& point, double* out) { *out = point.step_size; }});
-  p.panels.push_back({"step size", "t", "h", "t", {"h"}});
-  if (options.mode == TimeMode::adaptive && !TimeDependent<Sys>)
-    p.panels.push_back({"discrete energy error", "t", "|E_d - first|", "t", {"drift discrete energy E_d"}});
-  return p;
-}
-
-/// A system's march with all that is told of it.
-template <DiscreteSystem Sys> class SystemRun final : public SteppedRun {
- public:
-  using G = typename Sys::GroupoidType;
-
-  SystemRun(const Sys& system, const Presentation<Sys>& presentation, const State<G>& initial,
-            const ArrowOf<G>& configuration, const MarchOptions& options, long every, const Observer<Sys>& observer)
-      : system_(system),
-        mode_(options.mode),
-        march_(make_march(system, initial, configuration, options)),
-        recorder_(system, presentation, watched(system, options), every, observer) {}
-
-  const March<Sys>& march() const { return *march_; }
-  Recorder<Sys>& recorder() { return recorder_; }
-
-  StepReport advance() override { return march_->advance(); }
-  std::string failure(const StepReport& report, long step) const override {
-    return step_failure(report, step, march_->point().time, mode_);
-  }
-  bool observe(long step) override {
-    if (!std::isfinite(march_->point().time)) return false;
-    if (step > 0)
-      march_->for_each_inner_stage(
-          [&](const Step<Sys>& inner, double from, double size) { recorder_.watch_constraint(inner, from, size); });
-    recorder_.observe(reported(system_, march_->point()));
-    return true;
-  }
-  Trajectory& trajectory() override { return recorder_.trajectory(); }
-  void persist(Archive& archive) override {
-    archive.tape("march", [&](Tape& tape) { march_->persist(tape); });
-    archive("recorder", recorder_);
-  }
-
- private:
-  Sys system_;
-  TimeMode mode_;
-  std::unique_ptr<March<Sys>> march_;
-  Recorder<Sys> recorder_;
-};
-
 template <DiscreteSystem Sys> struct PlainMarch {
   State<typename Sys::GroupoidType> initial;
   ArrowOf<typename Sys::GroupoidType> configuration;
@@ -198,15 +119,10 @@ RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typenam
       pace.steps = 0;
     }
   }
-  SystemRun<Sys> run(system, presentation, initial, configuration, choice.options, context.record ? pace.every : 0,
-                     observer);
-  result.method = description(run.march().traits());
-  drive(run, pace, context, result);
-  run.recorder().finish(result);
-  if (const long count = run.march().without_root(); count > 0) {
-    result.notes.push_back(without_root_note(count, result.steps, choice.options.without_root));
-    result.ledger.entries.push_back(counted_entry("steps off the energy", count, result.steps));
-  }
+  SystemRun<Sys> run(system, presentation, watched(system, choice.options),
+                     make_march(system, initial, configuration, choice.options), choice.options,
+                     context.record ? pace.every : 0, observer);
+  run.go(pace, context, result);
   return result;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 /// A scene, read and checked, before anything is computed.
 
-#include "run_result.hpp"
 #include "study/trial.hpp"
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/system.hpp>
+#include <lagroid/run/run_result.hpp>
+#include <lagroid/run/stepped_run.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -13,17 +14,6 @@
 #include <vector>
 
 namespace lagroid::app {
-
-/// What the command line asks of a run.
-struct RunContext {
-  bool record = false;             ///< keep the trajectory
-  bool progress = false;           ///< show a bar
-  std::filesystem::path folder{};  ///< where checkpoints are kept; empty: nowhere
-  bool resume = false;             ///< go on from the one kept there
-};
-
-/// Sees every point of a run, in order, beside its recorder; may be null.
-template <class Sys> using Observer = std::function<void(const TrajectoryPoint<Sys>&)>;
 
 /// An initial value of equal steps of order two by Newton, as ensembles march them (simulation.hpp).
 template <DiscreteSystem Sys> struct PlainMarch;

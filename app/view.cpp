@@ -1,14 +1,15 @@
 #include "view.hpp"
 
-#include "hdf5_file.hpp"
-#include "interrupt.hpp"
-#include "kept_file.hpp"
-#include "markup.hpp"
-#include "nesting.hpp"
-#include "output.hpp"
-#include "report.hpp"
-#include "text.hpp"
 #include "viewer/assets.hpp"
+
+#include <lagroid/run/hdf5_file.hpp>
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/nesting.hpp>
+#include <lagroid/run/output.hpp>
+#include <lagroid/run/report.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <H5Cpp.h>
 #include <fmt/format.h>
@@ -209,8 +210,11 @@ std::vector<fs::path> draw_plots(const PlotOptions& options) {
                     file.string()));
   const InterruptGuard guard;
   const Drawing drawing{"plot.gp", {"plot.svg", "plot.png"}};
-  if (const std::string reason = draw(options.run, drawing, false); !reason.empty())
-    throw RunError(fmt::format("{}: {}", options.run, reason));
+  if (const std::string reason = draw(options.run, drawing, false); !reason.empty()) {
+    const std::string line = fmt::format("{}: {}", options.run, reason);
+    if (options.own_script || InterruptGuard::interrupted()) throw RunError(line);
+    throw OutputError(line);  // a script of ours is no mistake
+  }
   std::vector<fs::path> written;
   for (const std::string& picture : drawing.pictures) written.push_back(fs::path(options.run) / picture);
   return written;

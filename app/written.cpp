@@ -1,7 +1,8 @@
 #include "written.hpp"
 
 #include "command.hpp"
-#include "interrupt.hpp"
+
+#include <lagroid/run/interrupt.hpp>
 
 #include <fmt/format.h>
 

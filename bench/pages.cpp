@@ -1,6 +1,6 @@
 #include "pages.hpp"
 
-#include "../app/machine.hpp"
+#include <lagroid/run/machine.hpp>
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ std::string machine() {
   char date[32] = "";
   const std::time_t now = std::time(nullptr);
   std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
-  return fmt::format("{}, {}", lagroid::app::machine(), date);
+  return fmt::format("{}, {}", lagroid::machine(), date);
 }
 
 void write_whole(const std::filesystem::path& file, const std::string& text) {

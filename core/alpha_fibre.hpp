@@ -1,6 +1,7 @@
 #pragma once
 /// Alpha-fibres as the Newton iterations see them.
 
+#include <lagroid/core/directional.hpp>
 #include <lagroid/core/groupoid.hpp>
 
 #include <Eigen/LU>
@@ -76,13 +77,11 @@ template <Groupoid G> class GroupoidFibre {
       using D = Dual<double>;
       const auto q = groupoid_.template cast_object<D>(groupoid_.target(z_));
       const auto back = groupoid_.inverse(groupoid_.tau(q, lagroid::Vector<D, n>(v.template cast<D>())));
-      Matrix out;
-      for (int i = 0; i < n; ++i) {
-        lagroid::Vector<D, n> moved = v.template cast<D>();
-        moved(i).derivative = 1;
-        out.col(i) = derivative_of(groupoid_.tau_inverse(groupoid_.multiply(back, groupoid_.tau(q, moved))));
-      }
-      return out;
+      return jacobian_of<n>(
+          [&](const lagroid::Vector<D, n>& moved) {
+            return groupoid_.tau_inverse(groupoid_.multiply(back, groupoid_.tau(q, moved)));
+          },
+          v);
     }
   }
   Matrix dtau_inverse(const Vector& v) const {

@@ -5,11 +5,23 @@
 
 namespace lagroid {
 
+/// x + e v, e the infinitesimal.
+template <class S, int N> Vector<Dual<S>, N> moved_along(const Vector<S, N>& x, const Vector<S, N>& v) {
+  Vector<Dual<S>, N> out(x.size());
+  for (int i = 0; i < x.size(); ++i) out(i) = Dual<S>(x(i), v(i));
+  return out;
+}
+
+/// e_i, by components (see `joined`).
+template <class S, int N> Vector<S, N> unit_vector(int i) {
+  Vector<S, N> out;
+  for (int j = 0; j < N; ++j) out(j) = S(i == j ? 1.0 : 0.0);
+  return out;
+}
+
 /// d/dt f(x + t v) at t = 0, of the type of f(x): S, or a vector of them. f takes Vector<Dual<S>, N>.
 template <class S, int N, class F> auto derivative_along(const F& f, const Vector<S, N>& x, const Vector<S, N>& v) {
-  Vector<Dual<S>, N> moved(x.size());
-  for (int i = 0; i < x.size(); ++i) moved(i) = Dual<S>(x(i), v(i));
-  const auto there = f(moved);
+  const auto there = f(moved_along(x, v));
   if constexpr (requires { there.derivative; }) {
     return there.derivative;
   } else {
@@ -20,21 +32,32 @@ template <class S, int N, class F> auto derivative_along(const F& f, const Vecto
 /// The derivatives of f : R^N -> R, N passes.
 template <class S, int N, class F> Vector<S, N> gradient_of(const F& f, const Vector<S, N>& x) {
   Vector<S, N> out;
-  for (int i = 0; i < N; ++i) {
-    Vector<S, N> unit;
-    for (int j = 0; j < N; ++j) unit(j) = S(i == j ? 1.0 : 0.0);
-    out(i) = derivative_along(f, x, unit);
-  }
+  for (int i = 0; i < N; ++i) out(i) = derivative_along(f, x, unit_vector<S, N>(i));
   return out;
+}
+
+/// The same for the numbers of a matrix of any size, and f(x) with it. No allocation: `moved` is as large, of dual
+/// numbers.
+template <class X, class Moved, class F>
+typename X::Scalar value_and_gradient_of(const F& f, const X& x, Moved& moved, X& gradient) {
+  using S = typename X::Scalar;
+  S value(0.0);
+  for (Eigen::Index i = 0; i < x.size(); ++i) moved.data()[i] = Dual<S>(x.data()[i], S(0.0));
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    moved.data()[i].derivative = S(1.0);
+    const Dual<S> along = f(moved);
+    moved.data()[i].derivative = S(0.0);
+    gradient.data()[i] = along.derivative;
+    value = along.value;
+  }
+  return value;
 }
 
 /// Row i is the derivative of f_i, f : R^N -> R^D.
 template <int D, class S, int N, class F> Matrix<S, D, N> jacobian_of(const F& f, const Vector<S, N>& x) {
   Matrix<S, D, N> out;
   for (int j = 0; j < N; ++j) {
-    Vector<S, N> unit;
-    for (int i = 0; i < N; ++i) unit(i) = S(i == j ? 1.0 : 0.0);
-    const Vector<S, D> column = derivative_along(f, x, unit);
+    const Vector<S, D> column = derivative_along(f, x, unit_vector<S, N>(j));
     for (int i = 0; i < D; ++i) out(i, j) = column(i);
   }
   return out;

@@ -116,7 +116,8 @@ template <class Derived, int Dimension> class LieGroupoid {
     return compose(g, self().tau(self().target(g), w));
   }
   /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that the numbers in which g is
-  /// stored were too coarse to take.
+  /// stored were too coarse to take, so that the caller can add it to the next w; zero where g's entries are rounded
+  /// as often up as down, as a turning matrix's are (the law "nudging an arrow" asks what thousands of them add up to).
   template <class A, class V> V nudge(A& g, const V& w) const {
     const A by = self().tau(self().target(g), w);
     g = self().project(compose(g, by));
@@ -238,22 +239,39 @@ template <class Derived, int Dimension> class LieGroupoid {
     }
   }
 
-  /// Throws NotComposable unless beta(g) = alpha(h) up to 1e-9, relative to the size of the objects.
-  template <class A> void require_composable(const A& g, const A& h) const {
+  /// How far the arrow ends from the object: the largest difference of coordinates, relative to the largest coordinate
+  /// of the arrow's end where that is above one. NaN where a coordinate is not finite.
+  template <class A, class Q> double end_gap(const A& g, const Q& q) const {
     const auto end = coordinates_of_object(self().target(g));
-    const auto start = coordinates_of_object(self().source(h));
+    const auto object = coordinates_of_object(q);
     double gap = 0;
     double size = 1;
     for (Eigen::Index i = 0; i < end.size(); ++i) {
-      const double difference = std::abs(double(value_of(end(i)) - value_of(start(i))));
-      gap = std::isnan(difference) ? std::numeric_limits<double>::infinity() : std::max(gap, difference);
+      const double difference = std::abs(double(value_of(end(i)) - value_of(object(i))));
+      if (difference > gap || std::isnan(difference)) gap = difference;
       size = std::max(size, std::abs(double(value_of(end(i)))));
     }
-    if (gap <= 1e-9 * size) return;
+    return gap / size;
+  }
+  /// The `end_gap` that rounding may leave.
+  static constexpr double largest_end_gap = 1e-9;
+
+  /// Throws NotComposable unless beta(g) = alpha(h) up to `largest_end_gap`.
+  template <class A> void require_composable(const A& g, const A& h) const {
+    const double gap = end_gap(g, self().source(h));
+    if (gap <= largest_end_gap) return;
     std::ostringstream message;
-    message << Derived::name() << ": arrows do not compose: the first ends at (" << end.transpose()
-            << "), the second starts at (" << start.transpose() << "), " << gap << " apart";
+    message << Derived::name() << ": arrows do not compose: the first ends at ("
+            << coordinates_of_object(self().target(g)).transpose() << "), the second starts at ("
+            << coordinates_of_object(self().source(h)).transpose() << "), " << gap << " apart";
     throw NotComposable(message.str());
+  }
+  /// Throws std::invalid_argument where the initial arrow of a trajectory ends elsewhere than at its initial object.
+  /// What is not finite passes: the first step's status tells of it.
+  template <class A, class Q> void require_initial_end(const A& configuration, const Q& object) const {
+    if (const double gap = end_gap(configuration, object); gap > largest_end_gap)
+      throw std::invalid_argument("configuration: the initial arrow ends " + std::to_string(gap) +
+                                  " away from the initial object; it must end there");
   }
 
  private:

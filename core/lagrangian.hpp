@@ -120,7 +120,7 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
   auto along(const Step<Sys>& step, const Eigen::VectorXd& column) const {
     using D = Dual<double>;
     const Vector<D, size> x = infinitesimal(Vector<double, size>(column.head(size)));
-    const auto lambda = moved_along<conditions>(multipliers(step), column.tail(conditions));
+    const auto lambda = moved_along(multipliers(step), Multipliers<double>(column.tail(conditions)));
     return covector<D>(CotangentChart<G>(cotangent_, step.arrow).template arrow<D>(x), lambda);
   }
 

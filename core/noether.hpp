@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace lagroid {
 
@@ -49,6 +50,19 @@ template <class Sys> struct Symmetry {
             std::move(size_of_terms)};
   }
 };
+
+/// What a ledger watches of a system: its own quantities or, of one that declares symmetries alone, their constants of
+/// the motion.
+template <DiscreteSystem Sys> std::vector<Quantity<Sys>> quantities_of(const Sys& system) {
+  if constexpr (requires { system.quantities(); }) {
+    return system.quantities();
+  } else {
+    std::vector<Quantity<Sys>> out;
+    if constexpr (requires { system.symmetries(); })
+      for (const auto& symmetry : system.symmetries()) out.push_back(symmetry.quantity());
+    return out;
+  }
+}
 
 /// The difference of the two sides of Def. 4.8 at a point of Sigma_L, relative to the size of their terms; not a number
 /// where these are not.

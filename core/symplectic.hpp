@@ -3,20 +3,16 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/cotangent.hpp>
+#include <lagroid/core/directional.hpp>
 
 namespace lagroid {
-
-/// x + u e.
-template <int N> Vector<Dual<double>, N> moved_along(const Vector<double, N>& x, const Vector<double, N>& u) {
-  return x.template cast<Dual<double>>() + infinitesimal(u);
-}
 
 /// The derivative at x of f, a map of R^N over any scalar to vectors, column by column. (One scalar type for maps of
 /// all sizes, and a matrix of dynamic size, spare the compiler.)
 template <int N, class F> Eigen::MatrixXd jacobian(const Vector<double, N>& x, const F& f) {
   Eigen::MatrixXd out;
   for (int i = 0; i < N; ++i) {
-    const auto column = derivative_of(f(moved_along(x, Vector<double, N>(Vector<double, N>::Unit(i)))));
+    const auto column = derivative_along(f, x, unit_vector<double, N>(i));
     if (i == 0) out.resize(column.size(), N);
     out.col(i) = column;
   }
@@ -70,11 +66,7 @@ template <Groupoid G> class CotangentChart {
         groupoid.object_displacement(groupoid.source(g0), from);
     Vector<S, 2 * size> out;
     out.template head<size>() = x;
-    for (int a = 0; a < size; ++a) {
-      Vector<D, size> moved;
-      for (int i = 0; i < size; ++i) moved(i) = D(x(i), S(i == a ? 1.0 : 0.0));
-      out(size + a) = cotangent_.on(p, arrow<D>(moved));
-    }
+    for (int a = 0; a < size; ++a) out(size + a) = cotangent_.on(p, arrow<D>(moved_along(x, unit_vector<S, size>(a))));
     return out;
   }
 
@@ -134,16 +126,12 @@ template <Groupoid G> class PoissonAlgebra {
   /// (rho(e_i)[f])_i at constant mu, and df/dmu.
   template <class Q, class S, class F> auto gradients(const DualPoint<Q, S, n>& z, const F& f) const {
     using D = Dual<S>;
-    std::pair<Vector<S, n>, Vector<S, n>> out;
     const auto q = groupoid_.template cast_object<D>(z.object);
     const Vector<D, n> mu = z.momentum.template cast<D>();
-    for (int i = 0; i < n; ++i) {
-      Vector<D, n> e = Vector<D, n>::Constant(D(0.0));
-      e(i) = D(S(0.0), S(1.0));
-      out.first(i) = f(Point<D>{groupoid_.target(groupoid_.tau(q, e)), mu}).derivative;
-      out.second(i) = f(Point<D>{q, mu + e}).derivative;
-    }
-    return out;
+    const auto along = [&](const Vector<D, n>& u) { return f(Point<D>{groupoid_.target(groupoid_.tau(q, u)), mu}); };
+    const auto by_momentum = [&](const Vector<D, n>& moved) { return f(Point<D>{q, moved}); };
+    return std::pair(gradient_of(along, Vector<S, n>(Vector<S, n>::Constant(S(0.0)))),
+                     gradient_of(by_momentum, z.momentum));
   }
 
   const G& groupoid_;

@@ -1,6 +1,7 @@
 // A groupoid and a constrained system of your own, in one file; docs/tutorial.md goes through it.
 //
-// Dido's problem: the shortest shore that encloses a given area. Run it: build/release/bin/my_system
+// Dido's problem: the shortest shore that encloses a given area. Run it: build/release/bin/my_system [FOLDER]
+#include <lagroid/run/run.hpp>
 #include <lagroid/solvers/testing/certificate.hpp>
 
 #include <fmt/format.h>
@@ -52,14 +53,9 @@ struct Dido : System<Dido, Shores, /*arrow constraints*/ 1> {
             {"north", [](const Point& q) { return Fibre(0, 1, -q(0)); }},
             {"round", [](const Point& q) { return Fibre(-q(1), q(0), -0.5 * q.squaredNorm()); }}};
   }
-  std::vector<Quantity<Dido>> quantities() const {
-    std::vector<Quantity<Dido>> out;
-    for (const auto& symmetry : symmetries()) out.push_back(symmetry.quantity());
-    return out;
-  }
 };
 
-int main() {
+int main(int argc, char** argv) {
   const laws::LawReport axioms = laws::groupoid_laws<Shores>();
   std::cout << axioms;
 
@@ -95,5 +91,10 @@ int main() {
     fmt::print("{}: {}\n", report.subject, report.holds() ? "holds" : "BROKEN");
     all_hold = all_hold && report.holds();
   }
-  return all_hold ? 0 : 1;
+
+  const RunResult once_round =
+      run(system, {{0, 0}, {1, 0, 1}}, {.steps = 126, .name = "Dido", .folder = argc > 1 ? argv[1] : ""});
+  std::cout << text_report(once_round);
+  for (const LedgerEntry& entry : once_round.ledger.entries) all_hold = all_hold && !entry.broken();
+  return all_hold && once_round.converged() ? 0 : 1;
 }

@@ -33,15 +33,6 @@ struct LinearGroup : MatrixGroup<Derived, N, Dimension, Retraction::exponential>
     for (int i = 0; i < rank; ++i) out(i) = x(i);
     return out;
   }
-  template <class S> static Matrix<S, rank, rank> ad(const Vector<S, rank>& x) {
-    const Matrix<S, N, N> h = hat(x);
-    Matrix<S, rank, rank> out;
-    for (int i = 0; i < rank; ++i) {
-      const Matrix<S, N, N> e = Derived::generator(i).template cast<S>();
-      out.col(i) = vee(Matrix<S, N, N>(h * e - e * h));
-    }
-    return out;
-  }
   template <class S> static Matrix<S, N, N> inverse(const Matrix<S, N, N>& g) { return g.eval().inverse(); }
 
   /// By scaling and squaring of exp(X) - I, so that small X keep all digits.

@@ -15,9 +15,9 @@ enum class Retraction { exponential, cayley };
 
 /// A group of N x N matrices as a groupoid over a single object, with Lie algebra coordinates xi in R^n, n = Dimension.
 ///
-/// The derived class supplies hat, its entries basis(i, r, c) = hat(e_i)_rc as constants, vee, exp, log, ad, dexp,
-/// dexp_inverse and inverse; deduced here are the groupoid
-/// operations, the Cayley map and its differentials, and the closed-form translations.
+/// The derived class supplies hat, its entries basis(i, r, c) = hat(e_i)_rc as constants, vee, exp, log, dexp,
+/// dexp_inverse and inverse; deduced here are the groupoid operations, ad, the Cayley map and its differentials, and
+/// the closed-form translations.
 ///
 /// Differentials are left-trivialised ([G] 6.1): d/dt tau(xi + t eta) = tau(xi) hat(dtau_xi eta).
 template <class Derived, int N, int Dimension, Retraction Tau>
@@ -52,6 +52,18 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     } else {
       return Derived::cayley_inverse(g);
     }
+  }
+  /// tau(xi) by a map that is chosen at run time.
+  template <class S> LAGROID_INLINE static Matrix<S, N, N> retract(Retraction map, const Algebra<S>& xi) {
+    return map == Retraction::exponential ? Derived::exp(xi) : Derived::cayley(xi);
+  }
+  /// Its inverse.
+  template <class S> LAGROID_INLINE static Algebra<S> retract_inverse(Retraction map, const Matrix<S, N, N>& g) {
+    return map == Retraction::exponential ? Derived::log(g) : Derived::cayley_inverse(g);
+  }
+  /// The inverse of the matrix of its differential.
+  template <class S> static Matrix<S, Dimension, Dimension> dretract_inverse(Retraction map, const Algebra<S>& xi) {
+    return map == Retraction::exponential ? Derived::dexp_inverse(xi) : Derived::dcayley_inverse(xi);
   }
 
   /// cay(xi) = (I - hat(xi)/2)^{-1} (I + hat(xi)/2).
@@ -95,6 +107,11 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return columns<T>([&](const Matrix<T, N, N>& e) -> Matrix<T, N, N> { return g * e * inverse; });
   }
 
+  /// The matrix of ad_x = [x, .], by commutators; the derived class may write a closed form.
+  template <class S> static Matrix<S, Dimension, Dimension> ad(const Algebra<S>& x) {
+    const Matrix<S, N, N> h = Derived::hat(x);
+    return columns<S>([&](const Matrix<S, N, N>& e) -> Matrix<S, N, N> { return h * e - e * h; });
+  }
   /// [x, y] = ad_x y, the commutator.
   template <class S> static Algebra<S> bracket(const Vector<S, 0>&, const Algebra<S>& x, const Algebra<S>& y) {
     return Derived::template ad<S>(x) * y;

@@ -32,15 +32,6 @@ template <int N> struct Orthogonal : MatrixGroup<Orthogonal<N>, N, N*(N - 1) / 2
       for (int c = r + 1; c < N; ++c) out(index(r, c)) = (x(r, c) - x(c, r)) * 0.5;
     return out;
   }
-  template <class S> static Matrix<S, rank, rank> ad(const Vector<S, rank>& x) {
-    const Matrix<S, N, N> h = hat(x);
-    Matrix<S, rank, rank> out;
-    for (int i = 0; i < rank; ++i) {
-      const Matrix<S, N, N> e = Orthogonal::generator(i).template cast<S>();
-      out.col(i) = vee(Matrix<S, N, N>(h * e - e * h));
-    }
-    return out;
-  }
   template <class S> static Matrix<S, N, N> inverse(const Matrix<S, N, N>& g) { return g.transpose(); }
 
   /// (I - X/2)^{-1} (I + X/2).

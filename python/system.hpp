@@ -8,6 +8,7 @@
 ///
 /// Its march is the class Integrator of the package lagroid.
 
+#include <lagroid/core/noether.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/core/two_sided.hpp>
 #include <lagroid/python/any_march.hpp>
@@ -248,11 +249,10 @@ template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
                 {"arrow", detail::arrow_shape<G>(), true},
                 {"multipliers", {std::size_t(Sys::constraints)}, true},
                 {"step_size", {1}, true}} {
-    if constexpr (requires { system.quantities(); })
-      for (auto& q : system.quantities()) {
-        watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size != nullptr});
-        quantities_.push_back(std::move(q));
-      }
+    for (auto& q : quantities_of(system)) {
+      watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size != nullptr});
+      quantities_.push_back(std::move(q));
+    }
     see();
   }
 

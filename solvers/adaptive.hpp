@@ -1,6 +1,7 @@
 #pragma once
 /// Steps that keep the energy: the step size as an unknown. [G] Example 6.1
 
+#include <lagroid/core/compensation.hpp>
 #include <lagroid/groupoids/time_extended.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/step_control.hpp>
@@ -61,7 +62,7 @@ template <Timed Sys> class AdaptiveIntegrator {
   StepReport advance();
   /// Visits all that the next step goes on from.
   void persist(Tape& tape) {
-    tape(last_size_, time_momentum_, time_momentum_carry_, degenerate_, without_root_);
+    tape(last_size_, time_momentum_, time_momentum_compensation_.lost, degenerate_, without_root_);
     fixed_.persist(tape);
     free_->persist(tape);
     walk_.persist(fixed_.system().groupoid, tape);
@@ -111,7 +112,7 @@ template <Timed Sys> class AdaptiveIntegrator {
   std::optional<StepController> controller_;
   Extrapolation<1 + Sys::dimension + Sys::constraints, 4> past_;
   double time_momentum_ = 0;  ///< p_t = -E_d
-  double time_momentum_carry_ = 0;
+  Compensation<double> time_momentum_compensation_{};
   bool degenerate_ = false;
   int iterations_ = 0;  ///< of all solves since the step began
   long without_root_ = 0;
@@ -268,10 +269,7 @@ template <Timed Sys> void AdaptiveIntegrator<Sys>::accept(const Solved& found) {
   walk_.join(groupoid, found.solution);
   walk_.arrive(found.h);
   last_size_ = found.h;
-  time_momentum_carry_ += found.time_momentum_change;
-  const double momentum = time_momentum_ + time_momentum_carry_;
-  time_momentum_carry_ -= momentum - time_momentum_;
-  time_momentum_ = momentum;
+  time_momentum_compensation_.add(time_momentum_, found.time_momentum_change);
   Unknowns unknowns;
   unknowns << found.h, groupoid.chart(found.solution.step.arrow), found.solution.step.multipliers;
   past_.push(unknowns);

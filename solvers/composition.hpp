@@ -3,6 +3,7 @@
 
 #include <lagroid/core/adjoint.hpp>
 #include <lagroid/core/stepped.hpp>
+#include <lagroid/solvers/composed_step.hpp>
 #include <lagroid/solvers/compositions.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/stepper.hpp>
@@ -102,31 +103,25 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
   Walk<Sys> walk_;
 };
 
-/// The report is that of the worst stage; iterations are those of all.
 template <DiscreteSystem Sys> StepReport CompositionIntegrator<Sys>::advance() {
   const Walk<Sys> before = walk_;
-  StepReport report;
-  int iterations = 0;
   double time = point().time;
-  for (auto& stage : stages_) {
+  const auto solve = [&](Stage& stage) {
     StepSolution<Sys> solution;
     set_time(stage.stepper.system(), time);
-    const StepReport found = stage.stepper.solve(point().state, solution);
-    iterations += found.iterations;
-    if (!found.converged()) {
-      walk_ = before;
-      for (auto& each : stages_) each.stepper.forget();
-      report = found;
-      report.iterations = iterations;
-      return report;
-    }
-    if (!report.converged() || found.excess > report.excess) report = found;
+    const StepReport report = stage.stepper.solve(point().state, solution);
+    if (!report.converged()) return report;
     walk_.join(stage.stepper.system().groupoid, solution);
     stage.last = solution.step;
     time += stage.stepper.system().h;
-  }
-  walk_.arrive_at(start_ + double(point().index + 1) * h_, stages_.back().stepper.system().h);
-  report.iterations = iterations;
+    return report;
+  };
+  const auto restore = [&] {
+    walk_ = before;
+    for (auto& stage : stages_) stage.stepper.forget();
+  };
+  const StepReport report = step_by_stages(stages_, solve, restore);
+  if (report.converged()) walk_.arrive_at(start_ + double(point().index + 1) * h_, stages_.back().stepper.system().h);
   return report;
 }
 

@@ -5,7 +5,7 @@
 #include <lagroid/core/rates.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/method.hpp>
-#include <lagroid/solvers/walk.hpp>
+#include <lagroid/solvers/step_solver.hpp>
 
 #include <utility>
 
@@ -22,7 +22,7 @@ template <HasRates Sys> class RungeKuttaIntegrator {
   RungeKuttaIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration)
       : system_(std::move(system)) {
     point_.state = initial;
-    detail::require_end(system_.groupoid, configuration, initial.object);
+    system_.groupoid.require_initial_end(configuration, initial.object);
     point_.configuration = configuration;
     point_.step = {system_.groupoid.unit(initial.object), Sys::Multipliers::Zero()};
   }

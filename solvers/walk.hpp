@@ -1,35 +1,17 @@
 #pragma once
 /// The accumulation of steps into a trajectory.
 
+#include <lagroid/core/compensation.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
-#include <stdexcept>
-#include <string>
-
 namespace lagroid {
-
-namespace detail {
-
-/// Throws std::invalid_argument unless the arrow ends at the object, to 1e-9 of its size. What is not finite passes:
-/// the first step's status tells of it.
-template <Groupoid G> void require_end(const G& groupoid, const ArrowOf<G>& configuration, const ObjectOf<G>& object) {
-  if constexpr (G::object_coordinate_count() > 0) {
-    const auto end = groupoid.coordinates_of_object(groupoid.target(configuration));
-    const auto start = groupoid.coordinates_of_object(object);
-    if (const double gap = (end - start).norm(); gap > 1e-9 * (1 + start.norm()))
-      throw std::invalid_argument("configuration: the initial arrow ends " + std::to_string(gap) +
-                                  " away from the initial object; it must end there");
-  }
-}
-
-}  // namespace detail
 
 /// The state, configuration and time that a sequence of solved steps leads to.
 ///
 /// The momentum is updated by its increment, mu' = mu + (F+ - F-)(g, lambda): equal to F+ at a solution, and free of
 /// the solve's residual. Momenta on which the Lagrangian does not depend are then kept to the last bit. Objects,
-/// momenta and times are sums with carry: what rounding took so far is given back as soon as it can be stored.
+/// momenta and times are sums with compensation.
 template <DiscreteSystem Sys> class Walk {
  public:
   using G = typename Sys::GroupoidType;
@@ -37,7 +19,7 @@ template <DiscreteSystem Sys> class Walk {
   /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint). Throws
   /// std::invalid_argument where it ends elsewhere.
   Walk(const G& groupoid, const State<G>& initial, const ArrowOf<G>& configuration, double start = 0) {
-    detail::require_end(groupoid, configuration, initial.object);
+    groupoid.require_initial_end(configuration, initial.object);
     point_.time = start;
     point_.state = initial;
     point_.configuration = configuration;
@@ -53,10 +35,7 @@ template <DiscreteSystem Sys> class Walk {
   void arrive(double step_size) {
     ++point_.index;
     point_.step_size = step_size;
-    time_carry_ += step_size;
-    const double time = point_.time + time_carry_;
-    time_carry_ -= time - point_.time;
-    point_.time = time;
+    time_compensation_.add(point_.time, step_size);
   }
   /// The same at a known time, the last arrow's step given.
   void arrive_at(double time, double step_size) {
@@ -68,24 +47,21 @@ template <DiscreteSystem Sys> class Walk {
   /// Visits all that it goes on from.
   void persist(const G& groupoid, Tape& tape) {
     point_.persist(groupoid, tape);
-    tape(momentum_carry_, carry_, time_carry_);
+    tape(momentum_compensation_.lost, place_compensation_, time_compensation_.lost);
   }
 
  private:
   TrajectoryPoint<Sys> point_;
-  AlgebroidVector<G> momentum_carry_ = AlgebroidVector<G>::Zero();
-  AlgebroidVector<G> carry_ = AlgebroidVector<G>::Zero();
-  double time_carry_ = 0;
+  Compensation<AlgebroidVector<G>> momentum_compensation_{AlgebroidVector<G>::Zero()};
+  AlgebroidVector<G> place_compensation_ = AlgebroidVector<G>::Zero();
+  Compensation<double> time_compensation_{};
 };
 
 template <DiscreteSystem Sys> void Walk<Sys>::join(const G& groupoid, const StepSolution<Sys>& solution) {
   point_.step = solution.step;
-  momentum_carry_ += solution.momentum_change;
-  const AlgebroidVector<G> momentum = point_.state.momentum + momentum_carry_;
-  momentum_carry_ -= momentum - point_.state.momentum;
-  point_.state.momentum = momentum;
+  momentum_compensation_.add(point_.state.momentum, solution.momentum_change);
   ArrowOf<G> reached = groupoid.compose(point_.configuration, solution.step.arrow);
-  carry_ = groupoid.nudge(reached, AlgebroidVector<G>(carry_ + solution.remainder));
+  place_compensation_ = groupoid.nudge(reached, AlgebroidVector<G>(place_compensation_ + solution.remainder));
   const ArrowOf<G> projected = groupoid.project(reached);
   point_.configuration = projected;
   const ObjectOf<G> object = groupoid.target(projected);

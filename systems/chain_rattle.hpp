@@ -3,6 +3,7 @@
 
 #include <lagroid/core/numbers_of.hpp>
 #include <lagroid/core/tape.hpp>
+#include <lagroid/solvers/composed_step.hpp>
 #include <lagroid/solvers/compositions.hpp>
 #include <lagroid/systems/pendulum_chain.hpp>
 
@@ -250,17 +251,9 @@ template <int K> StepReport ChainRattle<K>::advance() {
     return report;
   }
   start_ = {q_, v_, end_, slope_};
-  StepReport report;
-  int iterations = 0;
-  for (const double weight : composition_.coefficients) {
-    report = stage(weight * h_);
-    iterations += report.iterations;
-    if (!report.converged()) {
-      std::tie(q_, v_, end_, slope_) = start_;
-      break;
-    }
-  }
-  report.iterations = iterations;
+  const StepReport report = step_by_stages(
+      composition_.coefficients, [&](double weight) { return stage(weight * h_); },
+      [&] { std::tie(q_, v_, end_, slope_) = start_; });
   if (report.converged()) ++index_;
   return report;
 }

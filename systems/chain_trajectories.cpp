@@ -50,8 +50,9 @@ std::vector<learning::Observation> draw_trajectories(const PendulumChain<Eigen::
       for (double& x : s) x = draw.uniform();
       CotangentSpheres<Eigen::Dynamic>::set(z, i, q, cross(q, s));
     }
-    ControlledLieGroupIntegrator march(chain.space(), Field(chain), lie_group_methods::munthe_kaas_54, z,
-                                       LieGroupControl{.tolerance = 1e-13});
+    ControlledLieGroupIntegrator march(
+        chain.space(), Field(chain), lie_group_methods::munthe_kaas_54, z,
+        LieGroupControl{.tolerance = 1e-13, .most_steps = 1'000'000, .stop = which.stop});
     for (int j = 0; j < which.points; ++j) {
       const double time = which.duration * j / (which.points - 1);
       if (j > 0 && !march.advance_to(time).converged())

@@ -13,7 +13,7 @@ struct DrivenBody : RigidBody {
   Vector<double, 3> torque{0, 0, 0};  ///< T, N m, in the body
 
   template <class S, class T> Forces<S, 3> forces(const Matrix<S, 3, 3>& g, const T& step) const {
-    const Vector<S, 3> turn = rotation == RotationMap::exponential ? SO3::log(g) : SO3::cayley_inverse(g);
+    const Vector<S, 3> turn = SO3::retract_inverse(rotation, g);
     Vector<S, 3> half = turn * (-0.5 * drag);
     for (int i = 0; i < 3; ++i) half(i) += step * (0.5 * torque(i));
     return {half, half};

@@ -50,15 +50,12 @@ template <class Derived, class G, int Constraints = 0> class GroupControl : publ
 
   /// xi = tau^{-1}(g) / h.
   template <class S, class T> Algebra<S> velocity(const Element<S>& g, const T& step) const {
-    const Algebra<S> v = map == Retraction::exponential ? G::log(g) : G::cayley_inverse(g);
+    const Algebra<S> v = G::retract_inverse(map, g);
     return v * (1 / step);
   }
   template <class S> Algebra<S> velocity(const Element<S>& g) const { return velocity(g, h); }
   /// tau(h xi).
-  Element<double> arrow(const Algebra<double>& xi) const {
-    const Algebra<double> v = h * xi;
-    return map == Retraction::exponential ? G::exp(v) : G::cayley(v);
-  }
+  Element<double> arrow(const Algebra<double>& xi) const { return G::retract(map, Algebra<double>(h * xi)); }
 
   template <class S, class T> S lagrangian(const Element<S>& g, const T& step) const {
     return self().l(velocity(g, step)) * step;

@@ -1,6 +1,7 @@
 #pragma once
 /// The discrete constrained Lie-Poisson equations: momenta without arrows. [G] 6.1
 
+#include <lagroid/core/directional.hpp>
 #include <lagroid/solvers/status.hpp>
 #include <lagroid/systems/group_control.hpp>
 
@@ -14,18 +15,13 @@ Vector<T, Sys::dimension> lie_poisson_momentum(const Sys& system, const Vector<T
                                                const Vector<T, Sys::constraints>& lambda) {
   using G = typename Sys::GroupoidType;
   using D = Dual<T>;
-  Vector<T, Sys::dimension> differential;
-  for (int i = 0; i < Sys::dimension; ++i) {
-    Vector<D, Sys::dimension> at = xi.template cast<D>();
-    at(i).derivative = T(1.0);
+  const auto augmented = [&](const Vector<D, Sys::dimension>& at) {
     D f = system.l(at);
     if constexpr (Sys::constraints > 0) f += system.psi(at).dot(lambda.template cast<D>());
-    differential(i) = f.derivative;
-  }
-  const Vector<T, Sys::dimension> back = xi * -system.h;
-  const Matrix<T, Sys::dimension, Sys::dimension> dtau_inverse =
-      system.map == Retraction::exponential ? G::dexp_inverse(back) : G::dcayley_inverse(back);
-  return dtau_inverse.transpose() * differential;
+    return f;
+  };
+  const Vector<T, Sys::dimension> differential = gradient_of(augmented, xi);
+  return G::dretract_inverse(system.map, Vector<T, Sys::dimension>(xi * -system.h)).transpose() * differential;
 }
 
 /// One step of these equations.

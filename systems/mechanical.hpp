@@ -1,6 +1,7 @@
 #pragma once
 /// Point-mass mechanics on R^n: what pendulum, Kepler and spherical pendulum have in common.
 
+#include <lagroid/core/directional.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/rates.hpp>
 #include <lagroid/core/split_system.hpp>
@@ -75,14 +76,7 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
     if constexpr (requires { self().gradient(q); }) {
       return -self().gradient(q);
     } else {
-      Vector<S, N> f;
-      Vector<Dual<S>, N> x = q.template cast<Dual<S>>();
-      for (int i = 0; i < N; ++i) {
-        x(i).derivative = S(1.0);
-        f(i) = -self().potential(x).derivative;
-        x(i).derivative = S(0.0);
-      }
-      return f;
+      return -gradient_of([this](const Vector<Dual<S>, N>& x) { return self().potential(x); }, q);
     }
   }
 

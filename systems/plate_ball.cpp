@@ -11,16 +11,9 @@ namespace lagroid {
 LAGROID_STEPS(template, PlateBall);
 
 Matrix<double, 3, 3> PlateBall::rotation_of(const Vector<double, 3>& w) const {
-  switch (rotation) {
-    case RotationForm::exponential:
-      return SO3::exp(w);
-    case RotationForm::cayley:
-      return SO3::cayley(w);
-    default: {
-      const double sine = std::min(w.norm(), 0.99);
-      return sine > 0 ? SO3::exp(Vector<double, 3>(w * (std::asin(sine) / w.norm()))) : SO3::exp(w);
-    }
-  }
+  if (rotation != RotationForm::trace) return SO3::retract(retraction(), w);
+  const double sine = std::min(w.norm(), 0.99);
+  return sine > 0 ? SO3::exp(Vector<double, 3>(w * (std::asin(sine) / w.norm()))) : SO3::exp(w);
 }
 
 Step<PlateBall> PlateBall::first_guess(const State<GroupoidType>& s) const {

@@ -55,14 +55,8 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
 
   /// w(g) in the chosen form.
   template <class S> Vector<S, 3> rotation_vector(const Matrix<S, 3, 3>& turn) const {
-    switch (rotation) {
-      case RotationForm::exponential:
-        return SO3::log(turn);
-      case RotationForm::cayley:
-        return SO3::cayley_inverse(turn);
-      default:
-        return SO3::vee(turn);
-    }
+    if (rotation == RotationForm::trace) return SO3::vee(turn);
+    return SO3::retract_inverse(retraction(), turn);
   }
   /// The rotation g with rotation_vector(g) = w. In the trace form |w| is cut at one.
   Matrix<double, 3, 3> rotation_of(const Vector<double, 3>& w) const;
@@ -104,6 +98,12 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// Turning the table and all on it about its centre; with the plate at rest, moving them.
   std::vector<Symmetry<PlateBall>> symmetries() const;
   std::vector<Quantity<PlateBall>> quantities() const;
+
+ private:
+  /// Of the forms that are one.
+  Retraction retraction() const {
+    return rotation == RotationForm::cayley ? Retraction::cayley : Retraction::exponential;
+  }
 };
 
 LAGROID_STEPS(extern template, PlateBall);

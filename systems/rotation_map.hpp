@@ -11,7 +11,7 @@ using RotationMap = Retraction;
 /// h l(tau^{-1}(g) / h), l(w) = w.I w / 2, with I the principal moments of inertia. [G] 6.1
 template <class S, class T>
 S rotational_action(const Matrix<S, 3, 3>& g, const Vector<double, 3>& inertia, const T& h, RotationMap map) {
-  const Vector<S, 3> w = map == RotationMap::exponential ? SO3::log(g) : SO3::cayley_inverse(g);
+  const Vector<S, 3> w = SO3::retract_inverse(map, g);
   return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * (0.5 / h);
 }
 

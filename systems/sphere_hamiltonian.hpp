@@ -1,7 +1,7 @@
 #pragma once
 /// Hamiltonian motion on (T*S^2)^k from any energy.
 
-#include <lagroid/core/dual.hpp>
+#include <lagroid/core/directional.hpp>
 #include <lagroid/core/jet.hpp>
 #include <lagroid/groupoids/spheres.hpp>
 
@@ -73,12 +73,7 @@ template <class H, int K, class S = double> class HamiltonianField {
         }
       }
     } else {
-      for (Eigen::Index i = 0; i < z.size(); ++i) seeded_.data()[i] = Seed(z.data()[i]);
-      for (Eigen::Index i = 0; i < z.size(); ++i) {
-        seeded_.data()[i].derivative = S(1.0);
-        gradient_.data()[i] = hamiltonian_.energy(seeded_).derivative;
-        seeded_.data()[i].derivative = S(0.0);
-      }
+      value_and_gradient_of([this](const Seeded& at) { return hamiltonian_.energy(at); }, z, seeded_, gradient_);
     }
   }
 

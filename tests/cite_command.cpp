@@ -82,11 +82,8 @@ TEST_F(Cite, RefusesWhatItCannotRead) {
   for (const std::string& wrong :
        {std::string("nowhere.toml"), folder_.string(), example("kepler") + " --set system=nothing",
         example("kepler") + " --set time.method=eular", example("pendulum_chain") + " --set time.method=eular",
-        std::string("--json --bibtex")}) {
-    const Outcome r = run("cite " + wrong);
-    EXPECT_EQ(r.code, 2) << wrong;
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-  }
+        std::string("--json --bibtex")})
+    expect_refused("cite " + wrong);
 }
 
 }  // namespace

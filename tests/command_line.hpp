@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -39,6 +40,28 @@ class CommandLine : public ::testing::Test {
     std::ifstream file(errors);
     r.err.assign(std::istreambuf_iterator<char>(file), {});
     return r;
+  }
+  /// Refused as bad input is: exit 2, and one line with these words.
+  Outcome expect_refused(const std::string& arguments, const std::string& words = "") const {
+    const Outcome r = run(arguments);
+    EXPECT_EQ(r.code, 2) << arguments << "\n" << r.out << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << arguments << "\n" << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << arguments << "\n" << r.err;
+    return r;
+  }
+
+  fs::path write(const std::string& scene) const {
+    const fs::path file = folder_ / "scene.toml";
+    std::ofstream(file) << scene;
+    return file;
+  }
+  /// A scene is refused by name, and leaves no folder.
+  void expect_scene_refused(const std::string& scene, const std::string& words) const {
+    SCOPED_TRACE(scene);
+    const fs::path out = folder_ / "out";
+    const Outcome r = expect_refused("run " + write(scene).string() + " --out " + out.string(), words);
+    EXPECT_NE(r.err.find("scene.toml"), std::string::npos) << r.err;
+    EXPECT_FALSE(fs::exists(out));
   }
   static std::string example(const std::string& name) { return std::string(LAGROID_EXAMPLES) + "/" + name + ".toml"; }
   std::size_t entries() const {

@@ -76,6 +76,18 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return out;
 }
 
+/// The folders of the sources, each of which may include those before it (docs/architecture.md).
+const std::vector<std::string> layers{"core", "groupoids", "solvers", "systems", "run", "app"};
+
+/// Which of the includes in a layer's text name a later one.
+std::vector<std::string> upward_includes(const std::string& layer, const std::string& text) {
+  std::vector<std::string> out;
+  const auto place = [](const std::string& name) { return std::find(layers.begin(), layers.end(), name); };
+  for (const auto& included : matches(text, "#include <lagroid/(\\w+)/"))
+    if (place(included) != layers.end() && place(included) > place(layer)) out.push_back(layer + " -> " + included);
+  return out;
+}
+
 /// The page without its fenced blocks.
 std::string prose_of(std::string page) {
   for (auto at = page.find("```"); at != std::string::npos; at = page.find("```", at))
@@ -168,6 +180,14 @@ TEST(BrokenPage, AnAlteredBlockIsFoundOut) {
   page.replace(page.find(half), half.size(), "(0.6 / h)");
   EXPECT_EQ(foreign_blocks(page, "cpp", read("examples/my_system.cpp")).size(), 1U);
   EXPECT_EQ(foreign_blocks("no code", "cpp", "any").size(), 1U);
+}
+
+TEST(Architecture, LayersIncludeThoseBeforeThem) {
+  for (const auto& layer : layers)
+    for (const char* ending : {".hpp", ".cpp"}) EXPECT_EQ(upward_includes(layer, text_of({layer}, ending)), none);
+}
+TEST(BrokenArchitecture, AnUpwardIncludeIsFoundOut) {
+  EXPECT_EQ(upward_includes("core", "#include <lagroid/run/run.hpp>\n"), std::vector<std::string>{"core -> run"});
 }
 
 TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathematics.md")), none); }

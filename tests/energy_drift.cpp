@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+using namespace lagroid;
 using namespace lagroid::app;
 
 namespace {

@@ -13,6 +13,7 @@
 
 namespace {
 
+using namespace lagroid;
 using namespace lagroid::app;
 
 /// None where it is no such scene, or one whose inner steps could take long.

@@ -57,6 +57,15 @@ grep -q "^lagroid_DIR:PATH=$prefix" "$work/cmake/CMakeCache.txt" || fail "anothe
 cmake --build "$work/cmake" >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "the consumer is not built"; }
 "$work/cmake/compose"
 "$work/cmake/spring"
+if [ -e "$prefix/include/lagroid/run/run.hpp" ] && find "$prefix" -name lagroid-run-targets.cmake | grep -q .; then
+  "$work/cmake/gyrostat" "$work/gyrostat" >"$work/gyrostat.log" || { cat "$work/gyrostat.log" >&2; fail "the gyrostat breaks a promise"; }
+  grep -q "rotor momenta" "$work/gyrostat.log" || fail "the gyrostat has no ledger"
+  if [ -x "$prefix/bin/lagroid" ]; then
+    "$prefix/bin/lagroid" view "$work/gyrostat" >/dev/null || fail "lagroid view does not show the gyrostat"
+    if "$prefix/bin/lagroid" resume "$work/gyrostat" 2>"$work/resume.log"; then fail "lagroid resume went on with it"; fi
+    grep -q "start that program again" "$work/resume.log" || fail "lagroid resume does not say who goes on with it"
+  fi
+fi
 if [ -n "$whole" ]; then
   cmake --build "$work/cmake" --target laws >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "no laws"; }
   "$work/cmake/laws" 2>/dev/null
@@ -112,7 +121,7 @@ refused() { # refused ARGUMENTS-OF-FIND_PACKAGE MESSAGE
   fi
   tr -s ' \n' ' ' <"$work/refused.log" | grep -qF "$2" || { cat "$work/refused.log" >&2; fail "refused without: $2"; }
 }
-refused "COMPONENTS cores" 'lagroid has no component "cores"; it has core, solvers, systems, laws and program'
+refused "COMPONENTS cores" 'lagroid has no component "cores"; it has core, solvers, systems, run, laws and program'
 refused "9.0" 'compatible with requested version "9.0"'
 refused "0.1" 'compatible with requested version "0.1"'
 say "holds"

@@ -1,8 +1,8 @@
 // Verdicts of the ledger: kept, BROKEN, bounded, growing, and none on numbers that are none.
-#include <ledger.hpp>
-#include <recorder.hpp>
 
 #include <lagroid/groupoids/pair.hpp>
+#include <lagroid/run/ledger.hpp>
+#include <lagroid/run/recorder.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 
@@ -16,7 +16,6 @@
 #include <vector>
 
 using namespace lagroid;
-using namespace lagroid::app;
 
 namespace {
 

@@ -192,10 +192,7 @@ TEST_F(Optimise, BadInputIsOneLineThatNamesTheRemedy) {
       {"optimize", "name a scene"},
       {"optimize nowhere.toml", "nowhere.toml"}};
   for (const auto& [arguments, words] : cases) {
-    const Outcome r = run(arguments);
-    EXPECT_EQ(r.code, 2) << arguments << r.out << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << arguments << "\n" << r.err;
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    const Outcome r = expect_refused(arguments, words);
     EXPECT_EQ(nlohmann::json::parse(run(arguments + " --json").out).at("message").get<std::string>() + "\n",
               r.err.substr(std::string("lagroid: ").size()));
   }

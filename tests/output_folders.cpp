@@ -103,11 +103,8 @@ TEST_F(Folders, AnotherKindIsRefusedAndNothingIsTouched) {
       if (!marked) fs::remove(out + "/.lagroid");
       for (const Command& other : all) {
         if (other.kind == all[i].kind) continue;
-        const Outcome r = run(other.words + " --out " + out);
-        EXPECT_EQ(r.code, 2) << other.words << " into " << all[i].kind << "\n" << r.err;
-        EXPECT_NE(r.err.find("it holds " + all[i].kind + " ("), std::string::npos) << r.err;
+        const Outcome r = expect_refused(other.words + " --out " + out, "it holds " + all[i].kind + " (");
         EXPECT_NE(r.err.find("choose another folder"), std::string::npos) << r.err;
-        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
       }
       if (marked) {
         const Outcome r = run("trajectories --count 2 --out " + out + "/trajectory.csv");
@@ -129,10 +126,7 @@ TEST_F(Folders, AnotherSceneIsRefusedAndTheSameIsWrittenAgain) {
     ASSERT_EQ(run(all[i].words + " --out " + out).code, 0) << all[i].words;
     const auto before = everything(out);
     if (!all[i].other.empty()) {
-      const Outcome r = run(all[i].other + " --out " + out);
-      EXPECT_EQ(r.code, 2) << all[i].other;
-      EXPECT_NE(r.err.find("it holds " + all[i].kind + " of "), std::string::npos) << r.err;
-      EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+      expect_refused(all[i].other + " --out " + out, "it holds " + all[i].kind + " of ");
       EXPECT_TRUE(everything(out) == before) << all[i].kind;
     }
     EXPECT_EQ(run(all[i].words + " --out " + out).code, 0) << all[i].words;
@@ -157,11 +151,7 @@ TEST_F(Folders, AFolderAtWorkIsRefused) {
   fs::create_directories(out);
   const int lock = ::open((out + "/.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   ASSERT_EQ(::flock(lock, LOCK_EX), 0);
-  for (const Command& each : all) {
-    const Outcome r = run(each.words + " --out " + out);
-    EXPECT_EQ(r.code, 2) << each.words;
-    EXPECT_NE(r.err.find("another run is at work there"), std::string::npos) << r.err;
-  }
+  for (const Command& each : all) expect_refused(each.words + " --out " + out, "another run is at work there");
   EXPECT_EQ(run("trajectories --count 2 --out " + out + "/data.csv").code, 2);
   EXPECT_EQ(names(out), ".lock ");
   ::close(lock);
@@ -262,6 +252,92 @@ TEST_F(Folders, PartsThatAKillLeftGoWithTheNextCommand) {
   EXPECT_FALSE(fs::exists(out + "/.partial-999999999"));
 }
 
+/// Writes a file as `replace_by_cbor` does.
+void keep_cbor(const fs::path& file, const std::string& body) {
+  const std::size_t sum = std::hash<std::string_view>{}(body);
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(&sum), sizeof sum) << body;
+}
+
+TEST_F(Folders, ASweepWithoutItsMarkIsNobodysHoweverOftenOneAsks) {
+  const auto sweep = commands()[1];
+  const std::string out = path("out");
+  ASSERT_EQ(run(sweep.words + " --out " + out).code, 0);
+  fs::remove(out + "/.lagroid");
+  for (int again = 0; again < 2; ++again) {
+    const Outcome r = run(sweep.other + " --out " + out);
+    EXPECT_EQ(r.code, 2) << r.out;
+    EXPECT_FALSE(fs::exists(out + "/.lagroid"));
+  }
+}
+
+TEST_F(Folders, ASweepIsFinishedWhereItsResultsAreThereAsTheyWere) {
+  const auto sweep = commands()[1];
+  const std::string out = path("out");
+  ASSERT_EQ(run(sweep.words + " --out " + out).code, 0);
+  fs::remove(out + "/members.csv");
+  EXPECT_EQ(run(sweep.words + " --out " + out).code, 0);
+  EXPECT_TRUE(fs::exists(out + "/members.csv"));
+  fs::resize_file(out + "/sweep.h5", 100);
+  EXPECT_EQ(run(sweep.words + " --out " + out).code, 0);
+  EXPECT_GT(fs::file_size(out + "/sweep.h5"), 100u);
+}
+
+TEST_F(Folders, AMarkThatIsDamagedIsNobodysPermission) {
+  const std::string out = path("out");
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=5 --out " + out).code, 0);
+  std::ofstream(out + "/.lagroid") << "{";
+  const auto before = everything(out);
+  const Outcome r = run("run " + example("pendulum") + " --out " + out);
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find(".lagroid"), std::string::npos) << r.err;
+  EXPECT_EQ(everything(out), before);
+}
+
+TEST_F(Folders, WhatLinksLeadToIsLeftAlone) {
+  const std::string precious = path("precious");
+  std::ofstream(precious) << "mine";
+  const std::string out = path("out");
+  fs::create_directories(out);
+  fs::create_symlink(precious, out + "/.lagroid.partial");
+  EXPECT_EQ(run("run " + example("kepler") + " --set time.steps=5 --out " + out).code, 0);
+  std::ifstream in(precious);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "mine");
+
+  const std::string other = path("other");
+  const std::string elsewhere = path("elsewhere");
+  fs::create_directories(other);
+  fs::create_directories(elsewhere);
+  std::ofstream(elsewhere + "/scene.toml") << "mine";
+  fs::create_symlink(elsewhere, other + "/checkpoint");
+  EXPECT_EQ(run("run " + example("kepler") + " --set time.steps=5 --out " + other).code, 2);
+  std::ifstream kept(elsewhere + "/scene.toml");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(kept), {}), "mine");
+}
+
+TEST_F(Folders, FilesOfAUsersBesideACheckpointStay) {
+  const std::string out = path("out");
+  fs::create_directories(out + "/checkpoint");
+  std::ofstream(out + "/checkpoint/rows-of-mine.csv") << "mine";
+  EXPECT_EQ(run("run " + example("kepler") + " --set time.steps=5 --out " + out).code, 0);
+  EXPECT_TRUE(fs::exists(out + "/checkpoint/rows-of-mine.csv"));
+}
+
+TEST_F(Folders, ListsOfOtherLengthsInACheckpointAreRefused) {
+  const std::string out = path("out");
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=40 --out " + out).code, 0);
+  const std::string file = out + "/checkpoint/state.cbor";
+  std::ifstream in(file, std::ios::binary);
+  const std::string kept{std::istreambuf_iterator<char>(in), {}};
+  in.close();
+  auto json = nlohmann::json::from_cbor(kept.substr(sizeof(std::size_t)));
+  json["state"]["run"]["recorder"]["first 0"] = std::vector<double>();
+  const auto cbor = nlohmann::json::to_cbor(json);
+  keep_cbor(file, {cbor.begin(), cbor.end()});
+  const Outcome r = run("resume " + out + " --set time.steps=100");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("checkpoint"), std::string::npos) << r.err;
+}
+
 /// The program that is said to have made it is another one.
 void make_of_another_build(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -272,9 +348,17 @@ void make_of_another_build(const fs::path& file) {
   EXPECT_NE(program.find("build "), std::string::npos) << program;
   json["program"] = program + "x";
   const auto cbor = nlohmann::json::to_cbor(json);
-  const std::string body(cbor.begin(), cbor.end());
-  const std::size_t sum = std::hash<std::string_view>{}(body);
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(&sum), sizeof sum) << body;
+  keep_cbor(file, {cbor.begin(), cbor.end()});
+}
+
+TEST_F(Folders, ACheckpointNestedBeyondAllMeaningIsRefused) {
+  const std::string out = path("out");
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=40 --out " + out).code, 0);
+  // Arrays of one element inside each other.
+  keep_cbor(out + "/checkpoint/state.cbor", std::string(300000, '\x81') + '\x01');
+  const Outcome r = run("resume " + out + " --set time.steps=100");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("checkpoint"), std::string::npos) << r.err;
 }
 
 TEST_F(Folders, TheRunOfAnotherBuildIsRefused) {
@@ -335,11 +419,8 @@ TEST_F(Folders, AFileThatCannotBeReadIsNamed) {
   for (const char* name : {"memory.toml", "memory.csv"}) fs::create_symlink("/proc/self/mem", path(name));
   for (const std::string& words : {"run " + path("memory.toml"), "sweep " + path("memory.toml") + " --out " + path("x"),
                                    "optimize " + path("memory.toml"), "learn " + path("memory.csv")}) {
-    const Outcome r = run(words);
-    EXPECT_EQ(r.code, 2) << words << r.err;
-    EXPECT_NE(r.err.find("cannot be read"), std::string::npos) << r.err;
+    const Outcome r = expect_refused(words, "cannot be read");
     EXPECT_NE(r.err.find("memory."), std::string::npos) << r.err;
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
   }
 }
 

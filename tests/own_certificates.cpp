@@ -3,6 +3,7 @@
 #include <lagroid/systems/pendulum.hpp>
 
 #include "broken.hpp"
+#include "on_a_sphere.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,11 @@ TEST(Certificate, OfAWrongPromiseIsWithheld) {
     EXPECT_TRUE(of_promises ? laws::seen_broken(suite.law("energy")) : suite.holds()) << suite;
   }
   EXPECT_EQ(promises, 1);
+}
+
+TEST(Certificate, OfForcesAndSkatesOnASphere) {
+  for (const auto& report : laws::certificate(Viscous{}, draw_on_the_sphere)) EXPECT_TRUE(report.holds()) << report;
+  for (const auto& report : laws::certificate(SkateOnASphere{}, draw_skate)) EXPECT_TRUE(report.holds()) << report;
 }
 
 }  // namespace

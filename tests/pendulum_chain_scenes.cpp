@@ -45,11 +45,6 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 
 class PendulumChains : public CommandLine {
  protected:
-  fs::path write(const std::string& text) const {
-    const fs::path file = folder_ / "scene.toml";
-    std::ofstream(file) << text;
-    return file;
-  }
   /// The chain of a reference, by `time`.
   static std::string scene_of(const Json& chain, const std::string& time) {
     return "system = \"pendulum_chain\"\n[parameters]\nmasses = " + chain.at("masses").dump() +
@@ -230,15 +225,7 @@ TEST_F(PendulumChains, WhatIsWrongIsSaidInOneLine) {
       {two + hanging + grid + "[solver]\ntolerance = 1e-3\n", "solver: unknown key"},
       {two + "[boundary]\n" + grid, "missing key \"initial\""},
   };
-  for (const auto& [text, words] : cases) {
-    const fs::path file = write("system = \"pendulum_chain\"\n" + text);
-    const Outcome r = run("run " + file.string() + " --out " + (folder_ / "out").string());
-    EXPECT_EQ(r.code, 2) << text << r.err;
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << text << "says: " << r.err;
-    EXPECT_NE(r.err.find("scene.toml"), std::string::npos) << r.err;
-    EXPECT_FALSE(fs::exists(folder_ / "out"));
-  }
+  for (const auto& [text, words] : cases) expect_scene_refused("system = \"pendulum_chain\"\n" + text, words);
 }
 
 /// Steps that cannot be made end the run with what was computed, and say what to do.

@@ -2,7 +2,7 @@
 
 #include "command_line.hpp"
 
-#include <curves.hpp>
+#include <lagroid/run/curves.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -12,7 +12,7 @@
 #include <set>
 #include <sstream>
 
-using namespace lagroid::app;
+using namespace lagroid;
 
 namespace {
 
@@ -22,7 +22,7 @@ Trajectory trajectory(std::size_t nodes, const std::vector<std::pair<std::string
   Trajectory out;
   for (std::size_t k = 0; k < nodes; ++k) out.time.push_back(double(k) / double(nodes - 1));
   for (const auto& [label, f] : columns) {
-    Series s{label, {label}, "1", "", false, {}};
+    Columns s{label, {label}, "1", "", false, {}};
     for (const double t : out.time) s.values.push_back(f(t));
     out.series.push_back(std::move(s));
   }

@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+using namespace lagroid;
 using namespace lagroid::app;
 
 namespace {

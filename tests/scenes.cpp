@@ -16,14 +16,7 @@ std::string contents(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-class Scenes : public CommandLine {
- protected:
-  fs::path write(const std::string& text) const {
-    const fs::path file = folder_ / "scene.toml";
-    std::ofstream(file) << text;
-    return file;
-  }
-};
+class Scenes : public CommandLine {};
 
 const std::string bob = "[[body]]\nkind = \"point\"\nname = \"bob\"\nmass = 1\nposition = [0, 0, -1]\n";
 const std::string brick =
@@ -217,15 +210,7 @@ TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
        "too small"},
       {"[[body]]\nkind = \"point\"\nname = \"a b\"\nmass = 1\nposition = [0, 0, 0]\n" + grid, "use letters"},
   };
-  for (const auto& [text, words] : cases) {
-    const fs::path file = write(text);
-    const Outcome r = run("run " + file.string() + " --out " + (folder_ / "out").string());
-    EXPECT_EQ(r.code, 2) << text << r.err;
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << text << "says: " << r.err;
-    EXPECT_NE(r.err.find("scene.toml"), std::string::npos) << r.err;
-    EXPECT_FALSE(fs::exists(folder_ / "out"));
-  }
+  for (const auto& [text, words] : cases) expect_scene_refused(text, words);
 }
 
 TEST_F(Scenes, PlanarBodiesAreTurnedAsBodiesInSpaceAre) {

@@ -810,10 +810,7 @@ TEST_F(Sweep, BadInputIsOneLineThatNamesTheRemedy) {
       {from("no.h5") + there, "HDF5"},
       {from("nowhere.csv") + there, "there is no such file"}};
   for (const auto& [arguments, words] : cases) {
-    const Outcome r = run("sweep " + arguments);
-    EXPECT_EQ(r.code, 2) << arguments << r.out << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << arguments << "\n" << r.err;
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    expect_refused("sweep " + arguments, words);
     EXPECT_FALSE(fs::exists(out("bad"))) << arguments;
   }
 }

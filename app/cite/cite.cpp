@@ -1,17 +1,18 @@
 #include "cite.hpp"
 
-#include "../checkpoint.hpp"
 #include "../command.hpp"
-#include "../output_folder.hpp"
 #include "../sweep/sweep_scene.hpp"
 #include "references.hpp"
 
 #include <lagroid/core/version.hpp>
+#include <lagroid/run/checkpoint.hpp>
+#include <lagroid/run/output_folder.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <system_error>
 
 namespace lagroid::app {
 
@@ -30,7 +31,8 @@ std::vector<Use> uses_in(const CiteOptions& options) {
     for (const Reference& reference : references()) all.push_back({&reference, ""});
     return all;
   }
-  if (!fs::is_directory(options.subject)) {
+  std::error_code ignored;
+  if (!fs::is_directory(options.subject, ignored)) {
     const Section scene = read_scene(options.subject, options.overrides);
     return uses_of(scene.has("scene") ? read_sweep(options.subject, options.overrides).scene : scene);
   }

@@ -1,10 +1,11 @@
 #include "draw.hpp"
 
-#include "../markup.hpp"
-#include "../output_folder.hpp"
 #include "numbers.hpp"
 #include "trajectory_files.hpp"
 
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/output_folder.hpp>
 #include <lagroid/systems/chain_trajectories.hpp>
 
 #include <fmt/format.h>
@@ -52,6 +53,7 @@ int draw(const DrawOptions& options) {
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   const std::string name = file.filename().string();
   const std::array<const char*, 1> files{name.c_str()};
+  const InterruptGuard guard;
   try {
     require_trajectory_file(file);
     const OutputFolder held(folder, OutputKind::data, std::nullopt, files);
@@ -61,7 +63,8 @@ int draw(const DrawOptions& options) {
                                                 .points = options.points,
                                                 .duration = options.duration,
                                                 .noise = options.noise,
-                                                .seed = options.seed});
+                                                .seed = options.seed,
+                                                .stop = InterruptGuard::interrupted});
     write_whole(folder, files, [&](const std::filesystem::path& staging) {
       write_observations(rows, staging / name);
       return std::vector{name};
@@ -73,6 +76,9 @@ int draw(const DrawOptions& options) {
   } catch (const std::invalid_argument& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const std::runtime_error& error) {
+    if (InterruptGuard::interrupted())
+      return refuse(options.json, exit_interrupted, "interrupted",
+                    fmt::format("{}: interrupted; nothing was written", options.out));
     return refuse(options.json, exit_failed, "not_followed", error.what());
   }
   const nlohmann::ordered_json json{{"status", "drawn"},

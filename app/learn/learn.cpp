@@ -1,12 +1,13 @@
 #include "learn.hpp"
 
-#include "../interrupt.hpp"
-#include "../markup.hpp"
-#include "../progress.hpp"
 #include "../written.hpp"
 #include "learn_files.hpp"
 #include "numbers.hpp"
 #include "trajectory_files.hpp"
+
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/progress.hpp>
 
 #include <fmt/format.h>
 

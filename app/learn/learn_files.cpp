@@ -1,9 +1,9 @@
 #include "learn_files.hpp"
 
-#include "../clock.hpp"
-#include "../kept_file.hpp"
-#include "../markup.hpp"
-#include "../text.hpp"
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <fmt/format.h>
 
@@ -97,6 +97,12 @@ nlohmann::ordered_json known(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
 }
 
+/// What decides what is learned, beside data and model; other test data measure the same.
+std::string as_text(const LearnOptions& o) {
+  return fmt::format("{} {} {:.17g} {:.17g} {} {} {} {:.17g}", o.integrator, o.substeps, o.noise,
+                     o.validation.value_or(-1), o.starts, o.iterations, o.seed, o.enough);
+}
+
 }  // namespace
 
 nlohmann::ordered_json lesson_json(const Lesson& lesson) {
@@ -184,7 +190,8 @@ std::string lesson_text(const Lesson& lesson) {
 
 OutputFolder folder_for_lesson(const fs::path& folder, const Lesson& lesson) {
   const OutputSource source{{"data", contents(lesson.options.data).value_or("")},
-                            {"model", lesson.learned.model->name()}};
+                            {"model", lesson.learned.model->name()},
+                            {"options", as_text(lesson.options)}};
   return {folder, OutputKind::model, source, files};
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 /// What a training says and leaves.
 
-#include "../output_folder.hpp"
 #include "learn.hpp"
 #include "model_file.hpp"
 
+#include <lagroid/run/output_folder.hpp>
 #include <lagroid/solvers/learning/measures.hpp>
 #include <lagroid/solvers/learning/train.hpp>
 

@@ -1,7 +1,7 @@
 #include "model_file.hpp"
 
-#include "../kept_file.hpp"
-#include "../nesting.hpp"
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/nesting.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
 #include "optimisation_files.hpp"
 
-#include "../clock.hpp"
-#include "../hdf5_file.hpp"
-#include "../markup.hpp"
-#include "../text.hpp"
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/hdf5_file.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,9 @@
 #pragma once
 /// What a minimisation leaves: words, JSON, files.
 
-#include "../output_folder.hpp"
 #include "optimisation_scene.hpp"
+
+#include <lagroid/run/output_folder.hpp>
 
 #include <nlohmann/json.hpp>
 

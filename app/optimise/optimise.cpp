@@ -1,13 +1,13 @@
 #include "optimise.hpp"
 
-#include "../interrupt.hpp"
-#include "../markup.hpp"
-#include "../progress.hpp"
 #include "../written.hpp"
 #include "methods.hpp"
 #include "optimisation_files.hpp"
 #include "problems.hpp"
 
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/progress.hpp>
 #include <lagroid/solvers/optimisation/penalised.hpp>
 
 #include <fmt/format.h>

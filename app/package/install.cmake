@@ -32,7 +32,7 @@ list(APPEND definitions LAGROID_REGISTER_BYTES=${register_bytes})
 target_compile_definitions(lagroid_core INTERFACE $<INSTALL_INTERFACE:LAGROID_REGISTER_BYTES=${register_bytes}>)
 
 # development
-foreach(folder core groupoids systems solvers)
+foreach(folder core groupoids systems solvers run)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid COMPONENT development
           FILES_MATCHING PATTERN "*.hpp")
 endforeach()
@@ -45,6 +45,10 @@ foreach(part core lagroid laws)
   install(TARGETS ${target} EXPORT lagroid-${part}-targets COMPONENT development)
   install(EXPORT lagroid-${part}-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
 endforeach()
+if(LAGROID_APP)
+  install(TARGETS lagroid_run lagroid_machine EXPORT lagroid-run-targets COMPONENT development)
+  install(EXPORT lagroid-run-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
+endif()
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/lagroid-config.cmake.in ${PROJECT_BINARY_DIR}/lagroid-config.cmake
                               INSTALL_DESTINATION ${cmake_folder})
 # While the major version is 0, the minor one says what goes together.

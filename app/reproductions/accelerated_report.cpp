@@ -1,8 +1,8 @@
 #include "accelerated_report.hpp"
 
-#include "../clock.hpp"
-#include "../machine.hpp"
-#include "../output_folder.hpp"
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/machine.hpp>
+#include <lagroid/run/output_folder.hpp>
 
 #include <fmt/format.h>
 

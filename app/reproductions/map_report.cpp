@@ -1,5 +1,6 @@
-#include "../output_folder.hpp"
 #include "constrained_maps.hpp"
+
+#include <lagroid/run/output_folder.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 #include "newton_report.hpp"
 
-#include "../output_folder.hpp"
-
+#include <lagroid/run/output_folder.hpp>
 #include <lagroid/solvers/arclength.hpp>
 
 #include <fmt/format.h>

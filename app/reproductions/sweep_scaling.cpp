@@ -1,11 +1,12 @@
 #include "sweep_scaling.hpp"
 
-#include "../clock.hpp"
-#include "../machine.hpp"
-#include "../output_folder.hpp"
 #include "../sweep/schedule.hpp"
 #include "../sweep/sweep_files.hpp"
 #include "../sweep/sweep_folder.hpp"
+
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/machine.hpp>
+#include <lagroid/run/output_folder.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/LU>

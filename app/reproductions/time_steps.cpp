@@ -1,8 +1,7 @@
 #include "time_steps.hpp"
 
-#include "../output_folder.hpp"
-
 #include <lagroid/core/discrete_energy.hpp>
+#include <lagroid/run/output_folder.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulum.hpp>

@@ -2,8 +2,8 @@
 /// A scene of bodies while it is read: its bodies by name, and where they are at the start.
 
 #include "../scene_reader.hpp"
-#include "../shape.hpp"
 
+#include <lagroid/run/shape.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <array>

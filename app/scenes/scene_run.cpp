@@ -1,11 +1,11 @@
 #include "scene_run.hpp"
 
-#include "../ledger.hpp"
 #include "../simulation.hpp"
-#include "../stepped_run.hpp"
 #include "../systems/attitude.hpp"
 #include "scene_bodies.hpp"
 
+#include <lagroid/run/ledger.hpp>
+#include <lagroid/run/stepped_run.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
 
 #include <fmt/format.h>
@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <stdexcept>
 
 namespace lagroid::app {
@@ -68,7 +69,7 @@ struct Node {
 
 /// A series and how its row is read off a node.
 struct Recorded {
-  Series series;
+  Columns series;
   std::function<void(const Node&, std::vector<double>&)> read;
 };
 
@@ -285,6 +286,9 @@ class Promises {
   void observe(const Node& node) {
     const auto& [motion, cost, m, kinetic, potential, residual] = node;
     residual_ = std::isnan(residual) ? residual : std::max(residual_, residual);
+    const auto& places = motion.configuration().x;
+    positions_.observe(
+        [&] { return std::span<const double>(places.empty() ? nullptr : places.front().data(), 3 * places.size()); });
     if (keeps_energy_) {
       const double energy = kinetic + potential + motion.dissipated();
       energy_.observe(&energy, kinetic + std::abs(potential));
@@ -296,6 +300,7 @@ class Promises {
 
   void persist(Archive& archive) {
     archive("residual", residual_);
+    archive("positions", positions_);
     archive("energy", energy_);
     archive("momentum", momentum_);
     archive("angular momentum", angular_);
@@ -308,12 +313,14 @@ class Promises {
       ledger.entries.push_back(momentum_.entry());
       ledger.entries.push_back(angular_.entry());
     }
+    positions_.withhold_verdicts(ledger);
   }
 
  private:
   bool keeps_energy_;
   bool isolated_;
   double residual_ = 0;
+  PositionWatch positions_;
   QuantityWatch energy_, momentum_, angular_;
 };
 
@@ -462,23 +469,7 @@ class Run final : public SteppedRun {
   }
   Trajectory& trajectory() override { return result_.trajectory; }
   void persist(Archive& archive) override {
-    auto state = motion_->state();
-    archive("index", state.index);
-    archive("dissipated", state.dissipated);
-    archive("place", state.place);
-    archive("place carry", state.place_carry);
-    archive("momentum", state.momentum);
-    archive("momentum carry", state.momentum_carry);
-    archive("spin", state.spin);
-    archive("spin carry", state.spin_carry);
-    archive("turned", state.turned);
-    archive("attitude", state.attitude);
-    for (std::size_t i = 0; i < state.multipliers.size(); ++i)
-      archive(fmt::format("multipliers {}", i), state.multipliers[i]);
-    for (std::size_t i = 0; i < state.stages.size(); ++i) archive(fmt::format("stage {}", i), state.stages[i]);
-    archive("clock", state.clock);
-    archive("derived", state.derived);
-    if (archive.restoring()) motion_->restore(state);
+    archive.tape("motion", [&](Tape& tape) { motion_->persist(tape); });
     archive("cost", cost_);
     archive("last observed", last_observed_);
     archive("promises", *promises_);

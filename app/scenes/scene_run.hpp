@@ -1,9 +1,9 @@
 #pragma once
 /// Running scenes of bodies.
 
-#include "../run_result.hpp"
 #include "../task.hpp"
 
+#include <lagroid/run/run_result.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <functional>

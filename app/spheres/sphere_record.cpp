@@ -55,18 +55,18 @@ void SphereRecord::declare(Trajectory& trajectory) const {
     for (const char* axis : axes) places.push_back(fmt::format("{}{}", axis, i));
   series.push_back({"position", places, "m", "of the bobs, z up", false, {}});
   series.push_back({"direction", labels(k, "q{}{}", axes), "1", "unit vectors q along the rods", false, {}});
-  series.push_back(velocities ? Series{"angular_velocity",
-                                       labels(k, "w{}{}", axes),
-                                       "rad/s",
-                                       "w of the rods in space, q' = w x q",
-                                       false,
-                                       {}}
-                              : Series{"momentum",
-                                       labels(k, "p{}{}", axes),
-                                       "kg m^2/s",
-                                       "p of the directions, tangent to the spheres",
-                                       false,
-                                       {}});
+  series.push_back(velocities ? Columns{"angular_velocity",
+                                        labels(k, "w{}{}", axes),
+                                        "rad/s",
+                                        "w of the rods in space, q' = w x q",
+                                        false,
+                                        {}}
+                              : Columns{"momentum",
+                                        labels(k, "p{}{}", axes),
+                                        "kg m^2/s",
+                                        "p of the directions, tangent to the spheres",
+                                        false,
+                                        {}});
   for (const auto& q : quantities_) series.push_back({q.column, {q.column}, q.unit, q.name, false, {}});
   for (const auto& q : quantities_)
     series.push_back({"drift of " + q.name, {"drift " + q.name}, q.unit, "deviation from the first value", false, {}});

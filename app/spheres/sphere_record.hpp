@@ -1,10 +1,11 @@
 #pragma once
 /// What is recorded, promised and shown of a motion on (T*S^2)^k.
 
-#include "../archive.hpp"
-#include "../ledger.hpp"
-#include "../run_result.hpp"
 #include "sphere_system.hpp"
+
+#include <lagroid/run/archive.hpp>
+#include <lagroid/run/ledger.hpp>
+#include <lagroid/run/run_result.hpp>
 
 #include <vector>
 

@@ -1,11 +1,12 @@
 #include "sphere_run.hpp"
 
-#include "../output_folder.hpp"
 #include "../simulation.hpp"
-#include "../stepped_run.hpp"
 #include "sphere_record.hpp"
 #include "sphere_start.hpp"
 #include "sphere_time.hpp"
+
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/stepped_run.hpp>
 
 #include <fmt/format.h>
 

@@ -1,9 +1,10 @@
 #pragma once
 /// Running scenes on (T*S^2)^k.
 
-#include "../run_result.hpp"
 #include "../task.hpp"
 #include "sphere_system.hpp"
+
+#include <lagroid/run/run_result.hpp>
 
 #include <limits>
 #include <memory>

@@ -1,7 +1,8 @@
 #include "sphere_time.hpp"
 
-#include "../interrupt.hpp"
 #include "../simulation.hpp"
+
+#include <lagroid/run/interrupt.hpp>
 
 #include <fmt/format.h>
 

@@ -1,9 +1,10 @@
 #include "accuracy.hpp"
 
-#include "../clock.hpp"
 #include "experiment.hpp"
 #include "measure.hpp"
 #include "methods.hpp"
+
+#include <lagroid/run/clock.hpp>
 
 #include <fmt/format.h>
 

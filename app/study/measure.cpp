@@ -1,6 +1,6 @@
 #include "measure.hpp"
 
-#include "../clock.hpp"
+#include <lagroid/solvers/processor_time.hpp>
 
 #include <fmt/format.h>
 

@@ -1,19 +1,20 @@
 #include "study.hpp"
 
-#include "../interrupt.hpp"
-#include "../kept_file.hpp"
-#include "../machine.hpp"
-#include "../nesting.hpp"
-#include "../output_folder.hpp"
-#include "../progress.hpp"
 #include "../scene_reader.hpp"
 #include "../shell.hpp"
-#include "../text.hpp"
 #include "../written.hpp"
 #include "accuracy.hpp"
 #include "experiment.hpp"
 #include "methods.hpp"
 #include "study_files.hpp"
+
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/machine.hpp>
+#include <lagroid/run/nesting.hpp>
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/progress.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -198,7 +199,8 @@ int study(const StudyOptions& options) {
     findings.methods = chosen_methods("--methods", options.methods, experiment.methods);
     Steps steps{read_steps(options.steps, experiment.end), options.longest};
     if (!options.out.empty())
-      folder.emplace(options.out, OutputKind::study, OutputSource{{"scene", scene.whole()}}, study_files);
+      folder.emplace(
+          folder_for_study(options.out, scene, options.methods, steps.sizes, options.reference, options.repetitions));
     Progress progress("study", 1000, !options.json);
     const InterruptGuard guard;
     experiment.interrupted = [&guard] { return guard.interrupted(); };

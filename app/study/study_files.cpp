@@ -1,14 +1,15 @@
 #include "study_files.hpp"
 
-#include "../clock.hpp"
-#include "../gnuplot.hpp"
-#include "../markup.hpp"
-#include "../output_folder.hpp"
-#include "../text.hpp"
 #include "costs.hpp"
 #include "methods.hpp"
 
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/gnuplot.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/text.hpp>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -20,10 +21,10 @@
 
 namespace lagroid::app {
 
-const std::vector<const char*> study_files{"study.csv", "study.json", "study.md",  "study.gp",
-                                           "study.svg", "study.png",  "study.html"};
-
 namespace {
+
+constexpr std::array study_files{"study.csv", "study.json", "study.md",  "study.gp",
+                                 "study.svg", "study.png",  "study.html"};
 
 using Json = nlohmann::ordered_json;
 
@@ -281,6 +282,13 @@ std::string markdown(const Findings& findings, bool pictures) {
 }
 
 }  // namespace
+
+OutputFolder folder_for_study(const std::filesystem::path& folder, const Section& scene, const std::string& methods,
+                              const std::vector<double>& steps, const std::string& reference, int repetitions) {
+  const std::string options =
+      fmt::format("{}\n{:.17g}\n{}\n{}", methods, fmt::join(steps, ","), reference, repetitions);
+  return {folder, OutputKind::study, OutputSource{{"scene", scene.whole()}, {"options", options}}, study_files};
+}
 
 std::vector<std::string> recommendation(const Findings& findings) {
   std::vector<std::string> out;

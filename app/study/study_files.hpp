@@ -3,6 +3,8 @@
 
 #include "survey.hpp"
 
+#include <lagroid/run/output_folder.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -28,7 +30,10 @@ struct Findings {
   bool interrupted = false;  ///< not all was measured
 };
 
-extern const std::vector<const char*> study_files;
+/// The folder for a study of that scene with those options, for this process alone; another budget or target makes a
+/// better study of the same. `steps`: their sizes, where they are given. Throws as OutputFolder does.
+OutputFolder folder_for_study(const std::filesystem::path& folder, const Section& scene, const std::string& methods,
+                              const std::vector<double>& steps, const std::string& reference, int repetitions);
 
 /// What is recommended, a line each.
 std::vector<std::string> recommendation(const Findings& findings);

@@ -1,7 +1,6 @@
 #include "survey.hpp"
 
-#include "../clock.hpp"
-
+#include <lagroid/run/clock.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 
 #include <fmt/format.h>

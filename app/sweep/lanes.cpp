@@ -1,9 +1,9 @@
 #include "lanes.hpp"
 
-#include "../interrupt.hpp"
 #include "../simulation.hpp"
 #include "../systems/readers.hpp"
 
+#include <lagroid/run/interrupt.hpp>
 #include <lagroid/systems/ensembles.hpp>
 
 #include <fmt/format.h>

@@ -1,7 +1,8 @@
 #include "members.hpp"
 
-#include "../interrupt.hpp"
 #include "../registry.hpp"
+
+#include <lagroid/run/interrupt.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,16 +20,16 @@ namespace {
 constexpr long most_apart = 1'000'000'000;  // [output] every
 
 /// What a series is called in a list of names: by itself, or by single columns.
-bool named_in(const std::vector<std::string>& names, const Series& series, std::size_t component) {
+bool named_in(const std::vector<std::string>& names, const Columns& series, std::size_t component) {
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
     return name == series.name || name == series.components[component];
   });
 }
 
-bool is_drift(const Series& series) { return series.name.starts_with("drift of "); }
+bool is_drift(const Columns& series) { return series.name.starts_with("drift of "); }
 
 /// The row that belongs to a node; null where there is none.
-const double* row_of(const Series& series, std::size_t node) {
+const double* row_of(const Columns& series, std::size_t node) {
   if (series.on_arrows && node == 0) return nullptr;
   const std::size_t row = series.on_arrows ? node - 1 : node;
   return (row + 1) * series.width() <= series.values.size() ? &series.values[row * series.width()] : nullptr;
@@ -36,7 +37,7 @@ const double* row_of(const Series& series, std::size_t node) {
 
 void keep_node(const Trajectory& t, std::size_t node, const std::string& group, const std::vector<std::string>* names,
                long at, Part& part) {
-  for (const Series& s : t.series) {
+  for (const Columns& s : t.series) {
     const double* row = row_of(s, node);
     for (std::size_t i = 0; row != nullptr && i < s.width(); ++i)
       if (names != nullptr ? named_in(*names, s, i) : !is_drift(s))
@@ -46,7 +47,7 @@ void keep_node(const Trajectory& t, std::size_t node, const std::string& group, 
 
 void keep_series(const Trajectory& t, const std::vector<std::string>& names, long at, Part& part) {
   part.set_series(at, "series/t", "s", "time", t.time);
-  for (const Series& s : t.series)
+  for (const Columns& s : t.series)
     for (std::size_t i = 0; i < s.width(); ++i) {
       if (!named_in(names, s, i)) continue;
       std::vector<double> values;
@@ -140,12 +141,12 @@ Part try_scene(const Section& sweep, const Section& scene, const Keep& keep) {
   else if (!few.numbers_at("time.steps").empty())
     few = few.with({{"time.steps", {1}}});
   const RunResult result = run_scene(few, {.record = true});
-  const std::vector<Series>& recorded = result.trajectory.series;
+  const std::vector<Columns>& recorded = result.trajectory.series;
   Part part(0, 1);
   keep_result(result, keep, 0, part);
   if (recorded.empty()) return part;
   std::vector<std::string> known;
-  for (const Series& s : recorded) {
+  for (const Columns& s : recorded) {
     known.push_back(s.name);
     if (s.width() > 1 || s.components[0] != s.name) known.insert(known.end(), s.components.begin(), s.components.end());
   }

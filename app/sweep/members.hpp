@@ -1,9 +1,10 @@
 #pragma once
 /// Running the members of a sweep.
 
-#include "../run_result.hpp"
 #include "design.hpp"
 #include "part.hpp"
+
+#include <lagroid/run/run_result.hpp>
 
 #include <memory>
 #include <optional>

@@ -1,5 +1,6 @@
-#include "../output_folder.hpp"
 #include "ranks.hpp"
+
+#include <lagroid/run/output_folder.hpp>
 
 namespace lagroid::app {
 

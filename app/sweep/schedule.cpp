@@ -1,8 +1,7 @@
 #include "schedule.hpp"
 
-#include "../clock.hpp"
-
 #include <lagroid/solvers/ensemble/tasks.hpp>
+#include <lagroid/solvers/processor_time.hpp>
 
 #include <tbb/global_control.h>
 

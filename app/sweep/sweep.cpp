@@ -1,13 +1,5 @@
 #include "sweep.hpp"
 
-#include "../clock.hpp"
-#include "../interrupt.hpp"
-#include "../kept_file.hpp"
-#include "../markup.hpp"
-#include "../nesting.hpp"
-#include "../output_folder.hpp"
-#include "../progress.hpp"
-#include "../run_result.hpp"
 #include "../scene_reader.hpp"
 #include "../study/accuracy.hpp"
 #include "../written.hpp"
@@ -17,6 +9,14 @@
 #include "sweep_files.hpp"
 #include "sweep_folder.hpp"
 
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/nesting.hpp>
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/progress.hpp>
+#include <lagroid/run/run_result.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 
 #include <fmt/format.h>

@@ -1,11 +1,11 @@
 #include "sweep_files.hpp"
 
-#include "../gnuplot.hpp"
-#include "../hdf5_file.hpp"
-#include "../machine.hpp"
-#include "../markup.hpp"
-#include "../output_folder.hpp"
-#include "../text.hpp"
+#include <lagroid/run/gnuplot.hpp>
+#include <lagroid/run/hdf5_file.hpp>
+#include <lagroid/run/machine.hpp>
+#include <lagroid/run/markup.hpp>
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

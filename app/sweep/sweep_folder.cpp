@@ -1,12 +1,15 @@
 #include "sweep_folder.hpp"
 
-#include "../kept_file.hpp"
-#include "../machine.hpp"
 #include "sweep_files.hpp"
+
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/machine.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <string>
 #include <system_error>
 
@@ -24,6 +27,28 @@ bool is_part(const fs::path& file) {
   return digits != 0 && digits != std::string::npos &&
          (name.substr(digits) == ".cbor" || name.substr(digits) == ".cbor.partial");
 }
+
+/// Whether it holds what `SweepFolder` keeps.
+bool is_of_a_sweep(const Json& kept) {
+  const auto is = [&](const char* key, bool (Json::*kind)() const noexcept, bool needed) {
+    return kept.contains(key) ? (kept[key].*kind)() : !needed;
+  };
+  return kept.is_object() && is("program", &Json::is_string, true) && is("scene", &Json::is_string, true) &&
+         is("notes", &Json::is_array, true) && is("finished", &Json::is_boolean, false) &&
+         is("results", &Json::is_object, false);
+}
+
+/// What a file amounts to: its size, and of those that fit into memory without a thought its bytes.
+Json amount_of(const fs::path& file) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  if (error) return nullptr;
+  constexpr std::uintmax_t most_looked_at = 1 << 26;
+  return {std::uint64_t(size), size <= most_looked_at ? sum_of(contents(file).value_or("")) : 0};
+}
+
+/// What a sweep leaves beside its pictures.
+constexpr std::array results{"sweep.h5", "members.csv", "summary.json", "summary.txt"};
 
 }  // namespace
 
@@ -65,12 +90,16 @@ SweepFolder::SweepFolder(const fs::path& folder, const SweepScene& sweep, bool o
       held_(folder, OutputKind::sweep, source_of(sweep), sweep_files),
       parts_(folder),
       kept_(read_cbor(file())) {
-  if ((kept_ && !held_.known()) || (!kept_ && parts_.any()))
+  if ((kept_ && !held_.known()) || (!kept_ && parts_.any())) {
+    held_.disown();
     throw RunError(
         fmt::format("--out {}: holds parts of a sweep, but {}, which says of which one, is missing or damaged; choose "
                     "another folder, or remove this one",
                     folder.string(), kept_ ? ".lagroid" : file().filename().string()));
+  }
   if (!kept_) return;
+  if (!is_of_a_sweep(*kept_))
+    throw RunError(fmt::format("{}: is damaged; choose another folder, or remove this one", file().string()));
   if (finished()) parts_.remove_all();  // whoever finished it may have been killed before
   const std::string made_by = kept_->value("program", "");
   if (made_by == program()) return;
@@ -86,11 +115,11 @@ SweepFolder::SweepFolder(const fs::path& folder, const SweepScene& sweep, bool o
 }
 
 bool SweepFolder::finished() const {
-  const auto there = [&](const char* name) {
-    std::error_code ignored;
-    return fs::is_regular_file(folder_ / name, ignored);
-  };
-  return kept_ && kept_->value("finished", false) && there("sweep.h5") && there("summary.json") && there("summary.txt");
+  if (!kept_ || !kept_->value("finished", false)) return false;
+  const Json left = kept_->value("results", Json::object());
+  return !left.empty() && std::all_of(results.begin(), results.end(), [&](const char* name) {
+    return left.contains(name) && left[name] == amount_of(folder_ / name);
+  });
 }
 
 void SweepFolder::restore(SweepScene& sweep) const {
@@ -134,6 +163,7 @@ Part SweepFolder::joined(const SweepScene& sweep) const {
 
 void SweepFolder::finish() {
   (*kept_)["finished"] = true;
+  for (const char* name : results) (*kept_)["results"][name] = amount_of(folder_ / name);
   replace_by_cbor(file(), *kept_);
   parts_.remove_all();
 }

@@ -1,9 +1,10 @@
 #pragma once
 /// The folder of a sweep while it goes on: what is finished is there, and stays when all else is lost.
 
-#include "../output_folder.hpp"
 #include "part.hpp"
 #include "sweep_scene.hpp"
+
+#include <lagroid/run/output_folder.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 #include "sweep_scene.hpp"
 
-#include "../machine.hpp"
+#include <lagroid/run/machine.hpp>
 
 #include <fmt/format.h>
 

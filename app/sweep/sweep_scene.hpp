@@ -1,9 +1,10 @@
 #pragma once
 /// What a sweep file says.
 
-#include "../output_folder.hpp"
 #include "design.hpp"
 #include "members.hpp"
+
+#include <lagroid/run/output_folder.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -1,10 +1,10 @@
 #pragma once
 /// Attitudes between scenes (quaternions) and systems (rotation matrices), and the moments of what turns.
 
-#include "../run_result.hpp"
 #include "../scene_reader.hpp"
 
 #include <lagroid/groupoids/so3.hpp>
+#include <lagroid/run/run_result.hpp>
 
 #include <fmt/format.h>
 

@@ -22,7 +22,7 @@ inline State<SO3> read_turning(const Section& initial) {
 }
 
 /// I^{-1} M at every node.
-template <class Sys> ExtraSeries<Sys> angular_velocity_of(const Vector<double, 3>& inertia) {
+template <class Sys> ExtraColumns<Sys> angular_velocity_of(const Vector<double, 3>& inertia) {
   return {{"angular_velocity", {"w1", "w2", "w3"}, "rad/s", "of the body, in its frame", false, {}},
           [inertia](const TrajectoryPoint<Sys>& point, double* out) {
             Eigen::Map<Vector<double, 3>> w(out);

@@ -2,9 +2,10 @@
 
 #include "libraries.hpp"
 
-#include "../../app/clock.hpp"
-#include "../../app/output_folder.hpp"
 #include "../pages.hpp"
+
+#include <lagroid/run/clock.hpp>
+#include <lagroid/run/output_folder.hpp>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ namespace peers {
 
 namespace {
 
-using lagroid::app::duration;
+using lagroid::duration;
 
 constexpr double long_time = 1e4;
 
@@ -285,12 +286,12 @@ void write_page(const std::vector<Findings>& all) {
   std::vector<const char*> files{"runs.csv", "figures.gp"};
   for (const std::string& name : pictures) files.push_back(name.c_str());
   const auto data = [&](const std::filesystem::path& staging) {
-    lagroid::app::write_text(runs_csv(all), staging / "runs.csv");
-    lagroid::app::write_text(figures(all), staging / "figures.gp");
+    lagroid::write_text(runs_csv(all), staging / "runs.csv");
+    lagroid::write_text(figures(all), staging / "figures.gp");
     return std::vector<std::string>{"runs.csv", "figures.gp"};
   };
   std::string reason;
-  lagroid::app::write_and_draw(docs / "peers", files, data, {"figures.gp", pictures}, reason);
+  lagroid::write_and_draw(docs / "peers", files, data, {"figures.gp", pictures}, reason);
   if (!reason.empty())
     fmt::print(stderr, "lagroid_peers: no pictures: {}; in docs/peers, gnuplot figures.gp draws them\n", reason);
   std::string sections;

@@ -14,7 +14,7 @@
 ///
 /// and, where y is bound to a submanifold, `void project(std::array<S, unknowns>& y) const`.
 
-#include "../../app/clock.hpp"
+#include "../../solvers/processor_time.hpp"
 
 #include <array>
 #include <cmath>
@@ -85,7 +85,7 @@ S distance_over(const std::array<S, N>& a, const std::array<S, N>& b, int first,
 /// The ratio of steps by which a method of this order gains a digit, at least one and a third and at most two.
 inline double ladder(double order) { return std::fmin(2, std::fmax(4.0 / 3, std::pow(10, 1 / order))); }
 
-using lagroid::app::processor_time;
+using lagroid::processor_time;
 
 inline constexpr double longest_run = 5;  ///< s; one that takes longer is given up
 inline constexpr const char* took_too_long = "took too long";

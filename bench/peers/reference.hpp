@@ -3,17 +3,19 @@
 
 #include "problem.hpp"
 
+#include "../../core/compensation.hpp"
+
 namespace peers {
 
 /// y(end) by extrapolation of the midpoint rule (Gragg, Bulirsch and Stoer) in twelve columns, order 24, with equal
-/// steps of about `step`. The sum over the steps carries what rounding took.
+/// steps of about `step`, summed with compensation.
 template <class S, class P>
 std::array<S, P::unknowns> extrapolated(const P& problem, std::array<S, P::unknowns> y, double end, double step) {
   using State = std::array<S, P::unknowns>;
   constexpr int columns = 12;
   const long steps = std::lround(std::ceil(end / step));
   const S whole = S(end) / S(steps);
-  State carry{};
+  std::array<lagroid::Compensation<S>, P::unknowns> compensation{};
   State slope{};
   for (long n = 0; n < steps; ++n) {
     std::array<State, columns> table;
@@ -45,12 +47,7 @@ std::array<S, P::unknowns> extrapolated(const P& problem, std::array<S, P::unkno
         for (std::size_t i = 0; i < y.size(); ++i) coarse[i] = fine[i] + (fine[i] - coarse[i]) * factor;
       }
     }
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      carry[i] += table[0][i];
-      const S next = y[i] + carry[i];
-      carry[i] -= next - y[i];
-      y[i] = next;
-    }
+    for (std::size_t i = 0; i < y.size(); ++i) compensation[i].add(y[i], table[0][i]);
   }
   return y;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// Long computations called from Python.
 
-#include <interrupt.hpp>
+#include <lagroid/run/interrupt.hpp>
 
 #include <pybind11/pybind11.h>
 
@@ -20,12 +20,12 @@ template <class F> auto computing(const F& compute, bool& interrupted) {
     explicit Signals(bool& seen) : interrupted(seen) {}
     ~Signals() {
       guard.reset();
-      const int signal = app::InterruptGuard::forget();
+      const int signal = lagroid::InterruptGuard::forget();
       interrupted = signal == SIGINT;
       if (signal != 0 && !interrupted) std::raise(signal);
     }
     bool& interrupted;
-    std::optional<app::InterruptGuard> guard{std::in_place};
+    std::optional<lagroid::InterruptGuard> guard{std::in_place};
   };
   const Signals signals(interrupted);
   const py::gil_scoped_release unlocked;

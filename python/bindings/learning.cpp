@@ -7,8 +7,8 @@
 #include <learn/learn_files.hpp>
 #include <learn/model_file.hpp>
 #include <learn/trajectory_files.hpp>
-#include <output_folder.hpp>
 
+#include <lagroid/run/output_folder.hpp>
 #include <lagroid/solvers/learning/measures.hpp>
 #include <lagroid/solvers/learning/train.hpp>
 #include <lagroid/systems/chain_trajectories.hpp>
@@ -104,7 +104,7 @@ std::shared_ptr<Learned> learn(const Trajectories& data, const std::string& mode
   training.validation = validation;
   training.enough = enough;
   training.seconds = seconds;
-  training.stop = app::InterruptGuard::interrupted;
+  training.stop = lagroid::InterruptGuard::interrupted;
   out->trained = computing([&] { return learning::train(out->model(), data, training); });
   if (out->trained.usable()) out->hamiltonian.parameters = out->trained.parameters;
   return out;
@@ -163,7 +163,7 @@ void bind_learning(py::module_& module) {
       .def_static("read", load, py::arg("file"), "Reads a model.json. Raises DataError.")
       .def(
           "write",
-          [](const Learned& l, const fs::path& file) { app::write_text(app::model_text(l.hamiltonian), file); },
+          [](const Learned& l, const fs::path& file) { lagroid::write_text(app::model_text(l.hamiltonian), file); },
           py::arg("file"), "Writes a model.json, which a scene can run.")
       .def_property_readonly(
           "name", [](const Learned& l) { return l.model().name(); }, "Of the potential.")
@@ -228,7 +228,7 @@ void bind_learning(py::module_& module) {
           "measure",
           [](const Learned& l, const Trajectories& data, double tolerance) {
             return computing([&] {
-              return learning::measure(l.model(), l.theta(), data, tolerance, app::InterruptGuard::interrupted);
+              return learning::measure(l.model(), l.theta(), data, tolerance, lagroid::InterruptGuard::interrupted);
             });
           },
           py::arg("data"), py::kw_only(), py::arg("tolerance") = 1e-12, "On data that it was not trained on.")

@@ -4,12 +4,12 @@
 #include "bindings.hpp"
 #include "computing.hpp"
 
-#include <archive.hpp>
-#include <ledger.hpp>
 #include <simulation.hpp>
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/python/any_march.hpp>
+#include <lagroid/run/archive.hpp>
+#include <lagroid/run/ledger.hpp>
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ class Integrator {
       scratch_.emplace_back(each.components.size());
       if (ledger)
         watches_.emplace_back(each.name, each.promise, each.components.size(),
-                              each.sized ? app::SizeOf::terms : app::SizeOf::value);
+                              each.sized ? lagroid::SizeOf::terms : lagroid::SizeOf::value);
     }
     observe();
   }
@@ -103,7 +103,7 @@ class Integrator {
         }
         out->steps = k;
         if (k % every == 0 || k == count) record(*out);
-        if (app::InterruptGuard::interrupted()) break;
+        if (lagroid::InterruptGuard::interrupted()) break;
       }
       out->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return out;
@@ -115,7 +115,7 @@ class Integrator {
     const Busy busy(busy_);
     if (origin_.is_none())
       throw py::type_error("only an integrator that a system's integrator(...) has made can be pickled or copied");
-    app::Archive archive;
+    lagroid::Archive archive;
     persist(archive);
     const std::vector<std::uint8_t> state = nlohmann::json::to_cbor(archive.fields());
     const py::bytes bytes(std::string(state.begin(), state.end()));
@@ -130,7 +130,7 @@ class Integrator {
     auto out = std::make_unique<Integrator>(begun.march_, begun.ledger_, origin);
     const auto refuse = [] { return py::value_error("an integrator pickled by another lagroid; begin it anew"); };
     try {
-      app::Archive archive(nlohmann::json::from_cbor(kept[2].cast<std::string>()));
+      lagroid::Archive archive(nlohmann::json::from_cbor(kept[2].cast<std::string>()));
       out->persist(archive);
     } catch (const nlohmann::json::exception&) {
       throw refuse();
@@ -149,10 +149,10 @@ class Integrator {
     return march_->time();
   }
   MethodTraits traits() const { return march_->traits(); }
-  std::vector<app::LedgerEntry> ledger() const {
+  std::vector<lagroid::LedgerEntry> ledger() const {
     const Busy busy(busy_);
-    std::vector<app::LedgerEntry> out;
-    if (ledger_ && march_->constrained()) out.push_back(app::constraint_entry(largest_residual_, residual_size_));
+    std::vector<lagroid::LedgerEntry> out;
+    if (ledger_ && march_->constrained()) out.push_back(lagroid::constraint_entry(largest_residual_, residual_size_));
     for (const auto& watch : watches_) out.push_back(watch.entry());
     return out;
   }
@@ -202,7 +202,7 @@ class Integrator {
     read();
   }
   /// Visits all that a pickle holds beside the origin.
-  void persist(app::Archive& archive) {
+  void persist(lagroid::Archive& archive) {
     archive.tape("march", [&](Tape& tape) { march_->persist(tape); });
     archive("largest residual", largest_residual_);
     archive("residual size", residual_size_);
@@ -214,7 +214,7 @@ class Integrator {
     return report;
   }
   std::string failure(const StepReport& report) const {
-    return app::step_failure(report, march_->index() + 1, march_->time(), march_->mode());
+    return lagroid::step_failure(report, march_->index() + 1, march_->time(), march_->mode());
   }
   void observe() {
     if (ledger_ && march_->constrained() && march_->index() > 0) {
@@ -222,13 +222,13 @@ class Integrator {
       // The size of the constraints' terms changes slowly: looked at where a residual stands out.
       if (!(residual <= largest_residual_) || residual_size_ == 0) {
         residual_size_ = std::max(residual_size_, march_->residual_size());
-        largest_residual_ = app::worse(largest_residual_, residual);
+        largest_residual_ = lagroid::worse(largest_residual_, residual);
       }
     }
     for (std::size_t i = 0; i < watches_.size(); ++i) {
       if (march_->watched()[i].on_arrows && march_->index() == 0) continue;
       const double size = march_->watch(i, scratch_[i].data());
-      watches_[i].observe(scratch_[i].data(), march_->watched()[i].sized ? size : app::norm_of(scratch_[i]));
+      watches_[i].observe(scratch_[i].data(), march_->watched()[i].sized ? size : lagroid::norm_of(scratch_[i]));
     }
   }
   void record(Marched& out) const {
@@ -250,7 +250,7 @@ class Integrator {
   py::object origin_;
   double largest_residual_ = 0;
   double residual_size_ = 0;
-  std::vector<app::QuantityWatch> watches_;
+  std::vector<lagroid::QuantityWatch> watches_;
   std::vector<std::vector<double>> scratch_;
   mutable std::atomic<bool> busy_ = false;
 };
@@ -347,7 +347,7 @@ void bind_marches(py::module_& module) {
           "state", [](const Integrator& self) { return py::make_tuple(self.now("object"), self.now("momentum")); },
           "(object, momentum).")
       .def_property_readonly(
-          "method", [](const Integrator& self) { return app::description(self.traits()); },
+          "method", [](const Integrator& self) { return lagroid::description(self.traits()); },
           "What the steps declare of themselves.")
       .def_property_readonly("ledger", &Integrator::ledger, "What was promised and found, over all steps so far.")
       .def("quantity", &Integrator::quantity, py::arg("name"), "One of the system's quantities at this node.");

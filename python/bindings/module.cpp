@@ -6,12 +6,12 @@
 #include <learn/model_file.hpp>
 #include <listing.hpp>
 #include <optimise/matrices.hpp>
-#include <output_folder.hpp>
 #include <scene_reader.hpp>
 #include <study/methods.hpp>
-#include <text.hpp>
 
 #include <lagroid/core/version.hpp>
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/text.hpp>
 
 #include <pybind11/stl/filesystem.h>
 
@@ -25,7 +25,7 @@ namespace {
 
 void raise(const char* name, const char* what) {
   const py::object type = py::module_::import("lagroid.errors").attr(name);
-  PyErr_SetString(type.ptr(), app::visible(what).c_str());
+  PyErr_SetString(type.ptr(), lagroid::visible(what).c_str());
 }
 
 /// The program's mistakes as the classes of lagroid/errors.py, with their one-line messages.
@@ -34,9 +34,9 @@ void translate(std::exception_ptr thrown) {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const app::SceneError& error) {
     raise("SceneError", error.what());
-  } catch (const app::OutputError& error) {
+  } catch (const lagroid::OutputError& error) {
     raise("OutputError", error.what());
-  } catch (const app::RunError& error) {
+  } catch (const lagroid::RunError& error) {
     raise("OutputError", error.what());
   } catch (const app::DataError& error) {
     raise("DataError", error.what());

@@ -122,7 +122,7 @@ class PythonObjective final : public Objective {
 
 /// Ctrl-C ends it; so does what Python raises.
 Callback watch() {
-  return [](const Iterate&, const Point&) { return !app::InterruptGuard::interrupted(); };
+  return [](const Iterate&, const Point&) { return !lagroid::InterruptGuard::interrupted(); };
 }
 
 std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::function& fun,
@@ -154,7 +154,7 @@ std::shared_ptr<Optimum> minimise_scene(const Scene& scene, bool history,
                                         const std::optional<std::filesystem::path>& folder) {
   const app::Section file = scene.read();
   const app::OptimisationScene read = app::read_optimisation(file, scene.file.value_or(""));
-  std::optional<app::OutputFolder> held;
+  std::optional<lagroid::OutputFolder> held;
   if (folder) held.emplace(app::folder_for_optimisation(*folder, file));
   const Instance& instance = read.instance;
   auto out = std::make_shared<Optimum>();

@@ -5,10 +5,11 @@
 #include "computing.hpp"
 #include "scene.hpp"
 
-#include <checkpoint.hpp>
-#include <output.hpp>
+#include <lagroid/run/checkpoint.hpp>
+#include <lagroid/run/output.hpp>
+#include <lagroid/run/report.hpp>
+
 #include <registry.hpp>
-#include <report.hpp>
 
 #include <fmt/format.h>
 
@@ -26,19 +27,19 @@ namespace lagroid::python {
 namespace {
 
 namespace fs = std::filesystem;
-using app::Endpoint, app::LedgerEntry, app::Minimum, app::RunResult, app::Series;
+using lagroid::Endpoint, lagroid::LedgerEntry, lagroid::Minimum, lagroid::RunResult, lagroid::Columns;
 
 /// Runs the scene; with a folder, keeps checkpoints there and leaves the files of a run.
 std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std::optional<fs::path>& folder,
                                bool resume) {
-  std::optional<app::OutputFolder> held;
-  if (folder) held.emplace(resume ? app::folder_of_run(*folder) : app::folder_for_run(*folder, scene));
+  std::optional<lagroid::OutputFolder> held;
+  if (folder) held.emplace(resume ? lagroid::folder_of_run(*folder) : lagroid::folder_for_run(*folder, scene.whole()));
   bool interrupted = false;
   auto result = computing(
       [&] {
         auto made = std::make_shared<RunResult>(app::run_scene(
             scene, {.record = record || folder, .progress = false, .folder = folder.value_or(""), .resume = resume}));
-        if (folder) app::write_outputs(*made, *folder);
+        if (folder) lagroid::write_outputs(*made, *folder);
         return made;
       },
       interrupted);
@@ -49,12 +50,12 @@ std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std
 std::shared_ptr<RunResult> resume(const fs::path& folder, std::optional<long> steps, bool other_build) {
   std::vector<std::string> overrides;
   if (steps) overrides.push_back(fmt::format("time.steps={}", *steps));
-  const std::string text = app::Checkpoint::scene_of(folder);
-  if (!other_build) app::Checkpoint::require_this_build(folder);
+  const std::string text = lagroid::Checkpoint::scene_of(folder);
+  if (!other_build) lagroid::Checkpoint::require_this_build(folder);
   return run(app::parse_scene(text, folder.string() + "/checkpoint/scene.toml", overrides), true, folder, true);
 }
 
-py::array values(const Series& series, py::handle owner) {
+py::array values(const Columns& series, py::handle owner) {
   const auto width = py::ssize_t(series.width());
   const auto rows = width > 0 ? py::ssize_t(series.values.size()) / width : 0;
   if (width == 1) return view(series.values, owner);
@@ -65,13 +66,13 @@ py::array values(const Series& series, py::handle owner) {
 py::array column(const py::object& self, const std::string& label) {
   const auto& trajectory = self.cast<const RunResult&>().trajectory;
   if (label == "t") return view(trajectory.time, self);
-  for (const Series& series : trajectory.series)
+  for (const Columns& series : trajectory.series)
     for (std::size_t i = 0; i < series.width(); ++i)
       if (series.components[i] == label) {
         const auto width = py::ssize_t(series.width());
         return view(series.values.data() + i, {py::ssize_t(series.values.size()) / width}, {width}, self);
       }
-  for (const Series& series : trajectory.series)
+  for (const Columns& series : trajectory.series)
     if (series.name == label) return values(series, self);
   throw py::key_error(trajectory.series.empty() ? label + ": nothing was recorded" : label);
 }
@@ -80,7 +81,7 @@ std::vector<std::string> columns(const RunResult& result) {
   std::vector<std::string> out;
   if (result.trajectory.series.empty()) return out;
   out.emplace_back("t");
-  for (const Series& series : result.trajectory.series)
+  for (const Columns& series : result.trajectory.series)
     out.insert(out.end(), series.components.begin(), series.components.end());
   return out;
 }
@@ -147,23 +148,23 @@ void bind_scenes(py::module_& module) {
       .def_readonly("normal", &Minimum::normal, "False: abnormal, its multipliers are not unique.")
       .def_readonly("negative_directions", &Minimum::negative_directions, "Directions that lower the action.");
 
-  py::class_<Series>(module, "Series", "A recorded quantity: a row for each node, or for each arrow.")
-      .def_readonly("name", &Series::name, "Of the data set in files.")
-      .def_readonly("components", &Series::components, "The labels of its columns.")
-      .def_readonly("unit", &Series::unit, "Of its numbers.")
-      .def_readonly("meaning", &Series::meaning, "In words.")
-      .def_readonly("on_arrows", &Series::on_arrows, "A row for each arrow: one fewer than there are nodes.")
+  py::class_<Columns>(module, "Columns", "A recorded quantity: a row for each node, or for each arrow.")
+      .def_readonly("name", &Columns::name, "Of the data set in files.")
+      .def_readonly("components", &Columns::components, "The labels of its columns.")
+      .def_readonly("unit", &Columns::unit, "Of its numbers.")
+      .def_readonly("meaning", &Columns::meaning, "In words.")
+      .def_readonly("on_arrows", &Columns::on_arrows, "A row for each arrow: one fewer than there are nodes.")
       .def_property_readonly(
-          "values", [](const py::object& self) { return values(self.cast<const Series&>(), self); },
+          "values", [](const py::object& self) { return values(self.cast<const Columns&>(), self); },
           "(rows,) or (rows, width); the run's own numbers.");
 
-  py::class_<app::Panel>(module, "Panel", "Curves that belong in one picture.")
-      .def_readonly("title", &app::Panel::title, "Above it.")
-      .def_readonly("x_label", &app::Panel::x_label, "Below the x axis.")
-      .def_readonly("y_label", &app::Panel::y_label, "Beside the y axis.")
-      .def_readonly("x", &app::Panel::x, "The column on the x axis.")
-      .def_readonly("curves", &app::Panel::curves, "Columns.")
-      .def_readonly("equal_axes", &app::Panel::equal_axes, "Whether both have one scale.");
+  py::class_<lagroid::Panel>(module, "Panel", "Curves that belong in one picture.")
+      .def_readonly("title", &lagroid::Panel::title, "Above it.")
+      .def_readonly("x_label", &lagroid::Panel::x_label, "Below the x axis.")
+      .def_readonly("y_label", &lagroid::Panel::y_label, "Beside the y axis.")
+      .def_readonly("x", &lagroid::Panel::x, "The column on the x axis.")
+      .def_readonly("curves", &lagroid::Panel::curves, "Columns.")
+      .def_readonly("equal_axes", &lagroid::Panel::equal_axes, "Whether both have one scale.");
 
   py::class_<RunResult, std::shared_ptr<RunResult>>(
       module, "Run", "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
@@ -207,7 +208,7 @@ void bind_scenes(py::module_& module) {
           "series",
           [](const py::object& self) {
             py::list out;
-            for (const Series& series : self.cast<const RunResult&>().trajectory.series)
+            for (const Columns& series : self.cast<const RunResult&>().trajectory.series)
               out.append(py::cast(&series, py::return_value_policy::reference_internal, self));
             return out;
           },
@@ -225,19 +226,19 @@ void bind_scenes(py::module_& module) {
             const auto all = columns(r);
             const auto& series = r.trajectory.series;
             return std::find(all.begin(), all.end(), label) != all.end() ||
-                   std::any_of(series.begin(), series.end(), [&](const Series& s) { return s.name == label; });
+                   std::any_of(series.begin(), series.end(), [&](const Columns& s) { return s.name == label; });
           },
           "Whether there is such a column or series.")
       .def_property_readonly("converged", &RunResult::converged, "Whether all was solved.")
       .def_property_readonly("interrupted", &RunResult::interrupted, "Whether Ctrl-C or SIGTERM ended it.")
-      .def("text", app::text_report, "The report, as lagroid run prints it.")
-      .def("json", app::json_report, "The summary, as lagroid run --json prints it.")
+      .def("text", lagroid::text_report, "The report, as lagroid run prints it.")
+      .def("json", lagroid::json_report, "The summary, as lagroid run --json prints it.")
       .def(
           "write",
           [](RunResult& self, const fs::path& folder) {
             return computing([&] {
-              const app::OutputFolder held = app::folder_for_result(folder, self);
-              return app::write_outputs(self, folder);
+              const lagroid::OutputFolder held = lagroid::folder_for_result(folder, self);
+              return lagroid::write_outputs(self, folder);
             });
           },
           py::arg("folder"), "Writes trajectory, summary and plots into the folder. Raises OutputError.")

@@ -4,8 +4,9 @@
 #include "computing.hpp"
 #include "scene.hpp"
 
-#include <machine.hpp>
-#include <output_folder.hpp>
+#include <lagroid/run/machine.hpp>
+#include <lagroid/run/output_folder.hpp>
+
 #include <study/accuracy.hpp>
 #include <study/methods.hpp>
 #include <study/study_files.hpp>
@@ -36,19 +37,18 @@ std::string study(const Scene& scene, const std::string& methods, std::vector<do
       throw py::value_error("steps: must be positive, and no longer than the scene lasts");
   if (!(seconds > 0)) throw py::value_error("budget: must be positive");
   std::sort(steps.rbegin(), steps.rend());
-  std::optional<app::OutputFolder> held;
-  if (folder)
-    held.emplace(*folder, app::OutputKind::study, app::OutputSource{{"scene", read.whole()}}, app::study_files);
+  std::optional<lagroid::OutputFolder> held;
+  if (folder) held.emplace(app::folder_for_study(*folder, read, methods, steps, /*reference=*/"", repetitions));
   app::Findings findings;
   findings.scene = scene.name;
   findings.name = experiment.name;
   findings.command = "lagroid.study(...)";
-  findings.machine = app::machine();
+  findings.machine = lagroid::machine();
   findings.end = experiment.end;
   findings.target = target;
   findings.methods = app::matching(methods, experiment.methods);
   computing([&] {
-    experiment.interrupted = app::InterruptGuard::interrupted;
+    experiment.interrupted = lagroid::InterruptGuard::interrupted;
     const app::Budget budget(seconds);
     experiment = app::within(std::move(experiment), budget);
     const auto reference =
@@ -59,12 +59,12 @@ std::string study(const Scene& scene, const std::string& methods, std::vector<do
     findings.budget = seconds;
     findings.repetitions = repetitions;
     app::Survey found = app::survey(experiment, findings.methods, {steps, longest}, *reference, repetitions, budget,
-                                    [](double) { return !app::InterruptGuard::interrupted(); });
+                                    [](double) { return !lagroid::InterruptGuard::interrupted(); });
     findings.runs = std::move(found.runs);
     findings.left_out = std::move(found.left_out);
-    findings.interrupted = app::InterruptGuard::interrupted();
+    findings.interrupted = lagroid::InterruptGuard::interrupted();
     std::string note;
-    if (folder && !app::InterruptGuard::interrupted()) app::write_study(findings, *folder, note);
+    if (folder && !lagroid::InterruptGuard::interrupted()) app::write_study(findings, *folder, note);
     return 0;
   });
   return app::study_json(findings);

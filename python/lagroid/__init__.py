@@ -8,6 +8,7 @@
 from . import plot
 from ._lagroid import (
     BoundaryPath,
+    Columns,
     Endpoint,
     HeavyTop,
     Integrator,
@@ -20,7 +21,6 @@ from ._lagroid import (
     PlateBall,
     RigidBody,
     Run,
-    Series,
     SphericalPendulum,
     __version__,
 )
@@ -35,6 +35,7 @@ from .sweeps import Sweep, sweep
 
 __all__ = [
     "BoundaryPath",
+    "Columns",
     "DataError",
     "DiscreteLagrangian",
     "Endpoint",
@@ -68,7 +69,6 @@ __all__ = [
     "SE3",
     "SO3",
     "SceneError",
-    "Series",
     "SolveError",
     "Sphere",
     "SphericalPendulum",

@@ -1,6 +1,7 @@
 #pragma once
 /// The members of one batch on their way: what `Integrator` does for one trajectory.
 
+#include <lagroid/core/compensation.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/ensemble/batch_extrapolation.hpp>
 #include <lagroid/solvers/ensemble/batch_newton.hpp>
@@ -85,8 +86,8 @@ template <DiscreteSystem Sys, int W> class BatchMarch {
 
   State<G, B> state_;
   ArrowOf<G, B> configuration_;
-  Fibre momentum_carry_ = Fibre::Zero();
-  Fibre carry_ = Fibre::Zero();
+  Compensation<Fibre> momentum_compensation_{Fibre::Zero()};
+  Fibre place_compensation_ = Fibre::Zero();
   Step<Sys, B> step_;  ///< the last
   BatchNewton<Sys, W> newton_;
   BatchExtrapolation<W, size, 7> past_;
@@ -228,13 +229,14 @@ template <DiscreteSystem Sys, int W>
 void BatchMarch<Sys, W>::join(const G& groupoid, const StepSolution<Sys, B>& solution, const Mask& lanes) {
   detail::blend_arrow(groupoid, lanes, solution.step.arrow, step_.arrow);
   detail::blend(lanes, solution.step.multipliers, step_.multipliers);
-  const Fibre change = momentum_carry_ + solution.momentum_change;
-  const Fibre momentum = state_.momentum + change;
-  detail::blend(lanes, Fibre(change - (momentum - state_.momentum)), momentum_carry_);
+  Compensation<Fibre> compensation = momentum_compensation_;
+  Fibre momentum = state_.momentum;
+  compensation.add(momentum, solution.momentum_change);
+  detail::blend(lanes, compensation.lost, momentum_compensation_.lost);
   detail::blend(lanes, momentum, state_.momentum);
   ArrowOf<G, B> reached = groupoid.multiply(configuration_, solution.step.arrow);
-  const Fibre carry = groupoid.nudge(reached, Fibre(carry_ + solution.remainder));
-  detail::blend(lanes, carry, carry_);
+  const Fibre lost = groupoid.nudge(reached, Fibre(place_compensation_ + solution.remainder));
+  detail::blend(lanes, lost, place_compensation_);
   const ArrowOf<G, B> projected = groupoid.project(reached);
   detail::blend_arrow(groupoid, lanes, projected, configuration_);
   const ObjectOf<G, B> object = groupoid.target(configuration_);

@@ -1,7 +1,7 @@
 #pragma once
 /// Potentials with parameters.
 
-#include <lagroid/core/dual.hpp>
+#include <lagroid/core/directional.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <concepts>
@@ -38,17 +38,9 @@ S value_and_gradient(const P& v, const Places<S, K>& q, const S* theta, [[maybe_
     return v.gradient(q, theta, scratch, g);
   } else {
     using D = Dual<S>;
-    Places<D, K> at(3, q.cols());
-    for (Eigen::Index i = 0; i < q.size(); ++i) at.data()[i] = D(q.data()[i], S(0.0));
-    S value(0.0);
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      at.data()[i].derivative = S(1.0);
-      const D along = v.template energy<D, S>(at, theta);
-      at.data()[i].derivative = S(0.0);
-      g.data()[i] = along.derivative;
-      value = along.value;
-    }
-    return value;
+    Places<D, K> moved(3, q.cols());
+    return value_and_gradient_of([&](const Places<D, K>& at) { return v.template energy<D, S>(at, theta); }, q, moved,
+                                 g);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <lagroid/solvers/ceres_solve.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/compressed.hpp>
+#include <lagroid/solvers/processor_time.hpp>
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <ctime>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -22,13 +22,6 @@
 namespace lagroid::learning {
 
 namespace {
-
-/// Of this thread.
-double processor_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
 
 /// How many trajectories are predicted at a time: some hundred numbers.
 Eigen::Index block_of(const Trajectories& data) { return std::max<Eigen::Index>(1, 512 / data.ends.rows()); }
@@ -257,7 +250,7 @@ class Trainer final : public ceres::IterationCallback {
     return session_.halted();
   }
   void spend() {
-    const double now = processor_seconds();
+    const double now = processor_time();
     session_.spend(now - until_);
     until_ = now;
   }
@@ -293,7 +286,7 @@ class Trainer final : public ceres::IterationCallback {
   const Trajectories& held_out_;
   const Schedule& schedule_;
   int start_;
-  double until_ = processor_seconds();
+  double until_ = processor_time();
   const TrajectoryCost* cost_ = nullptr;
   Eigen::VectorXd at_;
   Descent out_;

@@ -82,7 +82,7 @@ template <DiscreteSystem Sys> Step<Sys> step_from(const Sys& system, const State
 template <DiscreteSystem Sys, class Draw>
 LawReport momentum_laws(const Sys& system, const Draw& draw, int steps = 50, double tolerance = 1e-12) {
   LawReport report{"conserved quantities", {}};
-  for (const auto& quantity : system.quantities()) {
+  for (const auto& quantity : quantities_of(system)) {
     if (quantity.promise != Promise::conserved) continue;
     report.laws.push_back(
         check_law(quantity.name, tolerance, [&] { return detail::drift(system, quantity, draw(), steps); }));

@@ -1,14 +1,10 @@
-// From a written scene to the arrays that a step runs over.
-
-#include <lagroid/systems/multibody/multibody.hpp>
-
-#include <Eigen/LU>
+#include <lagroid/systems/multibody/assembly.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace lagroid::multibody {
 
@@ -54,58 +50,115 @@ template <class T> std::vector<T> in_order(const std::vector<T>& all, const std:
 
 }  // namespace
 
-Multibody::Multibody(Scene scene, double h, const Options& options) : h_(h), options_(options), whole_step_(h) {
-  assemble(scene);
-  begin();
-  leave_out_dependent();
-  add_multipliers(momentum_, spin_, -1);
-  if (options.controlled) {
-    if (!has_time_scale())
-      throw std::invalid_argument("steps are controlled by attractions alone: no joints, no other effects");
-    control_.emplace(h, time_scale_rate());
+class Assembly {
+ public:
+  Assembly(Scene scene, double h)
+      : scene_(std::move(scene)), linears_(int(scene_.linear_.size())), rotations_(int(scene_.rotating_.size())) {
+    start_.step = h;
+    find_islands();
+    sort_factors();
+    place_sites();
+    place_arms();
+    add_linear_factors();
+    add_rotations();
+    clear_loads();
+    add_joints();
+    number_gradients();
+    for (std::size_t i = 0; i < model_.islands.size(); ++i) add_entries(i);
+    sort_entries();
+    describe_rows();
+    for (const Model::Island& island : model_.islands) require_one_principle(island);
+    for (Model::Island& island : model_.islands) matrices_.push_back(couple_rows(island));
+    add_effects();
   }
-  if (options.composition.stages() > 1) compose(options.composition);
-}
+  Assembled take() { return {std::move(model_), std::move(start_), std::move(matrices_)}; }
 
-bool Multibody::has_time_scale() const {
-  const auto attracts = [](const auto& effect) { return effect->attracts(); };
-  return std::all_of(effects_.begin(), effects_.end(), attracts) && islands_.empty() && dragged_.empty() &&
-         damped_turns_.empty() && std::isfinite(time_scale_rate());
-}
-
-void Multibody::compose(const Composition& composition) {
-  const bool holonomic = std::all_of(roles_.begin(), roles_.end(), [](Role role) { return role == Role::holonomic; });
-  if (control_ || !holonomic || !dragged_.empty() || !damped_turns_.empty())
-    throw std::invalid_argument("a step is composed where it can be taken back");
-  for (const double share : composition.coefficients) {
-    Stage stage{share * whole_step_, earlier_, turned_before_};
-    for (auto& multipliers : stage.earlier)
-      for (double& lambda : multipliers) lambda *= share;
-    for (Vec& turn : stage.turned) turn *= share;
-    stages_.push_back(std::move(stage));
-  }
-}
-
-void Multibody::assemble(Scene& scene) {
-  const int linears = int(scene.linear_.size());
-  const int rotations = int(scene.rotating_.size());
-  const auto factors_of = [&](const Joints& joints, int joint) {
-    std::vector<int> out;
-    for (const Site s : joints.sites(joint)) {
-      const auto& p = scene.sites_[std::size_t(s.index)];
-      if (p.linear >= 0) out.push_back(p.linear);
-      if (p.rotation >= 0) out.push_back(linears + p.rotation);
-    }
-    for (const Attitude a : joints.attitudes(joint))
-      if (a.index >= 0) out.push_back(linears + a.index);
-    return out;
+ private:
+  using Point = Scene::Point;
+  struct Touch {
+    std::vector<Site> sites;
+    std::vector<Attitude> attitudes;
+  };
+  /// A batch, and what each of its joints touches.
+  struct TouchingBatch {
+    Model::Batch batch;
+    std::vector<Touch> touches;
   };
 
-  // Islands, in the order of their first bodies.
-  Groups groups(linears + rotations);
-  std::vector<int> island_of(std::size_t(linears + rotations), -1);
-  std::vector<char> tied(std::size_t(linears + rotations), 0);
-  for (const auto& joints : scene.joints_)
+  static bool is_factor(const Point& p) { return p.linear >= 0 && p.base < 0; }
+  static bool is_ground(const Point& p) { return p.linear < 0 && p.rotation < 0; }
+  const Point& point(Site s) const { return scene_.sites_[std::size_t(s.index)]; }
+
+  std::vector<int> factors_of(const Joints& joints, int joint) const;
+  /// The island of a joint; -1 where it touches nothing that moves.
+  int island_of(const Joints& joints, int joint) const;
+  Model::Island& island(int number) { return number < 0 ? model_.free : model_.islands[std::size_t(number)]; }
+  /// Ranges of the islands in a list that is sorted by island.
+  void set_ranges(const std::vector<int>& island_in_order, Model::Range Model::Island::*range);
+
+  void find_islands();
+  void sort_factors();
+  void place_sites();
+  void place_arms();
+  void add_linear_factors();
+  void add_rotations();
+  void clear_loads();
+  void add_joints();
+  void number_gradients();
+  void add_entries(std::size_t number);
+  void add_entries(const Touch& touch, const Model::Batch& batch, int row, int gradient, Model::Island& island);
+  void sort_entries();
+  void describe_rows();
+  void require_one_principle(const Model::Island& island) const;
+  /// Which products of gradients and responses make an island's matrix.
+  Elimination couple_rows(Model::Island& island);
+  void add_effects();
+
+  Scene scene_;
+  int linears_;
+  int rotations_;
+  std::vector<int> islands_of_factors_;  ///< linear ones, then rotations
+  std::vector<int> linear_order_, rotation_order_, site_order_;
+  std::vector<int> touched_in_;                      ///< the island of a site; past the last where no joint touches it
+  std::vector<std::vector<TouchingBatch>> batches_;  ///< of each island
+  Model model_;
+  SceneState start_;
+  std::vector<Elimination> matrices_;
+};
+
+Assembled assemble(Scene scene, double h) { return Assembly(std::move(scene), h).take(); }
+
+std::vector<int> Assembly::factors_of(const Joints& joints, int joint) const {
+  std::vector<int> out;
+  for (const Site s : joints.sites(joint)) {
+    const Point& p = point(s);
+    if (p.linear >= 0) out.push_back(p.linear);
+    if (p.rotation >= 0) out.push_back(linears_ + p.rotation);
+  }
+  for (const Attitude a : joints.attitudes(joint))
+    if (a.index >= 0) out.push_back(linears_ + a.index);
+  return out;
+}
+
+int Assembly::island_of(const Joints& joints, int joint) const {
+  const auto factors = factors_of(joints, joint);
+  return factors.empty() ? -1 : islands_of_factors_[std::size_t(factors.front())];
+}
+
+void Assembly::set_ranges(const std::vector<int>& island_in_order, Model::Range Model::Island::*range) {
+  for (int i = 0; i < int(island_in_order.size()); ++i) {
+    Model::Range& r = island(island_in_order[std::size_t(i)]).*range;
+    if (r.size() == 0) r.first = i;
+    r.last = i + 1;
+  }
+}
+
+// Islands are numbered in the order of their first bodies.
+void Assembly::find_islands() {
+  const auto factors_count = std::size_t(linears_ + rotations_);
+  Groups groups(linears_ + rotations_);
+  std::vector<char> tied(factors_count, 0);
+  for (const auto& joints : scene_.joints_)
     for (int j = 0; j < joints->count(); ++j) {
       const auto factors = factors_of(*joints, j);
       for (const int f : factors) {
@@ -113,354 +166,334 @@ void Multibody::assemble(Scene& scene) {
         tied[std::size_t(f)] = 1;
       }
     }
-  std::vector<int> named(std::size_t(linears + rotations), -1);
+  islands_of_factors_.assign(factors_count, -1);
+  std::vector<int> named(factors_count, -1);
   int islands = 0;
-  for (int f = 0; f < linears + rotations; ++f) {
+  for (int f = 0; f < linears_ + rotations_; ++f) {
     if (!tied[std::size_t(f)]) continue;
     int& name = named[std::size_t(groups.of(f))];
     if (name < 0) name = islands++;
-    island_of[std::size_t(f)] = name;
+    islands_of_factors_[std::size_t(f)] = name;
   }
-  islands_.resize(std::size_t(islands));
-
-  // Factors, sorted.
-  const std::vector<int> linear_islands(island_of.begin(), island_of.begin() + linears);
-  const std::vector<int> rotation_islands(island_of.begin() + linears, island_of.end());
-  const auto linear_order = sorted_by(linear_islands);
-  const auto rotation_order = sorted_by(rotation_islands);
-  const auto linear_place = inverse(linear_order);
-  const auto island_range = [&](const std::vector<int>& island_in_order, Range Island::*range) {
-    for (int i = 0; i < int(island_in_order.size()); ++i) {
-      const int k = island_in_order[std::size_t(i)];
-      Range& r = (k < 0 ? free_ : islands_[std::size_t(k)]).*range;
-      if (r.size() == 0) r.first = i;
-      r.last = i + 1;
-    }
-  };
-  island_range(in_order(linear_islands, linear_order), &Island::linear);
-  island_range(in_order(rotation_islands, rotation_order), &Island::rotations);
-  places_.attitudes = inverse(rotation_order);
-  linear_places_ = linear_place;
-
-  // Sites: places of linear factors, points fixed in bodies by island, the ground.
-  const auto is_factor = [](const Scene::Point& p) { return p.linear >= 0 && p.base < 0; };
-  const auto is_ground = [](const Scene::Point& p) { return p.linear < 0 && p.rotation < 0; };
-  std::vector<int> touched_in(scene.sites_.size(), islands);
-  for (const auto& joints : scene.joints_)
-    for (int j = 0; j < joints->count(); ++j)
-      if (const auto factors = factors_of(*joints, j); !factors.empty())
-        for (const Site s : joints->sites(j))
-          touched_in[std::size_t(s.index)] = island_of[std::size_t(factors.front())];
-  int slot = linears;
-  places_.sites.resize(scene.sites_.size());
-  const auto site_order = sorted_by(touched_in);
-  for (const int s : site_order) {
-    const auto& p = scene.sites_[std::size_t(s)];
-    if (is_factor(p)) {
-      places_.sites[std::size_t(s)] = linear_place[std::size_t(p.linear)];
-    } else if (!is_ground(p)) {
-      places_.sites[std::size_t(s)] = slot++;
-    }
-  }
-  now_.x.resize(scene.sites_.size(), Vec::Zero());
-  now_.arm.resize(scene.sites_.size(), 0.0);
-  for (std::size_t s = 0; s < scene.sites_.size(); ++s) {
-    const auto& p = scene.sites_[s];
-    if (!is_ground(p)) continue;
-    now_.x[std::size_t(slot)] = p.place;
-    if (!p.amplitude.isZero(0)) {
-      now_.arm[std::size_t(slot)] = 2 * p.amplitude.norm();
-      moving_.push_back({slot, p.place, p.amplitude, p.rate});
-    }
-    places_.sites[s] = slot++;
-  }
-  std::vector<int> arm_islands;
-  std::vector<int> planar_arm_islands;
-  for (const int s : site_order) {
-    const auto& p = scene.sites_[std::size_t(s)];
-    if (is_factor(p) || is_ground(p)) continue;
-    const int island = touched_in[std::size_t(s)];
-    const int at = places_.sites[std::size_t(s)];
-    const int base = places_.sites[std::size_t(p.base)];
-    now_.arm[std::size_t(at)] = p.place.norm();
-    if (p.rotation >= 0) {
-      arms_.push_back({at, base, places_.attitudes[std::size_t(p.rotation)], p.place});
-      arm_islands.push_back(island == islands ? -1 : island);
-    } else {
-      planar_arms_.push_back({at, base, -1, p.place});
-      planar_arm_islands.push_back(island == islands ? -1 : island);
-    }
-  }
-  island_range(arm_islands, &Island::arms);
-  island_range(planar_arm_islands, &Island::planar_arms);
-
-  // What moves.
-  for (const int i : linear_order) {
-    const auto& l = scene.linear_[std::size_t(i)];
-    const int f = int(inertia_.size());
-    inertia_.push_back(l.inertia);
-    planar_.push_back(l.planar);
-    now_.x[std::size_t(f)] = l.place;
-    momentum_.push_back(l.inertia.cwiseProduct(l.rate));
-    if (!l.drag.isZero(0)) {
-      dragged_.push_back({f, l.drag, {}});
-      const int island = linear_islands[std::size_t(i)];
-      Range& range = (island < 0 ? free_ : islands_[std::size_t(island)]).dragged;
-      if (range.size() == 0) range.first = int(dragged_.size()) - 1;
-      range.last = int(dragged_.size());
-    }
-  }
-  for (const int i : rotation_order) {
-    const auto& r = scene.rotating_[std::size_t(i)];
-    const int k = int(moments_.size());
-    moments_.push_back(r.inertia);
-    turns_.push_back({{}, scene.rotation});
-    turn_damping_.push_back(r.damping);
-    quaternions_.push_back(r.attitude);
-    now_.attitude.push_back(SO3::from_quaternion(r.attitude));
-    spin_.push_back(r.inertia.cwiseProduct(r.rate));
-    turned_before_.push_back(h_ * r.rate);
-    if (!r.damping.isZero(0)) damped_turns_.push_back(k);
-  }
-  now_.attitude.push_back(Mat::Identity());
-  response_.resize(inertia_.size());
-  set_step(h_);
-  next_quaternions_ = quaternions_;
-  const auto zeros = [](std::size_t n) { return std::vector<Vec>(n, Vec::Zero()); };
-  momentum_carry_ = place_carry_ = impulse_ = kicked_ = displacement_ = zeros(momentum_.size());
-  spin_carry_ = spin_impulse_ = spin_kicked_ = spin_total_ = turned_ = turn_residual_ = zeros(spin_.size());
-  turn_inverse_.resize(spin_.size());
-  spin_size_.resize(spin_.size());
-  turn_frame_.resize(spin_.size());
-  loads_ = {zeros(now_.x.size()), zeros(now_.attitude.size())};
-
-  // Joints by island, their rows and gradients.
-  joints_ = std::move(scene.joints_);
-  struct Touch {
-    std::vector<Site> sites;
-    std::vector<Attitude> attitudes;
-  };
-  std::vector<std::vector<Batch>> batches(islands_.size());
-  std::vector<std::vector<std::vector<Touch>>> touches(islands_.size());
-  for (const auto& joints : joints_) {
-    std::vector<int> island;
-    for (int j = 0; j < joints->count(); ++j) {
-      const auto factors = factors_of(*joints, j);
-      island.push_back(factors.empty() ? -1 : island_of[std::size_t(factors.front())]);
-    }
-    // Joints of what does not move have no rows.
-    auto order = sorted_by(island);
-    order.erase(order.begin(),
-                std::find_if(order.begin(), order.end(), [&](int j) { return island[std::size_t(j)] >= 0; }));
-    for (int k = 0; k < int(order.size()); ++k) {
-      const int j = order[std::size_t(k)];
-      const auto i = std::size_t(island[std::size_t(j)]);
-      if (batches[i].empty() || batches[i].back().joints != joints.get()) {
-        batches[i].push_back({joints.get(), joints->role(), k, 0, 0, 0});
-        touches[i].emplace_back();
-      }
-      ++batches[i].back().count;
-      touches[i].back().push_back({joints->sites(j), joints->attitudes(j)});
-    }
-    joints->reorder(order);
-    joints->place(places_);
-  }
-  int row = 0;
-  int gradient = 0;
-  for (auto& of_island : batches)
-    for (std::size_t b = 0; b < of_island.size(); ++b) {
-      auto& batch = of_island[b];
-      const auto& touch = touches[std::size_t(&of_island - batches.data())][b].front();
-      batch.row = row;
-      batch.gradient = gradient;
-      row += batch.count * batch.joints->rows();
-      gradient += batch.count * batch.joints->rows() * int(touch.sites.size() + touch.attitudes.size());
-    }
-  int further = gradient;  // gradients along turns, of what moves points fixed in bodies
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
-    Island& island = islands_[i];
-    const auto open = [](Range& r, std::size_t size) { r = {int(size), int(size)}; };
-    open(island.batches, batches_.size());
-    open(island.linear_entries, linear_entries_.size());
-    open(island.rotation_entries, rotation_entries_.size());
-    open(island.levers, levers_.size());
-    open(island.planar_levers, planar_levers_.size());
-    island.rows.first = batches[i].front().row;
-    for (std::size_t b = 0; b < batches[i].size(); ++b) {
-      const Batch& batch = batches[i][b];
-      batches_.push_back(batch);
-      island.vakonomic = island.vakonomic || batch.role == Role::vakonomic;
-      const bool along_arrows = batch.joints->along_arrows();
-      int at = batch.gradient;
-      int r = batch.row;
-      for (const Touch& touch : touches[i][b])
-        for (int k = 0; k < batch.joints->rows(); ++k, ++r) {
-          for (const Site s : touch.sites) {
-            const auto& p = scene.sites_[std::size_t(s.index)];
-            if (p.rotation >= 0) {
-              const int rotation = places_.attitudes[std::size_t(p.rotation)];
-              levers_.push_back({at, further, rotation, p.place});
-              rotation_entries_.push_back({further++, rotation, r, batch.role, along_arrows});
-            }
-            if (p.linear >= 0) {
-              const int body = linear_place[std::size_t(p.linear)];
-              const bool planar = scene.linear_[std::size_t(p.linear)].planar && !is_factor(p);
-              if (planar) planar_levers_.push_back({at, further, places_(s).index, body});
-              linear_entries_.push_back({planar ? further++ : at, body, r, batch.role, along_arrows});
-            }
-            for (int m = 0; m < int(moving_.size()); ++m)
-              if (moving_[std::size_t(m)].site == places_(s).index) {
-                moving_entries_.push_back({at, r, m});
-                island.moved = true;
-              }
-            ++at;
-          }
-          for (const Attitude a : touch.attitudes) {
-            if (a.index >= 0) rotation_entries_.push_back({at, places_(a).index, r, batch.role, along_arrows});
-            ++at;
-          }
-        }
-      island.rows.last = r;
-    }
-    island.batches.last = int(batches_.size());
-    island.linear_entries.last = int(linear_entries_.size());
-    island.rotation_entries.last = int(rotation_entries_.size());
-    island.levers.last = int(levers_.size());
-    island.planar_levers.last = int(planar_levers_.size());
-  }
-  // An island's entries, by factor.
-  for (const Island& island : islands_)
-    std::stable_sort(linear_entries_.begin() + island.linear_entries.first,
-                     linear_entries_.begin() + island.linear_entries.last,
-                     [](const Entry& a, const Entry& b) { return a.factor < b.factor; });
-  factor_entries_.assign(std::size_t(linears) + 1, 0);
-  for (const Entry& e : linear_entries_) ++factor_entries_[std::size_t(e.factor) + 1];
-  std::partial_sum(factor_entries_.begin(), factor_entries_.end(), factor_entries_.begin());
-  gradients_ = next_gradients_ = zeros(std::size_t(further));
-  linear_response_ = zeros(linear_entries_.size());
-  rotation_response_ = rotation_gradient_ = zeros(rotation_entries_.size());
-  multipliers_.assign(std::size_t(row), 0.0);
-  values_ = right_ = multipliers_;
-  precision_ = multipliers_;
-  sizes_.resize(std::size_t(row));
-  left_out_.assign(std::size_t(row), 0);
-  roles_.assign(std::size_t(row), Role::holonomic);
-  for (const Batch& batch : batches_) {
-    has_arrow_rows_ = has_arrow_rows_ || batch.role == Role::nonholonomic || batch.role == Role::vakonomic;
-    has_vakonomic_ = has_vakonomic_ || batch.role == Role::vakonomic;
-    if (batch.role == Role::damping) softness_.resize(std::size_t(row), 0.0);
-    const int rows = batch.joints->rows();
-    for (int i = 0; i < batch.count * rows; ++i) {
-      const auto at = std::size_t(batch.row + i);
-      const int joint = batch.first + i / rows;
-      roles_[at] = batch.role;
-      if (batch.role == Role::damping) softness_[at] = 2 / batch.joints->damping(joint);
-      multipliers_[at] = -batch.joints->multiplier(joint, i % rows);
-    }
-  }
-  earlier_ = {multipliers_, multipliers_, multipliers_};
-  accepted_precision_ = precision_;
-  for (const Island& island : islands_) require_one_principle(island);
-  if (has_vakonomic_) {
-    drifts_ = gradients_;
-    free_displacement_ = displacement_;
-  }
-
-  // Which products of gradients and responses make the matrices.
-  for (Island& island : islands_) {
-    const auto same_factor = [](const std::vector<Entry>& entries, const Range& range, const Range& factors,
-                                const auto& visit) {
-      std::vector<std::vector<int>> of(std::size_t(factors.size()));
-      for (int e = range.first; e < range.last; ++e)
-        of[std::size_t(entries[std::size_t(e)].factor - factors.first)].push_back(e);
-      for (const auto& list : of)
-        for (const int a : list)
-          for (const int b : list) visit(a, b);
-    };
-    std::vector<std::pair<int, int>> pattern;
-    const auto couple = [&](const std::vector<Entry>& entries) {
-      return [&](int a, int b) {
-        const int i = entries[std::size_t(a)].row - island.rows.first;
-        const int j = entries[std::size_t(b)].row - island.rows.first;
-        if (i < j) pattern.emplace_back(i, j);
-      };
-    };
-    same_factor(linear_entries_, island.linear_entries, island.linear, couple(linear_entries_));
-    same_factor(rotation_entries_, island.rotation_entries, island.rotations, couple(rotation_entries_));
-    island.matrix = Elimination(island.rows.size(), pattern);
-    const auto place_of = [&](const Entry& a, const Entry& b) {
-      return island.matrix.index(a.row - island.rows.first, b.row - island.rows.first);
-    };
-    island.linear_pairs.first = int(linear_pairs_.size());
-    same_factor(linear_entries_, island.linear_entries, island.linear, [&](int a, int b) {
-      const Entry& left = linear_entries_[std::size_t(a)];
-      linear_pairs_.push_back({left.gradient, left.row, b, place_of(left, linear_entries_[std::size_t(b)])});
-    });
-    island.linear_pairs.last = int(linear_pairs_.size());
-    island.rotation_pairs.first = int(rotation_pairs_.size());
-    same_factor(rotation_entries_, island.rotation_entries, island.rotations, [&](int a, int b) {
-      const Entry& left = rotation_entries_[std::size_t(a)];
-      rotation_pairs_.push_back({a, left.row, b, place_of(left, rotation_entries_[std::size_t(b)])});
-    });
-    island.rotation_pairs.last = int(rotation_pairs_.size());
-  }
-
-  // Effects, and the points fixed in bodies that they act on.
-  std::vector<char> pushed(now_.x.size(), 0);
-  for (auto& effect : scene.effects_) {
-    for (const Site s : effect->sites()) pushed[std::size_t(places_(s).index)] = 1;
-    effect->place(places_);
-    effects_.push_back(std::move(effect));
-  }
-  for (const Arm& a : arms_)
-    if (pushed[std::size_t(a.site)]) pushed_arms_.push_back(a);
-  for (const Arm& a : planar_arms_)
-    if (pushed[std::size_t(a.site)]) pushed_planar_arms_.push_back(a);
+  model_.islands.resize(std::size_t(islands));
 }
 
-void Multibody::require_one_principle(const Island& island) const {
+void Assembly::sort_factors() {
+  const std::vector<int> of_linear(islands_of_factors_.begin(), islands_of_factors_.begin() + linears_);
+  const std::vector<int> of_rotations(islands_of_factors_.begin() + linears_, islands_of_factors_.end());
+  linear_order_ = sorted_by(of_linear);
+  rotation_order_ = sorted_by(of_rotations);
+  set_ranges(in_order(of_linear, linear_order_), &Model::Island::linear);
+  set_ranges(in_order(of_rotations, rotation_order_), &Model::Island::rotations);
+  model_.linear_places = inverse(linear_order_);
+  model_.places.attitudes = inverse(rotation_order_);
+}
+
+// Places of linear factors, then points fixed in bodies by island, then the ground.
+void Assembly::place_sites() {
+  const std::size_t count = scene_.sites_.size();
+  touched_in_.assign(count, int(model_.islands.size()));
+  for (const auto& joints : scene_.joints_)
+    for (int j = 0; j < joints->count(); ++j)
+      if (const int number = island_of(*joints, j); number >= 0)
+        for (const Site s : joints->sites(j)) touched_in_[std::size_t(s.index)] = number;
+  site_order_ = sorted_by(touched_in_);
+
+  std::vector<int>& places = model_.places.sites;
+  places.resize(count);
+  int slot = linears_;
+  for (const int s : site_order_) {
+    const Point& p = point({s});
+    if (is_factor(p)) {
+      places[std::size_t(s)] = model_.linear_places[std::size_t(p.linear)];
+    } else if (!is_ground(p)) {
+      places[std::size_t(s)] = slot++;
+    }
+  }
+  start_.at.x.resize(count, Vec::Zero());
+  start_.at.arm.resize(count, 0.0);
+  for (std::size_t s = 0; s < count; ++s) {
+    const Point& p = scene_.sites_[s];
+    if (!is_ground(p)) continue;
+    start_.at.x[std::size_t(slot)] = p.place;
+    if (!p.amplitude.isZero(0)) {
+      start_.at.arm[std::size_t(slot)] = 2 * p.amplitude.norm();
+      model_.points.moving.push_back({slot, p.place, p.amplitude, p.rate});
+    }
+    places[s] = slot++;
+  }
+}
+
+void Assembly::place_arms() {
+  const Places& places = model_.places;
+  std::vector<int> islands, planar_islands;
+  for (const int s : site_order_) {
+    const Point& p = point({s});
+    if (is_factor(p) || is_ground(p)) continue;
+    const int touched = touched_in_[std::size_t(s)];
+    const int number = touched == int(model_.islands.size()) ? -1 : touched;
+    const int at = places.sites[std::size_t(s)];
+    const int base = places.sites[std::size_t(p.base)];
+    start_.at.arm[std::size_t(at)] = p.place.norm();
+    if (p.rotation >= 0) {
+      model_.points.arms.push_back({at, base, places.attitudes[std::size_t(p.rotation)], p.place});
+      islands.push_back(number);
+    } else {
+      model_.points.planar_arms.push_back({at, base, -1, p.place});
+      planar_islands.push_back(number);
+    }
+  }
+  set_ranges(islands, &Model::Island::arms);
+  set_ranges(planar_islands, &Model::Island::planar_arms);
+}
+
+void Assembly::add_linear_factors() {
+  Model::Factors& factors = model_.factors;
+  std::vector<int> islands;  // of those with drag
+  for (const int i : linear_order_) {
+    const auto& l = scene_.linear_[std::size_t(i)];
+    const int f = int(factors.inertia.size());
+    factors.inertia.push_back(l.inertia);
+    factors.planar.push_back(l.planar);
+    start_.at.x[std::size_t(f)] = l.place;
+    start_.momentum.push_back(l.inertia.cwiseProduct(l.rate));
+    if (l.drag.isZero(0)) continue;
+    factors.dragged.push_back({f, l.drag});
+    islands.push_back(islands_of_factors_[std::size_t(i)]);
+  }
+  set_ranges(islands, &Model::Island::dragged);
+  start_.momentum_carry = start_.place_carry = std::vector<Vec>(start_.momentum.size(), Vec::Zero());
+}
+
+void Assembly::add_rotations() {
+  Model::Factors& factors = model_.factors;
+  factors.rotation = scene_.rotation;
+  for (const int i : rotation_order_) {
+    const auto& r = scene_.rotating_[std::size_t(i)];
+    const int k = int(factors.moments.size());
+    factors.moments.push_back(r.inertia);
+    factors.turn_damping.push_back(r.damping);
+    start_.attitude.push_back(r.attitude);
+    start_.spin.push_back(r.inertia.cwiseProduct(r.rate));
+    start_.guess.turns.push_back(start_.step * r.rate);
+    if (!r.damping.isZero(0)) factors.damped_turns.push_back(k);
+  }
+  start_.at.attitude.assign(start_.spin.size() + 1, Mat::Identity());
+  start_.spin_carry = std::vector<Vec>(start_.spin.size(), Vec::Zero());
+}
+
+void Assembly::clear_loads() {
+  start_.loads = {std::vector<Vec>(start_.at.x.size(), Vec::Zero()),
+                  std::vector<Vec>(start_.at.attitude.size(), Vec::Zero())};
+}
+
+// Joints of what does not move have no rows.
+void Assembly::add_joints() {
+  model_.joints = std::move(scene_.joints_);
+  batches_.resize(model_.islands.size());
+  for (const auto& joints : model_.joints) {
+    std::vector<int> islands;
+    for (int j = 0; j < joints->count(); ++j) islands.push_back(island_of(*joints, j));
+    auto order = sorted_by(islands);
+    order.erase(order.begin(),
+                std::find_if(order.begin(), order.end(), [&](int j) { return islands[std::size_t(j)] >= 0; }));
+    for (int k = 0; k < int(order.size()); ++k) {
+      const int j = order[std::size_t(k)];
+      auto& of_island = batches_[std::size_t(islands[std::size_t(j)])];
+      if (of_island.empty() || of_island.back().batch.joints != joints.get())
+        of_island.push_back({{joints.get(), joints->role(), k, 0, 0, 0}, {}});
+      ++of_island.back().batch.count;
+      of_island.back().touches.push_back({joints->sites(j), joints->attitudes(j)});
+    }
+    joints->reorder(order);
+    joints->place(model_.places);
+  }
+}
+
+void Assembly::number_gradients() {
+  int row = 0;
+  int gradient = 0;
+  for (auto& of_island : batches_)
+    for (auto& [batch, touches] : of_island) {
+      batch.row = row;
+      batch.gradient = gradient;
+      const int rows = batch.count * batch.joints->rows();
+      row += rows;
+      gradient += rows * int(touches.front().sites.size() + touches.front().attitudes.size());
+    }
+  model_.rows.roles.assign(std::size_t(row), Role::holonomic);
+  model_.rows.gradients = gradient;
+}
+
+void Assembly::add_entries(std::size_t number) {
+  Model::Island& island = model_.islands[number];
+  Model::Rows& rows = model_.rows;
+  const auto open = [](Model::Range& r, const auto& list) { r.first = int(list.size()); };
+  const auto close = [](Model::Range& r, const auto& list) { r.last = int(list.size()); };
+  const auto bound = [&](const auto& set) {
+    set(island.batches, rows.batches);
+    set(island.linear_entries, rows.linear_entries);
+    set(island.rotation_entries, rows.rotation_entries);
+    set(island.levers, rows.levers);
+    set(island.planar_levers, rows.planar_levers);
+  };
+  bound(open);
+  island.rows.first = batches_[number].front().batch.row;
+  for (const auto& [batch, touches] : batches_[number]) {
+    rows.batches.push_back(batch);
+    island.vakonomic = island.vakonomic || batch.role == Role::vakonomic;
+    int gradient = batch.gradient;
+    int row = batch.row;
+    for (const Touch& touch : touches)
+      for (int k = 0; k < batch.joints->rows(); ++k) {
+        add_entries(touch, batch, row++, gradient, island);
+        gradient += int(touch.sites.size() + touch.attitudes.size());
+      }
+    island.rows.last = row;
+  }
+  bound(close);
+}
+
+// Gradients along turns, of what moves points fixed in bodies, come after those that joints write.
+void Assembly::add_entries(const Touch& touch, const Model::Batch& batch, int row, int gradient,
+                           Model::Island& island) {
+  Model::Rows& rows = model_.rows;
+  const bool along_arrows = batch.joints->along_arrows();
+  for (const Site s : touch.sites) {
+    const Point& p = point(s);
+    const int at = model_.places(s).index;
+    if (p.rotation >= 0) {
+      const int rotation = model_.places.attitudes[std::size_t(p.rotation)];
+      rows.levers.push_back({gradient, rows.gradients, rotation, p.place});
+      rows.rotation_entries.push_back({rows.gradients++, rotation, row, batch.role, along_arrows});
+    }
+    if (p.linear >= 0) {
+      const int body = model_.linear_places[std::size_t(p.linear)];
+      const bool planar = scene_.linear_[std::size_t(p.linear)].planar && !is_factor(p);
+      if (planar) rows.planar_levers.push_back({gradient, rows.gradients, at, body});
+      rows.linear_entries.push_back({planar ? rows.gradients++ : gradient, body, row, batch.role, along_arrows});
+    }
+    const auto& moving = model_.points.moving;
+    for (int m = 0; m < int(moving.size()); ++m)
+      if (moving[std::size_t(m)].site == at) {
+        rows.moving_entries.push_back({gradient, row, m});
+        island.moved = true;
+      }
+    ++gradient;
+  }
+  for (const Attitude a : touch.attitudes) {
+    if (a.index >= 0)
+      rows.rotation_entries.push_back({gradient, model_.places(a).index, row, batch.role, along_arrows});
+    ++gradient;
+  }
+}
+
+// An island's entries, by factor.
+void Assembly::sort_entries() {
+  auto& entries = model_.rows.linear_entries;
+  for (const Model::Island& island : model_.islands)
+    std::stable_sort(entries.begin() + island.linear_entries.first, entries.begin() + island.linear_entries.last,
+                     [](const Model::Entry& a, const Model::Entry& b) { return a.factor < b.factor; });
+  auto& begins = model_.rows.factor_entries;
+  begins.assign(std::size_t(linears_) + 1, 0);
+  for (const Model::Entry& e : entries) ++begins[std::size_t(e.factor) + 1];
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+}
+
+void Assembly::describe_rows() {
+  Model::Rows& rows = model_.rows;
+  const std::size_t count = rows.roles.size();
+  std::vector<double> multipliers(count, 0.0);
+  rows.left_out.assign(count, 0);
+  for (const Model::Batch& batch : rows.batches) {
+    rows.on_arrows = rows.on_arrows || batch.role == Role::nonholonomic || batch.role == Role::vakonomic;
+    rows.vakonomic = rows.vakonomic || batch.role == Role::vakonomic;
+    if (batch.role == Role::damping) rows.softness.resize(count, 0.0);
+    const int of_joint = batch.joints->rows();
+    for (int i = 0; i < batch.count * of_joint; ++i) {
+      const auto at = std::size_t(batch.row + i);
+      const int joint = batch.first + i / of_joint;
+      rows.roles[at] = batch.role;
+      if (batch.role == Role::damping) rows.softness[at] = 2 / batch.joints->damping(joint);
+      multipliers[at] = -batch.joints->multiplier(joint, i % of_joint);
+    }
+  }
+  start_.guess.multipliers = {multipliers, multipliers, multipliers};
+  start_.gradients.assign(std::size_t(rows.gradients), Vec::Zero());
+  start_.sizes.resize(count);
+  start_.precision.assign(count, 0.0);
+}
+
+void Assembly::require_one_principle(const Model::Island& island) const {
   if (!island.vakonomic) return;
-  for (int row = island.rows.first; row < island.rows.last; ++row)
-    if (role(row) == Role::nonholonomic || role(row) == Role::damping)
+  for (const Role role : island.rows.of(model_.rows.roles))
+    if (role == Role::nonholonomic || role == Role::damping)
       throw std::domain_error("nonholonomic joints and dampers do not go together with vakonomic joints");
   if (island.dragged.size() > 0)
     throw std::domain_error("drag and deflection do not go together with vakonomic joints");
-  for (int r = island.rotations.first; r < island.rotations.last; ++r)
-    if (!turn_damping_[std::size_t(r)].isZero(0))
-      throw std::domain_error("drag does not go together with vakonomic joints");
+  for (const Vec& damping : island.rotations.of(model_.factors.turn_damping))
+    if (!damping.isZero(0)) throw std::domain_error("drag does not go together with vakonomic joints");
 }
 
-void Multibody::leave_out_dependent() {
-  // Whether rows depend on others is a matter of geometry: neither masses nor units count. Gradients are taken in units
-  // of the largest that moves the same factor.
-  const auto weights = [&](const std::vector<Entry>& entries, std::size_t factors) {
-    std::vector<double> unit(factors, 0.0);
-    for (const Entry& e : entries) {
-      const double size = gradients_[std::size_t(e.gradient)].squaredNorm();
-      if (!std::isfinite(size)) throw std::invalid_argument("the gradient of a joint is not finite");
-      if (size < std::numeric_limits<double>::min() && !gradients_[std::size_t(e.gradient)].isZero(0))
-        throw std::invalid_argument("the gradient of a joint vanishes in round-off");
-      unit[std::size_t(e.factor)] = std::max(unit[std::size_t(e.factor)], size);
-    }
-    std::vector<Vec> out;
-    for (const double size : unit) out.push_back(Vec::Constant(size > 0 ? 1 / size : 0));
-    return out;
+Elimination Assembly::couple_rows(Model::Island& island) {
+  using Entries = std::vector<Model::Entry>;
+  Model::Rows& rows = model_.rows;
+  const int first = island.rows.first;
+  const auto same_factor = [](const Entries& entries, const Model::Range& range, const Model::Range& factors,
+                              const auto& visit) {
+    std::vector<std::vector<int>> of(std::size_t(factors.size()));
+    for (int e = range.first; e < range.last; ++e)
+      of[std::size_t(entries[std::size_t(e)].factor - factors.first)].push_back(e);
+    for (const auto& list : of)
+      for (const int a : list)
+        for (const int b : list) visit(a, b);
   };
-  const auto linear_weights = weights(linear_entries_, inertia_.size());
-  const auto rotation_weights = weights(rotation_entries_, moments_.size());
-  for (Island& island : islands_) {
-    gather(
-        island, linear_weights, rotation_weights, [](Role) { return true; }, island.matrix);
-    for (int row = 0; row < island.rows.size(); ++row)  // dampers add to what they share with others
-      if (role(island.rows.first + row) == Role::damping) island.matrix.value(island.matrix.index(row, row)) += 1;
-    std::vector<char> moves_something(std::size_t(island.rows.size()));
-    for (int row = 0; row < island.rows.size(); ++row)
-      moves_something[std::size_t(row)] = island.matrix.value(island.matrix.index(row, row)) != 0;
-    for (const int row : island.matrix.leave_out_dependent()) {
-      left_out_[std::size_t(island.rows.first + row)] = 1;
-      dependent_rows_ += moves_something[std::size_t(row)];
-    }
+  const auto each_pair = [&](const auto& visit_linear, const auto& visit_rotation) {
+    same_factor(rows.linear_entries, island.linear_entries, island.linear, visit_linear);
+    same_factor(rows.rotation_entries, island.rotation_entries, island.rotations, visit_rotation);
+  };
+  std::vector<std::pair<int, int>> pattern;
+  const auto couple = [&](const Entries& entries) {
+    return [&](int a, int b) {
+      const int i = entries[std::size_t(a)].row - first;
+      const int j = entries[std::size_t(b)].row - first;
+      if (i < j) pattern.emplace_back(i, j);
+    };
+  };
+  each_pair(couple(rows.linear_entries), couple(rows.rotation_entries));
+  const Elimination matrix(island.rows.size(), pattern);
+
+  island.linear_products.first = int(rows.linear_products.size());
+  island.rotation_products.first = int(rows.rotation_products.size());
+  each_pair(
+      [&](int a, int b) {
+        const Model::Entry& left = rows.linear_entries[std::size_t(a)];
+        const int right = rows.linear_entries[std::size_t(b)].row;
+        rows.linear_products.push_back({left.gradient, left.row, b, matrix.index(left.row - first, right - first)});
+      },
+      [&](int a, int b) {
+        const int left = rows.rotation_entries[std::size_t(a)].row;
+        const int right = rows.rotation_entries[std::size_t(b)].row;
+        rows.rotation_products.push_back({a, left, b, matrix.index(left - first, right - first)});
+      });
+  island.linear_products.last = int(rows.linear_products.size());
+  island.rotation_products.last = int(rows.rotation_products.size());
+  return matrix;
+}
+
+void Assembly::add_effects() {
+  model_.effects = std::move(scene_.effects_);
+  std::vector<char> pushed(start_.at.x.size(), 0);
+  for (const auto& effect : model_.effects) {
+    for (const Site s : effect->sites()) pushed[std::size_t(model_.places(s).index)] = 1;
+    effect->place(model_.places);
   }
+  const auto keep_pushed = [&](const std::vector<Model::Arm>& all, std::vector<Model::Arm>& out) {
+    std::copy_if(all.begin(), all.end(), std::back_inserter(out),
+                 [&](const Model::Arm& a) { return pushed[std::size_t(a.site)] != 0; });
+  };
+  keep_pushed(model_.points.arms, model_.points.pushed_arms);
+  keep_pushed(model_.points.planar_arms, model_.points.pushed_planar_arms);
 }
 
 }  // namespace lagroid::multibody

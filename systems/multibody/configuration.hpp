@@ -3,6 +3,7 @@
 
 #include <lagroid/core/types.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace lagroid::multibody {
@@ -39,6 +40,13 @@ struct Configuration {
 
   const Vec& operator()(Site s) const { return x[std::size_t(s.index)]; }
   const Mat& operator()(Attitude a) const { return attitude[std::size_t(a.index)]; }
+
+  friend void swap(Configuration& a, Configuration& b) noexcept {
+    std::swap(a.time, b.time);
+    a.x.swap(b.x);
+    a.attitude.swap(b.attitude);
+    a.arm.swap(b.arm);
+  }
 };
 
 /// What acts at one time: forces (N) on sites, by their place, and torques (N m) in the body's frame on attitudes. On a
@@ -49,6 +57,11 @@ struct Loads {
 
   Vec& operator()(Site s) { return on[std::size_t(s.index)]; }
   Vec& operator()(Attitude a) { return torque[std::size_t(a.index)]; }
+
+  friend void swap(Loads& a, Loads& b) noexcept {
+    a.on.swap(b.on);
+    a.torque.swap(b.torque);
+  }
 };
 
 }  // namespace lagroid::multibody

@@ -89,7 +89,7 @@ class Scene {
   Retraction rotation = Retraction::exponential;  ///< how a turn becomes an angular velocity
 
  private:
-  friend class Multibody;
+  friend class Assembly;
 
   template <class K, class All, class Base>
   static All& all_of(std::vector<std::unique_ptr<Base>>& list, std::map<std::type_index, Base*>& kinds) {

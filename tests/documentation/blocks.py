@@ -39,7 +39,7 @@ sources = {"cpp": ("*.cpp", "*.hpp"), "cmake": ("CMakeLists.txt", "*.cmake"), "p
 @functools.cache
 def source(language):
     """The text of all files of that language which CI compiles or runs."""
-    names = ("core", "groupoids", "solvers", "systems", "examples", "tests", "python")
+    names = ("core", "groupoids", "solvers", "systems", "run", "examples", "tests", "python")
     folders = [root / name for name in names if (root / name).is_dir()]
     return "\n".join(flush_left(file.read_text()) for folder in folders for pattern in sources[language]
                      for file in sorted(folder.rglob(pattern)) if here not in file.parents)

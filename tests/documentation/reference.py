@@ -53,7 +53,7 @@ class Reference(unittest.TestCase):
     def setUpClass(cls):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            for each in ("core", "groupoids", "solvers", "systems", "api"):
+            for each in ("core", "groupoids", "solvers", "systems", "run", "api"):
                 (folder / each).mkdir()
             (folder / "docs").symlink_to(root / "docs")
             (folder / "core/half.hpp").write_text(header)

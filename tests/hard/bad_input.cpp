@@ -116,7 +116,7 @@ double in_scenes() {
         const auto before = motion.state();
         const bool taken = motion.advance().converged();
         const auto after = motion.state();
-        const bool same = before.index == after.index && same_bits(before.place[0], after.place[0]) &&
+        const bool same = before.index == after.index && same_bits(before.at.x[0], after.at.x[0]) &&
                           same_bits(before.momentum[0], after.momentum[0]) && same_bits(before.spin[0], after.spin[0]);
         sum += taken || !same ? 1 : 0;
       } catch (const std::invalid_argument&) {

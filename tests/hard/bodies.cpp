@@ -129,9 +129,9 @@ double unresolved(double h) {
     const auto before = motion.state();
     const StepReport report = motion.advance();
     const auto after = motion.state();
-    if (!after.place[0].allFinite() || !after.momentum[0].allFinite()) return 1;
+    if (!after.at.x[0].allFinite() || !after.momentum[0].allFinite()) return 1;
     if (!report.converged())
-      return before.index == after.index && before.place[0] == after.place[0] && before.momentum[0] == after.momentum[0]
+      return before.index == after.index && before.at.x[0] == after.at.x[0] && before.momentum[0] == after.momentum[0]
                  ? 0
                  : 1;
   }
@@ -196,7 +196,7 @@ double collision() {
   const auto before = motion.state();
   const SolveStatus status = motion.advance().status;
   const auto after = motion.state();
-  return status == SolveStatus::not_finite && after.index == 0 && after.place[0] == before.place[0] &&
+  return status == SolveStatus::not_finite && after.index == 0 && after.at.x[0] == before.at.x[0] &&
                  after.momentum[1] == before.momentum[1]
              ? 0
              : 1;
@@ -211,9 +211,8 @@ double rod_step_too_large() {
   const auto before = motion.state();
   const bool refused = !motion.advance().converged();
   const auto after = motion.state();
-  return refused && after.index == 0 && after.place[0] == before.place[0] && after.momentum[0] == before.momentum[0]
-             ? 0
-             : 1;
+  return refused && after.index == 0 && after.at.x[0] == before.at.x[0] && after.momentum[0] == before.momentum[0] ? 0
+                                                                                                                   : 1;
 }
 
 /// The chain with the heavy end in steps that do not resolve its light links: 0 where that ends in a typed status, rods
@@ -225,8 +224,8 @@ double heavy_end_unresolved() {
     const auto before = motion.state();
     if (motion.advance().converged()) continue;
     const auto after = motion.state();
-    for (std::size_t i = 0; i < after.place.size(); ++i)
-      if (!after.place[i].allFinite() || after.place[i] != before.place[i] || after.momentum[i] != before.momentum[i])
+    for (std::size_t i = 0; i < after.momentum.size(); ++i)
+      if (!after.at.x[i].allFinite() || after.at.x[i] != before.at.x[i] || after.momentum[i] != before.momentum[i])
         return 1;
     return motion.constraint_residual() <= 1e-14 ? 0 : 1;
   }

@@ -93,9 +93,9 @@ double rods_or_refusal(const Rods& rods, double h, int steps) {
     const auto before = motion.state();
     const bool taken = motion.advance().converged();
     const auto after = motion.state();
-    for (std::size_t i = 0; i < after.place.size(); ++i) {
-      if (!after.place[i].allFinite() || !after.momentum[i].allFinite()) return not_a_number;
-      if (!taken && (after.place[i] != before.place[i] || after.momentum[i] != before.momentum[i])) return not_a_number;
+    for (std::size_t i = 0; i < after.momentum.size(); ++i) {
+      if (!after.at.x[i].allFinite() || !after.momentum[i].allFinite()) return not_a_number;
+      if (!taken && (after.at.x[i] != before.at.x[i] || after.momentum[i] != before.momentum[i])) return not_a_number;
     }
     worst = worse(worst, motion.constraint_residual());
     if (!taken) break;
@@ -118,7 +118,7 @@ double end_of_dependence(double h) {
   const auto before = motion.state();
   const bool refused = motion.dependent_rows() == 1 && !motion.advance().converged() && motion.dependence_ended();
   const auto after = motion.state();
-  return refused && before.place[0] == after.place[0] && before.momentum[1] == after.momentum[1] ? 0 : 1;
+  return refused && before.at.x[0] == after.at.x[0] && before.momentum[1] == after.momentum[1] ? 0 : 1;
 }
 
 template <class F> double over(std::initializer_list<double> values, const F& f) {

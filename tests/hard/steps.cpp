@@ -3,6 +3,7 @@
 #include "naive.hpp"
 #include "refusal.hpp"
 
+#include <lagroid/core/compensation.hpp>
 #include <lagroid/core/step_equations.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/systems/chaplygin_sleigh.hpp>
@@ -146,13 +147,10 @@ Tiny by_controlled() {
   options.mode = TimeMode::controlled;
   const auto march = march_from(Kepler{}, tiny, apse, options);
   double sum = 0;
-  double carry = 0;
+  Compensation<double> compensation{};
   for (int k = 0; k < tiny_steps; ++k) {
     if (!march->advance().converged()) return {not_a_number, not_a_number, not_a_number};
-    const double step = march->point().step_size - carry;
-    const double next = sum + step;
-    carry = (next - sum) - step;
-    sum = next;
+    compensation.add(sum, march->point().step_size);
   }
   return {std::abs(march->point().time / sum - 1) / eps, 0, 0};
 }

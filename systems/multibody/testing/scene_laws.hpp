@@ -203,9 +203,12 @@ inline LawReport scene_laws(const SceneSubject& subject) {
       if (!motion.advance().converged()) throw std::runtime_error("a step failed");
   };
   const auto places = [](const Multibody& motion) {
-    const auto state = motion.state();
+    const auto& state = motion.state();
     std::vector<double> all;
-    for (const Vec& x : state.place) all.insert(all.end(), x.data(), x.data() + 3);
+    for (std::size_t f = 0; f < state.momentum.size(); ++f) {
+      const Vec& x = state.at.x[f];
+      all.insert(all.end(), x.data(), x.data() + 3);
+    }
     for (const auto& q : state.attitude) all.insert(all.end(), q.data(), q.data() + 4);
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(all.data(), Eigen::Index(all.size())));
   };
@@ -286,8 +289,8 @@ inline LawReport scene_laws(const SceneSubject& subject) {
           return d == 0 ? 0.0 : 0.5 * (d % 2 == 0 ? 1 : -1) / std::tan(M_PI * d / points);
         };
         for (int k = 0; k < points; ++k) {
-          const auto at = loop[std::size_t(k)].state();
-          for (std::size_t f = 0; f < at.place.size(); ++f) {
+          const auto& at = loop[std::size_t(k)].state();
+          for (std::size_t f = 0; f < at.momentum.size(); ++f) {
             Vec rate = Vec::Zero();
             for (int j = 0; j < points; ++j)
               if (j != k) rate += weight(k - j) * loop[std::size_t(j)].configuration().x[f];

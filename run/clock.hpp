@@ -1,0 +1,11 @@
+#pragma once
+/// Times in words.
+
+#include <string>
+
+namespace lagroid {
+
+/// Three digits with a unit, as in "4.56 ms"; "-" where it is not finite.
+std::string duration(double seconds);
+
+}  // namespace lagroid

@@ -1,0 +1,25 @@
+#pragma once
+/// A run in words and as JSON.
+
+#include <lagroid/run/run_result.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// The summary a person reads: what was run, how it ended, the ledger.
+std::string text_report(const RunResult& result);
+
+/// One JSON object; numbers read back to the same doubles. Keys: docs/scenes.md.
+std::string json_report(const RunResult& result);
+
+/// The plot panels that such a summary tells. Throws nlohmann::json::exception where it tells none.
+std::vector<Panel> panels_of(const nlohmann::ordered_json& summary);
+
+/// The JSON object for a run that never began: status "invalid_scene" and the message.
+std::string json_error(const std::string& status, const std::string& message);
+
+}  // namespace lagroid

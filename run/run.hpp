@@ -1,0 +1,161 @@
+#pragma once
+/// From a system and a state to a trajectory, its ledger and its files.
+
+#include <lagroid/run/output.hpp>
+#include <lagroid/run/program_scene.hpp>
+#include <lagroid/run/report.hpp>
+#include <lagroid/run/system_run.hpp>
+#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/march_of.hpp>
+#include <lagroid/solvers/newton_step.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// What is asked of `run`.
+template <DiscreteSystem Sys> struct RunOptions {
+  using G = typename Sys::GroupoidType;
+
+  long steps = 1000;
+  std::string name = "system";                ///< in reports: one line of text
+  std::optional<ArrowOf<G>> configuration{};  ///< an arrow that ends at the start's object, as an attitude; its unit
+  std::filesystem::path folder{};             ///< for trajectory, summary and plots; empty: no files
+  bool resume = false;                        ///< go on with the run in the folder until it has so many steps
+  long every = 1;                             ///< each n-th node is recorded (and the last)
+  bool progress = false;                      ///< a bar on the terminal
+  std::optional<Presentation<Sys>> presentation{};  ///< labels, panels and shapes of one's own
+};
+
+/// Columns q1, q2, ... of the object and mu1, mu2, ... of the momentum, g1, g2, ... of the configuration where the
+/// objects do not tell it, and panels of these and of every quantity's drift. Objects of two or three coordinates are
+/// drawn as a point that leaves a trail.
+template <DiscreteSystem Sys>
+Presentation<Sys> plain_presentation(const Sys& system, std::string name, std::span<const Quantity<Sys>> quantities);
+
+namespace detail {
+
+/// head1, head2, ..., or head alone.
+std::vector<std::string> numbered(std::string_view head, std::size_t count);
+
+/// Throws std::invalid_argument unless these are the counts of a run.
+void require_counts(long steps, long every);
+
+/// `go`, which runs a motion into the result, with files in `folder` where there is one. A disk that is full costs the
+/// files only: RunResult::output_error.
+void run_with_files(RunResult& result, const std::filesystem::path& folder, bool resume, const std::string& scene,
+                    const std::function<void(const RunContext&)>& go);
+
+template <DiscreteSystem Sys>
+std::vector<Quantity<Sys>> watched_without_being_asked(const Sys& system, const MarchOptions& march) {
+  auto all = watched(system, march);
+  if constexpr (Timed<Sys> && !TimeDependent<Sys>)
+    // The last arrow of a composed step does not last as long as the step.
+    if (march.mode == TimeMode::fixed && march.fixed == StepKind::variational && march.composition.stages() == 1 &&
+        std::none_of(all.begin(), all.end(), [](const auto& q) { return q.name.starts_with("energy"); }))
+      all.push_back(discrete_energy_quantity(system, Promise::bounded));
+  return all;
+}
+
+}  // namespace detail
+
+/// Runs a march of the system that was made with the options `how` (`make_march`), to be recorded from its present
+/// point on. The ledger holds the constraints, the system's quantities or, of one that declares symmetries alone, their
+/// momenta; and the discrete energy where the Lagrangian has the step as its argument.
+///
+/// A step that fails, Ctrl-C or SIGTERM ends the run with what was computed so far, and RunResult::status tells which.
+/// Throws std::invalid_argument for a name that is not one line of text, or steps and every that count nothing;
+/// FolderRefused where the folder holds something else or is not to be written in; RunError where it holds no run, or
+/// one of another system, start or method, to go on with.
+template <DiscreteSystem Sys>
+RunResult run(const Sys& system, std::unique_ptr<March<Sys>> march, const MarchOptions& how,
+              const RunOptions<Sys>& options) {
+  using G = typename Sys::GroupoidType;
+  detail::require_counts(options.steps, options.every);
+  auto quantities = detail::watched_without_being_asked(system, how);
+  const Presentation<Sys> presentation =
+      with_step_sizes(options.presentation.value_or(plain_presentation<Sys>(system, options.name, quantities)), how);
+  const TrajectoryPoint<Sys> start = march->point();
+  const MethodTraits method = march->traits();
+  double step = 0;
+  if constexpr (HasTimeStep<Sys>) step = system.h;
+  const G& groupoid = system.groupoid;
+  const auto object = groupoid.coordinates_of_object(start.state.object);
+  const auto configuration = groupoid.coordinates_of_arrow(start.configuration);
+  const auto flat = [](const auto& v) { return std::span<const double>(v.data(), std::size_t(v.size())); };
+  const std::string scene = scene_of_program(presentation.name, description(method), step, flat(object),
+                                             flat(start.state.momentum), flat(configuration));
+  SystemRun<Sys> run(system, presentation, std::move(quantities), std::move(march), how, options.every);
+  RunResult result;
+  result.system = presentation.name;
+  detail::run_with_files(result, options.folder, options.resume, scene, [&](RunContext context) {
+    context.progress = options.progress;
+    run.go({options.steps, options.every, 0, scene}, context, result);
+  });
+  return result;
+}
+
+/// Runs a system from a state by equal steps of its discrete Lagrangian, each solved by Newton's iteration to
+/// round-off. For other methods include `run_by.hpp`. `text_report(result)` is the ledger in words.
+///
+///     RunResult result = run(Dido{}, {{0, 0}, {1, 0, 1}}, {.steps = 126, .folder = "out/dido"});
+///     std::cout << text_report(result);
+template <DiscreteSystem Sys>
+RunResult run(const Sys& system, const State<typename Sys::GroupoidType>& start, const RunOptions<Sys>& options = {}) {
+  const auto configuration = options.configuration.value_or(system.groupoid.unit(start.object));
+  return run<Sys>(system,
+                  std::make_unique<detail::MarchOf<Sys, Integrator<Sys>>>(system, start, configuration,
+                                                                          std::make_unique<NewtonStep<Sys>>()),
+                  MarchOptions{}, options);
+}
+
+template <DiscreteSystem Sys>
+Presentation<Sys> plain_presentation(const Sys& system, std::string name, std::span<const Quantity<Sys>> quantities) {
+  using G = typename Sys::GroupoidType;
+  constexpr int objects = G::object_coordinate_count();
+  constexpr int arrows = G::arrow_coordinate_count();
+  const G groupoid = system.groupoid;
+  Presentation<Sys> p;
+  p.name = std::move(name);
+  p.position = detail::numbered("q", objects);
+  p.position_unit = "of the object's coordinates";
+  p.momentum = detail::numbered("mu", G::dimension);
+  p.momentum_unit = "action / unit of the retraction's coordinates";
+  p.multipliers = detail::numbered("lambda", Sys::constraints);
+  p.position_of = [groupoid](const TrajectoryPoint<Sys>& point) {
+    const auto q = groupoid.coordinates_of_object(point.state.object);
+    return std::vector<double>(q.data(), q.data() + q.size());
+  };
+  if (objects > 0) p.panels.push_back({"object", "t", "q", "t", p.position});
+  p.panels.push_back({"momentum", "t", "mu", "t", p.momentum});
+  if constexpr (arrows != 2 * objects) {
+    const auto labels = detail::numbered("g", arrows);
+    p.extras.push_back({{"configuration", labels, "of the arrow's coordinates", "g_0 g_1 ... g_k", false, {}},
+                        [groupoid](const TrajectoryPoint<Sys>& point, double* out) {
+                          const auto g = groupoid.coordinates_of_arrow(point.configuration);
+                          std::copy(g.data(), g.data() + g.size(), out);
+                        }});
+    p.panels.push_back({"configuration", "t", "g", "t", labels});
+  }
+  for (const auto& q : quantities)
+    p.panels.push_back({q.name + " error", "t", "|deviation|", "t", {"drift " + q.name}});
+  if (objects == 2 || objects == 3) {
+    Shape point{"sphere", {0.03}};
+    point.position = {p.position[0], p.position[1], objects == 3 ? Coordinate(p.position[2]) : Coordinate(0.0)};
+    point.trail = true;
+    p.shapes = {point};
+  }
+  p.conventions = {{"state", "object q and momentum mu in A*G at the nodes, in the basis of the retraction"}};
+  return p;
+}
+
+}  // namespace lagroid

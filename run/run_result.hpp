@@ -1,0 +1,114 @@
+#pragma once
+/// What a run produces, whatever the system: the common currency of reports, files and plots.
+
+#include <lagroid/run/shape.hpp>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// One sampled quantity along a trajectory: `width` numbers a row.
+struct Columns {
+  std::string name;                     ///< dataset name in HDF5
+  std::vector<std::string> components;  ///< column labels in CSV
+  std::string unit;
+  std::string meaning;
+  bool on_arrows = false;      ///< one row per arrow, beginning with the first, instead of one per node
+  std::vector<double> values;  ///< row after row
+  std::size_t width() const { return components.size(); }
+};
+
+struct Trajectory {
+  std::vector<double> time;  ///< of the nodes, s
+  std::vector<Columns> series;
+  std::map<std::string, std::string> conventions;  ///< attributes of the file
+};
+
+/// A state as users see it.
+struct Endpoint {
+  double time = 0;  ///< s
+  std::vector<double> position;
+  std::optional<std::array<double, 4>> attitude;       ///< A, unit quaternion w, x, y, z
+  std::optional<std::array<double, 4>> body_attitude;  ///< A^T where the physical body is the transpose
+  std::vector<double> momentum;
+};
+
+struct Minimum {
+  double cost = 0;
+  int starts = 0;  ///< that led to it; none where a way down from a saddle did
+  std::vector<double> momentum;
+  bool is_minimum = false;
+  bool isolated = true;
+  bool normal = true;
+  long negative_directions = 0;
+};
+
+/// One line of the ledger: what was promised, what was found.
+struct LedgerEntry {
+  std::string name;
+  std::string promise;  ///< "round-off", "conserved", "bounded", "none", "counted"
+  std::vector<double> initial;
+  std::vector<double> final;
+  double drift = 0;           ///< largest deviation from the initial value
+  double relative_drift = 0;  ///< the same over the size of the initial value (over one if that vanishes)
+  double bound = 0;           ///< on `drift`; zero where none is promised
+  std::string verdict;        ///< "kept", "BROKEN", "bounded", "growing", "unjudged", "watched", "counted"
+  std::string reason;         ///< of a verdict that drift and bound do not explain; else empty
+  bool broken() const { return verdict == "BROKEN"; }
+};
+
+struct Ledger {
+  std::vector<LedgerEntry> entries;
+  double mean_iterations = 0;
+  int most_iterations = 0;
+};
+
+/// A plot panel: curves by CSV column label.
+struct Panel {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  std::string x;                    ///< column on the x axis
+  std::vector<std::string> curves;  ///< columns
+  bool equal_axes = false;
+  double x_offset = 0;  ///< shown is the column less this
+  double y_offset = 0;
+};
+
+/// The status of a run that Ctrl-C or SIGTERM ended.
+inline constexpr const char* interrupted_status = "interrupted";
+
+struct RunResult {
+  std::string system;
+  std::string method;                ///< of an initial value, and what it declares
+  std::string status = "converged";  ///< of the solve: this or a typed failure
+  std::string message;               ///< why, at which step, what to do
+  std::string output_error;          ///< why the files of the run could not be written
+  long steps = 0;                    ///< arrows computed
+  long steps_asked = 0;
+  double seconds = 0;
+  long iterations = 0;
+  std::optional<double> cost;
+  std::optional<double> residual;  ///< of a solve that failed: the smallest scaled residual found
+  Endpoint initial;
+  Endpoint final;
+  std::vector<double> first_multipliers;
+  std::vector<double> last_multipliers;
+  int starts = 0;  ///< of a boundary value, all that were made
+  std::vector<Minimum> minima;
+  std::vector<std::string> notes;
+  Ledger ledger;
+  Trajectory trajectory;
+  std::vector<Panel> panels;
+  std::vector<Shape> shapes;
+
+  bool converged() const { return status == "converged"; }
+  bool interrupted() const { return status == interrupted_status; }
+};
+
+}  // namespace lagroid

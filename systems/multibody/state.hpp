@@ -1,0 +1,57 @@
+#pragma once
+/// Where the motion of a scene stands.
+
+#include <lagroid/core/tape.hpp>
+#include <lagroid/solvers/step_control.hpp>
+#include <lagroid/systems/multibody/joint.hpp>
+#include <lagroid/systems/multibody/turn.hpp>
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace lagroid::multibody {
+
+/// All that the motion of a scene depends on: one that goes on from it does so with the same bits.
+struct SceneState {
+  /// What the solution of a step is guessed from.
+  struct Guess {
+    std::array<std::vector<double>, 3> multipliers;  ///< of the last three steps, the last first
+    std::vector<Vec> turns;                          ///< of the last step, xi
+
+    void persist(Tape& tape) { tape(multipliers, turns); }
+    friend void swap(Guess& a, Guess& b) noexcept {
+      a.multipliers.swap(b.multipliers);
+      a.turns.swap(b.turns);
+    }
+  };
+
+  long index = 0;
+  double step = 0;        ///< that led here; at the start, the first
+  double time_carry = 0;  ///< of sums of steps that are controlled
+  double dissipated = 0;  ///< J
+  Configuration at;       ///< the places of linear factors first
+  std::vector<Quaternion> attitude;
+  std::vector<Vec> place_carry, momentum, momentum_carry, spin, spin_carry;
+  Guess guess;
+  std::vector<Guess> stages;  ///< of a composed step, each with its own
+  std::optional<StepController> control;
+
+  // What follows from places and attitudes. Computed anew at another place of the program it could differ in its last
+  // bits.
+  Loads loads;
+  std::vector<Vec> gradients;  ///< of rows, as their reactions act
+  std::vector<RowSize> sizes;
+  std::vector<double> precision;  ///< one over the size of a row in the step that led here
+  double arrow_residual = 0;      ///< of the rows on the arrow that led here
+
+  /// Whether the other is a state of the same scene, as far as sizes tell.
+  bool fits(const SceneState& other) const;
+  /// Visits all of it.
+  void persist(Tape& tape);
+  /// Of its arrays, B.
+  std::size_t memory() const;
+};
+
+}  // namespace lagroid::multibody
