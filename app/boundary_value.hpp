@@ -7,6 +7,7 @@
 #include <lagroid/run/checkpoint.hpp>
 #include <lagroid/run/progress.hpp>
 #include <lagroid/run/recorder.hpp>
+#include <lagroid/run/system_node.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
@@ -77,16 +78,25 @@ double evaluation_noise(const Sys& system, const Step<Sys>& step, const State<ty
   return round_off_level(system, state, step, jacobian).template head<Sys::dimension>().maxCoeff() / size;
 }
 
-/// Replays a solved path through the recorder.
+/// Records and judges a solved path, of whose nodes each `every`-th is recorded, and the last; 0: none.
 template <DiscreteSystem Sys>
 void record_path(const Sys& system, const Presentation<Sys>& presentation, const Path<Sys>& path,
                  const ArrowOf<typename Sys::GroupoidType>& start, long every, const Observer<Sys>& observer,
                  RunResult& result) {
-  Recorder<Sys> recorder(system, presentation, every, observer);
+  SystemNode<Sys> node(system, presentation, quantities_of(system));
+  Judge judge(node);
+  Recorder recorder(node);
   TrajectoryPoint<Sys> point;
+  const auto see = [&](double noise) {
+    node.see(point, noise);
+    if (observer) observer(node.point());
+    judge.observe(node);
+    if (every > 0 && (point.index % every == 0 || point.index == std::ssize(path))) recorder.record(node, &judge);
+  };
   point.configuration = start;
   point.state = legendre_minus(system, path.front());
-  recorder.observe(reported(system, point));
+  see(0);
+  result.initial = node.endpoint();
   for (const auto& step : path) {
     ++point.index;
     if constexpr (HasTimeStep<Sys>) {
@@ -96,9 +106,18 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
     point.step = step;
     point.configuration = system.groupoid.project(system.groupoid.compose(point.configuration, step.arrow));
     point.state = legendre_plus(system, step);
-    recorder.observe(reported(system, point), evaluation_noise(system, step, point.state));
+    see(evaluation_noise(system, step, point.state));
   }
-  recorder.finish(result);
+  judge.report(result.ledger);
+  if (every > 0) result.trajectory = std::move(recorder.trajectory());
+  result.system = presentation.name;
+  result.final = node.endpoint();
+  const auto list = [](const auto& v) { return std::vector<double>(v.begin(), v.end()); };
+  result.first_multipliers = list(path.front().multipliers);
+  result.last_multipliers = list(path.back().multipliers);
+  result.trajectory.conventions = presentation.conventions;
+  result.panels = presentation.panels;
+  result.shapes = presentation.shapes;
 }
 
 /// Carries every solution found at the beginning of a continuation to its end. Returns how far the best came: 1 where

@@ -103,7 +103,7 @@ template <DiscreteSystem Sys> Certificate certify(const Task<Sys>& task, const C
 /// The laws of the step of a scene of bodies, where it starts.
 Certificate certify_bodies(const Section& scene, const CheckOptions& options) {
   const auto clock = std::chrono::steady_clock::now();
-  const BodiesToCheck bodies = bodies_to_check(scene);
+  const BodiesToCheck bodies = read_bodies(scene, {}).to_check;
   Certificate certificate;
   certificate.system = bodies.name;
   certificate.groupoid = "the product of its bodies' groupoids";
@@ -119,7 +119,7 @@ Certificate certify_bodies(const Section& scene, const CheckOptions& options) {
 /// The laws of the method of a scene on (T*S^2)^k, beside where it starts.
 Certificate certify_spheres(const SphereEntry& entry, const Section& scene, const CheckOptions& options) {
   const auto clock = std::chrono::steady_clock::now();
-  const SpheresToCheck asked = spheres_to_check(entry, scene);
+  const SpheresToCheck asked = read_spheres(entry, scene, {}).to_check;
   const SphereSystem& system = *asked.system;
   laws::SphereSubject subject{
       std::string(entry.name),

@@ -5,6 +5,7 @@
 #include "spheres/sphere_system.hpp"
 #include "systems/readers.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -133,5 +134,13 @@ template <class Visit> auto with_system_of(const Section& scene, const Visit& vi
 
 /// Runs the scene.
 RunResult run_scene(const Section& scene, const RunContext& context);
+
+/// The motion of an initial-value scene alone, and the methods by which it could be marched.
+struct MotionScene {
+  std::unique_ptr<Motion> motion;
+  std::vector<Method> methods;
+};
+/// Throws SceneError for a scene that is none.
+MotionScene begin_scene(const Section& scene);
 
 }  // namespace lagroid::app

@@ -2,12 +2,12 @@
 /// Initial-value runs of any system.
 
 #include "scene_reader.hpp"
-#include "study/system_trial.hpp"
 #include "task.hpp"
 
 #include <lagroid/core/rates.hpp>
 #include <lagroid/core/split_system.hpp>
-#include <lagroid/run/system_run.hpp>
+#include <lagroid/run/drive.hpp>
+#include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march.hpp>
 #include <lagroid/solvers/splitting.hpp>
@@ -100,14 +100,22 @@ inline bool is_plain(const MarchChoice& choice) {
          o.step.max_iterations == MarchOptions().step.max_iterations && choice.accuracy == 0;
 }
 
+/// The system's motion as the scene asks for it.
+template <DiscreteSystem Sys>
+std::unique_ptr<Motion> motion_of(const Sys& system, const Presentation<Sys>& presentation,
+                                  const State<typename Sys::GroupoidType>& initial,
+                                  const ArrowOf<typename Sys::GroupoidType>& configuration, const MarchOptions& options,
+                                  const Observer<Sys>& observer = nullptr) {
+  return std::make_unique<SystemMotion<Sys>>(system, with_step_sizes(presentation, options), watched(system, options),
+                                             make_march(system, initial, configuration, options), options, observer);
+}
+
 /// Runs the system.
 template <DiscreteSystem Sys>
-RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typename Sys::GroupoidType>& initial,
+RunResult simulate(Sys system, const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                    const ArrowOf<typename Sys::GroupoidType>& configuration, const MarchChoice& choice, Pace pace,
                    const RunContext& context, const Observer<Sys>& observer) {
-  const Presentation<Sys> presentation = with_step_sizes(own, choice.options);
   RunResult result;
-  result.system = presentation.name;
   if (choice.accuracy > 0) {
     const double h = step_for_accuracy(system, initial, choice.accuracy, choice.options);
     if (h > 0) {
@@ -119,10 +127,7 @@ RunResult simulate(Sys system, const Presentation<Sys>& own, const State<typenam
       pace.steps = 0;
     }
   }
-  SystemRun<Sys> run(system, presentation, watched(system, choice.options),
-                     make_march(system, initial, configuration, choice.options), choice.options,
-                     context.record ? pace.every : 0, observer);
-  run.go(pace, context, result);
+  drive(*motion_of(system, presentation, initial, configuration, choice.options, observer), pace, context, result);
   return result;
 }
 
@@ -143,10 +148,8 @@ Task<Sys> simulation(const Section& scene, const RunContext& context, const Sys&
           [=](const Observer<Sys>& observer) {
             return simulate(system, presentation, initial, configuration, choice, pace, context, observer);
           },
-          [=]() -> std::unique_ptr<Trial> {
-            return std::make_unique<SystemTrial<Sys>>(system, initial, configuration, choice.options);
-          },
-          march_methods(able), plain};
+          [=] { return motion_of(system, presentation, initial, configuration, choice.options); }, march_methods(able),
+          plain};
 }
 
 }  // namespace lagroid::app

@@ -1,12 +1,13 @@
 #pragma once
 /// A scene, read and checked, before anything is computed.
 
-#include "study/trial.hpp"
+#include "method.hpp"
 
-#include <lagroid/core/quantity.hpp>
 #include <lagroid/core/system.hpp>
+#include <lagroid/run/drive.hpp>
+#include <lagroid/run/motion.hpp>
 #include <lagroid/run/run_result.hpp>
-#include <lagroid/run/stepped_run.hpp>
+#include <lagroid/run/system_node.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -21,7 +22,7 @@ template <DiscreteSystem Sys> struct PlainMarch;
 template <DiscreteSystem Sys> struct Task {
   Sys system;
   std::function<RunResult(const Observer<Sys>&)> run;
-  std::function<std::unique_ptr<Trial>()> begin;           ///< the same motion alone; null for boundary values
+  std::function<std::unique_ptr<Motion>()> begin;          ///< the motion alone; null for boundary values
   std::vector<Method> methods = {};                        ///< by which the scene could march
   std::shared_ptr<const PlainMarch<Sys>> plain = nullptr;  ///< null where it is no such march
 };

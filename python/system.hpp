@@ -9,9 +9,8 @@
 /// Its march is the class Integrator of the package lagroid.
 
 #include <lagroid/core/noether.hpp>
-#include <lagroid/core/stepped.hpp>
-#include <lagroid/core/two_sided.hpp>
-#include <lagroid/python/any_march.hpp>
+#include <lagroid/python/rows.hpp>
+#include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/solvers/compositions.hpp>
 #include <lagroid/solvers/constrained_momentum.hpp>
@@ -233,115 +232,33 @@ inline MarchOptions march_options(const std::string& mode, const std::string& me
 
 }  // namespace detail
 
-/// The march of a system behind AnyMarch.
-template <DiscreteSystem Sys> class MarchOfSystem final : public AnyMarch {
- public:
+/// What is seen of a system in Python: `count_of_fields` fields of every system, and then each of its quantities.
+template <DiscreteSystem Sys>
+std::vector<FieldOf<Sys>> fields_of(const Sys& system, const std::vector<Quantity<Sys>>& quantities) {
   using G = typename Sys::GroupoidType;
-
-  MarchOfSystem(const Sys& system, const State<G>& initial, const ArrowOf<G>& configuration,
-                const MarchOptions& options)
-      : system_(system),
-        mode_(options.mode),
-        march_(make_march(system, initial, configuration, options)),
-        fields_{{"object", {std::size_t(G::object_coordinate_count())}},
-                {"momentum", {std::size_t(G::dimension)}},
-                {"configuration", detail::arrow_shape<G>()},
-                {"arrow", detail::arrow_shape<G>(), true},
-                {"multipliers", {std::size_t(Sys::constraints)}, true},
-                {"step_size", {1}, true}} {
-    for (auto& q : quantities_of(system)) {
-      watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size != nullptr});
-      quantities_.push_back(std::move(q));
-    }
-    see();
-  }
-
-  StepReport advance() override {
-    const StepReport report = march_->advance();
-    if (report.converged()) see();
-    return report;
-  }
-  long index() const override { return at_.index; }
-  double time() const override { return at_.time; }
-  MethodTraits traits() const override { return march_->traits(); }
-  TimeMode mode() const override { return mode_; }
-  const std::vector<Field>& fields() const override { return fields_; }
-  void read(std::size_t field, double* out) const override {
-    const G& groupoid = system_.groupoid;
-    switch (field) {
-      case 0:
-        return detail::put(groupoid.coordinates_of_object(at_.state.object), out);
-      case 1:
-        return detail::put(at_.state.momentum, out);
-      case 2:
-        return detail::put(groupoid.coordinates_of_arrow(at_.configuration), out);
-      case 3:
-        return detail::put(groupoid.coordinates_of_arrow(at_.step.arrow), out);
-      case 4:
-        return detail::put(at_.step.multipliers, out);
-      default:
-        *out = at_.step_size;
-    }
-  }
-  const std::vector<Watched>& watched() const override { return watched_; }
-  double watch(std::size_t i, double* out) const override {
-    quantities_[i].evaluate(at_, out);
-    if (quantities_[i].size) return quantities_[i].size(at_);
-    return Eigen::Map<const Eigen::VectorXd>(out, Eigen::Index(watched_[i].components.size())).stableNorm();
-  }
-  bool constrained() const override { return Sys::constraints > 0; }
-  double residual() const override {
-    double largest = 0;
-    if constexpr (Sys::constraints > 0) {
-      const auto look = [&](const Step<Sys>& step, double start, double over) {
-        const double found = constraint_values(over_step(start, over), step.arrow).cwiseAbs().maxCoeff();
-        if (!(found <= largest)) largest = found;  // a NaN too
-      };
-      march_->for_each_inner_stage(look);
-      look(at_.step, at_.time - at_.step_size, at_.step_size);
-    }
-    return largest;
-  }
-  double residual_size() const override {
-    if constexpr (Sys::constraints > 0) {
-      const Sys system = over_step(at_.time - at_.step_size, at_.step_size);
-      const auto d = two_sided(system, at_.step.arrow, at_.step.multipliers);
-      return (d.constraint_target.cwiseAbs() * system.groupoid.coordinate_scale(at_.step.arrow)).maxCoeff();
-    }
-    return 0;
-  }
-  void persist(Tape& tape) override {
-    march_->persist(tape);
-    if (tape.reading()) see();
-  }
-
- private:
-  /// The node as it is reported: with its momentum tangent to the object constraints.
-  void see() {
-    at_ = march_->point();
-    at_.state.momentum = tangent_momentum(system_, at_.state);
-  }
-  Sys over_step(double start, double over) const {
-    Sys system = system_;
-    if constexpr (HasTimeStep<Sys>) system.h = over;
-    set_time(system, start);
-    return system;
-  }
-
-  Sys system_;
-  TimeMode mode_;
-  TrajectoryPoint<Sys> at_;
-  std::unique_ptr<March<Sys>> march_;
-  std::vector<Field> fields_;
-  std::vector<Watched> watched_;
-  std::vector<Quantity<Sys>> quantities_;
-};
+  using Point = TrajectoryPoint<Sys>;
+  const G groupoid = system.groupoid;
+  std::vector<FieldOf<Sys>> all{
+      {field_of("object", {std::size_t(G::object_coordinate_count())}),
+       [=](const Point& p, double* out) { detail::put(groupoid.coordinates_of_object(p.state.object), out); }},
+      {field_of("momentum", {std::size_t(G::dimension)}),
+       [](const Point& p, double* out) { detail::put(p.state.momentum, out); }},
+      {field_of("configuration", detail::arrow_shape<G>()),
+       [=](const Point& p, double* out) { detail::put(groupoid.coordinates_of_arrow(p.configuration), out); }},
+      {field_of("arrow", detail::arrow_shape<G>(), true),
+       [=](const Point& p, double* out) { detail::put(groupoid.coordinates_of_arrow(p.step.arrow), out); }},
+      {field_of("multipliers", {std::size_t(Sys::constraints)}, true),
+       [](const Point& p, double* out) { detail::put(p.step.multipliers, out); }},
+      {field_of("step_size", {1}, true), [](const Point& p, double* out) { *out = p.step_size; }}};
+  for (const auto& q : quantities) all.push_back({field_of(q.name, {q.components.size()}, q.needs_step), q.evaluate});
+  return all;
+}
 
 /// A march of the system from a momentum and an object or, where more than the object is to be followed, the arrow that
 /// ends there.
 template <DiscreteSystem Sys>
-std::shared_ptr<AnyMarch> begin_march(const Sys& system, const Array& momentum, const std::optional<Array>& object,
-                                      const std::optional<Array>& configuration, const MarchOptions& options) {
+std::shared_ptr<Motion> begin_march(const Sys& system, const Array& momentum, const std::optional<Array>& object,
+                                    const std::optional<Array>& configuration, const MarchOptions& options) {
   using G = typename Sys::GroupoidType;
   const G& groupoid = system.groupoid;
   detail::require_step(system);
@@ -370,7 +287,10 @@ std::shared_ptr<AnyMarch> begin_march(const Sys& system, const Array& momentum, 
   const auto kept = groupoid.coordinates_of_arrow(groupoid.project(arrow));
   if (!((kept - groupoid.coordinates_of_arrow(arrow)).norm() <= on_it * (1 + kept.norm())))
     throw py::value_error("object: no object of " + G::name());
-  return std::make_shared<MarchOfSystem<Sys>>(system, state, arrow, options);
+  auto quantities = quantities_of(system);
+  auto fields = fields_of(system, quantities);
+  return std::make_shared<SystemMotion<Sys>>(system, "system", std::move(fields), std::move(quantities),
+                                             make_march(system, state, arrow, options), options);
 }
 
 /// The stationary paths between the ends of `boundary`, an arrow in coordinates, cheapest first.
@@ -405,9 +325,10 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
                       solution.kind.isolated,
                       solution.kind.normal,
                       solution.kind.negative_directions,
-                      {Rows({"object", {std::size_t(G::object_coordinate_count())}}),
-                       Rows({"momentum", {std::size_t(G::dimension)}}), Rows({"arrow", detail::arrow_shape<G>(), true}),
-                       Rows({"multipliers", {std::size_t(Sys::constraints)}, true})}};
+                      {Rows(field_of("object", {std::size_t(G::object_coordinate_count())})),
+                       Rows(field_of("momentum", {std::size_t(G::dimension)})),
+                       Rows(field_of("arrow", detail::arrow_shape<G>(), true)),
+                       Rows(field_of("multipliers", {std::size_t(Sys::constraints)}, true))}};
     const auto add = [&path](std::size_t row, const auto& v) { detail::put(v, path.rows[row].add()); };
     const auto node = [&](const State<G>& state) {
       add(0, system.groupoid.coordinates_of_object(state.object));

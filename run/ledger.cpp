@@ -35,8 +35,6 @@ bool judged_as_no_number(LedgerEntry& e, double size) {
 
 }  // namespace
 
-double worse(double a, double b) { return a <= b || std::isnan(b) ? b : a; }
-
 double norm_of(const std::vector<double>& values) {
   const Eigen::Map<const Eigen::VectorXd> v(values.data(), Eigen::Index(values.size()));
   const double square = v.squaredNorm();
@@ -71,6 +69,12 @@ void QuantityWatch::observe(const double* values, double size, double noise) {
     logarithms_ += std::log(size);
   }
   ++samples_;
+}
+
+double QuantityWatch::drift() const {
+  std::vector<double> deviation = last_;
+  for (std::size_t i = 0; i < deviation.size(); ++i) deviation[i] -= first_[i];
+  return norm_of(deviation);
 }
 
 double QuantityWatch::typical_size() const { return sized_ > 0 ? std::exp(logarithms_ / double(sized_)) : 0; }
@@ -172,14 +176,12 @@ LedgerEntry constraint_entry(double largest, double size) {
   return e;
 }
 
-LedgerEntry counted_entry(std::string name, long count, long all) {
-  LedgerEntry e;
-  e.name = std::move(name);
-  e.promise = "counted";
-  e.drift = double(count);
-  e.relative_drift = all > 0 ? double(count) / double(all) : 0;
-  e.verdict = "counted";
-  return e;
+LedgerEntry unpromised(LedgerEntry entry) {
+  entry.promise = "none";
+  entry.bound = 0;
+  entry.verdict = "watched";
+  entry.reason.clear();
+  return entry;
 }
 
 }  // namespace lagroid

@@ -1,12 +1,14 @@
 #pragma once
 /// Watching promises while a trajectory is made.
 
-#include <lagroid/core/quantity.hpp>
+#include <lagroid/run/observables.hpp>
 #include <lagroid/run/run_result.hpp>
 
+#include <cmath>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -15,11 +17,7 @@ namespace lagroid {
 double norm_of(const std::vector<double>& values);
 
 /// The larger of the two; a NaN wins, so that it is never overlooked.
-double worse(double a, double b);
-
-/// What a watched quantity's sizes are: of the terms that it is made of, or, where these are not known, its own norm,
-/// which may be smaller.
-enum class SizeOf { terms, value };
+inline double worse(double a, double b) { return a <= b || std::isnan(b) ? b : a; }
 
 /// Follows one quantity: its first and last values, its largest deviation, and whether that still grows.
 ///
@@ -38,6 +36,8 @@ class QuantityWatch {
   /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not carried along.
   void observe(const double* values, double size, double noise = 0);
   LedgerEntry entry() const;
+  /// The norm of the last deviation from the first value.
+  double drift() const;
   /// Visits what it has seen (archive.hpp).
   template <class Archive> void persist(Archive& archive) {
     archive("samples", samples_);
@@ -107,7 +107,18 @@ class PositionWatch {
 /// size.
 LedgerEntry constraint_entry(double largest, double size);
 
+/// An entry for what the method does not promise: how far it went.
+LedgerEntry unpromised(LedgerEntry entry);
+
 /// The entry for something that is counted: how often it happened, and in what share of all cases.
-LedgerEntry counted_entry(std::string name, long count, long all);
+inline LedgerEntry counted_entry(std::string name, long count, long all) {
+  LedgerEntry e;
+  e.name = std::move(name);
+  e.promise = "counted";
+  e.drift = double(count);
+  e.relative_drift = all > 0 ? double(count) / double(all) : 0;
+  e.verdict = "counted";
+  return e;
+}
 
 }  // namespace lagroid

@@ -9,13 +9,18 @@ file(GLOB sources_of_numbers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/systems/*/*.[ch]pp
   # How scenes become systems, and what is recorded of them.
   ${PROJECT_SOURCE_DIR}/run/archive.hpp
+  ${PROJECT_SOURCE_DIR}/run/drive.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/judge.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/boundary_value.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/ledger.[ch]pp
-  ${PROJECT_SOURCE_DIR}/run/recorder.hpp
+  ${PROJECT_SOURCE_DIR}/run/march_nodes.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/motion.hpp
+  ${PROJECT_SOURCE_DIR}/run/observables.hpp
+  ${PROJECT_SOURCE_DIR}/run/recorder.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/system_[mn]o*.hpp
   ${PROJECT_SOURCE_DIR}/app/registry.cpp
   ${PROJECT_SOURCE_DIR}/app/scene_reader.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/simulation.[ch]pp
-  ${PROJECT_SOURCE_DIR}/run/stepped_run.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/learn/learned_scene.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/learn/model_file.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/scenes/*.[ch]pp

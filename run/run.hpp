@@ -1,10 +1,11 @@
 #pragma once
 /// From a system and a state to a trajectory, its ledger and its files.
 
+#include <lagroid/run/drive.hpp>
 #include <lagroid/run/output.hpp>
 #include <lagroid/run/program_scene.hpp>
 #include <lagroid/run/report.hpp>
-#include <lagroid/run/system_run.hpp>
+#include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march_of.hpp>
 #include <lagroid/solvers/newton_step.hpp>
@@ -82,7 +83,7 @@ RunResult run(const Sys& system, std::unique_ptr<March<Sys>> march, const MarchO
   using G = typename Sys::GroupoidType;
   detail::require_counts(options.steps, options.every);
   auto quantities = detail::watched_without_being_asked(system, how);
-  const Presentation<Sys> presentation =
+  Presentation<Sys> presentation =
       with_step_sizes(options.presentation.value_or(plain_presentation<Sys>(system, options.name, quantities)), how);
   const TrajectoryPoint<Sys> start = march->point();
   const MethodTraits method = march->traits();
@@ -94,12 +95,11 @@ RunResult run(const Sys& system, std::unique_ptr<March<Sys>> march, const MarchO
   const auto flat = [](const auto& v) { return std::span<const double>(v.data(), std::size_t(v.size())); };
   const std::string scene = scene_of_program(presentation.name, description(method), step, flat(object),
                                              flat(start.state.momentum), flat(configuration));
-  SystemRun<Sys> run(system, presentation, std::move(quantities), std::move(march), how, options.every);
+  SystemMotion<Sys> motion(system, std::move(presentation), std::move(quantities), std::move(march), how);
   RunResult result;
-  result.system = presentation.name;
   detail::run_with_files(result, options.folder, options.resume, scene, [&](RunContext context) {
     context.progress = options.progress;
-    run.go({options.steps, options.every, 0, scene}, context, result);
+    drive(motion, {options.steps, options.every, 0, scene}, context, result);
   });
   return result;
 }

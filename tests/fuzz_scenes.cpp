@@ -5,6 +5,7 @@
 #include "scenes/scene_run.hpp"
 #include "spheres/sphere_run.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -16,13 +17,20 @@ namespace {
 using namespace lagroid;
 using namespace lagroid::app;
 
+template <class Read> RunResult run_a_little(Read read) {
+  constexpr long most_steps = 2;
+  read.pace.steps = std::min(read.pace.steps, most_steps);
+  RunResult result;
+  drive(*read.motion, read.pace, {.record = true}, result);
+  return result;
+}
+
 /// None where it is no such scene, or one whose inner steps could take long.
 std::optional<RunResult> run(const Section& scene) {
-  constexpr long most_steps = 2;
-  if (scene.has("body")) return run_bodies(scene, {.record = true}, most_steps);
+  if (scene.has("body")) return run_a_little(read_bodies(scene, {}));
   const SphereEntry* entry = sphere_system_of(scene);
   if (entry == nullptr || scene.section_or_empty("time").has("tolerance")) return std::nullopt;
-  return run_spheres(*entry, scene, {.record = true}, most_steps);
+  return run_a_little(read_spheres(*entry, scene, {}));
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/run/ledger.hpp>
-#include <lagroid/run/recorder.hpp>
+#include <lagroid/run/march_nodes.hpp>
+#include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/march_of.hpp>
 #include <lagroid/solvers/newton_step.hpp>
 
 #include <gtest/gtest.h>
@@ -211,21 +213,21 @@ struct OwnRun {
 };
 
 OwnRun march(const Own& system, double position, long steps) {
-  Presentation<Own> presentation;
-  presentation.position_of = [](const TrajectoryPoint<Own>& p) { return std::vector{p.state.object(0)}; };
-  Recorder<Own> recorder(system, presentation, 0);
-  Integrator<Own> integrator(system, {Vector<double, 1>(position), Vector<double, 1>::Zero()},
-                             system.groupoid.unit(Vector<double, 1>(position)), std::make_unique<NewtonStep<Own>>());
+  const State<Pair<1>> start{Vector<double, 1>(position), Vector<double, 1>::Zero()};
+  SystemMotion<Own> motion(system, "own", {}, quantities_of(system),
+                           std::make_unique<detail::MarchOf<Own, Integrator<Own>>>(
+                               system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Own>>()),
+                           {});
+  Judge judge(motion.look());
+  WatchedMotion watched(motion, &judge, nullptr, 1);
+  watched.observe();
   OwnRun run;
-  recorder.observe(integrator.point());
-  for (long k = 0; k < steps && run.status == SolveStatus::converged; ++k) {
-    run.status = integrator.advance().status;
-    if (run.status == SolveStatus::converged) recorder.observe(integrator.point());
-  }
-  RunResult result;
-  recorder.finish(result);
-  run.position = result.final.position.at(0);
-  run.ledger = result.ledger.entries;
+  const MarchEnd end = march_nodes(watched, steps, [](const StepReport&) { return true; });
+  if (end.why != MarchEnd::Why::whole) run.status = end.report.status;
+  run.position = motion.state().at(0).values.at(1);
+  Ledger ledger;
+  judge.report(ledger);
+  run.ledger = ledger.entries;
   return run;
 }
 

@@ -1,13 +1,13 @@
 #pragma once
-/// Running scenes of bodies.
+/// Scenes of bodies as motions.
 
-#include "../task.hpp"
+#include "../method.hpp"
 
-#include <lagroid/run/run_result.hpp>
+#include <lagroid/run/drive.hpp>
+#include <lagroid/run/motion.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,18 +15,6 @@
 namespace lagroid::app {
 
 class Section;
-
-/// Reads a scene of [[body]], [[joint]] and [[effect]] and runs it, over `most_steps` at most.
-RunResult run_bodies(const Section& scene, const RunContext& context,
-                     long most_steps = std::numeric_limits<long>::max());
-
-/// The motion of a scene alone, and the methods by which it could be marched.
-struct BodiesTrial {
-  std::string name;
-  std::unique_ptr<Trial> trial;
-  std::vector<Method> methods;
-};
-BodiesTrial begin_bodies(const Section& scene);
 
 /// A scene of bodies whose step is to be asked its laws.
 struct BodiesToCheck {
@@ -36,6 +24,14 @@ struct BodiesToCheck {
   bool symplectic = true;
   bool reversible = true;
 };
-BodiesToCheck bodies_to_check(const Section& scene);
+
+/// A scene of [[body]], [[joint]] and [[effect]] that has been read.
+struct BodiesScene {
+  std::unique_ptr<Motion> motion;
+  Pace pace;
+  std::vector<Method> methods;  ///< by which it could be marched
+  BodiesToCheck to_check;
+};
+BodiesScene read_bodies(const Section& scene, const RunContext& context);
 
 }  // namespace lagroid::app

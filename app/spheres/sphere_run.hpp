@@ -1,28 +1,16 @@
 #pragma once
-/// Running scenes on (T*S^2)^k.
+/// Scenes on (T*S^2)^k as motions.
 
-#include "../task.hpp"
+#include "../method.hpp"
 #include "sphere_system.hpp"
 
-#include <lagroid/run/run_result.hpp>
+#include <lagroid/run/drive.hpp>
+#include <lagroid/run/motion.hpp>
 
-#include <limits>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace lagroid::app {
-
-/// Reads such a scene and runs it, over `most_steps` at most.
-RunResult run_spheres(const SphereEntry& entry, const Section& scene, const RunContext& context,
-                      long most_steps = std::numeric_limits<long>::max());
-
-/// The motion of a scene alone, and the methods by which it could be marched.
-struct SphereTrialOf {
-  std::unique_ptr<Trial> trial;
-  std::vector<Method> methods;
-};
-SphereTrialOf begin_spheres(const SphereEntry& entry, const Section& scene);
 
 /// A scene whose steps are to be asked their laws.
 struct SpheresToCheck {
@@ -30,6 +18,14 @@ struct SpheresToCheck {
   SphereMarchOptions options;
   SphereMarch::Points start;  ///< in the form of the options
 };
-SpheresToCheck spheres_to_check(const SphereEntry& entry, const Section& scene);
+
+/// A scene that has been read.
+struct SphereScene {
+  std::unique_ptr<Motion> motion;
+  Pace pace;
+  std::vector<Method> methods;  ///< by which it could be marched
+  SpheresToCheck to_check;
+};
+SphereScene read_spheres(const SphereEntry& entry, const Section& scene, const RunContext& context);
 
 }  // namespace lagroid::app

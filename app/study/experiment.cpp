@@ -1,9 +1,7 @@
 #include "experiment.hpp"
 
 #include "../registry.hpp"
-#include "../scenes/scene_run.hpp"
 #include "../simulation.hpp"
-#include "../spheres/sphere_run.hpp"
 
 #include <fmt/format.h>
 
@@ -22,29 +20,6 @@ Section without_choice(Section scene) {
   return scene;
 }
 
-/// The trial of a scene and the methods it could use.
-struct Begun {
-  std::string name;
-  std::unique_ptr<Trial> trial;
-  std::vector<Method> methods;
-};
-Begun begin_scene(const Section& scene) {
-  if (scene.has("body")) {
-    BodiesTrial bodies = begin_bodies(scene);
-    return {bodies.name, std::move(bodies.trial), std::move(bodies.methods)};
-  }
-  if (const SphereEntry* entry = sphere_system_of(scene)) {
-    SphereTrialOf spheres = begin_spheres(*entry, scene);
-    return {std::string(entry->name), std::move(spheres.trial), std::move(spheres.methods)};
-  }
-  return with_system_of(scene, [&](const auto& entry) {
-    const auto task = entry.read(scene, {});
-    if (!task.begin)
-      scene.fail("boundary", "a study compares how initial values are marched: give a scene with [initial]");
-    return Begun{std::string(entry.name), task.begin(), task.methods};
-  });
-}
-
 }  // namespace
 
 Section with_method(const Section& scene, const Method& method, double h, double end) {
@@ -54,8 +29,8 @@ Section with_method(const Section& scene, const Method& method, double h, double
   return scene.set(settings);
 }
 
-std::unique_ptr<Trial> Experiment::begin(const Method& method, double h) const {
-  return begin_scene(with_method(scene, method, h, end)).trial;
+std::unique_ptr<Motion> Experiment::begin(const Method& method, double h) const {
+  return begin_scene(with_method(scene, method, h, end)).motion;
 }
 
 Experiment read_experiment(const Section& scene) {
@@ -66,8 +41,8 @@ Experiment read_experiment(const Section& scene) {
   out.scene = without_choice(scene)
                   .without("time.duration")
                   .set({fmt::format("time.step={:.17e}", grid.step), fmt::format("time.steps={}", grid.steps)});
-  Begun begun = begin_scene(out.scene);
-  out.name = begun.name;
+  MotionScene begun = begin_scene(out.scene);
+  out.name = begun.motion->name();
   out.methods = std::move(begun.methods);
   return out;
 }

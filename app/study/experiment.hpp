@@ -1,8 +1,10 @@
 #pragma once
 /// A scene to be run by many methods with many steps.
 
+#include "../method.hpp"
 #include "../scene_reader.hpp"
-#include "trial.hpp"
+
+#include <lagroid/run/motion.hpp>
 
 #include <functional>
 #include <memory>
@@ -22,7 +24,7 @@ struct Experiment {
   bool stopped() const { return interrupted && interrupted(); }
 
   /// From the scene's start. Throws SceneError where the method refuses this step.
-  std::unique_ptr<Trial> begin(const Method& method, double h) const;
+  std::unique_ptr<Motion> begin(const Method& method, double h) const;
 };
 
 /// Of an initial-value scene; throws SceneError for others.

@@ -221,10 +221,10 @@ class Watch {
 
   void see(const Sight& now, double time) {
     if (looked_++ == 0) {
-      if (now.constrained) out_.constraint = 0;
+      if (now.constraint) out_.constraint = 0;
       if (!now.invariants.empty()) out_.invariants = 0;
     }
-    if (now.constrained) out_.constraint = larger(out_.constraint, now.constraint);
+    if (now.constraint) out_.constraint = larger(out_.constraint, *now.constraint);
     for (const Block& block : now.invariants) {
       auto [found, is_new] = first_.try_emplace(block.name, block);
       const Block& first = found->second;
@@ -279,21 +279,21 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
   until.end = end;
   Reached out;
   try {
-    const auto trial = until.begin(method, end / double(steps));
+    const auto motion = until.begin(method, end / double(steps));
     std::vector<double> sizes;
     const auto look = [&](const std::vector<Block>& state) {
       sizes.resize(state.size());
       for (std::size_t i = 0; i < state.size(); ++i) sizes[i] = std::max(sizes[i], norm(state[i].values));
     };
-    look(trial->see().state);
+    look(motion->state());
     Work work;
     const long looks = std::min(steps, 64L);
     for (long k = 1; k <= looks; ++k) {
       const double start = processor_time();
-      const StepReport report = trial->run(end * double(k) / double(looks), work);
+      const StepReport report = march(*motion, end * double(k) / double(looks), work);
       out.seconds += processor_time() - start;
       if (!report.converged() || experiment.stopped()) return std::nullopt;
-      out.state = trial->see().state;
+      out.state = motion->state();
       look(out.state);
     }
     for (std::size_t i = 0; i < sizes.size(); ++i) out.state[i].size = sizes[i];
@@ -352,21 +352,21 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
   out.order = method.order;
   out.step = h;
   try {
-    const auto trial = experiment.begin(method, h);
+    const auto motion = experiment.begin(method, h);
     Watch watch(experiment.end, out);
-    watch.see(trial->see(), 0);
+    watch.see(see(*motion), 0);
     StepReport report;
     report.status = SolveStatus::converged;
     const double start = processor_time();
     // Varying steps are first ones: the last node may lie anywhere within half a step of the end.
     double last_step = h;
     Looks looks(experiment.end / h);
-    while (experiment.end - trial->time() > 0.5 * last_step) {
-      const double before = trial->time();
-      report = trial->advance(out.work);
+    while (experiment.end - motion->time() > 0.5 * last_step) {
+      const double before = motion->time();
+      report = advance(*motion, out.work);
       if (!report.converged()) break;
-      last_step = trial->time() - before;
-      if (looks.at(out.work.steps)) watch.see(trial->see(), trial->time());
+      last_step = motion->time() - before;
+      if (looks.at(out.work.steps)) watch.see(see(*motion), motion->time());
       if (out.work.steps % 64 != 0) continue;
       if (processor_time() - start > 8 * longest || experiment.stopped()) {
         out.status = experiment.stopped() ? "interrupted" : "too slow";
@@ -374,7 +374,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       }
     }
     out.seconds = {processor_time() - start};
-    out.reached = trial->time();
+    out.reached = motion->time();
     watch.finish();
     if (!report.converged()) {
       out.status = std::string(to_string(report.status));
@@ -383,7 +383,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
     }
     const bool at_end = method.equal_steps || std::abs(out.reached - experiment.end) <= 1e-12 * experiment.end;
     if (reference != nullptr)
-      out.trajectory = distance(trial->see().state, reference->at(at_end ? experiment.end : out.reached));
+      out.trajectory = distance(motion->state(), reference->at(at_end ? experiment.end : out.reached));
     if (reference != nullptr && method.equal_steps && !std::isfinite(out.trajectory)) {
       out.status = std::string(to_string(SolveStatus::not_finite));
       out.message = "the state at the end is not finite";
@@ -404,10 +404,10 @@ double time_once(const Experiment& experiment, const Method& method, double h) {
   double total = 0;
   long runs = 0;
   do {
-    const auto trial = experiment.begin(method, h);
+    const auto motion = experiment.begin(method, h);
     Work work;
     const double start = processor_time();
-    if (!trial->run(experiment.end, work).converged()) return -1;
+    if (!march(*motion, experiment.end, work).converged()) return -1;
     total += processor_time() - start;
     ++runs;
   } while (total < long_enough && runs < 20);

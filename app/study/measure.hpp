@@ -2,6 +2,7 @@
 /// What methods cost, and how far their numbers are from the truth.
 
 #include "experiment.hpp"
+#include "march.hpp"
 
 #include <functional>
 #include <limits>

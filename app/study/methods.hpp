@@ -1,7 +1,7 @@
 #pragma once
 /// Methods by the patterns of their names.
 
-#include "trial.hpp"
+#include "../method.hpp"
 
 #include <stdexcept>
 #include <string>

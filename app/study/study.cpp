@@ -98,7 +98,7 @@ std::unique_ptr<Reference> reference_from(const std::string& file, const Experim
     std::vector<Block> state;
     for (const auto& b : json.at("reference").at("state"))
       state.push_back({b.at("name"), b.at("values").get<std::vector<double>>(), b.at("size")});
-    const auto own = experiment.begin(experiment.methods.front(), experiment.step)->see().state;
+    const auto own = experiment.begin(experiment.methods.front(), experiment.step)->state();
     if (std::isnan(distance(own, state))) throw refuse("is of another system");
     const std::string method = json.at("reference").at("method");
     if (const std::string problem = text_problem(method); !problem.empty())

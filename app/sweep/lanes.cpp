@@ -4,6 +4,8 @@
 #include "../systems/readers.hpp"
 
 #include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/recorder.hpp>
+#include <lagroid/run/system_node.hpp>
 #include <lagroid/systems/ensembles.hpp>
 
 #include <fmt/format.h>
@@ -74,15 +76,18 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     Member(long place, Task<Sys> its)
         : at(place),
           task(std::move(its)),
-          recorder(std::make_unique<Recorder<Sys>>(task.system, task.plain->presentation, std::vector<Quantity<Sys>>(),
-                                                   task.plain->pace.every)) {}
+          node(std::make_unique<SystemNode<Sys>>(task.system, task.plain->presentation, std::vector<Quantity<Sys>>())),
+          recorder(*node) {}
 
-    void see(const TrajectoryPoint<Sys>& point) { recorder->observe(reported(task.system, point)); }
+    void see(const TrajectoryPoint<Sys>& point) {
+      node->see(point);
+      recorder.record(*node, nullptr);
+    }
 
     RunResult end(const TrajectoryPoint<Sys>& last, SolveStatus status) {
       if (last.index % task.plain->pace.every != 0) see(last);
       RunResult out;
-      recorder->finish(out);
+      out.trajectory = std::move(recorder.trajectory());
       out.steps = last.index;
       out.steps_asked = task.plain->pace.steps;
       if (status != SolveStatus::converged) {
@@ -95,7 +100,8 @@ template <class Sys> class LaneRunner final : public MemberRunner {
 
     long at;
     Task<Sys> task;
-    std::unique_ptr<Recorder<Sys>> recorder;
+    std::unique_ptr<SystemNode<Sys>> node;
+    Recorder recorder;
   };
 
   Reader<Sys> read_;

@@ -61,9 +61,7 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
             return simulate(system, presentation(system), state, attitude, {}, pace, context,
                             observer ? as_body : nullptr);
           },
-          [=]() -> std::unique_ptr<Trial> {
-            return std::make_unique<SystemTrial<MoserVeselov>>(system, state, attitude, MarchOptions{});
-          }};
+          [=] { return motion_of(system, presentation(system), state, attitude, {}); }};
 }
 
 void add_moser_veselov(std::vector<Method>& methods) {

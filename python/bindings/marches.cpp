@@ -7,9 +7,9 @@
 #include <simulation.hpp>
 
 #include <lagroid/core/version.hpp>
-#include <lagroid/python/any_march.hpp>
+#include <lagroid/python/rows.hpp>
 #include <lagroid/run/archive.hpp>
-#include <lagroid/run/ledger.hpp>
+#include <lagroid/run/march_nodes.hpp>
 
 #include <fmt/format.h>
 
@@ -31,17 +31,21 @@ namespace lagroid::python {
 
 namespace {
 
-/// The rows of a field; matrices are columns first in memory.
-py::array rows_of(const Rows& rows, py::handle owner) {
-  std::vector<py::ssize_t> shape{py::ssize_t(rows.count)};
-  std::vector<py::ssize_t> strides{py::ssize_t(rows.field.width())};
+/// `count` rows of a field; matrices are columns first in memory.
+py::array rows_of(const double* values, std::size_t count, const std::vector<std::size_t>& shape_of_one,
+                  py::handle owner) {
+  std::vector<py::ssize_t> shape{py::ssize_t(count)};
+  std::vector<py::ssize_t> strides{py::ssize_t(width_of(shape_of_one))};
   py::ssize_t stride = 1;
-  for (const std::size_t n : rows.field.shape) {
+  for (const std::size_t n : shape_of_one) {
     shape.push_back(py::ssize_t(n));
     strides.push_back(stride);
     stride *= py::ssize_t(n);
   }
-  return view(rows.values.data(), std::move(shape), std::move(strides), owner);
+  return view(values, std::move(shape), std::move(strides), owner);
+}
+py::array rows_of(const Rows& rows, py::handle owner) {
+  return rows_of(rows.values.data(), rows.count, rows.field.shape, owner);
 }
 
 /// What many steps left.
@@ -50,9 +54,13 @@ struct Marched {
   std::string message;
   long steps = 0;
   double seconds = 0;
-  std::vector<double> time;
-  std::vector<Rows> rows;
-  std::vector<Rows> quantities;
+  std::vector<Field> fields;
+  Trajectory trajectory;
+
+  py::array rows(std::size_t field, py::handle owner) const {
+    const std::size_t count = trajectory.time.size() - (fields[field].columns.on_arrows ? 1 : 0);
+    return rows_of(trajectory.series[field].values.data(), count, fields[field].shape, owner);
+  }
 };
 
 /// A step that was not made.
@@ -65,22 +73,19 @@ struct Marched {
 class Integrator {
  public:
   /// `origin`: the system and the arguments of its `integrator`, from which a pickle begins the march anew; or None.
-  Integrator(std::shared_ptr<AnyMarch> march, bool ledger, py::object origin)
-      : march_(std::move(march)), ledger_(ledger), origin_(std::move(origin)) {
-    for (const Watched& each : march_->watched()) {
-      scratch_.emplace_back(each.components.size());
-      if (ledger)
-        watches_.emplace_back(each.name, each.promise, each.components.size(),
-                              each.sized ? lagroid::SizeOf::terms : lagroid::SizeOf::value);
-    }
-    observe();
+  Integrator(std::shared_ptr<Motion> motion, bool ledger, py::object origin)
+      : motion_(std::move(motion)), origin_(std::move(origin)) {
+    if (!ledger) return;
+    judge_.emplace(motion_->look());
+    judge_->observe(motion_->look());
   }
 
   /// One step, in the calling thread, with the interpreter's lock: it takes microseconds.
   void advance() {
     const Busy busy(busy_);
-    const StepReport report = step();
+    const StepReport report = motion_->advance();
     if (!report.converged()) refuse(std::string(to_string(report.status)), failure(report));
+    if (judge_) judge_->observe(motion_->look());
   }
 
   std::shared_ptr<Marched> steps(long count, long every) {
@@ -89,22 +94,25 @@ class Integrator {
     const Busy busy(busy_);
     return computing([&] {
       auto out = std::make_shared<Marched>();
-      for (const Field& field : march_->fields()) out->rows.emplace_back(field);
-      for (const Watched& each : march_->watched())
-        out->quantities.emplace_back(Field{each.name, {each.components.size()}, each.on_arrows});
       const auto start = std::chrono::steady_clock::now();
-      record(*out);
-      for (long k = 1; k <= count; ++k) {
-        const StepReport report = step();
-        if (!report.converged()) {
-          out->status = std::string(to_string(report.status));
-          out->message = failure(report);
-          break;
-        }
-        out->steps = k;
-        if (k % every == 0 || k == count) record(*out);
-        if (lagroid::InterruptGuard::interrupted()) break;
+      const Observables& node = motion_->look();
+      out->fields = node.fields();
+      Recorder recorder(node);
+      WatchedMotion watched(*motion_, judge_ ? &*judge_ : nullptr, &recorder, every, true);
+      watched.observe();
+      const long first = motion_->index();
+      const MarchEnd end =
+          march_nodes(watched, count, [](const StepReport&) { return !InterruptGuard::interrupted(); });
+      watched.observe_last();
+      out->steps = motion_->index() - first;
+      if (end.why == MarchEnd::Why::failed) {
+        out->status = std::string(to_string(end.report.status));
+        out->message = failure(end.report);
+      } else if (end.why == MarchEnd::Why::not_finite) {
+        out->status = std::string(to_string(SolveStatus::not_finite));
+        out->message = fmt::format("step {}: the time is no finite number any more", motion_->index());
       }
+      out->trajectory = std::move(recorder.trajectory());
       out->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return out;
     });
@@ -127,7 +135,7 @@ class Integrator {
     const py::tuple origin = kept[1];
     const py::object anew = origin[0].attr("integrator")(**py::dict(origin[1]));
     const auto& begun = anew.cast<const Integrator&>();
-    auto out = std::make_unique<Integrator>(begun.march_, begun.ledger_, origin);
+    auto out = std::make_unique<Integrator>(begun.motion_, begun.judge_.has_value(), origin);
     const auto refuse = [] { return py::value_error("an integrator pickled by another lagroid; begin it anew"); };
     try {
       lagroid::Archive archive(nlohmann::json::from_cbor(kept[2].cast<std::string>()));
@@ -142,43 +150,23 @@ class Integrator {
 
   long index() const {
     const Busy busy(busy_);
-    return march_->index();
+    return motion_->index();
   }
   double time() const {
     const Busy busy(busy_);
-    return march_->time();
+    return motion_->time();
   }
-  MethodTraits traits() const { return march_->traits(); }
+  MethodTraits traits() const { return motion_->traits(); }
   std::vector<lagroid::LedgerEntry> ledger() const {
     const Busy busy(busy_);
-    std::vector<lagroid::LedgerEntry> out;
-    if (ledger_ && march_->constrained()) out.push_back(lagroid::constraint_entry(largest_residual_, residual_size_));
-    for (const auto& watch : watches_) out.push_back(watch.entry());
-    return out;
+    lagroid::Ledger out;
+    if (judge_) judge_->report(out);
+    return out.entries;
   }
 
   /// A field at the node that was reached, in an array of its own.
-  py::array now(const std::string& name) const {
-    const auto& fields = march_->fields();
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (fields[i].name != name) continue;
-      auto* rows = new Rows(fields[i]);
-      const py::capsule owner(rows, [](void* p) { delete static_cast<Rows*>(p); });
-      look(name, fields[i].on_arrows, [&] { march_->read(i, rows->add()); });
-      return rows_of(*rows, owner)[py::int_(0)].cast<py::array>();
-    }
-    throw py::key_error(name);
-  }
-  py::array quantity(const std::string& name) const {
-    const auto& all = march_->watched();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (all[i].name != name) continue;
-      std::vector<double> out(all[i].components.size());
-      look(name, all[i].on_arrows, [&] { march_->watch(i, out.data()); });
-      return owned(std::move(out));
-    }
-    throw py::key_error(name);
-  }
+  py::array now(const std::string& name) const { return now(name, 0, count_of_fields); }
+  py::array quantity(const std::string& name) const { return now(name, count_of_fields, std::size_t(-1)); }
 
  private:
   /// Held while the march is made or looked at.
@@ -195,63 +183,33 @@ class Integrator {
     std::atomic<bool>& busy_;
   };
 
-  /// Reads numbers at this node.
-  template <class F> void look(const std::string& name, bool on_arrows, const F& read) const {
+  /// Of the fields from `first` to `last`.
+  py::array now(const std::string& name, std::size_t first, std::size_t last) const {
     const Busy busy(busy_);
-    if (on_arrows && march_->index() == 0) throw py::value_error(name + ": no step was made yet");
-    read();
+    const Observables& node = motion_->look();
+    for (std::size_t i = first; i < std::min(last, node.fields().size()); ++i) {
+      const Field& field = node.fields()[i];
+      if (field.columns.name != name) continue;
+      if (field.columns.on_arrows && node.index() == 0) throw py::value_error(name + ": no step was made yet");
+      auto* rows = new Rows(field);
+      const py::capsule owner(rows, [](void* p) { delete static_cast<Rows*>(p); });
+      node.read(i, rows->add());
+      return rows_of(*rows, owner)[py::int_(0)].cast<py::array>();
+    }
+    throw py::key_error(name);
   }
   /// Visits all that a pickle holds beside the origin.
   void persist(lagroid::Archive& archive) {
-    archive.tape("march", [&](Tape& tape) { march_->persist(tape); });
-    archive("largest residual", largest_residual_);
-    archive("residual size", residual_size_);
-    for (std::size_t i = 0; i < watches_.size(); ++i) archive(fmt::format("watch {}", i), watches_[i]);
+    archive.tape("motion", [&](Tape& tape) { motion_->persist(tape); });
+    if (judge_) archive("judge", *judge_);
   }
-  StepReport step() {
-    const StepReport report = march_->advance();
-    if (report.converged()) observe();
-    return report;
-  }
-  std::string failure(const StepReport& report) const {
-    return lagroid::step_failure(report, march_->index() + 1, march_->time(), march_->mode());
-  }
-  void observe() {
-    if (ledger_ && march_->constrained() && march_->index() > 0) {
-      const double residual = march_->residual();
-      // The size of the constraints' terms changes slowly: looked at where a residual stands out.
-      if (!(residual <= largest_residual_) || residual_size_ == 0) {
-        residual_size_ = std::max(residual_size_, march_->residual_size());
-        largest_residual_ = lagroid::worse(largest_residual_, residual);
-      }
-    }
-    for (std::size_t i = 0; i < watches_.size(); ++i) {
-      if (march_->watched()[i].on_arrows && march_->index() == 0) continue;
-      const double size = march_->watch(i, scratch_[i].data());
-      watches_[i].observe(scratch_[i].data(), march_->watched()[i].sized ? size : lagroid::norm_of(scratch_[i]));
-    }
-  }
-  void record(Marched& out) const {
-    const bool has_step = march_->index() > 0;
-    out.time.push_back(march_->time());
-    const auto put = [&](Rows& rows, const auto& read) {
-      if (rows.field.on_arrows && (!has_step || out.time.size() == 1)) return;
-      read(rows.add());
-    };
-    for (std::size_t i = 0; i < out.rows.size(); ++i) put(out.rows[i], [&](double* to) { march_->read(i, to); });
-    for (std::size_t i = 0; i < out.quantities.size(); ++i)
-      put(out.quantities[i], [&](double* to) { march_->watch(i, to); });
-  }
+  std::string failure(const StepReport& report) const { return motion_->failure(report, motion_->index() + 1); }
 
   static constexpr const char* version = LAGROID_VERSION;
 
-  std::shared_ptr<AnyMarch> march_;
-  bool ledger_;
+  std::shared_ptr<Motion> motion_;
+  std::optional<lagroid::Judge> judge_;
   py::object origin_;
-  double largest_residual_ = 0;
-  double residual_size_ = 0;
-  std::vector<lagroid::QuantityWatch> watches_;
-  std::vector<std::vector<double>> scratch_;
   mutable std::atomic<bool> busy_ = false;
 };
 
@@ -266,8 +224,14 @@ template <class Class> void bind_fields(Class& made, bool rows) {
       made.def_property_readonly(
           name,
           [key](const py::object& self) {
-            for (const Rows& each : self.cast<const typename Class::type&>().rows)
-              if (each.field.name == key) return rows_of(each, self);
+            const auto& held = self.cast<const typename Class::type&>();
+            if constexpr (std::is_same_v<typename Class::type, Marched>) {
+              for (std::size_t i = 0; i < count_of_fields; ++i)
+                if (held.fields[i].columns.name == key) return held.rows(i, self);
+            } else {
+              for (const Rows& each : held.rows)
+                if (each.field.columns.name == key) return rows_of(each, self);
+            }
             throw py::key_error(key);
           },
           doc);
@@ -285,7 +249,7 @@ template <class Class> void bind_fields(Class& made, bool rows) {
 }  // namespace
 
 void bind_marches(py::module_& module) {
-  py::class_<AnyMarch, std::shared_ptr<AnyMarch>>(module, "AnyMarch", "What an Integrator marches.");
+  py::class_<Motion, std::shared_ptr<Motion>>(module, "Motion", "What an Integrator marches.");
 
   py::class_<Marched, std::shared_ptr<Marched>> marched(
       module, "March", "The nodes of many steps: arrays over the march's own numbers, read-only and not copied.");
@@ -296,14 +260,15 @@ void bind_marches(py::module_& module) {
       .def_property_readonly(
           "converged", [](const Marched& m) { return m.status == "converged"; }, "Whether every step was made.")
       .def_property_readonly(
-          "time", [](const py::object& self) { return view(self.cast<const Marched&>().time, self); },
+          "time", [](const py::object& self) { return view(self.cast<const Marched&>().trajectory.time, self); },
           "(nodes,), s; the first is where the march began.")
       .def_property_readonly(
           "quantities",
           [](const py::object& self) {
             py::dict out;
-            for (const Rows& each : self.cast<const Marched&>().quantities)
-              out[py::str(each.field.name)] = rows_of(each, self);
+            const auto& held = self.cast<const Marched&>();
+            for (std::size_t i = count_of_fields; i < held.fields.size(); ++i)
+              out[py::str(held.fields[i].columns.name)] = held.rows(i, self);
             return out;
           },
           "What the system keeps, by name: (nodes, width) each.")
@@ -334,7 +299,7 @@ void bind_marches(py::module_& module) {
   py::class_<Integrator> integrator(module, "Integrator",
                                     "A trajectory in the making. A step that fails leaves everything as it was.");
   integrator
-      .def(py::init<std::shared_ptr<AnyMarch>, bool, py::object>(), py::arg("march").none(false),
+      .def(py::init<std::shared_ptr<Motion>, bool, py::object>(), py::arg("march").none(false),
            py::arg("ledger") = true, py::arg("origin") = py::none())
       .def(py::pickle([](Integrator& self) { return self.pickled(); },
                       [](const py::tuple& kept) { return Integrator::resumed(kept); }))

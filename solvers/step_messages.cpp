@@ -1,4 +1,4 @@
-#include <lagroid/run/system_run.hpp>
+#include <lagroid/solvers/step_messages.hpp>
 
 #include <fmt/format.h>
 

@@ -1,0 +1,34 @@
+#include "march.hpp"
+
+namespace lagroid::app {
+
+StepReport advance(Motion& motion, Work& work) {
+  const StepReport report = motion.advance();
+  if (report.converged()) {
+    ++work.steps;
+    work.evaluations += motion.evaluations(report);
+  }
+  return report;
+}
+
+StepReport march(Motion& motion, double end, Work& work) {
+  StepReport report;
+  report.status = SolveStatus::converged;
+  while (report.converged() && end - motion.time() > 0.5 * motion.step_size()) report = advance(motion, work);
+  return report;
+}
+
+Sight see(Motion& motion) {
+  const Observables& node = motion.look();
+  Sight sight{motion.state(), {}, motion.defect()};
+  for (std::size_t i = 0; i < node.quantities().size(); ++i) {
+    const Watched& quantity = node.quantities()[i];
+    if (quantity.on_arrows && node.index() == 0) continue;
+    Block seen{quantity.name, std::vector<double>(quantity.components.size())};
+    seen.size = node.measure(i, seen.values.data());
+    sight.invariants.push_back(std::move(seen));
+  }
+  return sight;
+}
+
+}  // namespace lagroid::app

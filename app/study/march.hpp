@@ -1,0 +1,31 @@
+#pragma once
+/// Motions as a study looks at them: marched alone, without records.
+
+#include <lagroid/run/motion.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace lagroid::app {
+
+/// What a march has cost so far.
+struct Work {
+  long steps = 0;
+  long evaluations = 0;  ///< Motion::evaluations
+};
+
+/// What is seen at a node.
+struct Sight {
+  std::vector<Block> state;          ///< configuration and momentum, in coordinates
+  std::vector<Block> invariants;     ///< what the system keeps, conserved or bounded
+  std::optional<double> constraint;  ///< Motion::defect
+};
+
+/// One step.
+StepReport advance(Motion& motion, Work& work);
+/// Steps until `end` is less than half a step away, and looks at nothing. The report is that of the last step.
+StepReport march(Motion& motion, double end, Work& work);
+/// The node that was reached.
+Sight see(Motion& motion);
+
+}  // namespace lagroid::app

@@ -1,0 +1,32 @@
+#include <lagroid/run/march_nodes.hpp>
+
+#include <cmath>
+
+namespace lagroid {
+
+bool WatchedMotion::observe() {
+  if (!std::isfinite(motion_.time())) return false;
+  return !(is_recorded() || motion_.is_judged_at_every_node()) || see(is_recorded());
+}
+
+bool WatchedMotion::observe_last() { return is_recorded() || !std::isfinite(motion_.time()) || see(true); }
+
+bool WatchedMotion::see(bool is_recorded) {
+  const Observables& node = motion_.look();
+  if (judge_ != nullptr && judged_ < node.index()) judge_->observe(node);
+  judged_ = node.index();
+  if (recorder_ != nullptr && is_recorded) recorder_->record(node, judge_);
+  return node.finite();
+}
+
+MarchEnd march_nodes(WatchedMotion& watched, long count, const std::function<bool(const StepReport&)>& goes_on) {
+  for (long k = 0; k < count; ++k) {
+    const StepReport report = watched.motion().advance();
+    if (!report.converged()) return {MarchEnd::Why::failed, report};
+    if (!watched.observe()) return {MarchEnd::Why::not_finite, report};
+    if (!goes_on(report)) return {MarchEnd::Why::stopped, report};
+  }
+  return {};
+}
+
+}  // namespace lagroid

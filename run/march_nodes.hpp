@@ -1,0 +1,56 @@
+#pragma once
+/// The loop over the nodes of a motion.
+
+#include <lagroid/run/judge.hpp>
+#include <lagroid/run/motion.hpp>
+#include <lagroid/run/recorder.hpp>
+
+#include <functional>
+
+namespace lagroid {
+
+/// A motion whose nodes are seen by a judge and, each n-th and the last, by a recorder.
+class WatchedMotion {
+ public:
+  /// From the node on where the motion is, which the judge may have seen already. Judge and recorder may be null; all
+  /// must outlive this.
+  WatchedMotion(Motion& motion, Judge* judge, Recorder* recorder, long every, bool is_judged = false)
+      : motion_(motion),
+        judge_(judge),
+        recorder_(recorder),
+        every_(every),
+        first_(motion.index()),
+        judged_(is_judged ? first_ : -1) {}
+
+  Motion& motion() { return motion_; }
+  /// Sees the node where the motion is; false where its numbers are not finite.
+  bool observe();
+  /// Sees the last node, where that was passed over.
+  bool observe_last();
+  /// Visits what it goes on from; the judge is another's.
+  template <class Archive> void persist(Archive& archive) { archive("judged", judged_); }
+
+ private:
+  bool is_recorded() const { return (motion_.index() - first_) % every_ == 0; }
+  bool see(bool is_recorded);
+
+  Motion& motion_;
+  Judge* judge_;
+  Recorder* recorder_;
+  long every_;
+  long first_;
+  long judged_;  ///< the last node that the judge saw
+};
+
+/// How a march of many steps ended.
+struct MarchEnd {
+  enum class Why { whole, failed, not_finite, stopped };
+  Why why = Why::whole;
+  StepReport report;  ///< of the last step, but for a whole march
+};
+
+/// Makes `count` steps and sees their nodes; fewer where a step fails, which is then not made, where the numbers of its
+/// node are not finite, or where `goes_on(report)`, which is asked after each other, says no.
+MarchEnd march_nodes(WatchedMotion& watched, long count, const std::function<bool(const StepReport&)>& goes_on);
+
+}  // namespace lagroid
