@@ -1,9 +1,9 @@
 /// The program lagroid-check: `lagroid check`.
 
+#include "bodies/scene_run.hpp"
 #include "certificate.hpp"
-#include "command.hpp"
-#include "registry.hpp"
-#include "scenes/scene_run.hpp"
+#include "command/command.hpp"
+#include "families/registry.hpp"
 #include "spheres/sphere_run.hpp"
 #include "spheres/sphere_time.hpp"
 #include "study/accuracy.hpp"

@@ -1,6 +1,6 @@
 #include "listing.hpp"
 
-#include "registry.hpp"
+#include "families/registry.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

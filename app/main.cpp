@@ -1,17 +1,17 @@
 /// The program lagroid.
 
 #include "cite/cite.hpp"
-#include "command.hpp"
+#include "command/command.hpp"
+#include "command/written.hpp"
 #include "learn/draw.hpp"
 #include "learn/learn.hpp"
 #include "listing.hpp"
 #include "optimise/optimise.hpp"
-#include "registry.hpp"
 #include "reproduce.hpp"
+#include "study/run_scene.hpp"
 #include "study/study.hpp"
 #include "sweep/sweep.hpp"
 #include "view.hpp"
-#include "written.hpp"
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/run/checkpoint.hpp>

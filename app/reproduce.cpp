@@ -1,12 +1,12 @@
 #include "reproduce.hpp"
 
+#include "command/shell.hpp"
+#include "command/written.hpp"
 #include "reproductions/accelerated_report.hpp"
 #include "reproductions/constrained_maps.hpp"
 #include "reproductions/newton_report.hpp"
 #include "reproductions/sweep_scaling.hpp"
 #include "reproductions/time_steps.hpp"
-#include "shell.hpp"
-#include "written.hpp"
 
 #include <lagroid/run/clock.hpp>
 #include <lagroid/run/markup.hpp>

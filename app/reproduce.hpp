@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid reproduce`: experiments, as report, tables, CSV and figures.
 
-#include "command.hpp"
+#include "command/command.hpp"
 
 #include "reproductions/accelerated_optimisation.hpp"
 #include "reproductions/learning_hamiltonians.hpp"

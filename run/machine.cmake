@@ -11,19 +11,15 @@ file(GLOB sources_of_numbers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/run/archive.hpp
   ${PROJECT_SOURCE_DIR}/run/drive.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/judge.[ch]pp
-  ${PROJECT_SOURCE_DIR}/app/boundary_value.[ch]pp
+  ${PROJECT_SOURCE_DIR}/app/bodies/*.[ch]pp
+  ${PROJECT_SOURCE_DIR}/app/families/registry.cpp
+  ${PROJECT_SOURCE_DIR}/app/reading/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/ledger.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/march_nodes.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/motion.hpp
   ${PROJECT_SOURCE_DIR}/run/observables.hpp
   ${PROJECT_SOURCE_DIR}/run/recorder.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/system_[mn]o*.hpp
-  ${PROJECT_SOURCE_DIR}/app/registry.cpp
-  ${PROJECT_SOURCE_DIR}/app/scene_reader.[ch]pp
-  ${PROJECT_SOURCE_DIR}/app/simulation.[ch]pp
-  ${PROJECT_SOURCE_DIR}/app/learn/learned_scene.[ch]pp
-  ${PROJECT_SOURCE_DIR}/app/learn/model_file.[ch]pp
-  ${PROJECT_SOURCE_DIR}/app/scenes/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/spheres/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/sweep/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/systems/*.[ch]pp)

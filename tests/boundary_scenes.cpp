@@ -1,5 +1,5 @@
 // What a boundary-value scene says of the solutions it follows.
-#include <boundary_value.hpp>
+#include <reading/boundary_value.hpp>
 
 #include "boundary_cases.hpp"
 

@@ -8,7 +8,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -85,6 +87,39 @@ std::vector<std::string> upward_includes(const std::string& layer, const std::st
   const auto place = [](const std::string& name) { return std::find(layers.begin(), layers.end(), name); };
   for (const auto& included : matches(text, "#include <lagroid/(\\w+)/"))
     if (place(included) != layers.end() && place(included) > place(layer)) out.push_back(layer + " -> " + included);
+  return out;
+}
+
+/// Which folders of the app the files in each of them include.
+using FolderIncludes = std::map<std::string, std::set<std::string>>;
+FolderIncludes app_includes() {
+  FolderIncludes out;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "app")) {
+    const auto& file = entry.path();
+    if (file.extension() != ".hpp" && file.extension() != ".cpp") continue;
+    const auto folder_of = [](const std::filesystem::path& of) {
+      return of.lexically_relative(root).parent_path().lexically_normal().string();
+    };
+    const std::string folder = folder_of(file);
+    for (const auto& included : matches(read(file), "#include \"([^\"]+)\""))
+      if (const std::string other = folder_of(file.parent_path() / included); other != folder)
+        out[folder].insert(other);
+  }
+  return out;
+}
+
+/// The folders that lie on a cycle of includes, or lead to one.
+std::vector<std::string> in_cycles(FolderIncludes includes) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (auto& [folder, others] : includes)
+      changed |= std::erase_if(others, [&](const std::string& other) {
+                   return !includes.contains(other) || includes.at(other).empty();
+                 }) > 0;
+  }
+  std::vector<std::string> out;
+  for (const auto& [folder, others] : includes)
+    if (!others.empty()) out.push_back(folder);
   return out;
 }
 
@@ -185,6 +220,27 @@ TEST(BrokenPage, AnAlteredBlockIsFoundOut) {
 TEST(Architecture, LayersIncludeThoseBeforeThem) {
   for (const auto& layer : layers)
     for (const char* ending : {".hpp", ".cpp"}) EXPECT_EQ(upward_includes(layer, text_of({layer}, ending)), none);
+}
+TEST(Architecture, FoldersOfTheAppIncludeEachOtherOneWay) { EXPECT_EQ(in_cycles(app_includes()), none); }
+TEST(BrokenArchitecture, ACycleIsFoundOut) {
+  FolderIncludes includes = app_includes();
+  ASSERT_TRUE(includes["app/study"].contains("app/families"));
+  includes["app/families"].insert("app/study");
+  EXPECT_FALSE(in_cycles(includes).empty());
+}
+
+/// Everything that runs is one of these; a second way would be another class here.
+TEST(Architecture, OneClassForEveryKindOfMotion) {
+  const std::string sources = text_of({"core", "groupoids", "solvers", "systems", "run", "app", "python"}, ".hpp") +
+                              text_of({"core", "groupoids", "solvers", "systems", "run", "app", "python"}, ".cpp");
+  const auto sorted = [](std::vector<std::string> names) {
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  EXPECT_EQ(sorted(matches(sources, "class (\\w+) (?:final )?: public Motion\\b")),
+            (std::vector<std::string>{"BodiesMotion", "SphereMotion", "SystemMotion"}));
+  EXPECT_EQ(sorted(matches(sources, "class (\\w+) (?:final )?: public Observables\\b")),
+            (std::vector<std::string>{"SceneNode", "SphereNode", "SystemNode"}));
 }
 TEST(BrokenArchitecture, AnUpwardIncludeIsFoundOut) {
   EXPECT_EQ(upward_includes("core", "#include <lagroid/run/run.hpp>\n"), std::vector<std::string>{"core -> run"});

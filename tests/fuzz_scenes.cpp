@@ -1,8 +1,8 @@
 // libFuzzer on scenes of bodies and of systems on spheres: whatever the file holds, it is refused by a SceneError, or
 // read and begun, and what converges is finite.
 
-#include "scene_reader.hpp"
-#include "scenes/scene_run.hpp"
+#include "bodies/scene_run.hpp"
+#include "reading/scene_reader.hpp"
 #include "spheres/sphere_run.hpp"
 
 #include <algorithm>

@@ -95,11 +95,11 @@ TEST(LearnedField, OfTheChainIsItsOwn) {
     field(0, z.reshaped(6, 3), u);
     const VectorXd expected = velocity(z, u.reshaped());
     EXPECT_LT((velocity(z, model->field(theta, z)) - expected).norm(), 1e-13 * (1 + expected.norm()));
-    MotionField motion(model->motion(theta));
-    motion(0, z.reshaped(6, 3), u);
+    MarchedField marched(model->equations(theta));
+    marched(0, z.reshaped(6, 3), u);
     EXPECT_EQ(VectorXd(u.reshaped()), model->field(theta, z));
     const auto state = chain.to_velocities(z.reshaped(6, 3));
-    EXPECT_EQ(model->motion(theta)->energy(z.reshaped(6, 3)), model->energy(theta, z));
+    EXPECT_EQ(model->equations(theta)->energy(z.reshaped(6, 3)), model->energy(theta, z));
     EXPECT_NEAR(model->energy(theta, z), chain.energy(state), 1e-12);
   }
 }

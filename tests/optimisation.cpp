@@ -11,6 +11,7 @@
 #include <lagroid/solvers/optimisation/stiefel.hpp>
 #include <lagroid/solvers/optimisation/testing/manifold_laws.hpp>
 #include <lagroid/solvers/optimisation/trust_region.hpp>
+#include <lagroid/solvers/processor_time.hpp>
 #include <lagroid/systems/optimisation/instances.hpp>
 #include <lagroid/systems/optimisation/procrustes.hpp>
 #include <lagroid/systems/optimisation/random.hpp>
@@ -22,7 +23,6 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -492,14 +492,16 @@ TEST(Outcomes, OfLargeProblemsWithClustersAreTyped) {
 }
 
 #ifdef NDEBUG
-/// Seconds of `work`, least of several times.
-double least_seconds(const std::function<void()>& work) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 15; ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
+/// Seconds that each of the works takes, the least of many rounds in turn: what else the machine does meets all of
+/// them.
+std::vector<double> least_seconds(const std::vector<std::function<void()>>& works) {
+  std::vector<double> least(works.size(), std::numeric_limits<double>::infinity());
+  for (int round = 0; round < 30; ++round)
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      const double start = processor_time();
+      works[i]();
+      least[i] = std::min(least[i], processor_time() - start);
+    }
   return least;
 }
 
@@ -510,20 +512,20 @@ TEST(Costs, AStepCostsNoMoreThanOneOfGradientDescentByQr) {
       n, [&](const Eigen::Ref<const MatrixXd>& x, Eigen::Ref<MatrixXd> y) { y = w.asDiagonal() * x; }};
   const Instance problem = brockett_instance(a, VectorXd::LinSpaced(20, 1, 20));
   const Point start = random_start(*problem.manifold, 1);
-  const auto seconds = [&](Method& method) {
-    return least_seconds(
-        [&] { minimise(*problem.manifold, *problem.objective, start, method, {.iterations = 40, .patience = 0}); });
+  const auto run = [&](Method& method) {
+    minimise(*problem.manifold, *problem.objective, start, method, {.iterations = 40, .patience = 0});
   };
   Vector gradient(start.size());
-  const double function = least_seconds([&] {
-    for (int k = 0; k < 40; ++k) problem.objective->evaluate(start, gradient);
-  });
   RobustDescent ours = robust();
   GradientDescent descent({.c = 1});
-  EXPECT_LT(seconds(ours) - function, 1.3 * (seconds(descent) - function));
+  const auto seconds = least_seconds({[&] { run(ours); }, [&] { run(descent); },
+                                      [&] {
+                                        for (int k = 0; k < 40; ++k) problem.objective->evaluate(start, gradient);
+                                      }});
+  EXPECT_LT(seconds[0] - seconds[2], 1.3 * (seconds[1] - seconds[2]));
 }
 
-TEST(Costs, MultipliersAreCheaperThanQr) {
+TEST(Costs, MultipliersCostNoMoreThanQr) {
   for (const Eigen::Index m : {20, 40}) {
     const Stiefel manifold(2000, m);
     const Point x = random_start(manifold, 1);
@@ -532,9 +534,9 @@ TEST(Costs, MultipliersAreCheaperThanQr) {
     v *= 0.1 / v.norm();
     Point to = x;
     Vector moved = v;
-    EXPECT_LT(least_seconds([&] { manifold.orthographic(x, v, to, moved); }),
-              least_seconds([&] { manifold.retract(Retraction::qr, x, v, to); }))
-        << m;
+    const auto seconds = least_seconds(
+        {[&] { manifold.orthographic(x, v, to, moved); }, [&] { manifold.retract(Retraction::qr, x, v, to); }});
+    EXPECT_LT(seconds[0], 1.3 * seconds[1]) << m;
   }
 }
 #endif

@@ -108,8 +108,8 @@ TEST(JointLaws, HoldOfADrivenHingeWhereItIsHinged) {
 
 /// A blade whose angle is taken at the start, but not its derivative.
 struct WrongBlade : Blade {
-  void drift(const Motion&, Vec* g) const { g[0] = Vec::Zero(); }
-  void gradient(const Motion& motion, Vec* g) const {
+  void drift(const SceneArrow&, Vec* g) const { g[0] = Vec::Zero(); }
+  void gradient(const SceneArrow& motion, Vec* g) const {
     Blade::gradient(motion, g);
     g[0](2) = arm;
   }
@@ -255,7 +255,7 @@ TEST(SceneLaws, HoldOfVakonomicScenesWithRates) {
 }
 
 struct NoDrift : Blade {
-  void drift(const Motion&, Vec* g) const { g[0] = Vec::Zero(); }
+  void drift(const SceneArrow&, Vec* g) const { g[0] = Vec::Zero(); }
 };
 
 TEST(SceneLaws, FailOnAVakonomicJointThatForgetsItsDrift) {

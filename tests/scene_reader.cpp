@@ -1,6 +1,6 @@
 // Every mistake in a scene is one line with file, line, key and remedy.
-#include <registry.hpp>
-#include <scene_reader.hpp>
+#include <reading/scene_reader.hpp>
+#include <study/run_scene.hpp>
 
 #include <gtest/gtest.h>
 

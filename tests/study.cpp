@@ -2,7 +2,7 @@
 
 #include "command_line.hpp"
 
-#include <registry.hpp>
+#include <families/registry.hpp>
 #include <study/accuracy.hpp>
 #include <study/costs.hpp>
 #include <study/experiment.hpp>

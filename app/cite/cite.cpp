@@ -1,6 +1,6 @@
 #include "cite.hpp"
 
-#include "../command.hpp"
+#include "../command/command.hpp"
 #include "../sweep/sweep_scene.hpp"
 #include "references.hpp"
 

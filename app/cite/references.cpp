@@ -1,8 +1,8 @@
 #include "references.hpp"
 
+#include "../bodies/scene_bodies.hpp"
+#include "../families/registry.hpp"
 #include "../optimise/methods.hpp"
-#include "../registry.hpp"
-#include "../scenes/scene_bodies.hpp"
 
 #include <algorithm>
 #include <array>

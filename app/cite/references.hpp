@@ -1,7 +1,7 @@
 #pragma once
 /// The papers behind the program: the one place where they stand. CITATION.cff is written from here.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 #include "draw.hpp"
 
-#include "numbers.hpp"
+#include "../spheres/numbers.hpp"
 #include "trajectory_files.hpp"
 
 #include <lagroid/run/interrupt.hpp>

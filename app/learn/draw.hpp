@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid trajectories`: trajectories of a pendulum chain in a file, to learn from.
 
-#include "../command.hpp"
+#include "../command/command.hpp"
 
 #include <optional>
 #include <string>

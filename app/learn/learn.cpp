@@ -1,8 +1,8 @@
 #include "learn.hpp"
 
-#include "../written.hpp"
+#include "../command/written.hpp"
+#include "../spheres/numbers.hpp"
 #include "learn_files.hpp"
-#include "numbers.hpp"
 #include "trajectory_files.hpp"
 
 #include <lagroid/run/interrupt.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid learn`: fits a Hamiltonian on (T*S^2)^k to trajectories.
 
-#include "../command.hpp"
+#include "../command/command.hpp"
 
 #include <limits>
 #include <optional>

@@ -1,8 +1,8 @@
 #pragma once
 /// What a training says and leaves.
 
+#include "../spheres/model_file.hpp"
 #include "learn.hpp"
-#include "model_file.hpp"
 
 #include <lagroid/run/output_folder.hpp>
 #include <lagroid/solvers/learning/measures.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 /// The methods that a scene can ask to minimise by.
 
-#include "../parameter.hpp"
-#include "../scene_reader.hpp"
+#include "../reading/parameter.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

@@ -1,6 +1,6 @@
 #include "optimise.hpp"
 
-#include "../written.hpp"
+#include "../command/written.hpp"
 #include "methods.hpp"
 #include "optimisation_files.hpp"
 #include "problems.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid optimize`: minimises the function of a scene on its manifold.
 
-#include "../command.hpp"
+#include "../command/command.hpp"
 
 #include <optional>
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 /// The functions that a scene can ask to minimise.
 
-#include "../parameter.hpp"
-#include "../scene_reader.hpp"
+#include "../reading/parameter.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/systems/optimisation/instances.hpp>
 

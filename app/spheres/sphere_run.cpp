@@ -1,6 +1,6 @@
 #include "sphere_run.hpp"
 
-#include "../simulation.hpp"
+#include "../reading/simulation.hpp"
 #include "sphere_node.hpp"
 #include "sphere_start.hpp"
 #include "sphere_time.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// Scenes on (T*S^2)^k as motions.
 
-#include "../method.hpp"
+#include "../reading/method.hpp"
 #include "sphere_system.hpp"
 
 #include <lagroid/run/drive.hpp>

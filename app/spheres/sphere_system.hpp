@@ -1,8 +1,8 @@
 #pragma once
 /// Systems on (T*S^2)^k, as scenes speak of them.
 
-#include "../parameter.hpp"
-#include "../scene_reader.hpp"
+#include "../reading/parameter.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/systems/sphere_march.hpp>

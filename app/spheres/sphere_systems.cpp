@@ -1,4 +1,4 @@
-#include "../learn/learned_scene.hpp"
+#include "learned_scene.hpp"
 #include "pendulum_chain.hpp"
 #include "sphere_system.hpp"
 

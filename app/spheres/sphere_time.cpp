@@ -1,6 +1,6 @@
 #include "sphere_time.hpp"
 
-#include "../simulation.hpp"
+#include "../reading/simulation.hpp"
 
 #include <lagroid/run/interrupt.hpp>
 

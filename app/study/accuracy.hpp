@@ -1,7 +1,7 @@
 #pragma once
 /// `[accuracy] target`: the method and the step are found by trying.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "experiment.hpp"
 
-#include "../registry.hpp"
-#include "../simulation.hpp"
+#include "../families/registry.hpp"
+#include "../reading/simulation.hpp"
 
 #include <fmt/format.h>
 

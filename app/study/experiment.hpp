@@ -1,8 +1,8 @@
 #pragma once
 /// A scene to be run by many methods with many steps.
 
-#include "../method.hpp"
-#include "../scene_reader.hpp"
+#include "../reading/method.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/run/motion.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Methods by the patterns of their names.
 
-#include "../method.hpp"
+#include "../reading/method.hpp"
 
 #include <stdexcept>
 #include <string>

@@ -1,8 +1,8 @@
 #include "study.hpp"
 
-#include "../scene_reader.hpp"
-#include "../shell.hpp"
-#include "../written.hpp"
+#include "../command/shell.hpp"
+#include "../command/written.hpp"
+#include "../reading/scene_reader.hpp"
 #include "accuracy.hpp"
 #include "experiment.hpp"
 #include "methods.hpp"

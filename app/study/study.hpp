@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid study`: what accuracy costs a scene, by all methods that apply to it.
 
-#include "../command.hpp"
+#include "../command/command.hpp"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The members of a sweep: which numbers of a scene each of them has in place of others.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <cstddef>
 #include <string>

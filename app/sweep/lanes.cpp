@@ -1,6 +1,6 @@
 #include "lanes.hpp"
 
-#include "../simulation.hpp"
+#include "../reading/simulation.hpp"
 #include "../systems/readers.hpp"
 
 #include <lagroid/run/interrupt.hpp>

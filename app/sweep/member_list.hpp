@@ -1,7 +1,7 @@
 #pragma once
 /// Members of a sweep that stand in a file.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <string>
 #include <vector>

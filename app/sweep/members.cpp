@@ -1,6 +1,6 @@
 #include "members.hpp"
 
-#include "../registry.hpp"
+#include "../study/run_scene.hpp"
 
 #include <lagroid/run/interrupt.hpp>
 

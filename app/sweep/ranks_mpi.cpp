@@ -1,4 +1,4 @@
-#include "../command.hpp"
+#include "../command/command.hpp"
 #include "ranks.hpp"
 
 #include <mpi.h>

@@ -1,8 +1,8 @@
 #include "sweep.hpp"
 
-#include "../scene_reader.hpp"
+#include "../command/written.hpp"
+#include "../reading/scene_reader.hpp"
 #include "../study/accuracy.hpp"
-#include "../written.hpp"
 #include "lanes.hpp"
 #include "ranks.hpp"
 #include "schedule.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid sweep`: many members of one scene, on all threads and on many machines.
 
-#include "../command.hpp"
+#include "../command/command.hpp"
 
 #include <string>
 

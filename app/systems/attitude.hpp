@@ -1,7 +1,7 @@
 #pragma once
 /// Attitudes between scenes (quaternions) and systems (rotation matrices), and the moments of what turns.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/groupoids/so3.hpp>
 #include <lagroid/run/run_result.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// What scenes say of the map tau from the Lie algebra to the group.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/groupoids/matrix_group.hpp>
 

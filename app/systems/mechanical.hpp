@@ -1,7 +1,7 @@
 #pragma once
 /// What the scenes of point masses on R^n have in common.
 
-#include "../boundary_value.hpp"
+#include "../reading/boundary_value.hpp"
 #include "readers.hpp"
 
 #include <lagroid/systems/mechanical.hpp>

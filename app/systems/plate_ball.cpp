@@ -1,4 +1,4 @@
-#include "../boundary_value.hpp"
+#include "../reading/boundary_value.hpp"
 #include "attitude.hpp"
 #include "readers.hpp"
 

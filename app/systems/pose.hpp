@@ -1,7 +1,7 @@
 #pragma once
 /// Poses in the plane between scenes and systems.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/groupoids/se2.hpp>
 

@@ -2,8 +2,8 @@
 /// From scenes to tasks. Every key of a scene is read and checked, and unknown ones are refused, before anything is
 /// computed.
 
-#include "../scene_reader.hpp"
-#include "../task.hpp"
+#include "../reading/scene_reader.hpp"
+#include "../reading/task.hpp"
 
 #include <lagroid/systems/attitude_control.hpp>
 #include <lagroid/systems/chaplygin_sleigh.hpp>

@@ -1,4 +1,4 @@
-#include "../simulation.hpp"
+#include "../reading/simulation.hpp"
 #include "attitude.hpp"
 #include "readers.hpp"
 

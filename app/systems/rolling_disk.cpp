@@ -1,4 +1,4 @@
-#include "../simulation.hpp"
+#include "../reading/simulation.hpp"
 #include "pose.hpp"
 #include "readers.hpp"
 

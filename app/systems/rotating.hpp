@@ -1,7 +1,7 @@
 #pragma once
 /// What scenes say of bodies that turn about a fixed point.
 
-#include "../boundary_value.hpp"
+#include "../reading/boundary_value.hpp"
 #include "attitude.hpp"
 #include "group_map.hpp"
 

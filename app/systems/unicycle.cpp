@@ -1,4 +1,4 @@
-#include "../boundary_value.hpp"
+#include "../reading/boundary_value.hpp"
 #include "group_map.hpp"
 #include "pose.hpp"
 #include "readers.hpp"

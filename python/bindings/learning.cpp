@@ -5,8 +5,8 @@
 #include "computing.hpp"
 
 #include <learn/learn_files.hpp>
-#include <learn/model_file.hpp>
 #include <learn/trajectory_files.hpp>
+#include <spheres/model_file.hpp>
 
 #include <lagroid/run/output_folder.hpp>
 #include <lagroid/solvers/learning/measures.hpp>

@@ -4,7 +4,7 @@
 #include "bindings.hpp"
 #include "computing.hpp"
 
-#include <simulation.hpp>
+#include <reading/simulation.hpp>
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/python/rows.hpp>

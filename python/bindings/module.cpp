@@ -3,10 +3,10 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 
-#include <learn/model_file.hpp>
 #include <listing.hpp>
 #include <optimise/matrices.hpp>
-#include <scene_reader.hpp>
+#include <reading/scene_reader.hpp>
+#include <spheres/model_file.hpp>
 #include <study/methods.hpp>
 
 #include <lagroid/core/version.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// Numbers from Python, held to the rules of scenes.
 
-#include <scene_reader.hpp>
+#include <reading/scene_reader.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// A scene as Python holds it.
 
-#include <scene_reader.hpp>
+#include <reading/scene_reader.hpp>
 
 #include <filesystem>
 #include <optional>

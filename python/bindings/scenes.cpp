@@ -9,7 +9,7 @@
 #include <lagroid/run/output.hpp>
 #include <lagroid/run/report.hpp>
 
-#include <registry.hpp>
+#include <study/run_scene.hpp>
 
 #include <fmt/format.h>
 

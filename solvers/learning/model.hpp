@@ -23,24 +23,24 @@ struct Schedule {
 };
 
 /// Hamilton's equations of a model with its parameters, to be marched by any Lie group method.
-class Motion {
+class ModelField {
  public:
   using Points = CotangentSpheres<Eigen::Dynamic>::Point;
 
-  virtual ~Motion() = default;
+  virtual ~ModelField() = default;
   /// f <- F[H](z).
   virtual void field(const Points& z, Points& f) = 0;
   virtual double energy(const Points& z) = 0;
 };
 
 /// The same as a map to the algebra (AlgebraField).
-class MotionField {
+class MarchedField {
  public:
-  explicit MotionField(std::unique_ptr<Motion> motion) : motion_(std::move(motion)) {}
-  void operator()(double, const Motion::Points& z, Motion::Points& f) { motion_->field(z, f); }
+  explicit MarchedField(std::unique_ptr<ModelField> equations) : equations_(std::move(equations)) {}
+  void operator()(double, const ModelField::Points& z, ModelField::Points& f) { equations_->field(z, f); }
 
  private:
-  std::unique_ptr<Motion> motion_;
+  std::unique_ptr<ModelField> equations_;
 };
 
 /// H = 1/2 p^T M(q)^{-1} p + V(q) with parameters theta, the mass matrix's first (ParametricField). States are 6 x k
@@ -60,7 +60,7 @@ class Model {
   /// F[H], 6k numbers (xi_i, eta_i).
   virtual Eigen::VectorXd field(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
 
-  virtual std::unique_ptr<Motion> motion(const Eigen::VectorXd& theta) const = 0;
+  virtual std::unique_ptr<ModelField> equations(const Eigen::VectorXd& theta) const = 0;
 
   /// z <- the wanted states from each column of `starts`, 6k * intervals numbers a column.
   virtual void predict(const Eigen::VectorXd& theta, const Schedule& schedule,

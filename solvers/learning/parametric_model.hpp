@@ -53,8 +53,8 @@ template <class P, int K> class ParametricModel : public Model {
     return u.reshaped();
   }
 
-  std::unique_ptr<Motion> motion(const Eigen::VectorXd& theta) const override {
-    return std::make_unique<MotionOf>(at(theta));
+  std::unique_ptr<ModelField> equations(const Eigen::VectorXd& theta) const override {
+    return std::make_unique<EquationsAt>(at(theta));
   }
 
   void predict(const Eigen::VectorXd& theta, const Schedule& schedule, const Eigen::Ref<const Eigen::MatrixXd>& starts,
@@ -101,9 +101,9 @@ template <class P, int K> class ParametricModel : public Model {
   }
 
  private:
-  class MotionOf final : public Motion {
+  class EquationsAt final : public ModelField {
    public:
-    explicit MotionOf(Field<double> field)
+    explicit EquationsAt(Field<double> field)
         : field_(std::move(field)), z_(field_.space().zero_point()), f_(field_.space().zero_algebra()) {}
     void field(const Points& z, Points& f) override {
       z_ = z;

@@ -191,7 +191,7 @@ IslandSolver::Residual IslandSolver::find_residual(const Model::Island& island) 
   place(island);
   double* const values = workspace_.rows.values.data();
   const double* const precision = workspace_.rows.precision.data();
-  const Motion motion = workspace_.motion(from_.at);
+  const SceneArrow motion = workspace_.motion(from_.at);
   for (const Model::Batch& batch : island.batches.of(model_.rows.batches))
     batch.joints->values(motion, batch.first, batch.count, values + batch.row);
   const auto& softness = model_.rows.softness;
@@ -270,7 +270,7 @@ double IslandSolver::follow(const Model::Island& island) {
 void IslandSolver::find_vakonomic_gradients(const Model::Island& island) {
   auto& next_gradients = workspace_.rows.next_gradients;
   auto& drifts = workspace_.vakonomic.drifts;
-  const Motion motion = workspace_.motion(from_.at);
+  const SceneArrow motion = workspace_.motion(from_.at);
   for (const Model::Batch& batch : island.batches.of(model_.rows.batches)) {
     if (batch.role != Role::vakonomic) continue;
     batch.joints->gradients(motion, batch.first, batch.count, next_gradients.data() + batch.gradient);

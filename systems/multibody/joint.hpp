@@ -15,7 +15,7 @@ struct RowSize {
 };
 
 /// One arrow of a scene: two configurations, and the motion between them without the rounding of their difference.
-struct Motion {
+struct SceneArrow {
   const Configuration& before;
   const Configuration& after;
   const std::vector<Vec>& displacements;  ///< of point masses and centres of mass, m
@@ -54,10 +54,10 @@ class Joints {
   virtual std::vector<Site> sites(int joint) const = 0;
   virtual std::vector<Attitude> attitudes(int joint) const = 0;
   virtual int count() const = 0;
-  virtual void values(const Motion& motion, int first, int count, double* c) const = 0;
-  virtual void gradients(const Motion& motion, int first, int count, Vec* g) const = 0;
+  virtual void values(const SceneArrow& motion, int first, int count, double* c) const = 0;
+  virtual void gradients(const SceneArrow& motion, int first, int count, Vec* g) const = 0;
   /// Of vakonomic rows: the gradients along the source, displacement and xi being held.
-  virtual void drifts(const Motion& motion, int first, int count, Vec* g) const = 0;
+  virtual void drifts(const SceneArrow& motion, int first, int count, Vec* g) const = 0;
   /// The covectors of the reactions at an object, and the sizes of the rows there.
   virtual void reactions(const Configuration& at, int first, int count, Vec* g, RowSize* size) const = 0;
   /// Of damping rows: c.
@@ -74,17 +74,19 @@ class Joints {
 ///     void value(const Configuration& at, double* c) const;
 ///     void gradient(const Configuration& at, Vec* g, RowSize* size) const;
 /// on arrows, phi(g) = 0 between centres of mass and attitudes,
-///     void value(const Motion& motion, double* c) const;
-///     void gradient(const Motion& motion, Vec* g) const;
+///     void value(const SceneArrow& motion, double* c) const;
+///     void gradient(const SceneArrow& motion, Vec* g) const;
 ///     void reaction(const Configuration& at, Vec* g, RowSize* size) const;
 /// (the gradient along the displacement and xi, or, with a member `along_target`, along turns at the target) and, to be
 /// `Vakonomic` too,
-///     void drift(const Motion& motion, Vec* g) const;
+///     void drift(const SceneArrow& motion, Vec* g) const;
 /// With a member `damping` it is no constraint but a damper, of the rate of C or of phi.
 template <class J> class JointsOf final : public Joints {
  public:
   static constexpr int width = J::rows * (site_count<J>() + attitude_count<J>());
-  static constexpr bool arrows = requires(const J& joint, const Motion& motion, double* c) { joint.value(motion, c); };
+  static constexpr bool arrows = requires(const J& joint, const SceneArrow& motion, double* c) {
+    joint.value(motion, c);
+  };
   static constexpr bool damps = requires(const J& joint) { joint.damping; };
   static constexpr bool optimal = requires(const J& joint) { joint.multipliers; };
 
@@ -109,7 +111,7 @@ template <class J> class JointsOf final : public Joints {
       return {};
     }
   }
-  void values(const Motion& motion, int first, int count, double* c) const override {
+  void values(const SceneArrow& motion, int first, int count, double* c) const override {
     const J* joint = all_.data() + first;
     for (int i = 0; i < count; ++i) {
       if constexpr (arrows) {
@@ -124,7 +126,7 @@ template <class J> class JointsOf final : public Joints {
       }
     }
   }
-  void gradients(const Motion& motion, int first, int count, Vec* g) const override {
+  void gradients(const SceneArrow& motion, int first, int count, Vec* g) const override {
     const J* joint = all_.data() + first;
     for (int i = 0; i < count; ++i) {
       if constexpr (arrows) {
@@ -135,7 +137,7 @@ template <class J> class JointsOf final : public Joints {
       }
     }
   }
-  void drifts(const Motion& motion, int first, int count, Vec* g) const override {
+  void drifts(const SceneArrow& motion, int first, int count, Vec* g) const override {
     if constexpr (optimal)
       for (int i = 0; i < count; ++i) all_[std::size_t(first + i)].drift(motion, g + i * width);
   }

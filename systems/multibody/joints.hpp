@@ -97,7 +97,7 @@ struct Rolling {
   double radius = 1;      ///< r, m
   double plate_rate = 0;  ///< Omega, rad/s
 
-  void value(const Motion& motion, double* c) const {
+  void value(const SceneArrow& motion, double* c) const {
     const Vec& d = motion.displacement(sites[0]);
     const Vec w = motion.before(attitudes[0]) * motion.turn(attitudes[0]);
     const Vec middle = motion.before(sites[0]) + 0.5 * d;
@@ -105,14 +105,14 @@ struct Rolling {
     c[0] = d(0) - radius * w(1) + turned * middle(1);
     c[1] = d(1) + radius * w(0) - turned * middle(0);
   }
-  void gradient(const Motion& motion, Vec* g) const {
+  void gradient(const SceneArrow& motion, Vec* g) const {
     RowSize size[rows];
     reaction(motion.before, g, size);
     const double half = 0.5 * motion.h * plate_rate;
     g[0](1) += half;
     g[2](0) -= half;
   }
-  void drift(const Motion& motion, Vec* g) const {
+  void drift(const SceneArrow& motion, Vec* g) const {
     const Mat& a = motion.before(attitudes[0]);
     const Vec xi = motion.turn(attitudes[0]);
     const double turned = motion.h * plate_rate;
@@ -139,14 +139,14 @@ struct PrescribedSpin {
   Vec axis{0, 0, 1};  ///< n, of unit length, in space
   double rate = 0;    ///< rad/s
 
-  void value(const Motion& motion, double* c) const {
+  void value(const SceneArrow& motion, double* c) const {
     c[0] = axis.dot(motion.before(attitudes[0]) * motion.turn(attitudes[0])) - motion.h * rate;
   }
-  void gradient(const Motion& motion, Vec* g) const {
+  void gradient(const SceneArrow& motion, Vec* g) const {
     RowSize size[rows];
     reaction(motion.before, g, size);
   }
-  void drift(const Motion& motion, Vec* g) const {
+  void drift(const SceneArrow& motion, Vec* g) const {
     g[0] = motion.turn(attitudes[0]).cross(Vec(motion.before(attitudes[0]).transpose() * axis));
   }
   void reaction(const Configuration& at, Vec* g, RowSize* size) const {
@@ -165,17 +165,17 @@ struct Blade {
   double arm = 0;             ///< how far the blade stands ahead of the centre of mass, along itself, m
   double rate = 0;            ///< m/s
 
-  void value(const Motion& motion, double* c) const {
+  void value(const SceneArrow& motion, double* c) const {
     const Vec& d = motion.displacement(sites[0]);
     c[0] = across(motion.before(sites[0])(2) + 0.5 * d(2)).dot(d) + arm * d(2) - motion.h * rate;
   }
-  void gradient(const Motion& motion, Vec* g) const {
+  void gradient(const SceneArrow& motion, Vec* g) const {
     const Vec& d = motion.displacement(sites[0]);
     const double angle = motion.before(sites[0])(2) + 0.5 * d(2);
     g[0] = across(angle);
     g[0](2) = arm + 0.5 * across(angle + 0.5 * M_PI).dot(d);
   }
-  void drift(const Motion& motion, Vec* g) const {
+  void drift(const SceneArrow& motion, Vec* g) const {
     const Vec& d = motion.displacement(sites[0]);
     g[0] = {0, 0, across(motion.before(sites[0])(2) + 0.5 * d(2) + 0.5 * M_PI).dot(d)};
   }
@@ -201,9 +201,11 @@ struct BodySpin {
   Vec axis{0, 0, 1};  ///< n, of unit length, in the body
   double rate = 0;    ///< rad/s
 
-  void value(const Motion& motion, double* c) const { c[0] = axis.dot(motion.turn(attitudes[0])) - motion.h * rate; }
-  void gradient(const Motion&, Vec* g) const { g[0] = axis; }
-  void drift(const Motion&, Vec* g) const { g[0] = Vec::Zero(); }
+  void value(const SceneArrow& motion, double* c) const {
+    c[0] = axis.dot(motion.turn(attitudes[0])) - motion.h * rate;
+  }
+  void gradient(const SceneArrow&, Vec* g) const { g[0] = axis; }
+  void drift(const SceneArrow&, Vec* g) const { g[0] = Vec::Zero(); }
   void reaction(const Configuration&, Vec* g, RowSize* size) const {
     g[0] = axis;
     size[0] = {0, 1};
@@ -221,7 +223,7 @@ struct HingeTurn {
   Vec v{0, 0, 1};
   double rate = 0;  ///< rad/s
 
-  void value(const Motion& motion, double* c) const {
+  void value(const SceneArrow& motion, double* c) const {
     const auto relative = [&](const Configuration& at) -> Mat {
       return at(attitudes[0]).transpose() * at(attitudes[1]);
     };
@@ -229,7 +231,7 @@ struct HingeTurn {
     const double sine = 0.5 * v.dot(Vec(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)));
     c[0] = std::atan2(sine, 0.5 * (turn.trace() - 1)) - motion.h * rate;
   }
-  void gradient(const Motion&, Vec* g) const {
+  void gradient(const SceneArrow&, Vec* g) const {
     g[0] = -u;
     g[1] = v;
   }
@@ -246,12 +248,12 @@ struct RelativeTurn {
   std::array<Site, 0> sites;
   std::array<Attitude, 2> attitudes;
 
-  void value(const Motion& motion, double* c) const {
+  void value(const SceneArrow& motion, double* c) const {
     const Vec w = motion.before(attitudes[1]) * motion.turn(attitudes[1]) -
                   motion.before(attitudes[0]) * motion.turn(attitudes[0]);
     for (int i = 0; i < 3; ++i) c[i] = w(i);
   }
-  void gradient(const Motion& motion, Vec* g) const {
+  void gradient(const SceneArrow& motion, Vec* g) const {
     RowSize size[rows];
     reaction(motion.before, g, size);
   }

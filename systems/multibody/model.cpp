@@ -42,7 +42,7 @@ void Model::react(const Configuration& at, const Island& island, std::vector<Vec
   pull_back(at, island, gradients);
 }
 
-void Model::find_gradients(const Motion& motion, const Island& island, std::vector<Vec>& gradients) const {
+void Model::find_gradients(const SceneArrow& motion, const Island& island, std::vector<Vec>& gradients) const {
   for (const Batch& batch : island.batches.of(rows.batches))
     batch.joints->gradients(motion, batch.first, batch.count, gradients.data() + batch.gradient);
   pull_back(motion.after, island, gradients);

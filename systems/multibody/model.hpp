@@ -153,7 +153,7 @@ struct Model {
   void react(const Configuration& at, const Island& island, std::vector<Vec>& gradients,
              std::vector<RowSize>& sizes) const;
   /// Gradients of the rows of an island at the target of an arrow.
-  void find_gradients(const Motion& motion, const Island& island, std::vector<Vec>& gradients) const;
+  void find_gradients(const SceneArrow& motion, const Island& island, std::vector<Vec>& gradients) const;
 
   using Counts = std::function<bool(Role)>;
   /// D W D^T of the rows that count, D their gradients, with weights of the factors; one on the diagonal of the others.

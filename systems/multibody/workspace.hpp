@@ -68,7 +68,7 @@ struct Workspace {
     for (std::size_t f = 0; f < impulse.size(); ++f) impulse[f] += half * loads.on[f];
     for (std::size_t r = 0; r < spin_impulse.size(); ++r) spin_impulse[r] += half * loads.torque[r];
   }
-  Motion motion(const Configuration& from) const { return {from, next, displacement, turned, inertia.h}; }
+  SceneArrow motion(const Configuration& from) const { return {from, next, displacement, turned, inertia.h}; }
   /// Of its arrays, B.
   std::size_t memory() const;
 };

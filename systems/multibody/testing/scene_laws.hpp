@@ -128,7 +128,7 @@ template <class J> LawReport arrow_joint_laws(const J& joint, const std::string&
       for (int i = 0; i < n; ++i) displacements.emplace_back(draw_uniform(), draw_uniform(), draw_uniform());
       for (int i = 0; i < m; ++i) turns.emplace_back(draw_uniform(), draw_uniform(), draw_uniform());
     }
-    multibody::Motion motion() const { return {before, before, displacements, turns, 0.1}; }
+    multibody::SceneArrow motion() const { return {before, before, displacements, turns, 0.1}; }
   };
   const auto values = [&](const Arrow& arrow) {
     Vector<double, J::rows> out;
@@ -159,7 +159,7 @@ template <class J> LawReport arrow_joint_laws(const J& joint, const std::string&
       return Vector<double, J::rows>((8 * (at(e) - at(-e)) - (at(2 * e) - at(-2 * e))) / (12 * e));
     });
   }));
-  if constexpr (requires(const multibody::Motion& motion, multibody::Vec* g) { own.drift(motion, g); })
+  if constexpr (requires(const multibody::SceneArrow& motion, multibody::Vec* g) { own.drift(motion, g); })
     report.laws.push_back(check_law("drifts are those of the values", 1e-7, [&] {
       const Arrow arrow;
       std::array<multibody::Vec, gradients> g;

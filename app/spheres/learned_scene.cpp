@@ -24,7 +24,7 @@ class LearnedSystem final : public SphereSystem {
   std::vector<SphereForm> forms() const override { return {SphereForm::momenta}; }
   Points in_form(const Points& z, SphereForm, SphereForm) const override { return z; }
   std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const override {
-    return march_on_spheres(learning::MotionField(learned_.model->motion(learned_.parameters)), start, options);
+    return march_on_spheres(learning::MarchedField(learned_.model->equations(learned_.parameters)), start, options);
   }
 
   std::vector<SphereQuantity> quantities() const override {

@@ -1,7 +1,7 @@
 #pragma once
 /// A scene of bodies while it is read: its bodies by name, and where they are at the start.
 
-#include "../scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/run/shape.hpp>
 #include <lagroid/systems/multibody/scene.hpp>

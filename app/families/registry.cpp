@@ -1,8 +1,7 @@
 #include "registry.hpp"
 
-#include "scenes/scene_run.hpp"
-#include "spheres/sphere_run.hpp"
-#include "study/accuracy.hpp"
+#include "../bodies/scene_run.hpp"
+#include "../spheres/sphere_run.hpp"
 
 namespace lagroid::app {
 
@@ -18,13 +17,7 @@ template <class Read> MotionScene scene_of(Read read) { return {std::move(read.m
 
 }  // namespace
 
-RunResult run_scene(const Section& scene, const RunContext& context) {
-  if (scene.has("accuracy")) {
-    const AccuracyChoice choice = choose_by_accuracy(scene);
-    RunResult result = run_scene(choice.scene, context);
-    result.notes.insert(result.notes.begin(), choice.notes.begin(), choice.notes.end());
-    return result;
-  }
+RunResult run_as_written(const Section& scene, const RunContext& context) {
   if (scene.has("body")) return run_motion(read_bodies(scene, context), context);
   if (const SphereEntry* spheres = sphere_system_of(scene))
     return run_motion(read_spheres(*spheres, scene, context), context);

@@ -1,7 +1,7 @@
 #pragma once
 /// Scenes of learned Hamiltonians.
 
-#include "../spheres/sphere_system.hpp"
+#include "sphere_system.hpp"
 
 namespace lagroid::app {
 

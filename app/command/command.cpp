@@ -1,6 +1,6 @@
 #include "command.hpp"
 
-#include "scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <lagroid/run/output_folder.hpp>
 #include <lagroid/run/report.hpp>

@@ -1,6 +1,6 @@
 #include "scene_run.hpp"
 
-#include "../simulation.hpp"
+#include "../reading/simulation.hpp"
 #include "scene_bodies.hpp"
 #include "scene_node.hpp"
 #include "scene_picture.hpp"

@@ -1,9 +1,9 @@
 #pragma once
 /// The systems a scene can name.
 
-#include "parameter.hpp"
-#include "spheres/sphere_system.hpp"
-#include "systems/readers.hpp"
+#include "../reading/parameter.hpp"
+#include "../spheres/sphere_system.hpp"
+#include "../systems/readers.hpp"
 
 #include <memory>
 #include <optional>
@@ -132,8 +132,8 @@ template <class Visit> auto with_system_of(const Section& scene, const Visit& vi
   return std::move(*result);
 }
 
-/// Runs the scene.
-RunResult run_scene(const Section& scene, const RunContext& context);
+/// Runs the scene by the method and the step that it names.
+RunResult run_as_written(const Section& scene, const RunContext& context);
 
 /// The motion of an initial-value scene alone, and the methods by which it could be marched.
 struct MotionScene {
