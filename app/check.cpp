@@ -3,6 +3,7 @@
 #include "bodies/scene_run.hpp"
 #include "certificate.hpp"
 #include "command/command.hpp"
+#include "families/family.hpp"
 #include "families/registry.hpp"
 #include "spheres/sphere_run.hpp"
 #include "spheres/sphere_time.hpp"
@@ -20,6 +21,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -117,7 +119,8 @@ Certificate certify_bodies(const Section& scene, const CheckOptions& options) {
 }
 
 /// The laws of the method of a scene on (T*S^2)^k, beside where it starts.
-Certificate certify_spheres(const SphereEntry& entry, const Section& scene, const CheckOptions& options) {
+Certificate certify_spheres(const Section& scene, const CheckOptions& options) {
+  const SphereEntry& entry = *sphere_system_of(scene);
   const auto clock = std::chrono::steady_clock::now();
   const SpheresToCheck asked = read_spheres(entry, scene, {}).to_check;
   const SphereSystem& system = *asked.system;
@@ -147,11 +150,19 @@ Certificate certify_spheres(const SphereEntry& entry, const Section& scene, cons
   return certificate;
 }
 
-Certificate certificate_of(const Section& scene, const CheckOptions& options) {
-  if (scene.has("body")) return certify_bodies(scene, options);
-  if (const SphereEntry* entry = sphere_system_of(scene)) return certify_spheres(*entry, scene, options);
+/// The laws along the run of a system's scene.
+Certificate certify_system(const Section& scene, const CheckOptions& options) {
   return with_system_of(
       scene, [&](const auto& entry) { return certify(entry.read(scene, {.progress = !options.json}), options); });
+}
+
+Certificate certificate_of(const Section& scene, const CheckOptions& options) {
+  using Certify = Certificate (*)(const Section&, const CheckOptions&);
+  const std::map<const SceneFamily*, Certify> of{
+      {&systems_family(), certify_system}, {&spheres_family(), certify_spheres}, {&bodies_family(), certify_bodies}};
+  const SceneFamily& family = family_of(scene);
+  if (!of.contains(&family)) family.refuse(scene);
+  return of.at(&family)(scene, options);
 }
 
 int check(const CheckOptions& options) {

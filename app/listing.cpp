@@ -1,41 +1,22 @@
 #include "listing.hpp"
 
-#include "families/registry.hpp"
+#include "families/family.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
 
 namespace {
 
-struct Listed {
-  std::string name;
-  std::string summary;
-  std::string groupoid;
-  std::vector<Parameter> parameters;
-  std::vector<std::string> symmetries;  ///< declared by the system with its default parameters
-  std::vector<std::string> conserved;   ///< quantities promised as conserved
-};
-
-std::vector<Listed> listed() {
-  std::vector<Listed> out;
-  for_each_system([&]<class Sys>(const Entry<Sys>& entry) {
-    Listed one{
-        std::string(entry.name), std::string(entry.summary), Sys::GroupoidType::name(), entry.parameters, {}, {}};
-    const Sys system;
-    if constexpr (requires { system.symmetries(); })
-      for (const auto& symmetry : system.symmetries()) one.symmetries.push_back(symmetry.name);
-    for (const auto& quantity : system.quantities())
-      if (quantity.promise == Promise::conserved) one.conserved.push_back(quantity.name);
-    out.push_back(std::move(one));
-  });
-  for (const SphereEntry& entry : sphere_systems())
-    out.push_back({std::string(entry.name), std::string(entry.summary), std::string(entry.groupoid), entry.parameters,
-                   entry.symmetries, entry.conserved});
+std::vector<ListedSystem> listed() {
+  std::vector<ListedSystem> out;
+  for (const SceneFamily* family : families())
+    for (ListedSystem& system : family->systems()) out.push_back(std::move(system));
   return out;
 }
 

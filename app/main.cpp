@@ -3,6 +3,7 @@
 #include "cite/cite.hpp"
 #include "command/command.hpp"
 #include "command/written.hpp"
+#include "families/family.hpp"
 #include "learn/draw.hpp"
 #include "learn/learn.hpp"
 #include "listing.hpp"
@@ -49,6 +50,25 @@ Section kept_scene(const std::string& folder, const std::vector<std::string>& ov
   return parse_scene(text, folder + "/checkpoint/scene.toml", overrides);
 }
 
+/// Carries out a scene that is no motion by the command that is made for it.
+int hand_over(std::string_view command, const RunOptions& options) {
+  const auto with = [&](auto to) {
+    static_cast<SceneOptions&>(to) = options;
+    return to;
+  };
+  if (command == "sweep") {
+    if (!options.out)
+      return refuse(options.json, exit_bad_input, "invalid_command_line",
+                    options.scene + ": is a sweep, whose members are written into a folder: give --out DIR");
+    SweepOptions sweeping = with(SweepOptions());
+    sweeping.out = *options.out;
+    return sweep(sweeping);
+  }
+  OptimiseOptions optimising = with(OptimiseOptions());
+  optimising.out = options.out;
+  return optimise(optimising);
+}
+
 /// Runs the scene, or takes up the run in the folder `out`.
 int run(const RunOptions& options, bool resume) {
   RunResult result;
@@ -56,6 +76,7 @@ int run(const RunOptions& options, bool resume) {
   try {
     const Section scene =
         resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
+    if (const auto command = family_of(scene).command(); command != "run") return hand_over(command, options);
     if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene.whole()));
     if (resume && !options.other_build) Checkpoint::require_this_build(*options.out);
     result = run_scene(scene, {.record = options.out.has_value(),

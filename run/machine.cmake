@@ -12,7 +12,7 @@ file(GLOB sources_of_numbers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/run/drive.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/judge.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/bodies/*.[ch]pp
-  ${PROJECT_SOURCE_DIR}/app/families/registry.cpp
+  ${PROJECT_SOURCE_DIR}/app/families/*_family.cpp
   ${PROJECT_SOURCE_DIR}/app/reading/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/ledger.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/march_nodes.[ch]pp

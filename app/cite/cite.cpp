@@ -1,8 +1,8 @@
 #include "cite.hpp"
 
 #include "../command/command.hpp"
+#include "../families/family.hpp"
 #include "../sweep/sweep_scene.hpp"
-#include "references.hpp"
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/run/checkpoint.hpp>
@@ -25,6 +25,8 @@ constexpr std::string_view authors = "The Lagroid authors";
 constexpr std::string_view what_it_is = "Discrete mechanics on Lie groupoids";
 constexpr int year = 2026;
 
+std::vector<Use> uses_of(const Section& scene) { return family_of(scene).uses(scene); }
+
 std::vector<Use> uses_in(const CiteOptions& options) {
   std::vector<Use> all;
   if (options.subject.empty() || options.cff) {
@@ -34,7 +36,8 @@ std::vector<Use> uses_in(const CiteOptions& options) {
   std::error_code ignored;
   if (!fs::is_directory(options.subject, ignored)) {
     const Section scene = read_scene(options.subject, options.overrides);
-    return uses_of(scene.has("scene") ? read_sweep(options.subject, options.overrides).scene : scene);
+    const bool is_sweep = &family_of(scene) == &sweeps_family();
+    return uses_of(is_sweep ? read_sweep(options.subject, options.overrides).scene : scene);
   }
   if (fs::exists(fs::path(options.subject) / "model.json")) return uses_of_learning();
   if (!fs::exists(fs::path(options.subject) / "checkpoint" / "scene.toml"))

@@ -5,7 +5,6 @@
 #include "../spheres/sphere_system.hpp"
 #include "../systems/readers.hpp"
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -131,16 +130,5 @@ template <class Visit> auto with_system_of(const Section& scene, const Visit& vi
   });
   return std::move(*result);
 }
-
-/// Runs the scene by the method and the step that it names.
-RunResult run_as_written(const Section& scene, const RunContext& context);
-
-/// The motion of an initial-value scene alone, and the methods by which it could be marched.
-struct MotionScene {
-  std::unique_ptr<Motion> motion;
-  std::vector<Method> methods;
-};
-/// Throws SceneError for a scene that is none.
-MotionScene begin_scene(const Section& scene);
 
 }  // namespace lagroid::app

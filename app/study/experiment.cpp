@@ -1,6 +1,6 @@
 #include "experiment.hpp"
 
-#include "../families/registry.hpp"
+#include "../families/family.hpp"
 #include "../reading/simulation.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +30,8 @@ Section with_method(const Section& scene, const Method& method, double h, double
 }
 
 std::unique_ptr<Motion> Experiment::begin(const Method& method, double h) const {
-  return begin_scene(with_method(scene, method, h, end)).motion;
+  const Section by_method = with_method(scene, method, h, end);
+  return family_of(by_method).begin(by_method).motion;
 }
 
 Experiment read_experiment(const Section& scene) {
@@ -41,7 +42,7 @@ Experiment read_experiment(const Section& scene) {
   out.scene = without_choice(scene)
                   .without("time.duration")
                   .set({fmt::format("time.step={:.17e}", grid.step), fmt::format("time.steps={}", grid.steps)});
-  MotionScene begun = begin_scene(out.scene);
+  MotionScene begun = family_of(out.scene).begin(out.scene);
   out.name = begun.motion->name();
   out.methods = std::move(begun.methods);
   return out;

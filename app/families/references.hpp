@@ -1,8 +1,6 @@
 #pragma once
 /// The papers behind the program: the one place where they stand. CITATION.cff is written from here.
 
-#include "../reading/scene_reader.hpp"
-
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,6 +31,8 @@ struct Reference {
 
 /// All of them, [G], [N], [V] and [H] first.
 std::span<const Reference> references();
+/// The one with that key, which is one of them.
+const Reference& reference(std::string_view key);
 
 /// A reference, and what it stands behind.
 struct Use {
@@ -40,10 +40,6 @@ struct Use {
   std::string what;
 };
 
-/// What a scene's system and method rest on, a scene of minimisation (`lagroid optimize`) among them; nothing where
-/// that is by a classical method. No more is read than says so. Throws SceneError where there is no such system or
-/// method.
-std::vector<Use> uses_of(const Section& scene);
 /// What a learned Hamiltonian rests on (`lagroid learn`).
 std::vector<Use> uses_of_learning();
 

@@ -1,0 +1,41 @@
+#include "family.hpp"
+
+#include "../bodies/scene_bodies.hpp"
+#include "../bodies/scene_run.hpp"
+
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+class Bodies final : public SceneFamily {
+ public:
+  bool recognises(const Section& scene) const override { return scene.has("body"); }
+  RunResult run(const Section& scene, const RunContext& context) const override {
+    const BodiesScene read = read_bodies(scene, context);
+    RunResult result;
+    drive(*read.motion, read.pace, context, result);
+    return result;
+  }
+  MotionScene begin(const Section& scene) const override {
+    BodiesScene read = read_bodies(scene, {});
+    return {std::move(read.motion), std::move(read.methods)};
+  }
+  std::vector<Use> uses(const Section& scene) const override {
+    std::vector<Use> uses{{&reference("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};
+    add_uses_of_time(scene.section_or_empty("time").choice_or("mode", "fixed", {"fixed", "controlled"}), "", uses);
+    if (read_scene_bodies(scene).nonholonomic)
+      uses.push_back({&reference("iglesias2008"), "nonholonomic constraints on Lie groupoids"});
+    return uses;
+  }
+};
+
+}  // namespace
+
+const SceneFamily& bodies_family() {
+  static const Bodies family;
+  return family;
+}
+
+}  // namespace lagroid::app

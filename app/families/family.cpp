@@ -1,0 +1,37 @@
+#include "family.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <ranges>
+
+namespace lagroid::app {
+
+RunResult SceneFamily::run(const Section& scene, const RunContext&) const { refuse(scene); }
+MotionScene SceneFamily::begin(const Section& scene) const { refuse(scene); }
+
+void SceneFamily::refuse(const Section& scene) const {
+  scene.fail(
+      "", fmt::format("is no motion: lagroid {} carries it out; give a scene with [initial] or [boundary]", command()));
+}
+
+std::span<const SceneFamily* const> families() {
+  static const std::array<const SceneFamily*, 5> all{&systems_family(), &spheres_family(), &bodies_family(),
+                                                     &optimisation_family(), &sweeps_family()};
+  return all;
+}
+
+const SceneFamily& family_of(const Section& scene) {
+  for (const SceneFamily* family : std::views::reverse(families()))
+    if (family->recognises(scene)) return *family;
+  return systems_family();
+}
+
+void add_uses_of_time(const std::string& mode, const std::string& method, std::vector<Use>& uses) {
+  if (mode == "adaptive") uses.push_back({&reference("kane1999"), "steps whose size keeps the discrete energy"});
+  if (mode == "controlled") uses.push_back({&reference("hairer2005"), "reversibly controlled steps"});
+  if (method == "moser-veselov")
+    uses.push_back({&reference("hairer2006"), "the preprocessed discrete Moser-Veselov algorithm"});
+}
+
+}  // namespace lagroid::app

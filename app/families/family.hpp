@@ -1,0 +1,79 @@
+#pragma once
+/// The kinds of scenes: which one a scene is, and what can be asked of any.
+
+#include "../reading/method.hpp"
+#include "../reading/parameter.hpp"
+#include "../reading/scene_reader.hpp"
+#include "references.hpp"
+
+#include <lagroid/run/drive.hpp>
+#include <lagroid/run/motion.hpp>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::app {
+
+/// The motion of an initial-value scene alone, and the methods by which it could be marched.
+struct MotionScene {
+  std::unique_ptr<Motion> motion;
+  std::vector<Method> methods;
+};
+
+/// What `lagroid list` says of a system that scenes can name.
+struct ListedSystem {
+  std::string name;
+  std::string summary;
+  std::string groupoid;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> symmetries;  ///< declared by the system with its default parameters
+  std::vector<std::string> conserved;   ///< quantities promised as conserved
+};
+
+/// A kind of scene. Commands know no other way to a scene than this.
+class SceneFamily {
+ public:
+  virtual ~SceneFamily() = default;
+
+  /// Whether the scene is one of them.
+  virtual bool recognises(const Section& scene) const = 0;
+  /// The command that is made for its scenes; `lagroid run` hands them over to it.
+  virtual std::string_view command() const { return "run"; }
+
+  /// Runs the scene by the method and the step that it names. Throws SceneError for what is no motion and no path.
+  virtual RunResult run(const Section& scene, const RunContext& context) const;
+  /// The motion of an initial value. Throws SceneError for a scene that is none.
+  virtual MotionScene begin(const Section& scene) const;
+  /// What its system and method rest on; nothing where that is by a classical method. No more is read than says so.
+  /// Throws SceneError where there is no such system or method.
+  virtual std::vector<Use> uses(const Section& scene) const = 0;
+  /// Its systems.
+  virtual std::vector<ListedSystem> systems() const { return {}; }
+
+  /// Throws the SceneError for a scene that is no motion.
+  [[noreturn]] void refuse(const Section& scene) const;
+};
+
+/// In the order in which their systems are listed; the last is the first to be asked whether a scene is its own.
+std::span<const SceneFamily* const> families();
+/// The one that the scene is of: of systems where it is of no other.
+const SceneFamily& family_of(const Section& scene);
+
+/// Scenes of [[body]], [[joint]] and [[effect]].
+const SceneFamily& bodies_family();
+/// Scenes on (T*S^2)^k, learned Hamiltonians among them.
+const SceneFamily& spheres_family();
+/// Initial and boundary values of systems whose groupoid is a type.
+const SceneFamily& systems_family();
+/// Functions to be minimised on manifolds.
+const SceneFamily& optimisation_family();
+/// Many members of a scene.
+const SceneFamily& sweeps_family();
+
+/// Steps of a size that varies, and the one method that papers were written on, as [time] names them.
+void add_uses_of_time(const std::string& mode, const std::string& method, std::vector<Use>& uses);
+
+}  // namespace lagroid::app

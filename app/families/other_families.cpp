@@ -1,0 +1,49 @@
+/// Scenes that are no motions: another command carries them out.
+
+#include "family.hpp"
+
+#include "../optimise/methods.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace lagroid::app {
+
+namespace {
+
+class Optimisation final : public SceneFamily {
+ public:
+  bool recognises(const Section& scene) const override { return scene.has("problem"); }
+  std::string_view command() const override { return "optimize"; }
+  std::vector<Use> uses(const Section& scene) const override {
+    std::vector<std::string> names;
+    for (const auto& entry : optimisers()) names.emplace_back(entry.name);
+    const std::string name = scene.section_or_empty("method").choice_or("name", names.front(), names);
+    constexpr std::array<std::string_view, 3> competitors{"gradient-descent", "conjugate-gradients", "trust-region"};
+    if (std::find(competitors.begin(), competitors.end(), name) != competitors.end()) return {};
+    return {
+        {&reference("duruisseaux2022"), "accelerated optimisation by discrete constrained variational integrators"}};
+  }
+};
+
+class Sweeps final : public SceneFamily {
+ public:
+  bool recognises(const Section& scene) const override { return scene.has("scene"); }
+  std::string_view command() const override { return "sweep"; }
+  /// Its scene is elsewhere: `cite` reads it.
+  std::vector<Use> uses(const Section&) const override { return {}; }
+};
+
+}  // namespace
+
+const SceneFamily& optimisation_family() {
+  static const Optimisation family;
+  return family;
+}
+
+const SceneFamily& sweeps_family() {
+  static const Sweeps family;
+  return family;
+}
+
+}  // namespace lagroid::app

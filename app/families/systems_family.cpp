@@ -1,0 +1,60 @@
+#include "family.hpp"
+#include "registry.hpp"
+
+namespace lagroid::app {
+
+namespace {
+
+class Systems final : public SceneFamily {
+ public:
+  bool recognises(const Section& scene) const override { return scene.has("system"); }
+  RunResult run(const Section& scene, const RunContext& context) const override {
+    return with_system_of(scene, [&](const auto& entry) { return entry.read(scene, context).run(nullptr); });
+  }
+  MotionScene begin(const Section& scene) const override {
+    return with_system_of(scene, [&](const auto& entry) {
+      const auto task = entry.read(scene, {});
+      if (!task.begin)
+        scene.fail("boundary", "a study compares how initial values are marched: give a scene with [initial]");
+      return MotionScene{task.begin(), task.methods};
+    });
+  }
+  std::vector<Use> uses(const Section& scene) const override {
+    const Section time = scene.section_or_empty("time");
+    const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled", "transformed"});
+    const std::string method =
+        time.choice_or("method", "variational", {"variational", "splitting", "moser-veselov", "runge-kutta"});
+    std::vector<Use> uses{{&reference("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};
+    add_uses_of_time(mode, method, uses);
+    if (with_system_of(scene, []<class Sys>(const Entry<Sys>&) { return Sys::principle == Principle::nonholonomic; }))
+      uses.push_back({&reference("iglesias2008"), "nonholonomic constraints on Lie groupoids"});
+    const std::string solver =
+        scene.section_or_empty("solver").choice_or("method", "newton", {"newton", "shooting", "ceres"});
+    if (mode != "transformed" && method == "variational" && solver == "newton")
+      uses.push_back({&reference("owren2000"), "Newton's iteration, carried from Lie groups to groupoids"});
+    return uses;
+  }
+  std::vector<ListedSystem> systems() const override {
+    std::vector<ListedSystem> all;
+    for_each_system([&]<class Sys>(const Entry<Sys>& entry) {
+      ListedSystem one{
+          std::string(entry.name), std::string(entry.summary), Sys::GroupoidType::name(), entry.parameters, {}, {}};
+      const Sys system;
+      if constexpr (requires { system.symmetries(); })
+        for (const auto& symmetry : system.symmetries()) one.symmetries.push_back(symmetry.name);
+      for (const auto& quantity : system.quantities())
+        if (quantity.promise == Promise::conserved) one.conserved.push_back(quantity.name);
+      all.push_back(std::move(one));
+    });
+    return all;
+  }
+};
+
+}  // namespace
+
+const SceneFamily& systems_family() {
+  static const Systems family;
+  return family;
+}
+
+}  // namespace lagroid::app
