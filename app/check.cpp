@@ -160,9 +160,7 @@ Certificate certificate_of(const Section& scene, const CheckOptions& options) {
   using Certify = Certificate (*)(const Section&, const CheckOptions&);
   const std::map<const SceneFamily*, Certify> of{
       {&systems_family(), certify_system}, {&spheres_family(), certify_spheres}, {&bodies_family(), certify_bodies}};
-  const SceneFamily& family = family_of(scene);
-  if (!of.contains(&family)) family.refuse(scene);
-  return of.at(&family)(scene, options);
+  return of.at(&motions_of(scene))(scene, options);
 }
 
 int check(const CheckOptions& options) {

@@ -93,6 +93,26 @@ TEST_F(CommandLine, EveryExampleRuns) {
   }
 }
 
+TEST_F(CommandLine, RunHandsOverWhatIsNoMotion) {
+  for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES "/optimisation")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Outcome by_run = run("run " + entry.path().string() + " --json");
+    ASSERT_EQ(by_run.code, 0) << entry.path() << by_run.err;
+    const Outcome by_name = run("optimize " + entry.path().string() + " --json");
+    const auto same = nlohmann::json::parse(by_run.out), other = nlohmann::json::parse(by_name.out);
+    EXPECT_EQ(same.at("value"), other.at("value")) << entry.path();
+  }
+  const std::string sweep = example("sweeps/kepler") + " --set design.count=3";
+  expect_refused("run " + sweep, "give --out DIR");
+  const Outcome swept = run("run " + sweep + " --out " + (folder_ / "swept").string());
+  EXPECT_EQ(swept.code, 0) << swept.err;
+  EXPECT_TRUE(fs::exists(folder_ / "swept" / "members.csv"));
+}
+TEST_F(CommandLine, CommandsForMotionsNameTheOneForOtherScenes) {
+  expect_refused("study " + example("optimisation/membrane"), "lagroid optimize carries it out");
+  expect_refused("study " + example("sweeps/kepler"), "lagroid sweep carries it out");
+}
+
 TEST_F(CommandLine, BoundaryValueJson) {
   const Outcome r = run("run " + example("plate_ball") + " --json");
   const auto json = nlohmann::json::parse(r.out);

@@ -27,6 +27,12 @@ const SceneFamily& family_of(const Section& scene) {
   return systems_family();
 }
 
+const SceneFamily& motions_of(const Section& scene) {
+  const SceneFamily& family = family_of(scene);
+  if (family.command() != "run") family.refuse(scene);
+  return family;
+}
+
 void add_uses_of_time(const std::string& mode, const std::string& method, std::vector<Use>& uses) {
   if (mode == "adaptive") uses.push_back({&reference("kane1999"), "steps whose size keeps the discrete energy"});
   if (mode == "controlled") uses.push_back({&reference("hairer2005"), "reversibly controlled steps"});

@@ -53,14 +53,18 @@ class SceneFamily {
   /// Its systems.
   virtual std::vector<ListedSystem> systems() const { return {}; }
 
+ protected:
   /// Throws the SceneError for a scene that is no motion.
   [[noreturn]] void refuse(const Section& scene) const;
+  friend const SceneFamily& motions_of(const Section& scene);
 };
 
 /// In the order in which their systems are listed; the last is the first to be asked whether a scene is its own.
 std::span<const SceneFamily* const> families();
 /// The one that the scene is of: of systems where it is of no other.
 const SceneFamily& family_of(const Section& scene);
+/// The same of a scene to be studied, checked or run as a motion or a path. Throws SceneError for others.
+const SceneFamily& motions_of(const Section& scene);
 
 /// Scenes of [[body]], [[joint]] and [[effect]].
 const SceneFamily& bodies_family();

@@ -36,13 +36,14 @@ std::unique_ptr<Motion> Experiment::begin(const Method& method, double h) const 
 
 Experiment read_experiment(const Section& scene) {
   Experiment out;
+  const SceneFamily& family = motions_of(scene);
   const TimeGrid grid = read_time(scene);
   out.step = grid.step;
   out.end = grid.step * double(grid.steps);
   out.scene = without_choice(scene)
                   .without("time.duration")
                   .set({fmt::format("time.step={:.17e}", grid.step), fmt::format("time.steps={}", grid.steps)});
-  MotionScene begun = family_of(out.scene).begin(out.scene);
+  MotionScene begun = family.begin(out.scene);
   out.name = begun.motion->name();
   out.methods = std::move(begun.methods);
   return out;
