@@ -498,9 +498,9 @@ std::vector<double> least_seconds(const std::vector<std::function<void()>>& work
   std::vector<double> least(works.size(), std::numeric_limits<double>::infinity());
   for (int round = 0; round < 30; ++round)
     for (std::size_t i = 0; i < works.size(); ++i) {
-      const double start = processor_time();
+      const double start = lagroid::processor_time();
       works[i]();
-      least[i] = std::min(least[i], processor_time() - start);
+      least[i] = std::min(least[i], lagroid::processor_time() - start);
     }
   return least;
 }
