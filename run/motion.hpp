@@ -14,7 +14,7 @@
 namespace lagroid {
 
 /// Some numbers at a node that are compared as one vector.
-struct Block {
+struct NamedVector {
   std::string name;
   std::vector<double> values;
   double size = 0;  ///< of the terms that they are made of, to which an error is relative; 0: their own
@@ -45,7 +45,7 @@ class Motion {
   /// What is to be seen there, computed once; the same object at every node.
   virtual const Observables& look() = 0;
   /// Configuration and momentum there, in coordinates.
-  virtual std::vector<Block> state() const = 0;
+  virtual std::vector<NamedVector> state() const = 0;
   /// The largest residual there of all equations that states obey: constraints, and the groupoid's own. None where
   /// there are none.
   virtual std::optional<double> defect() const = 0;

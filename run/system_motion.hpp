@@ -99,7 +99,7 @@ template <DiscreteSystem Sys> class SystemMotion final : public Motion {
     observed_ = point.index;
     return node_;
   }
-  std::vector<Block> state() const override {
+  std::vector<NamedVector> state() const override {
     const TrajectoryPoint<Sys>& point = march_->point();
     return {block("configuration", system_.groupoid.coordinates_of_arrow(point.configuration)),
             block("momentum", tangent_momentum(system_, point.state))};
@@ -127,7 +127,7 @@ template <DiscreteSystem Sys> class SystemMotion final : public Motion {
   }
 
  private:
-  template <class V> static Block block(const char* name, const V& v) {
+  template <class V> static NamedVector block(const char* name, const V& v) {
     return {name, std::vector<double>(v.data(), v.data() + v.size())};
   }
 

@@ -1,11 +1,14 @@
 // A system of one's own, run from C++ by methods that a scene can name.
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/run/run_by.hpp>
+#include <lagroid/run/study_of.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <stdexcept>
+#include <string>
 
 using namespace lagroid;
 
@@ -42,6 +45,36 @@ TEST(OwnRunBy, WhatTheSystemDoesNotHaveIsRefused) {
   MarchOptions splitting;
   splitting.fixed = StepKind::splitting;
   EXPECT_THROW(run_by(splitting, Spring{}, {Vector<double, 1>(1.0), Vector<double, 1>(0.0)}), std::invalid_argument);
+}
+
+TEST(OwnStudy, MeasuresEveryMethodAndItsOrder) {
+  const State<Pair<1>> start{Vector<double, 1>(1.0), Vector<double, 1>(0.3)};
+  Spring system;
+  system.h = 0.1;
+  const Findings findings =
+      study(system, start, {.steps = 50, .name = "spring", .step_sizes = {0.1, 0.05, 0.025}, .budget = 20});
+  ASSERT_FALSE(findings.interrupted);
+  std::map<std::string, std::map<double, double>> error;
+  std::map<std::string, int> order;
+  for (const Measurement& m : findings.runs) {
+    EXPECT_TRUE(m.converged()) << m.method << ": " << m.message;
+    error[m.method][m.step] = m.trajectory;
+    order[m.method] = m.order;
+  }
+  ASSERT_TRUE(error.contains("variational") && error.contains("variational/suzuki"));
+  for (const char* method : {"variational", "variational/suzuki"})
+    EXPECT_NEAR(std::log2(error[method][0.1] / error[method][0.05]), order[method], 0.3) << method;
+  // The state at the end, against the motion in closed form.
+  const double q = std::cos(5.0) + 0.3 * std::sin(5.0);
+  EXPECT_NEAR(findings.reference_state.at(0).values.at(1), q, 1e-9);
+  EXPECT_FALSE(recommendation(findings).empty());
+}
+
+TEST(OwnStudy, WhatIsNoStudyIsRefused) {
+  const State<Pair<1>> start{Vector<double, 1>(1.0), Vector<double, 1>(0.3)};
+  EXPECT_THROW(study(Spring{}, start, {.steps = 0}), std::invalid_argument);
+  EXPECT_THROW(study(Spring{}, start, {.name = "two\nlines"}), std::invalid_argument);
+  EXPECT_THROW(study(Spring{}, start, {.methods = "euler"}), UnknownMethod);
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 #include "command_line.hpp"
 
 #include <families/registry.hpp>
+#include <lagroid/run/study/costs.hpp>
+#include <lagroid/run/study/measure.hpp>
+#include <lagroid/run/study/methods.hpp>
+#include <lagroid/run/study/survey.hpp>
 #include <study/accuracy.hpp>
-#include <study/costs.hpp>
-#include <study/experiment.hpp>
-#include <study/measure.hpp>
-#include <study/methods.hpp>
-#include <study/survey.hpp>
+#include <study/scene_experiment.hpp>
 
 #include <lagroid/solvers/testing/order_laws.hpp>
 

@@ -140,19 +140,19 @@ class BodiesMotion final : public Motion {
     node_.see(cost_);
     return node_;
   }
-  std::vector<Block> state() const override {
+  std::vector<NamedVector> state() const override {
     const auto momenta = motion_->momenta();
     const auto& configuration = motion_->configuration();
-    Block places{"places", {}}, attitudes{"attitudes", {}}, linear{"momenta", {}}, spins{"spins", {}};
-    const auto append = [](Block& block, const auto& all, int width) {
+    NamedVector places{"places", {}}, attitudes{"attitudes", {}}, linear{"momenta", {}}, spins{"spins", {}};
+    const auto append = [](NamedVector& block, const auto& all, int width) {
       for (const auto& each : all) block.values.insert(block.values.end(), each.data(), each.data() + width);
     };
     append(places, std::span(configuration.x).first(momenta.linear.size()), 3);
     append(attitudes, std::span(configuration.attitude).first(momenta.spin.size()), 9);
     append(linear, momenta.linear, 3);
     append(spins, momenta.spin, 3);
-    std::vector<Block> state;
-    for (Block* block : {&places, &attitudes, &linear, &spins})
+    std::vector<NamedVector> state;
+    for (NamedVector* block : {&places, &attitudes, &linear, &spins})
       if (!block->values.empty()) state.push_back(std::move(*block));
     return state;
   }

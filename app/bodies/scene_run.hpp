@@ -1,7 +1,7 @@
 #pragma once
 /// Scenes of bodies as motions.
 
-#include "../reading/method.hpp"
+#include <lagroid/run/study/method.hpp>
 
 #include <lagroid/run/drive.hpp>
 #include <lagroid/run/motion.hpp>

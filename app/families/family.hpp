@@ -1,7 +1,7 @@
 #pragma once
 /// The kinds of scenes: which one a scene is, and what can be asked of any.
 
-#include "../reading/method.hpp"
+#include <lagroid/run/study/method.hpp>
 #include "../reading/parameter.hpp"
 #include "../reading/scene_reader.hpp"
 #include "references.hpp"

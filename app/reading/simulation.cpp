@@ -133,7 +133,7 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
 std::vector<Method> composed_methods(const std::string& step, std::span<const Composition> composed_by) {
   std::vector<Method> all;
   for (const auto& composition : composed_by)
-    all.push_back({composition.stages() > 1 ? fmt::format("{}/{}", step, composition.name) : step,
+    all.push_back({composed_name(step, composition),
                    composition.order,
                    composition.stages(),
                    true,
@@ -141,19 +141,32 @@ std::vector<Method> composed_methods(const std::string& step, std::span<const Co
   return all;
 }
 
+namespace {
+
+/// What [time] of a scene says for them.
+std::vector<std::string> settings_of(const MarchOptions& options) {
+  const std::string composition = fmt::format("time.composition={}", options.composition.name);
+  switch (options.mode) {
+    case TimeMode::adaptive:
+      return {"time.mode=adaptive"};
+    case TimeMode::controlled:
+      return {"time.mode=controlled"};
+    case TimeMode::transformed:
+      return {"time.mode=transformed", composition};
+    default:
+      break;
+  }
+  if (options.fixed == StepKind::runge_kutta) return {"time.method=runge-kutta"};
+  return {"time.mode=fixed", options.fixed == StepKind::splitting ? "time.method=splitting" : "time.method=variational",
+          composition};
+}
+
+}  // namespace
+
 std::vector<Method> march_methods(const Abilities& able) {
-  std::vector<Method> all = composed_methods("variational", steps_composed(able.variational));
-  for (Method& method : composed_methods("splitting", able.splittings)) all.push_back(std::move(method));
-  if (able.rates) all.push_back({"runge-kutta", 4, 4, true, {"time.method=runge-kutta"}, true});
-  if (able.timed) all.push_back({"adaptive", 2, 1, false, {"time.mode=adaptive"}});
-  if (able.time_scale) all.push_back({"controlled", 2, 1, false, {"time.mode=controlled"}});
-  if (able.attractive)
-    for (const auto& composition : compositions::all)
-      all.push_back({composition.stages() > 1 ? fmt::format("transformed/{}", composition.name) : "transformed",
-                     composition.order,
-                     composition.stages(),
-                     false,
-                     {"time.mode=transformed", fmt::format("time.composition={}", composition.name)}});
+  std::vector<Method> all;
+  for (const NamedMethod& m : named_methods(able))
+    all.push_back({m.name, m.order, m.stages, m.equal_steps, settings_of(m.options), m.to_compare});
   return all;
 }
 

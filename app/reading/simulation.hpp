@@ -4,15 +4,11 @@
 #include "scene_reader.hpp"
 #include "task.hpp"
 
-#include <lagroid/core/rates.hpp>
-#include <lagroid/core/split_system.hpp>
 #include <lagroid/run/drive.hpp>
 #include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march.hpp>
-#include <lagroid/solvers/splitting.hpp>
-#include <lagroid/solvers/step_control.hpp>
-#include <lagroid/solvers/transformed.hpp>
+#include <lagroid/solvers/methods.hpp>
 
 #include <fmt/format.h>
 
@@ -45,33 +41,10 @@ struct MarchChoice {
   MarchOptions options;
   double accuracy = 0;  ///< of the first step; 0: its size is given
 };
-/// Which of them a system has.
-struct Abilities {
-  bool variational = false;
-  bool timed = false;
-  bool time_scale = false;
-  bool rates = false;
-  bool attractive = false;
-  std::vector<Composition> splittings;  ///< of its flows; empty where it has none
-};
-template <class Sys> Abilities abilities_of(const Sys& system) {
-  Abilities able{Variational<Sys>,      Timed<Sys>, Timed<Sys> && HasTimeScale<Sys>, HasRates<Sys>,
-                 AttractiveSystem<Sys>, {}};
-  if constexpr (SplitSystem<Sys>) {
-    able.splittings.assign(compositions::all.begin(), compositions::all.end());
-    for (const auto& of_two_flows : splittings::all)
-      if (splits_by(system, of_two_flows)) able.splittings.push_back(of_two_flows);
-  }
-  return able;
-}
 /// Refuses what the system does not have.
 MarchChoice read_march(const Section& scene, const Abilities& able);
 /// `order`, `composition`: of a fixed step.
 Composition read_composition(const Section& time, std::span<const Composition> offered);
-/// The compositions of a step of order 2; the step alone where it cannot be taken back.
-inline std::span<const Composition> steps_composed(bool composable) {
-  return std::span(compositions::all).first(composable ? compositions::all.size() : 1);
-}
 /// The fixed steps of a kind, by each of the compositions.
 std::vector<Method> composed_methods(const std::string& step, std::span<const Composition> composed_by);
 /// All that it would accept.

@@ -1,7 +1,7 @@
 #pragma once
 /// A scene, read and checked, before anything is computed.
 
-#include "method.hpp"
+#include <lagroid/run/study/method.hpp>
 
 #include <lagroid/core/system.hpp>
 #include <lagroid/run/drive.hpp>

@@ -71,9 +71,9 @@ class SphereMotion final : public Motion {
     node_.see(index_, time(), march_->point());
     return node_;
   }
-  std::vector<Block> state() const override {
+  std::vector<NamedVector> state() const override {
     const auto z = system_->in_form(march_->point(), options_.form, SphereForm::momenta);
-    Block directions{"directions", {}}, momenta{"momenta", {}};
+    NamedVector directions{"directions", {}}, momenta{"momenta", {}};
     for (Eigen::Index i = 0; i < z.cols(); ++i) {
       directions.values.insert(directions.values.end(), z.col(i).data(), z.col(i).data() + 3);
       momenta.values.insert(momenta.values.end(), z.col(i).data() + 3, z.col(i).data() + 6);

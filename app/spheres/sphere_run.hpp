@@ -1,7 +1,7 @@
 #pragma once
 /// Scenes on (T*S^2)^k as motions.
 
-#include "../reading/method.hpp"
+#include <lagroid/run/study/method.hpp>
 #include "sphere_system.hpp"
 
 #include <lagroid/run/drive.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// By which method a motion on (T*S^2)^k goes on.
 
-#include "../reading/method.hpp"
+#include <lagroid/run/study/method.hpp>
 #include "sphere_system.hpp"
 
 #include <vector>

@@ -1,8 +1,8 @@
 #include "accuracy.hpp"
 
-#include "experiment.hpp"
-#include "measure.hpp"
-#include "methods.hpp"
+#include <lagroid/run/study/measure.hpp>
+#include <lagroid/run/study/methods.hpp>
+#include "scene_experiment.hpp"
 
 #include <lagroid/run/clock.hpp>
 
@@ -60,7 +60,7 @@ struct Found {
 };
 
 /// Whether two runs agree on how large the motion is: an error relative to that of a run gone astray says nothing.
-bool agree_on_sizes(const std::vector<Block>& a, const std::vector<Block>& b) {
+bool agree_on_sizes(const std::vector<NamedVector>& a, const std::vector<NamedVector>& b) {
   for (std::size_t i = 0; i < a.size(); ++i)
     if (std::abs(a[i].size - b[i].size) > 0.1 * b[i].size) return false;
   return true;
@@ -118,7 +118,8 @@ AccuracyChoice choose_by_accuracy(const Section& scene) {
   const Goal goal = read_goal(scene);
   const auto start = std::chrono::steady_clock::now();
   const bool only_duration = scene.section("time", "").has("duration") && !scene.section("time", "").has("steps");
-  const Experiment experiment = read_experiment(only_duration ? scene.set({"time.steps=1000"}) : scene);
+  const Section timed = only_duration ? scene.set({"time.steps=1000"}) : scene;
+  const Experiment experiment = read_experiment(timed);
   std::vector<Method> methods;
   try {
     methods = matching(goal.methods, experiment.methods);
@@ -168,7 +169,7 @@ AccuracyChoice choose_by_accuracy(const Section& scene) {
   const Found& better = cheapest(found, wanted(0.1 * goal.target), experiment.end);
 
   AccuracyChoice choice;
-  choice.scene = with_method(experiment.scene, best.method, h, experiment.end);
+  choice.scene = with_method(without_method(timed), best.method, h, experiment.end);
   choice.notes.push_back(
       fmt::format("accuracy: for an error of {:.2g} at t = {:g}, {} with {} steps of {:.4g}; to march "
                   "costs about {}",

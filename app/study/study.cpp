@@ -1,20 +1,18 @@
 #include "study.hpp"
 
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/nesting.hpp>
+#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/progress.hpp>
+#include <lagroid/run/study/methods.hpp>
+#include <lagroid/run/study/study.hpp>
+#include <lagroid/run/text.hpp>
 #include "../command/shell.hpp"
 #include "../command/written.hpp"
 #include "../reading/scene_reader.hpp"
 #include "accuracy.hpp"
-#include "experiment.hpp"
-#include "methods.hpp"
-#include "study_files.hpp"
-
-#include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/kept_file.hpp>
-#include <lagroid/run/machine.hpp>
-#include <lagroid/run/nesting.hpp>
-#include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/progress.hpp>
-#include <lagroid/run/text.hpp>
+#include "scene_experiment.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -95,7 +93,7 @@ std::unique_ptr<Reference> reference_from(const std::string& file, const Experim
     if (std::abs(json.at("time").get<double>() - experiment.end) > 1e-12 * experiment.end)
       throw refuse(
           fmt::format("is for t = {:g}, this scene lasts {:g}", json.at("time").get<double>(), experiment.end));
-    std::vector<Block> state;
+    std::vector<NamedVector> state;
     for (const auto& b : json.at("reference").at("state"))
       state.push_back({b.at("name"), b.at("values").get<std::vector<double>>(), b.at("size")});
     const auto own = experiment.begin(experiment.methods.front(), experiment.step)->state();
@@ -110,9 +108,8 @@ std::unique_ptr<Reference> reference_from(const std::string& file, const Experim
   }
 }
 
-std::unique_ptr<Reference> make_reference(const StudyOptions& options, const Experiment& experiment) {
-  const std::string& text = options.reference;
-  if (text.empty()) return extrapolated_reference(experiment, share_of_reference * options.budget);
+/// METHOD@STEP, or an earlier study's file.
+std::unique_ptr<Reference> reference_of(const std::string& text, const Experiment& experiment) {
   const auto at = text.rfind('@');
   if (at == std::string::npos) return reference_from(text, experiment);
   if (at == 0) throw BadOption("--reference: name a method before the @, as in splitting@0.001");
@@ -196,42 +193,35 @@ int study(const StudyOptions& options) {
       print(listing(experiment, options.json));
       return 0;
     }
-    findings.methods = chosen_methods("--methods", options.methods, experiment.methods);
+    const std::vector<Method> methods = chosen_methods("--methods", options.methods, experiment.methods);
     Steps steps{read_steps(options.steps, experiment.end), options.longest};
     if (!options.out.empty())
-      folder.emplace(
-          folder_for_study(options.out, scene, options.methods, steps.sizes, options.reference, options.repetitions));
+      folder.emplace(folder_for_study(options.out, scene.whole(), options.methods, steps.sizes, options.reference,
+                                      options.repetitions));
     Progress progress("study", 1000, !options.json);
     const InterruptGuard guard;
     experiment.interrupted = [&guard] { return guard.interrupted(); };
-    const Budget budget(options.budget);
     if (!options.json)
       print(
           fmt::format("{}: {} methods, within {:g} s (--budget): {}then rounds of smaller steps, in which methods far "
                       "dearer than others drop out\n",
-                      experiment.name, findings.methods.size(), options.budget,
+                      experiment.name, methods.size(), options.budget,
                       options.reference.empty() ? "a third for the reference at most, " : "the reference, "));
-    experiment = within(std::move(experiment), budget);
-    const auto reference = make_reference(options, experiment);
+    StudyRequest request{.methods = methods,
+                         .steps = std::move(steps),
+                         .target = options.target,
+                         .budget = options.budget,
+                         .repetitions = options.repetitions};
+    if (!options.reference.empty())
+      request.reference = [&](const Experiment& of) { return reference_of(options.reference, of); };
+    findings = lagroid::study(experiment, request, [&](double spent) {
+      progress.update(long(1000 * std::min(spent, 1.0)));
+      return !guard.interrupted();
+    });
     findings.scene = options.scene;
-    findings.name = experiment.name;
     findings.command = command_of(options);
-    findings.machine = machine();
-    findings.end = experiment.end;
-    findings.target = options.target;
-    findings.reference = reference->description;
-    findings.uncertainty = reference->uncertainty;
-    findings.reference_state = reference->at(experiment.end);
-    findings.budget = options.budget;
-    findings.repetitions = options.repetitions;
-    Survey found =
-        survey(experiment, findings.methods, steps, *reference, options.repetitions, budget, [&](double spent) {
-          progress.update(long(1000 * std::min(spent, 1.0)));
-          return !guard.interrupted();
-        });
-    findings.runs = std::move(found.runs);
-    findings.left_out = std::move(found.left_out);
-    findings.interrupted = guard.interrupted();
+  } catch (const MethodRefused& error) {
+    return refuse(options.json, exit_bad_input, "invalid_scene", fmt::format("{}: {}", options.scene, error.what()));
   } catch (const BadOption& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   } catch (const std::domain_error& error) {

@@ -7,7 +7,7 @@
 #include <optimise/matrices.hpp>
 #include <reading/scene_reader.hpp>
 #include <spheres/model_file.hpp>
-#include <study/methods.hpp>
+#include <lagroid/run/study/methods.hpp>
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/run/output_folder.hpp>
@@ -42,7 +42,7 @@ void translate(std::exception_ptr thrown) {
     raise("DataError", error.what());
   } catch (const app::ModelError& error) {
     raise("DataError", error.what());
-  } catch (const app::UnknownMethod& error) {
+  } catch (const lagroid::UnknownMethod& error) {
     raise("SceneError", error.what());
   }
 }

@@ -4,12 +4,11 @@
 #include "computing.hpp"
 #include "scene.hpp"
 
-#include <lagroid/run/machine.hpp>
 #include <lagroid/run/output_folder.hpp>
 
+#include <lagroid/run/study/methods.hpp>
+#include <lagroid/run/study/study.hpp>
 #include <study/accuracy.hpp>
-#include <study/methods.hpp>
-#include <study/study_files.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -31,43 +30,33 @@ std::string study(const Scene& scene, const std::string& methods, std::vector<do
                   const std::optional<std::filesystem::path>& folder) {
   const app::Section read = scene.read();
   if (read.has("accuracy")) app::check_accuracy(read);
-  app::Experiment experiment = app::read_experiment(read);
+  lagroid::Experiment experiment = app::read_experiment(read);
   for (const double h : steps)
     if (!(h > 0 && h <= experiment.end))
       throw py::value_error("steps: must be positive, and no longer than the scene lasts");
   if (!(seconds > 0)) throw py::value_error("budget: must be positive");
   std::sort(steps.rbegin(), steps.rend());
   std::optional<lagroid::OutputFolder> held;
-  if (folder) held.emplace(app::folder_for_study(*folder, read, methods, steps, /*reference=*/"", repetitions));
-  app::Findings findings;
-  findings.scene = scene.name;
-  findings.name = experiment.name;
-  findings.command = "lagroid.study(...)";
-  findings.machine = lagroid::machine();
-  findings.end = experiment.end;
-  findings.target = target;
-  findings.methods = app::matching(methods, experiment.methods);
+  if (folder)
+    held.emplace(lagroid::folder_for_study(*folder, read.whole(), methods, steps, /*reference=*/"", repetitions));
+  const lagroid::StudyRequest request{
+      .methods = lagroid::matching(methods, experiment.methods),
+      .steps = {steps, longest},
+      .target = target,
+      .budget = seconds,
+      .repetitions = repetitions,
+      .reference_seconds = std::min(reference_time, lagroid::share_of_reference * seconds)};
+  lagroid::Findings findings;
   computing([&] {
     experiment.interrupted = lagroid::InterruptGuard::interrupted;
-    const app::Budget budget(seconds);
-    experiment = app::within(std::move(experiment), budget);
-    const auto reference =
-        app::extrapolated_reference(experiment, std::min(reference_time, app::share_of_reference * seconds));
-    findings.reference = reference->description;
-    findings.uncertainty = reference->uncertainty;
-    findings.reference_state = reference->at(experiment.end);
-    findings.budget = seconds;
-    findings.repetitions = repetitions;
-    app::Survey found = app::survey(experiment, findings.methods, {steps, longest}, *reference, repetitions, budget,
-                                    [](double) { return !lagroid::InterruptGuard::interrupted(); });
-    findings.runs = std::move(found.runs);
-    findings.left_out = std::move(found.left_out);
-    findings.interrupted = lagroid::InterruptGuard::interrupted();
+    findings = lagroid::study(experiment, request, [](double) { return !lagroid::InterruptGuard::interrupted(); });
+    findings.scene = scene.name;
+    findings.command = "lagroid.study(...)";
     std::string note;
-    if (folder && !lagroid::InterruptGuard::interrupted()) app::write_study(findings, *folder, note);
+    if (folder && !lagroid::InterruptGuard::interrupted()) lagroid::write_study(findings, *folder, note);
     return 0;
   });
-  return app::study_json(findings);
+  return lagroid::study_json(findings);
 }
 
 }  // namespace
@@ -80,8 +69,8 @@ void bind_studies(py::module_& module) {
       "methods",
       [](const Scene& scene) {
         std::vector<std::tuple<std::string, int, std::string>> out;
-        for (const app::Method& m : app::read_experiment(scene.read()).methods)
-          out.emplace_back(m.name, m.order, app::time_keys(m, ""));
+        for (const lagroid::Method& m : app::read_experiment(scene.read()).methods)
+          out.emplace_back(m.name, m.order, lagroid::time_keys(m, ""));
         return out;
       },
       py::arg("scene"));

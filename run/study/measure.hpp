@@ -1,8 +1,8 @@
 #pragma once
 /// What methods cost, and how far their numbers are from the truth.
 
-#include "experiment.hpp"
-#include "march.hpp"
+#include <lagroid/run/study/experiment.hpp>
+#include <lagroid/run/study/march.hpp>
 
 #include <functional>
 #include <limits>
@@ -12,14 +12,14 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::app {
+namespace lagroid {
 
 /// States of a scene's motion that runs are compared with.
 class Reference {
  public:
   virtual ~Reference() = default;
   /// At that time. Several threads may ask at once.
-  virtual std::vector<Block> at(double time) const = 0;
+  virtual std::vector<NamedVector> at(double time) const = 0;
   /// Of the state at the end, in the measure of `distance`: errors below a few times this are not told apart.
   double uncertainty = 0;
   double seconds_elsewhere = 0;  ///< of wall clock that `at` takes, about, at another time than the end
@@ -29,13 +29,13 @@ class Reference {
 /// Where a method ends after equal steps: the state, its blocks with the sizes that they had along the run, and the
 /// processor time of the march. None where it fails on the way.
 struct Reached {
-  std::vector<Block> state;
+  std::vector<NamedVector> state;
   double seconds = 0;
 };
 std::optional<Reached> reach(const Experiment& experiment, const Method& method, double end, long steps);
 
 /// The largest distance of two blocks, each relative to the size that the true motion gave it.
-double distance(const std::vector<Block>& state, const std::vector<Block>& truth);
+double distance(const std::vector<NamedVector>& state, const std::vector<NamedVector>& truth);
 
 /// The method of highest order among those with equal steps, extrapolated in even powers of the step, or in all where
 /// its error has those. Steps are halved until two extrapolations differ no less than before, or the next would be over
@@ -45,8 +45,8 @@ std::unique_ptr<Reference> extrapolated_reference(const Experiment& experiment, 
 /// The numbers of one method with one step, and as uncertainty what half the step changes.
 std::unique_ptr<Reference> method_reference(const Experiment& experiment, const Method& method, double h);
 /// A state at the end that was computed elsewhere.
-std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::vector<Block> state, double uncertainty,
-                                           std::string description);
+std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::vector<NamedVector> state,
+                                           double uncertainty, std::string description);
 
 /// Of a run that ends farther from the truth than any two states of the motion are from each other.
 inline constexpr const char* astray_status = "astray";
@@ -81,4 +81,4 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
 /// One run alone; its seconds, or less than zero where it fails.
 double time_once(const Experiment& experiment, const Method& method, double h);
 
-}  // namespace lagroid::app
+}  // namespace lagroid

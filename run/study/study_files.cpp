@@ -1,7 +1,7 @@
-#include "study_files.hpp"
+#include <lagroid/run/study/study_files.hpp>
 
-#include "costs.hpp"
-#include "methods.hpp"
+#include <lagroid/run/study/costs.hpp>
+#include <lagroid/run/study/methods.hpp>
 
 #include <lagroid/run/clock.hpp>
 #include <lagroid/run/gnuplot.hpp>
@@ -19,7 +19,7 @@
 #include <iterator>
 #include <tuple>
 
-namespace lagroid::app {
+namespace lagroid {
 
 namespace {
 
@@ -283,11 +283,11 @@ std::string markdown(const Findings& findings, bool pictures) {
 
 }  // namespace
 
-OutputFolder folder_for_study(const std::filesystem::path& folder, const Section& scene, const std::string& methods,
+OutputFolder folder_for_study(const std::filesystem::path& folder, const std::string& scene, const std::string& methods,
                               const std::vector<double>& steps, const std::string& reference, int repetitions) {
   const std::string options =
       fmt::format("{}\n{:.17g}\n{}\n{}", methods, fmt::join(steps, ","), reference, repetitions);
-  return {folder, OutputKind::study, OutputSource{{"scene", scene.whole()}, {"options", options}}, study_files};
+  return {folder, OutputKind::study, OutputSource{{"scene", scene}, {"options", options}}, study_files};
 }
 
 std::vector<std::string> recommendation(const Findings& findings) {
@@ -357,7 +357,7 @@ std::string study_json(const Findings& findings) {
   out["machine"] = findings.machine;
   out["time"] = findings.end;
   out["reference"] = {{"method", findings.reference}, {"uncertainty", number(findings.uncertainty)}};
-  for (const Block& block : findings.reference_state) {
+  for (const NamedVector& block : findings.reference_state) {
     Json b = {{"name", block.name}, {"size", block.size}, {"values", block.values}};
     out["reference"]["state"].push_back(b);
   }
@@ -421,4 +421,4 @@ std::vector<std::filesystem::path> write_study(const Findings& findings, const s
   return written;
 }
 
-}  // namespace lagroid::app
+}  // namespace lagroid

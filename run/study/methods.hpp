@@ -1,13 +1,13 @@
 #pragma once
 /// Methods by the patterns of their names.
 
-#include "../reading/method.hpp"
+#include <lagroid/run/study/method.hpp>
 
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-namespace lagroid::app {
+namespace lagroid {
 
 /// A pattern that no method of the scene has; says which there are.
 class UnknownMethod : public std::runtime_error {
@@ -21,4 +21,4 @@ std::string time_keys(const Method& method, const std::string& grid);
 /// all where there is none.
 std::vector<Method> matching(const std::string& patterns, const std::vector<Method>& all);
 
-}  // namespace lagroid::app
+}  // namespace lagroid

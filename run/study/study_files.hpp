@@ -1,7 +1,7 @@
 #pragma once
 /// The files of a study.
 
-#include "survey.hpp"
+#include <lagroid/run/study/survey.hpp>
 
 #include <lagroid/run/output_folder.hpp>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::app {
+namespace lagroid {
 
 /// All that a study found.
 struct Findings {
@@ -21,7 +21,7 @@ struct Findings {
   double target = 1e-6;
   std::string reference;
   double uncertainty = 0;
-  std::vector<Block> reference_state;
+  std::vector<NamedVector> reference_state;
   std::vector<Measurement> runs;
   std::vector<LeftOut> left_out;
   double budget = 0;    ///< s
@@ -32,7 +32,7 @@ struct Findings {
 
 /// The folder for a study of that scene with those options, for this process alone; another budget or target makes a
 /// better study of the same. `steps`: their sizes, where they are given. Throws as OutputFolder does.
-OutputFolder folder_for_study(const std::filesystem::path& folder, const Section& scene, const std::string& methods,
+OutputFolder folder_for_study(const std::filesystem::path& folder, const std::string& scene, const std::string& methods,
                               const std::vector<double>& steps, const std::string& reference, int repetitions);
 
 /// What is recommended, a line each.
@@ -47,4 +47,4 @@ std::string study_json(const Findings& findings);
 std::vector<std::filesystem::path> write_study(const Findings& findings, const std::filesystem::path& folder,
                                                std::string& note);
 
-}  // namespace lagroid::app
+}  // namespace lagroid

@@ -1,4 +1,4 @@
-#include "measure.hpp"
+#include <lagroid/run/study/measure.hpp>
 
 #include <lagroid/solvers/processor_time.hpp>
 
@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace lagroid::app {
+namespace lagroid {
 
 namespace {
 
@@ -54,7 +54,7 @@ const Method& of_highest_order(const Experiment& experiment) {
 bool is_symmetric(const Experiment& experiment, const Method& method, double h) {
   try {
     return experiment.begin(method, h)->traits().symmetric;
-  } catch (const SceneError&) {
+  } catch (const MethodRefused&) {
     return true;
   }
 }
@@ -68,7 +68,7 @@ class Extrapolated final : public Reference {
     const auto start = std::chrono::steady_clock::now();
     first_step_ = experiment.step * std::sqrt(double(method_.stages));
     powers_apart_ = is_symmetric(experiment, method_, first_step_) ? 2 : 1;
-    std::vector<std::vector<Block>> table;
+    std::vector<std::vector<NamedVector>> table;
     double least = std::numeric_limits<double>::infinity();
     double most_after = 0;  // what rows beyond the best one changed
     int since_least = 0;
@@ -76,7 +76,7 @@ class Extrapolated final : public Reference {
     for (int row = 0; row < 22; ++row) {
       if (row > 0 && seconds_since(start) + 2 * last_took > (row >= 3 ? budget : 2 * budget)) break;
       const auto began = std::chrono::steady_clock::now();
-      const auto before = table.empty() ? std::vector<Block>() : table.back();
+      const auto before = table.empty() ? std::vector<NamedVector>() : table.back();
       if (experiment.stopped()) break;
       if (!add_row(table, row, experiment.end)) continue;
       last_took = seconds_since(began);
@@ -103,19 +103,19 @@ class Extrapolated final : public Reference {
     description = fmt::format("{} with {} halved steps from {:.4g}, extrapolated", method_.name, rows_, first_step_);
   }
 
-  std::vector<Block> at(double time) const override {
+  std::vector<NamedVector> at(double time) const override {
     if (time == experiment_.end) return best_;
-    std::vector<std::vector<Block>> table;
+    std::vector<std::vector<NamedVector>> table;
     for (int row = std::max(0, rows_ - 3); row < rows_; ++row) add_row(table, row, time);
-    return table.empty() ? std::vector<Block>() : table.back();
+    return table.empty() ? std::vector<NamedVector>() : table.back();
   }
 
  private:
   /// Replaces the last row of the table by the next. The table holds one row: extrapolations of growing order.
-  bool add_row(std::vector<std::vector<Block>>& row, int level, double end) const {
+  bool add_row(std::vector<std::vector<NamedVector>>& row, int level, double end) const {
     const auto reached = reach(experiment_, method_, end, steps_within(end, first_step_ * std::pow(0.5, level)));
     if (!reached) return false;
-    std::vector<std::vector<Block>> next{reached->state};
+    std::vector<std::vector<NamedVector>> next{reached->state};
     constexpr std::size_t most = 3;  // extrapolating further multiplies round-off
     for (std::size_t k = 0; k < row.size() && k < most; ++k) {
       const double factor = std::pow(2.0, method_.order + powers_apart_ * int(k)) - 1;
@@ -134,7 +134,7 @@ class Extrapolated final : public Reference {
   double first_step_ = 0;
   int powers_apart_ = 2;
   int rows_ = 0;
-  std::vector<Block> best_;
+  std::vector<NamedVector> best_;
 };
 
 class ByMethod final : public Reference {
@@ -149,27 +149,28 @@ class ByMethod final : public Reference {
     description = fmt::format("{} with steps of {:.6g}", method.name, h);
   }
 
-  std::vector<Block> at(double time) const override {
+  std::vector<NamedVector> at(double time) const override {
     if (time == experiment_.end && !end_.empty()) return end_;
     auto reached = reach(experiment_, method_, time, steps_within(time, h_));
-    return reached ? std::move(reached->state) : std::vector<Block>();
+    return reached ? std::move(reached->state) : std::vector<NamedVector>();
   }
 
  private:
   const Experiment& experiment_;
   Method method_;
   double h_;
-  std::vector<Block> end_;
+  std::vector<NamedVector> end_;
 };
 
 class Known final : public Reference {
  public:
-  Known(const Experiment& experiment, std::vector<Block> state) : end_(experiment.end), state_(std::move(state)) {}
-  std::vector<Block> at(double time) const override { return time == end_ ? state_ : std::vector<Block>(); }
+  Known(const Experiment& experiment, std::vector<NamedVector> state)
+      : end_(experiment.end), state_(std::move(state)) {}
+  std::vector<NamedVector> at(double time) const override { return time == end_ ? state_ : std::vector<NamedVector>(); }
 
  private:
   double end_;
-  std::vector<Block> state_;
+  std::vector<NamedVector> state_;
 };
 
 /// The slope of what is watched along a run, through the means of its parts.
@@ -225,9 +226,9 @@ class Watch {
       if (!now.invariants.empty()) out_.invariants = 0;
     }
     if (now.constraint) out_.constraint = larger(out_.constraint, *now.constraint);
-    for (const Block& block : now.invariants) {
+    for (const NamedVector& block : now.invariants) {
       auto [found, is_new] = first_.try_emplace(block.name, block);
-      const Block& first = found->second;
+      const NamedVector& first = found->second;
       const double of_its_own = std::max(norm(first.values), norm(block.values));
       const double size = std::max(block.size, of_its_own);
       out_.invariants = larger(out_.invariants, difference(block.values, first.values) / (size > 0 ? size : 1));
@@ -249,7 +250,7 @@ class Watch {
   double end_;
   Measurement& out_;
   long looked_ = 0;
-  std::map<std::string, Block> first_;
+  std::map<std::string, NamedVector> first_;
   std::optional<Trend> trend_;
   double energy_size_ = 0;
 };
@@ -281,7 +282,7 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
   try {
     const auto motion = until.begin(method, end / double(steps));
     std::vector<double> sizes;
-    const auto look = [&](const std::vector<Block>& state) {
+    const auto look = [&](const std::vector<NamedVector>& state) {
       sizes.resize(state.size());
       for (std::size_t i = 0; i < state.size(); ++i) sizes[i] = std::max(sizes[i], norm(state[i].values));
     };
@@ -290,20 +291,20 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
     const long looks = std::min(steps, 64L);
     for (long k = 1; k <= looks; ++k) {
       const double start = processor_time();
-      const StepReport report = march(*motion, end * double(k) / double(looks), work);
+      const StepReport report = march_to(*motion, end * double(k) / double(looks), work);
       out.seconds += processor_time() - start;
       if (!report.converged() || experiment.stopped()) return std::nullopt;
       out.state = motion->state();
       look(out.state);
     }
     for (std::size_t i = 0; i < sizes.size(); ++i) out.state[i].size = sizes[i];
-  } catch (const SceneError&) {
+  } catch (const MethodRefused&) {
     return std::nullopt;
   }
   return out;
 }
 
-double distance(const std::vector<Block>& state, const std::vector<Block>& truth) {
+double distance(const std::vector<NamedVector>& state, const std::vector<NamedVector>& truth) {
   if (state.size() != truth.size() || state.empty()) return unknown;
   double most = 0;
   for (std::size_t i = 0; i < state.size(); ++i) {
@@ -337,8 +338,8 @@ std::unique_ptr<Reference> method_reference(const Experiment& experiment, const 
   return std::make_unique<ByMethod>(experiment, method, h);
 }
 
-std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::vector<Block> state, double uncertainty,
-                                           std::string description) {
+std::unique_ptr<Reference> known_reference(const Experiment& experiment, std::vector<NamedVector> state,
+                                           double uncertainty, std::string description) {
   auto known = std::make_unique<Known>(experiment, std::move(state));
   known->uncertainty = uncertainty;
   known->description = std::move(description);
@@ -354,7 +355,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
   try {
     const auto motion = experiment.begin(method, h);
     Watch watch(experiment.end, out);
-    watch.see(see(*motion), 0);
+    watch.see(sight_of(*motion), 0);
     StepReport report;
     report.status = SolveStatus::converged;
     const double start = processor_time();
@@ -366,7 +367,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       report = advance(*motion, out.work);
       if (!report.converged()) break;
       last_step = motion->time() - before;
-      if (looks.at(out.work.steps)) watch.see(see(*motion), motion->time());
+      if (looks.at(out.work.steps)) watch.see(sight_of(*motion), motion->time());
       if (out.work.steps % 64 != 0) continue;
       if (processor_time() - start > 8 * longest || experiment.stopped()) {
         out.status = experiment.stopped() ? "interrupted" : "too slow";
@@ -391,9 +392,9 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       out.status = astray_status;
       out.message = fmt::format("its error is {:.2g} times the size of the motion", out.trajectory);
     }
-  } catch (const SceneError& error) {
+  } catch (const MethodRefused& error) {
     out.status = "refused";
-    out.message = error.problem();
+    out.message = error.what();
   }
   return out;
 }
@@ -407,11 +408,11 @@ double time_once(const Experiment& experiment, const Method& method, double h) {
     const auto motion = experiment.begin(method, h);
     Work work;
     const double start = processor_time();
-    if (!march(*motion, experiment.end, work).converged()) return -1;
+    if (!march_to(*motion, experiment.end, work).converged()) return -1;
     total += processor_time() - start;
     ++runs;
   } while (total < long_enough && runs < 20);
   return total / double(runs);
 }
 
-}  // namespace lagroid::app
+}  // namespace lagroid

@@ -1,14 +1,14 @@
 #pragma once
 /// Which methods a study runs with which steps, and how often, within its time.
 
-#include "budget.hpp"
-#include "measure.hpp"
+#include <lagroid/run/study/budget.hpp>
+#include <lagroid/run/study/measure.hpp>
 
 #include <functional>
 #include <string>
 #include <vector>
 
-namespace lagroid::app {
+namespace lagroid {
 
 struct Steps {
   /// Given ones; empty: halved from a large one on until errors are those of round-off or a run lasts `longest`
@@ -45,4 +45,4 @@ Survey survey(const Experiment& experiment, const std::vector<Method>& methods, 
               const Reference& reference, int repetitions, const Budget& budget,
               const std::function<bool(double spent)>& report);
 
-}  // namespace lagroid::app
+}  // namespace lagroid

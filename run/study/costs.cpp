@@ -1,9 +1,9 @@
-#include "costs.hpp"
+#include <lagroid/run/study/costs.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace lagroid::app {
+namespace lagroid {
 
 const char* name_of(Axis axis) {
   switch (axis) {
@@ -84,4 +84,4 @@ std::vector<std::string> cheapest_methods(const std::vector<Measurement>& all, A
   return out;
 }
 
-}  // namespace lagroid::app
+}  // namespace lagroid

@@ -1,6 +1,6 @@
-#include "march.hpp"
+#include <lagroid/run/study/march.hpp>
 
-namespace lagroid::app {
+namespace lagroid {
 
 StepReport advance(Motion& motion, Work& work) {
   const StepReport report = motion.advance();
@@ -11,24 +11,24 @@ StepReport advance(Motion& motion, Work& work) {
   return report;
 }
 
-StepReport march(Motion& motion, double end, Work& work) {
+StepReport march_to(Motion& motion, double end, Work& work) {
   StepReport report;
   report.status = SolveStatus::converged;
   while (report.converged() && end - motion.time() > 0.5 * motion.step_size()) report = advance(motion, work);
   return report;
 }
 
-Sight see(Motion& motion) {
+Sight sight_of(Motion& motion) {
   const Observables& node = motion.look();
   Sight sight{motion.state(), {}, motion.defect()};
   for (std::size_t i = 0; i < node.quantities().size(); ++i) {
     const Watched& quantity = node.quantities()[i];
     if (quantity.on_arrows && node.index() == 0) continue;
-    Block seen{quantity.name, std::vector<double>(quantity.components.size())};
+    NamedVector seen{quantity.name, std::vector<double>(quantity.components.size())};
     seen.size = node.measure(i, seen.values.data());
     sight.invariants.push_back(std::move(seen));
   }
   return sight;
 }
 
-}  // namespace lagroid::app
+}  // namespace lagroid

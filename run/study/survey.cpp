@@ -1,4 +1,4 @@
-#include "survey.hpp"
+#include <lagroid/run/study/survey.hpp>
 
 #include <lagroid/run/clock.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-namespace lagroid::app {
+namespace lagroid {
 
 namespace {
 
@@ -249,4 +249,4 @@ Survey survey(const Experiment& experiment, const std::vector<Method>& methods, 
   return out;
 }
 
-}  // namespace lagroid::app
+}  // namespace lagroid

@@ -1,13 +1,13 @@
 #pragma once
 /// From measurements to what an error costs.
 
-#include "measure.hpp"
+#include <lagroid/run/study/measure.hpp>
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace lagroid::app {
+namespace lagroid {
 
 /// What is wrong with a run.
 enum class Axis { trajectory, invariants, constraint };
@@ -40,4 +40,4 @@ std::vector<std::string> cheapest_methods(const std::vector<Measurement>& all, A
 /// The methods measured, in order.
 std::vector<std::string> methods_of(const std::vector<Measurement>& all);
 
-}  // namespace lagroid::app
+}  // namespace lagroid

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::app {
+namespace lagroid {
 
 /// A way to march a scene: what stands in its [time], as "key=value".
 struct Method {
@@ -16,4 +16,4 @@ struct Method {
   bool to_compare = false;  ///< there to be compared with, and not chosen for anyone
 };
 
-}  // namespace lagroid::app
+}  // namespace lagroid

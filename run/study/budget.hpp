@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace lagroid::app {
+namespace lagroid {
 
 /// So many seconds of wall clock from now on.
 class Budget {
@@ -20,4 +20,4 @@ class Budget {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace lagroid::app
+}  // namespace lagroid

@@ -1,4 +1,4 @@
-#include "methods.hpp"
+#include <lagroid/run/study/methods.hpp>
 
 #include <fmt/format.h>
 #include <fnmatch.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace lagroid::app {
+namespace lagroid {
 
 std::string time_keys(const Method& method, const std::string& grid) {
   std::string out = grid;
@@ -40,4 +40,4 @@ std::vector<Method> matching(const std::string& patterns, const std::vector<Meth
   return out;
 }
 
-}  // namespace lagroid::app
+}  // namespace lagroid

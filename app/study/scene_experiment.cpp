@@ -1,4 +1,4 @@
-#include "experiment.hpp"
+#include "scene_experiment.hpp"
 
 #include "../families/family.hpp"
 #include "../reading/simulation.hpp"
@@ -15,11 +15,6 @@ namespace {
 constexpr std::array choosing{"time.mode",      "time.method",       "time.form",     "time.order", "time.composition",
                               "time.tolerance", "time.without_root", "time.accuracy", "accuracy"};
 
-Section without_choice(Section scene) {
-  for (const char* key : choosing) scene = scene.without(key);
-  return scene;
-}
-
 }  // namespace
 
 Section with_method(const Section& scene, const Method& method, double h, double end) {
@@ -29,23 +24,30 @@ Section with_method(const Section& scene, const Method& method, double h, double
   return scene.set(settings);
 }
 
-std::unique_ptr<Motion> Experiment::begin(const Method& method, double h) const {
-  const Section by_method = with_method(scene, method, h, end);
-  return family_of(by_method).begin(by_method).motion;
+Section without_method(const Section& scene) {
+  const TimeGrid grid = read_time(scene);
+  Section plain = scene.without("time.duration");
+  for (const char* key : choosing) plain = plain.without(key);
+  return plain.set({fmt::format("time.step={:.17e}", grid.step), fmt::format("time.steps={}", grid.steps)});
 }
 
 Experiment read_experiment(const Section& scene) {
-  Experiment out;
   const SceneFamily& family = motions_of(scene);
   const TimeGrid grid = read_time(scene);
+  const Section plain = without_method(scene);
+  MotionScene begun = family.begin(plain);
+  Experiment out;
+  out.name = begun.motion->name();
   out.step = grid.step;
   out.end = grid.step * double(grid.steps);
-  out.scene = without_choice(scene)
-                  .without("time.duration")
-                  .set({fmt::format("time.step={:.17e}", grid.step), fmt::format("time.steps={}", grid.steps)});
-  MotionScene begun = family.begin(out.scene);
-  out.name = begun.motion->name();
   out.methods = std::move(begun.methods);
+  out.motion = [&family, plain](const Method& method, double h, double end) {
+    try {
+      return family.begin(with_method(plain, method, h, end)).motion;
+    } catch (const SceneError& error) {
+      throw MethodRefused(error.problem());
+    }
+  };
   return out;
 }
 

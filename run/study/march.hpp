@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace lagroid::app {
+namespace lagroid {
 
 /// What a march has cost so far.
 struct Work {
@@ -16,16 +16,16 @@ struct Work {
 
 /// What is seen at a node.
 struct Sight {
-  std::vector<Block> state;          ///< configuration and momentum, in coordinates
-  std::vector<Block> invariants;     ///< what the system keeps, conserved or bounded
-  std::optional<double> constraint;  ///< Motion::defect
+  std::vector<NamedVector> state;       ///< configuration and momentum, in coordinates
+  std::vector<NamedVector> invariants;  ///< what the system keeps, conserved or bounded
+  std::optional<double> constraint;     ///< Motion::defect
 };
 
 /// One step.
 StepReport advance(Motion& motion, Work& work);
 /// Steps until `end` is less than half a step away, and looks at nothing. The report is that of the last step.
-StepReport march(Motion& motion, double end, Work& work);
+StepReport march_to(Motion& motion, double end, Work& work);
 /// The node that was reached.
-Sight see(Motion& motion);
+Sight sight_of(Motion& motion);
 
-}  // namespace lagroid::app
+}  // namespace lagroid

@@ -1,0 +1,34 @@
+#pragma once
+/// A motion to be marched by many methods with many steps.
+
+#include <lagroid/run/motion.hpp>
+#include <lagroid/run/study/method.hpp>
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// A method that does not take this step; says why.
+class MethodRefused : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Experiment {
+  std::string name;             ///< of the system or the scene
+  double end = 0;               ///< the time that the motion lasts, s
+  double step = 0;              ///< its own step
+  std::vector<Method> methods;  ///< all that apply
+  /// The motion from its start, by that method and that step, to last until `end`. May be asked by several threads at
+  /// once. Throws MethodRefused.
+  std::function<std::unique_ptr<Motion>(const Method& method, double h, double end)> motion;
+  std::function<bool()> interrupted = nullptr;  ///< asked now and then, where there is somebody to ask
+
+  bool stopped() const { return interrupted && interrupted(); }
+  std::unique_ptr<Motion> begin(const Method& method, double h) const { return motion(method, h, end); }
+};
+
+}  // namespace lagroid

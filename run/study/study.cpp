@@ -1,0 +1,33 @@
+#include <lagroid/run/machine.hpp>
+#include <lagroid/run/study/study.hpp>
+
+#include <utility>
+
+namespace lagroid {
+
+Findings study(const Experiment& experiment, const StudyRequest& request,
+               const std::function<bool(double spent)>& goes_on) {
+  const Budget budget(request.budget);
+  const Experiment bounded = within(experiment, budget);
+  const auto reference =
+      request.reference ? request.reference(bounded) : extrapolated_reference(bounded, request.reference_seconds);
+  Findings findings;
+  findings.name = experiment.name;
+  findings.machine = machine();
+  findings.end = experiment.end;
+  findings.target = request.target;
+  findings.methods = request.methods.empty() ? experiment.methods : request.methods;
+  findings.reference = reference->description;
+  findings.uncertainty = reference->uncertainty;
+  findings.reference_state = reference->at(experiment.end);
+  findings.budget = request.budget;
+  findings.repetitions = request.repetitions;
+  Survey found = survey(bounded, findings.methods, request.steps, *reference, request.repetitions, budget,
+                        [&](double spent) { return !goes_on || goes_on(spent); });
+  findings.runs = std::move(found.runs);
+  findings.left_out = std::move(found.left_out);
+  findings.interrupted = experiment.stopped();
+  return findings;
+}
+
+}  // namespace lagroid

@@ -1,0 +1,31 @@
+#pragma once
+/// What accuracy costs a motion, by all methods that apply to it.
+
+#include <lagroid/run/study/study_files.hpp>
+#include <lagroid/run/study/survey.hpp>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace lagroid {
+
+/// What is asked of a study.
+struct StudyRequest {
+  std::vector<Method> methods{};  ///< empty: all of the experiment's
+  Steps steps{};
+  double target = 1e-6;  ///< the error for which a method is recommended
+  double budget = 60;    ///< s of wall clock, all of it
+  int repetitions = 5;   ///< of every run, interleaved, to be timed
+  /// What runs are compared with; empty: the method of highest order, extrapolated.
+  std::function<std::unique_ptr<Reference>(const Experiment&)> reference = nullptr;
+  double reference_seconds = share_of_reference * budget;  ///< that an extrapolated one may take
+};
+
+/// Measures errors at the end, of invariants and of constraints against processor time. `goes_on(spent)` hears now and
+/// then what part of the budget is spent, and may end it. Throws std::domain_error where there is nothing to compare
+/// with.
+Findings study(const Experiment& experiment, const StudyRequest& request,
+               const std::function<bool(double spent)>& goes_on = nullptr);
+
+}  // namespace lagroid

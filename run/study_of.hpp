@@ -1,0 +1,100 @@
+#pragma once
+/// `study`: what accuracy costs a system of one's own. It compiles all methods that the system has: a minute.
+
+#include <lagroid/run/study/methods.hpp>
+#include <lagroid/run/study/study.hpp>
+#include <lagroid/run/system_motion.hpp>
+#include <lagroid/solvers/march_methods.hpp>
+#include <lagroid/solvers/methods.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// What is asked of `study`.
+template <DiscreteSystem Sys> struct StudyOptions {
+  using G = typename Sys::GroupoidType;
+
+  long steps = 1000;                          ///< of size system.h, which the motion lasts
+  std::string name = "system";                ///< in reports: one line of text
+  std::optional<ArrowOf<G>> configuration{};  ///< an arrow that ends at the start's object; its unit
+  std::string methods{};                      ///< patterns of names, separated by commas: "splitting*"; empty: all
+  std::vector<double> step_sizes{};           ///< empty: halved until errors are those of round-off
+  double longest = 0.25;                      ///< s that a run may take, where step sizes are found
+  double target = 1e-6;                       ///< the error for which a method is recommended
+  double budget = 60;                         ///< s of wall clock, all of it
+  int repetitions = 5;                        ///< of every run, to be timed
+  std::filesystem::path folder{};             ///< for page, figures, CSV and JSON; empty: no files
+  bool progress = false;                      ///< a bar on the terminal
+};
+
+/// The system from a state as an experiment. Names of methods are those of `named_methods`. The system must have a step
+/// `h`.
+template <DiscreteSystem Sys>
+requires HasTimeStep<Sys> Experiment experiment_of(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                                                   const StudyOptions<Sys>& options) {
+  const std::vector<NamedMethod> named = named_methods(abilities_of(system));
+  const auto configuration = options.configuration.value_or(system.groupoid.unit(start.object));
+  Experiment out;
+  out.name = options.name;
+  out.step = system.h;
+  out.end = double(options.steps) * system.h;
+  for (const NamedMethod& m : named)
+    out.methods.push_back({m.name, m.order, m.stages, m.equal_steps, {}, m.to_compare});
+  out.motion = [=](const Method& method, double h, double) -> std::unique_ptr<Motion> {
+    const auto found = std::find_if(named.begin(), named.end(), [&](const auto& m) { return m.name == method.name; });
+    Sys stepped = system;
+    stepped.h = h;
+    try {
+      return std::make_unique<SystemMotion<Sys>>(
+          stepped, options.name, std::vector<FieldOf<Sys>>{}, quantities_of(stepped),
+          make_march(stepped, start, configuration, found->options), found->options);
+    } catch (const std::exception& error) {
+      throw MethodRefused(error.what());
+    }
+  };
+  return out;
+}
+
+namespace detail {
+
+/// A study with its page in `folder`, where there is one; `of` tells what is studied.
+Findings study_with_files(Experiment experiment, StudyRequest request, const std::string& methods,
+                          const std::filesystem::path& folder, const std::string& of, bool progress);
+
+/// What has to be the same for two studies to be of the same motion.
+std::string studied(const std::string& name, double step, long steps, const std::vector<NamedVector>& start);
+
+}  // namespace detail
+
+/// Errors against processor time of every method that the system has, with a recommendation: as `lagroid study` does of
+/// a scene. `study_text(findings)` says it in words.
+///
+///     Findings findings = study(Pendulum{}, {{1}, {0}}, {.steps = 1000, .budget = 10, .folder = "out/study"});
+///     std::cout << study_text(findings);
+///
+/// Ctrl-C ends it with what was measured so far. Throws std::invalid_argument for a name that is not one line of text,
+/// steps that count nothing, and what no method's name matches (UnknownMethod); std::domain_error where no two runs
+/// agree, so that there is nothing to compare with; FolderRefused where the folder holds something else.
+template <DiscreteSystem Sys>
+requires HasTimeStep<Sys> Findings study(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                                         const StudyOptions<Sys>& options = {}) {
+  Experiment experiment = experiment_of(system, start, options);
+  StudyRequest request{.steps = {options.step_sizes, options.longest},
+                       .target = options.target,
+                       .budget = options.budget,
+                       .repetitions = options.repetitions};
+  const auto from = experiment.begin(experiment.methods.front(), system.h)->state();
+  const std::string of = detail::studied(options.name, system.h, options.steps, from);
+  return detail::study_with_files(std::move(experiment), std::move(request), options.methods, options.folder, of,
+                                  options.progress);
+}
+
+}  // namespace lagroid
