@@ -76,13 +76,13 @@ TEST(Methods, AreAcceptedByTheirScenes) {
                            "figure_eight", "tops", "pendulum_chain", "pendulum_chain_adaptive"}) {
     const Experiment experiment = read_experiment(example(name));
     for (const Method& method : experiment.methods) {
-      const auto trial = experiment.begin(method, experiment.step);
-      EXPECT_EQ(trial->traits().order, method.order) << name << ' ' << method.name;
+      const auto motion = experiment.begin(method, experiment.step);
+      EXPECT_EQ(motion->traits().order, method.order) << name << ' ' << method.name;
       Work work;
-      const StepReport report = trial->advance(work);
+      const StepReport report = advance(*motion, work);
       EXPECT_TRUE(report.converged() || !method.equal_steps) << name << ' ' << method.name;
       EXPECT_EQ(work.steps, report.converged() ? 1 : 0);
-      EXPECT_FALSE(trial->see().state.empty());
+      EXPECT_FALSE(sight_of(*motion).state.empty());
     }
   }
 }
