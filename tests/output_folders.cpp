@@ -330,7 +330,8 @@ TEST_F(Folders, ListsOfOtherLengthsInACheckpointAreRefused) {
   const std::string kept{std::istreambuf_iterator<char>(in), {}};
   in.close();
   auto json = nlohmann::json::from_cbor(kept.substr(sizeof(std::size_t)));
-  json["state"]["run"]["recorder"]["first 0"] = std::vector<double>();
+  ASSERT_TRUE(json.at("state").at("run").at("judge").at("quantity 0").contains("first"));
+  json["state"]["run"]["judge"]["quantity 0"]["first"] = std::vector<double>();
   const auto cbor = nlohmann::json::to_cbor(json);
   keep_cbor(file, {cbor.begin(), cbor.end()});
   const Outcome r = run("resume " + out + " --set time.steps=100");
