@@ -9,6 +9,7 @@
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
 #include <study/accuracy.hpp>
+#include <study/scene_experiment.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
