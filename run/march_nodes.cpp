@@ -6,10 +6,15 @@ namespace lagroid {
 
 bool WatchedMotion::observe() {
   if (!std::isfinite(motion_.time())) return false;
-  return !(is_recorded() || motion_.is_judged_at_every_node()) || see(is_recorded());
+  const bool is_recorded = motion_.index() == next_;
+  if (is_recorded) next_ += every_;
+  return !(is_recorded || is_judged_at_every_node_) || see(is_recorded);
 }
 
-bool WatchedMotion::observe_last() { return is_recorded() || !std::isfinite(motion_.time()) || see(true); }
+bool WatchedMotion::observe_last() {
+  const bool was_recorded = motion_.index() == next_ - every_;
+  return was_recorded || !std::isfinite(motion_.time()) || see(true);
+}
 
 bool WatchedMotion::see(bool is_recorded) {
   const Observables& node = motion_.look();

@@ -20,6 +20,7 @@ class WatchedMotion {
         recorder_(recorder),
         every_(every),
         first_(motion.index()),
+        next_(first_),
         judged_(is_judged ? first_ : -1) {}
 
   Motion& motion() { return motion_; }
@@ -27,18 +28,22 @@ class WatchedMotion {
   bool observe();
   /// Sees the last node, where that was passed over.
   bool observe_last();
-  /// Visits what it goes on from; the judge is another's.
-  template <class Archive> void persist(Archive& archive) { archive("judged", judged_); }
+  /// Visits what it goes on from, beside motion and judge: after the motion.
+  template <class Archive> void persist(Archive& archive) {
+    archive("judged", judged_);
+    if (archive.restoring()) next_ = motion_.index() - (motion_.index() - first_) % every_ + every_;
+  }
 
  private:
-  bool is_recorded() const { return (motion_.index() - first_) % every_ == 0; }
   bool see(bool is_recorded);
 
   Motion& motion_;
   Judge* judge_;
   Recorder* recorder_;
   long every_;
+  bool is_judged_at_every_node_ = motion_.is_judged_at_every_node();
   long first_;
+  long next_;    ///< the node to be recorded next
   long judged_;  ///< the last node that the judge saw
 };
 
