@@ -1,7 +1,7 @@
 // Over a million steps the energy of symplectic methods has no slope, and that of Runge-Kutta has.
 
-#include <study/scene_experiment.hpp>
 #include <lagroid/run/study/measure.hpp>
+#include <study/scene_experiment.hpp>
 
 #include <gtest/gtest.h>
 

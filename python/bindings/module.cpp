@@ -3,11 +3,11 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 
+#include <lagroid/run/study/methods.hpp>
 #include <listing.hpp>
 #include <optimise/matrices.hpp>
 #include <reading/scene_reader.hpp>
 #include <spheres/model_file.hpp>
-#include <lagroid/run/study/methods.hpp>
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/run/output_folder.hpp>
