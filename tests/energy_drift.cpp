@@ -40,6 +40,11 @@ TEST_P(EnergyDrift, HasNoSlopeOverAMillionSteps) {
     experiment.end = steps / method.stages * h;  // a million stages, of composed steps
 #endif
     const Measurement m = measure_once(experiment, method, h, nullptr, 1e9);
+    if (!m.converged() && method.to_compare) {  // away from the constraint, until numbers end
+      EXPECT_FALSE(m.invariants < 0.1) << method.name;
+      ++drifting;
+      continue;
+    }
     ASSERT_TRUE(m.converged()) << method.name << ' ' << m.status << ' ' << m.message;
     const double slope = std::abs(m.drift);
     const bool flat = slope < 4 * m.drift_error + 1e-4 * m.invariants + walk && slope < 0.05 * m.invariants + walk;

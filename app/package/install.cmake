@@ -34,7 +34,7 @@ target_compile_definitions(lagroid_core INTERFACE $<INSTALL_INTERFACE:LAGROID_RE
 # development
 foreach(folder core groupoids systems solvers run)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid COMPONENT development
-          FILES_MATCHING PATTERN "*.hpp")
+          FILES_MATCHING PATTERN "*.hpp" PATTERN "hdf5_file.hpp" EXCLUDE)  # it needs HDF5's headers: the library's own
 endforeach()
 set(cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lagroid)
 foreach(part core lagroid laws)
