@@ -15,7 +15,7 @@ void Judge::observe(const Observables& node) {
   positions_.observe([&] { return node.positions(); });
   const double noise = node.noise();
   for (std::size_t i = 0; i < quantities_.size(); ++i) {
-    if (!has_seen(i, node)) continue;
+    if (quantities_[i].on_arrows && node.index() == 0) continue;
     double size = node.measure(i, values_[i].data());
     if (quantities_[i].size_of == SizeOf::value) size = norm_of(values_[i]);
     watches_[i].observe(values_[i].data(), size, noise * size);

@@ -19,10 +19,6 @@ class Judge {
   void observe(const Observables& node);
   /// Of the node seen last, how far the quantity is from its first value.
   double drift(std::size_t quantity) const { return watches_[quantity].drift(); }
-  /// Whether something was seen of it: on arrows, nothing at the first node.
-  bool has_seen(std::size_t quantity, const Observables& node) const {
-    return !quantities_[quantity].on_arrows || node.index() > 0;
-  }
 
   void report(Ledger& ledger) const;
 

@@ -36,4 +36,11 @@ template <class Sys> struct Presentation {
   std::map<std::string, std::string> conventions;
 };
 
+/// Adds its words and pictures to a result.
+template <class Sys> void present(const Presentation<Sys>& presentation, RunResult& result) {
+  result.trajectory.conventions = presentation.conventions;
+  result.panels = presentation.panels;
+  result.shapes = presentation.shapes;
+}
+
 }  // namespace lagroid

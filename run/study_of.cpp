@@ -1,6 +1,4 @@
-#include <lagroid/run/interrupt.hpp>
 #include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/progress.hpp>
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
 #include <lagroid/run/text.hpp>
@@ -23,13 +21,7 @@ Findings study_with_files(Experiment experiment, StudyRequest request, const std
   std::optional<OutputFolder> held;
   if (!folder.empty())
     held.emplace(folder_for_study(folder, of, methods, request.steps.sizes, "", request.repetitions));
-  Progress bar("study", 1000, progress);
-  const InterruptGuard guard;
-  experiment.interrupted = InterruptGuard::interrupted;
-  Findings findings = study(experiment, request, [&](double spent) {
-    bar.update(long(1000 * std::min(spent, 1.0)));
-    return !InterruptGuard::interrupted();
-  });
+  Findings findings = study_until_interrupted(std::move(experiment), request, progress);
   findings.scene = "a program of its own";
   findings.command = "study(...)";
   std::string without_pictures;

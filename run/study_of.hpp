@@ -81,8 +81,8 @@ std::string studied(const std::string& name, double step, long steps, const std:
 ///     std::cout << study_text(findings);
 ///
 /// Ctrl-C ends it with what was measured so far. Throws std::invalid_argument for a name that is not one line of text,
-/// steps that count nothing, and what no method's name matches (UnknownMethod); std::domain_error where no two runs
-/// agree, so that there is nothing to compare with; FolderRefused where the folder holds something else.
+/// or steps that count nothing; UnknownMethod for a pattern that is no method's name; std::domain_error where no two
+/// runs agree, so that there is nothing to compare with; FolderRefused where the folder holds something else.
 template <DiscreteSystem Sys>
 requires HasTimeStep<Sys> Findings study(const Sys& system, const State<typename Sys::GroupoidType>& start,
                                          const StudyOptions<Sys>& options = {}) {

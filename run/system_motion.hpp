@@ -2,6 +2,7 @@
 /// Systems on groupoids as motions.
 
 #include <lagroid/core/discrete_energy.hpp>
+#include <lagroid/run/ledger.hpp>
 #include <lagroid/run/motion.hpp>
 #include <lagroid/run/system_node.hpp>
 #include <lagroid/solvers/march.hpp>
@@ -91,8 +92,9 @@ template <DiscreteSystem Sys> class SystemMotion final : public Motion {
     const TrajectoryPoint<Sys>& point = march_->point();
     node_.see(point);
     if (point.index > 0) {
-      march_->for_each_inner_stage(
-          [&](const Step<Sys>& step, double start, double size) { node_.see_inner(step, start, size); });
+      if constexpr (Sys::constraints > 0)
+        march_->for_each_inner_stage(
+            [&](const Step<Sys>& step, double start, double size) { node_.see_inner(step, start, size); });
       if (point.index == 1) first_multipliers_ = point.step.multipliers;
     }
     if (observer_ && point.index > observed_) observer_(node_.point());
@@ -101,8 +103,8 @@ template <DiscreteSystem Sys> class SystemMotion final : public Motion {
   }
   std::vector<NamedVector> state() const override {
     const TrajectoryPoint<Sys>& point = march_->point();
-    return {block("configuration", system_.groupoid.coordinates_of_arrow(point.configuration)),
-            block("momentum", tangent_momentum(system_, point.state))};
+    return {named("configuration", system_.groupoid.coordinates_of_arrow(point.configuration)),
+            named("momentum", tangent_momentum(system_, point.state))};
   }
   std::optional<double> defect() const override;
 
@@ -112,9 +114,7 @@ template <DiscreteSystem Sys> class SystemMotion final : public Motion {
       result.first_multipliers.assign(first_multipliers_.begin(), first_multipliers_.end());
       result.last_multipliers.assign(point.step.multipliers.begin(), point.step.multipliers.end());
     }
-    result.trajectory.conventions = presentation_.conventions;
-    result.panels = presentation_.panels;
-    result.shapes = presentation_.shapes;
+    present(presentation_, result);
     if (const long count = march_->without_root(); count > 0) {
       result.notes.push_back(without_root_note(count, result.steps, without_root_));
       result.ledger.entries.push_back(counted_entry("steps off the energy", count, result.steps));
@@ -127,7 +127,7 @@ template <DiscreteSystem Sys> class SystemMotion final : public Motion {
   }
 
  private:
-  template <class V> static NamedVector block(const char* name, const V& v) {
+  template <class V> static NamedVector named(const char* name, const V& v) {
     return {name, std::vector<double>(v.data(), v.data() + v.size())};
   }
 
@@ -158,9 +158,8 @@ template <DiscreteSystem Sys> std::optional<double> SystemMotion<Sys>::defect() 
     largest = largest.value_or(0);
     if (point.index > 0) {
       Sys system = system_;
-      if constexpr (HasTimeStep<Sys>) system.h = point.step_size;
-      set_time(system, point.time - point.step_size);
-      see(constraint_values(system, point.step.arrow).cwiseAbs().maxCoeff());
+      set_arrow(system, point.time - point.step_size, point.step_size);
+      see(constraint_residual(system, point.step));
     }
   }
   return largest;

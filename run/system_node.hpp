@@ -5,15 +5,14 @@
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/core/two_sided.hpp>
-#include <lagroid/run/ledger.hpp>
 #include <lagroid/run/observables.hpp>
 #include <lagroid/run/presentation.hpp>
 #include <lagroid/solvers/constrained_momentum.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -29,6 +28,17 @@ template <class Sys> struct FieldOf {
   std::function<void(const TrajectoryPoint<Sys>&, double*)> evaluate;
 };
 
+/// Makes it the system of an arrow that starts at that time and lasts so long.
+template <DiscreteSystem Sys> void set_arrow(Sys& system, double start, double size) {
+  if constexpr (HasTimeStep<Sys>) system.h = size;
+  set_time(system, start);
+}
+/// The largest |phi| of the arrow; NaN where one is no finite number.
+template <DiscreteSystem Sys> double constraint_residual(const Sys& system, const Step<Sys>& step) {
+  const auto c = constraint_values(system, step.arrow);
+  return c.allFinite() ? c.cwiseAbs().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// A point of a system's trajectory, as it is reported: with its momentum made tangent to the object constraints.
 template <DiscreteSystem Sys> class SystemNode final : public Observables {
  public:
@@ -37,9 +47,8 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
 
   /// With the fields that the presentation names: it must outlive this.
   SystemNode(const Sys& system, const Presentation<Sys>& presentation, std::vector<Quantity<Sys>> quantities)
-      : system_(system), presentation_(&presentation), quantities_(std::move(quantities)) {
-    for (const auto& q : quantities_)
-      watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size ? SizeOf::terms : SizeOf::value});
+      : SystemNode(system, std::vector<FieldOf<Sys>>{}, std::move(quantities)) {
+    presentation_ = &presentation;
     declare(presentation);
   }
   /// With fields of one's own, and without endpoints.
@@ -94,7 +103,7 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
     if constexpr (Sys::constraints == 0) {
       return 0;
     } else {
-      over(worst_.start, worst_.size);
+      set_arrow(arrow_system_, worst_.start, worst_.size);
       const auto d = two_sided(arrow_system_, worst_.step.arrow, worst_.step.multipliers);
       return (d.constraint_target.cwiseAbs() * system_.groupoid.coordinate_scale(worst_.step.arrow)).maxCoeff();
     }
@@ -141,14 +150,9 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
     double size = 0;  ///< s
   };
 
-  void over(double start, double size) const {
-    if constexpr (HasTimeStep<Sys>) arrow_system_.h = size;
-    set_time(arrow_system_, start);
-  }
   double residual_of(const Step<Sys>& step, double start, double size) const {
-    over(start, size);
-    const auto c = constraint_values(arrow_system_, step.arrow);
-    return c.allFinite() ? c.cwiseAbs().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+    set_arrow(arrow_system_, start, size);
+    return constraint_residual(arrow_system_, step);
   }
 
   void add(Field field, Evaluate evaluate) {

@@ -82,7 +82,7 @@ TEST(Methods, AreAcceptedByTheirScenes) {
       const StepReport report = advance(*motion, work);
       EXPECT_TRUE(report.converged() || !method.equal_steps) << name << ' ' << method.name;
       EXPECT_EQ(work.steps, report.converged() ? 1 : 0);
-      EXPECT_FALSE(sight_of(*motion).state.empty());
+      EXPECT_FALSE(motion->state().empty());
     }
   }
 }

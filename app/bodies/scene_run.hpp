@@ -1,16 +1,12 @@
 #pragma once
 /// Scenes of bodies as motions.
 
-#include <lagroid/run/study/method.hpp>
+#include "../reading/motion_scene.hpp"
 
-#include <lagroid/run/drive.hpp>
-#include <lagroid/run/motion.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <functional>
-#include <memory>
 #include <string>
-#include <vector>
 
 namespace lagroid::app {
 
@@ -26,10 +22,7 @@ struct BodiesToCheck {
 };
 
 /// A scene of [[body]], [[joint]] and [[effect]] that has been read.
-struct BodiesScene {
-  std::unique_ptr<Motion> motion;
-  Pace pace;
-  std::vector<Method> methods;  ///< by which it could be marched
+struct BodiesScene : MotionScene {
   BodiesToCheck to_check;
 };
 BodiesScene read_bodies(const Section& scene, const RunContext& context);

@@ -3,8 +3,6 @@
 #include "../bodies/scene_bodies.hpp"
 #include "../bodies/scene_run.hpp"
 
-#include <utility>
-
 namespace lagroid::app {
 
 namespace {
@@ -12,15 +10,8 @@ namespace {
 class Bodies final : public SceneFamily {
  public:
   bool recognises(const Section& scene) const override { return scene.has("body"); }
-  RunResult run(const Section& scene, const RunContext& context) const override {
-    const BodiesScene read = read_bodies(scene, context);
-    RunResult result;
-    drive(*read.motion, read.pace, context, result);
-    return result;
-  }
-  MotionScene begin(const Section& scene) const override {
-    BodiesScene read = read_bodies(scene, {});
-    return {std::move(read.motion), std::move(read.methods)};
+  MotionScene read(const Section& scene, const RunContext& context) const override {
+    return read_bodies(scene, context);
   }
   std::vector<Use> uses(const Section& scene) const override {
     std::vector<Use> uses{{&reference("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};

@@ -7,8 +7,14 @@
 
 namespace lagroid::app {
 
-RunResult SceneFamily::run(const Section& scene, const RunContext&) const { refuse(scene); }
-MotionScene SceneFamily::begin(const Section& scene) const { refuse(scene); }
+MotionScene SceneFamily::read(const Section& scene, const RunContext&) const { refuse(scene); }
+
+RunResult SceneFamily::run(const Section& scene, const RunContext& context) const {
+  const MotionScene read_scene = read(scene, context);
+  RunResult result;
+  drive(*read_scene.motion, read_scene.pace, context, result);
+  return result;
+}
 
 void SceneFamily::refuse(const Section& scene) const {
   scene.fail(

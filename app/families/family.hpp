@@ -1,27 +1,17 @@
 #pragma once
 /// The kinds of scenes: which one a scene is, and what can be asked of any.
 
-#include <lagroid/run/study/method.hpp>
+#include "../reading/motion_scene.hpp"
 #include "../reading/parameter.hpp"
 #include "../reading/scene_reader.hpp"
 #include "references.hpp"
 
-#include <lagroid/run/drive.hpp>
-#include <lagroid/run/motion.hpp>
-
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace lagroid::app {
-
-/// The motion of an initial-value scene alone, and the methods by which it could be marched.
-struct MotionScene {
-  std::unique_ptr<Motion> motion;
-  std::vector<Method> methods;
-};
 
 /// What `lagroid list` says of a system that scenes can name.
 struct ListedSystem {
@@ -43,10 +33,10 @@ class SceneFamily {
   /// The command that is made for its scenes; `lagroid run` hands them over to it.
   virtual std::string_view command() const { return "run"; }
 
+  /// Reads an initial value, to be run with this context. Throws SceneError for a scene that is none.
+  virtual MotionScene read(const Section& scene, const RunContext& context) const;
   /// Runs the scene by the method and the step that it names. Throws SceneError for what is no motion and no path.
   virtual RunResult run(const Section& scene, const RunContext& context) const;
-  /// The motion of an initial value. Throws SceneError for a scene that is none.
-  virtual MotionScene begin(const Section& scene) const;
   /// What its system and method rest on; nothing where that is by a classical method. No more is read than says so.
   /// Throws SceneError where there is no such system or method.
   virtual std::vector<Use> uses(const Section& scene) const = 0;

@@ -3,8 +3,6 @@
 #include "../spheres/sphere_run.hpp"
 #include "../spheres/sphere_system.hpp"
 
-#include <utility>
-
 namespace lagroid::app {
 
 namespace {
@@ -12,15 +10,8 @@ namespace {
 class Spheres final : public SceneFamily {
  public:
   bool recognises(const Section& scene) const override { return sphere_system_of(scene) != nullptr; }
-  RunResult run(const Section& scene, const RunContext& context) const override {
-    const SphereScene read = read_spheres(*sphere_system_of(scene), scene, context);
-    RunResult result;
-    drive(*read.motion, read.pace, context, result);
-    return result;
-  }
-  MotionScene begin(const Section& scene) const override {
-    SphereScene read = read_spheres(*sphere_system_of(scene), scene, {});
-    return {std::move(read.motion), std::move(read.methods)};
+  MotionScene read(const Section& scene, const RunContext& context) const override {
+    return read_spheres(*sphere_system_of(scene), scene, context);
   }
   std::vector<Use> uses(const Section& scene) const override {
     constexpr std::string_view rattle = "rattle";  // of pendulum chains, where no other is named

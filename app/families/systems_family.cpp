@@ -1,4 +1,6 @@
 #include "family.hpp"
+
+#include "../reading/simulation.hpp"
 #include "registry.hpp"
 
 namespace lagroid::app {
@@ -8,15 +10,16 @@ namespace {
 class Systems final : public SceneFamily {
  public:
   bool recognises(const Section& scene) const override { return scene.has("system"); }
+  /// A boundary value too, and a first step that is found for an accuracy.
   RunResult run(const Section& scene, const RunContext& context) const override {
     return with_system_of(scene, [&](const auto& entry) { return entry.read(scene, context).run(nullptr); });
   }
-  MotionScene begin(const Section& scene) const override {
+  MotionScene read(const Section& scene, const RunContext& context) const override {
     return with_system_of(scene, [&](const auto& entry) {
-      const auto task = entry.read(scene, {});
+      const auto task = entry.read(scene, context);
       if (!task.begin)
         scene.fail("boundary", "a study compares how initial values are marched: give a scene with [initial]");
-      return MotionScene{task.begin(), task.methods};
+      return MotionScene{task.begin(), read_pace(scene, context), task.methods};
     });
   }
   std::vector<Use> uses(const Section& scene) const override {

@@ -115,9 +115,7 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
   const auto list = [](const auto& v) { return std::vector<double>(v.begin(), v.end()); };
   result.first_multipliers = list(path.front().multipliers);
   result.last_multipliers = list(path.back().multipliers);
-  result.trajectory.conventions = presentation.conventions;
-  result.panels = presentation.panels;
-  result.shapes = presentation.shapes;
+  present(presentation, result);
 }
 
 /// Carries every solution found at the beginning of a continuation to its end. Returns how far the best came: 1 where

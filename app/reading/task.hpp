@@ -1,15 +1,13 @@
 #pragma once
 /// A scene, read and checked, before anything is computed.
 
-#include <lagroid/run/study/method.hpp>
-
 #include <lagroid/core/system.hpp>
 #include <lagroid/run/drive.hpp>
 #include <lagroid/run/motion.hpp>
 #include <lagroid/run/run_result.hpp>
+#include <lagroid/run/study/method.hpp>
 #include <lagroid/run/system_node.hpp>
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <vector>

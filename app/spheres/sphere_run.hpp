@@ -1,14 +1,10 @@
 #pragma once
 /// Scenes on (T*S^2)^k as motions.
 
-#include <lagroid/run/study/method.hpp>
+#include "../reading/motion_scene.hpp"
 #include "sphere_system.hpp"
 
-#include <lagroid/run/drive.hpp>
-#include <lagroid/run/motion.hpp>
-
 #include <memory>
-#include <vector>
 
 namespace lagroid::app {
 
@@ -20,10 +16,7 @@ struct SpheresToCheck {
 };
 
 /// A scene that has been read.
-struct SphereScene {
-  std::unique_ptr<Motion> motion;
-  Pace pace;
-  std::vector<Method> methods;  ///< by which it could be marched
+struct SphereScene : MotionScene {
   SpheresToCheck to_check;
 };
 SphereScene read_spheres(const SphereEntry& entry, const Section& scene, const RunContext& context);

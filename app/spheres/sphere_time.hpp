@@ -1,8 +1,9 @@
 #pragma once
 /// By which method a motion on (T*S^2)^k goes on.
 
-#include <lagroid/run/study/method.hpp>
 #include "sphere_system.hpp"
+
+#include <lagroid/run/study/method.hpp>
 
 #include <vector>
 

@@ -35,7 +35,7 @@ Experiment read_experiment(const Section& scene) {
   const SceneFamily& family = motions_of(scene);
   const TimeGrid grid = read_time(scene);
   const Section plain = without_method(scene);
-  MotionScene begun = family.begin(plain);
+  MotionScene begun = family.read(plain, {});
   Experiment out;
   out.name = begun.motion->name();
   out.step = grid.step;
@@ -43,7 +43,7 @@ Experiment read_experiment(const Section& scene) {
   out.methods = std::move(begun.methods);
   out.motion = [&family, plain](const Method& method, double h, double end) {
     try {
-      return family.begin(with_method(plain, method, h, end)).motion;
+      return family.read(with_method(plain, method, h, end), {}).motion;
     } catch (const SceneError& error) {
       throw MethodRefused(error.problem());
     }

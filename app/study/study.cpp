@@ -1,10 +1,8 @@
 #include "study.hpp"
 
-#include <lagroid/run/interrupt.hpp>
 #include <lagroid/run/kept_file.hpp>
 #include <lagroid/run/nesting.hpp>
 #include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/progress.hpp>
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
 #include <lagroid/run/text.hpp>
@@ -188,7 +186,7 @@ int study(const StudyOptions& options) {
     if (!std::isfinite(options.target)) throw BadOption("--target: give a number between 1e-15 and 1");
     const Section scene = read_scene(options.scene, options.overrides);
     if (scene.has("accuracy")) check_accuracy(scene);
-    Experiment experiment = read_experiment(scene);
+    const Experiment experiment = read_experiment(scene);
     if (options.list) {
       print(listing(experiment, options.json));
       return 0;
@@ -198,9 +196,6 @@ int study(const StudyOptions& options) {
     if (!options.out.empty())
       folder.emplace(folder_for_study(options.out, scene.whole(), options.methods, steps.sizes, options.reference,
                                       options.repetitions));
-    Progress progress("study", 1000, !options.json);
-    const InterruptGuard guard;
-    experiment.interrupted = [&guard] { return guard.interrupted(); };
     if (!options.json)
       print(
           fmt::format("{}: {} methods, within {:g} s (--budget): {}then rounds of smaller steps, in which methods far "
@@ -214,10 +209,7 @@ int study(const StudyOptions& options) {
                          .repetitions = options.repetitions};
     if (!options.reference.empty())
       request.reference = [&](const Experiment& of) { return reference_of(options.reference, of); };
-    findings = lagroid::study(experiment, request, [&](double spent) {
-      progress.update(long(1000 * std::min(spent, 1.0)));
-      return !guard.interrupted();
-    });
+    findings = study_until_interrupted(experiment, request, !options.json);
     findings.scene = options.scene;
     findings.command = command_of(options);
   } catch (const MethodRefused& error) {

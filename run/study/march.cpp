@@ -20,7 +20,7 @@ StepReport march_to(Motion& motion, double end, Work& work) {
 
 Sight sight_of(Motion& motion) {
   const Observables& node = motion.look();
-  Sight sight{motion.state(), {}, motion.defect()};
+  Sight sight{{}, motion.defect()};
   for (std::size_t i = 0; i < node.quantities().size(); ++i) {
     const Watched& quantity = node.quantities()[i];
     if (quantity.on_arrows && node.index() == 0) continue;

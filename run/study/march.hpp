@@ -14,9 +14,8 @@ struct Work {
   long evaluations = 0;  ///< Motion::evaluations
 };
 
-/// What is seen at a node.
+/// What a study sees at a node, beside the state.
 struct Sight {
-  std::vector<NamedVector> state;       ///< configuration and momentum, in coordinates
   std::vector<NamedVector> invariants;  ///< what the system keeps, conserved or bounded
   std::optional<double> constraint;     ///< Motion::defect
 };

@@ -1,6 +1,9 @@
+#include <lagroid/run/interrupt.hpp>
 #include <lagroid/run/machine.hpp>
+#include <lagroid/run/progress.hpp>
 #include <lagroid/run/study/study.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace lagroid {
@@ -28,6 +31,17 @@ Findings study(const Experiment& experiment, const StudyRequest& request,
   findings.left_out = std::move(found.left_out);
   findings.interrupted = experiment.stopped();
   return findings;
+}
+
+Findings study_until_interrupted(Experiment experiment, const StudyRequest& request, bool progress) {
+  constexpr long whole = 1000;
+  Progress bar("study", whole, progress);
+  const InterruptGuard guard;
+  experiment.interrupted = InterruptGuard::interrupted;
+  return study(experiment, request, [&](double spent) {
+    bar.update(long(double(whole) * std::min(spent, 1.0)));
+    return !InterruptGuard::interrupted();
+  });
 }
 
 }  // namespace lagroid

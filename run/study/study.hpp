@@ -28,4 +28,7 @@ struct StudyRequest {
 Findings study(const Experiment& experiment, const StudyRequest& request,
                const std::function<bool(double spent)>& goes_on = nullptr);
 
+/// The same until Ctrl-C or SIGTERM, with a bar on the terminal where `progress` asks for one.
+Findings study_until_interrupted(Experiment experiment, const StudyRequest& request, bool progress);
+
 }  // namespace lagroid
