@@ -12,6 +12,7 @@
 #include "study/run_scene.hpp"
 #include "study/study.hpp"
 #include "sweep/sweep.hpp"
+#include "systems/library_systems.hpp"
 #include "view.hpp"
 
 #include <lagroid/core/version.hpp>
@@ -78,7 +79,7 @@ int run(const RunOptions& options, bool resume) {
         resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
     if (const auto command = family_of(scene).command(); command != "run") return hand_over(command, options);
     if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene.whole()));
-    if (resume && !options.other_build) Checkpoint::require_this_build(*options.out);
+    if (resume) Checkpoint::require_this_build(*options.out, options.other_build);
     result = run_scene(scene, {.record = options.out.has_value(),
                                .progress = !options.json,
                                .folder = options.out.value_or(""),
@@ -127,6 +128,7 @@ int check(SceneOptions options, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  use_systems(library_systems());
   CLI::App app{"lagroid: discrete mechanics on Lie groupoids", "lagroid"};
   app.set_version_flag("--version", LAGROID_VERSION);
   RunOptions options;

@@ -7,11 +7,13 @@
 
 #include <array>
 #include <concepts>
+#include <string_view>
 
 namespace lagroid {
 
 /// The map tau : Lie algebra -> group that parametrises arrows near the unit.
 enum class Retraction { exponential, cayley };
+inline constexpr std::array<std::string_view, 2> retraction_words{"exp", "cayley"};
 
 /// A group of N x N matrices as a groupoid over a single object, with Lie algebra coordinates xi in R^n, n = Dimension.
 ///

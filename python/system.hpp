@@ -9,6 +9,7 @@
 /// Its march is the class Integrator of the package lagroid.
 
 #include <lagroid/core/noether.hpp>
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/python/rows.hpp>
 #include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
@@ -114,6 +115,52 @@ inline bool is_parameter(const py::handle& type, const py::handle& name) {
   if (!py::hasattr(type, name)) return false;
   const py::object found = type.attr(name);
   return PyObject_TypeCheck(found.ptr(), &PyProperty_Type) != 0 && !found.attr("fset").is_none();
+}
+
+/// x, if it is finite and the rule holds of it; else ValueError, in the words that a scene gets.
+inline double held(std::string_view name, std::string_view of, double x, const NumberRule& rule) {
+  if (!std::isfinite(x)) throw py::value_error(fmt::format("{}: must be finite, got {}", name, x));
+  if (!rule.holds(x)) throw py::value_error(fmt::format("{}: {}must be {}, got {}", name, of, rule.words, x));
+  return x;
+}
+
+/// The property of a declared parameter (core/parameter.hpp). A vector is read as an array of its own.
+template <class Sys, class Owner, class Member>
+void bind_parameter(py::class_<Sys>& made, const Parameter<Owner, Member>& p) {
+  const std::string name(p.name);
+  const std::string doc = fmt::format("{}{}{}", p.meaning, p.unit.empty() ? "" : ", ", p.unit);
+  if constexpr (std::is_arithmetic_v<Member>) {
+    made.def_property(
+        name.c_str(), [p](const Sys& self) { return self.*p.member; },
+        [p](Sys& self, double x) { self.*p.member = Member(held(p.name, "", x, p.rule)); }, doc.c_str());
+  } else {
+    made.def_property(
+        name.c_str(),
+        [p](const Sys& self) {
+          py::array_t<double> out((self.*p.member).size(), (self.*p.member).data());
+          out.attr("flags").attr("writeable") = false;
+          return out;
+        },
+        [p](Sys& self, const Array& given) {
+          auto v = vector_of<Member>(given, std::string(p.name));
+          for (const double x : v) held(p.name, fmt::format("{} ", p.meaning), x, p.rule);
+          if (p.direction) {
+            if (v.norm() == 0) throw py::value_error(fmt::format("{}: is no direction: all zero", p.name));
+            v.normalize();
+          }
+          self.*p.member = v;
+        },
+        doc.c_str());
+  }
+}
+template <class Sys, class Owner, class Enum, std::size_t N>
+void bind_parameter(py::class_<Sys>& made, const Choice<Owner, Enum, N>& p) {
+  made.def_property(
+      std::string(p.name).c_str(), [p](const Sys& self) { return std::string(p.words[std::size_t(self.*p.member)]); },
+      [p](Sys& self, const std::string& word) {
+        self.*p.member = Enum(choice(std::string(p.name).c_str(), word, p.words));
+      },
+      std::string(p.meaning).c_str());
 }
 
 /// A system with these parameters, the others as they are by default.
@@ -345,9 +392,9 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
   return out;
 }
 
-/// The class of the system in `module`: parameters as keywords of the constructor (all that the caller adds with
-/// def_readwrite or def_property), which copies and pickles hold; the step `h`, `integrator(...)`. A system of one's
-/// own that is not among those of the library includes lagroid/solvers/march_methods.hpp too.
+/// The class of the system in `module`: parameters as keywords of the constructor (those that it declares, and all that
+/// the caller adds with def_readwrite or def_property), which copies and pickles hold; the step `h`, `integrator(...)`.
+/// A system of one's own that is not among those of the library includes lagroid/solvers/march_methods.hpp too.
 template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, const char* name, const char* doc) {
   py::class_<Sys> made(module, name, doc);
   made.def(py::init([](const py::kwargs& parameters) { return detail::with_parameters<Sys>(parameters); }));
@@ -362,6 +409,7 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
         return std::pair(detail::with_parameters<Sys>(kept[0].cast<py::dict>()), kept[1].cast<py::dict>());
       }));
   if constexpr (HasTimeStep<Sys>) made.def_readwrite("h", &Sys::h, "The time step, or the first one (s).");
+  for_each_parameter<Sys>([&](const auto& p) { detail::bind_parameter(made, p); });
   made.def_property_readonly(
       "groupoid", [](const Sys&) { return Sys::GroupoidType::name(); }, "The groupoid of its arrows.");
   made.def(

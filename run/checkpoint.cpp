@@ -1,3 +1,4 @@
+#include <lagroid/core/version.hpp>
 #include <lagroid/run/checkpoint.hpp>
 #include <lagroid/run/kept_file.hpp>
 #include <lagroid/run/machine.hpp>
@@ -28,6 +29,9 @@ bool is_of_a_checkpoint(const std::string& name) {
   static const std::regex names(R"((scene\.toml|state\.cbor|rows-[0-9]{6,}\.cbor)(\.partial)?)");
   return std::regex_match(name, names);
 }
+
+/// As in "0.3": checkpoints differ between these.
+std::string minor_version() { return fmt::format("{}.{}", LAGROID_VERSION_MAJOR, LAGROID_VERSION_MINOR); }
 
 }  // namespace
 
@@ -70,11 +74,19 @@ std::string Checkpoint::text_of(const fs::path& run) {
       fmt::format("\"{}\" holds no run that can be taken up; lagroid run SCENE --out DIR makes one", run.string()));
 }
 
-void Checkpoint::require_this_build(const fs::path& run) {
+void Checkpoint::require_this_build(const fs::path& run, bool other_build) {
   const Json json = read(run / "checkpoint" / "state.cbor");
   const bool says = json.is_object() && json.contains("program") && json["program"].is_string();
   const std::string made_by = says ? json["program"].get<std::string>() : "an earlier lagroid";
   if (made_by == program()) return;
+  std::smatch found;
+  const bool numbered = std::regex_search(made_by, found, std::regex(R"(lagroid ((\d+\.\d+)\.\d+))"));
+  if (numbered && found[2] != minor_version())
+    throw RunError(
+        fmt::format("{}: its checkpoint was made by lagroid {}, and this one, {}, reads none of those; run the "
+                    "scene again (what is there can still be drawn and viewed)",
+                    run.string(), found[1].str(), LAGROID_VERSION));
+  if (other_build) return;
   throw RunError(
       fmt::format("{}: its checkpoint was made by another build of lagroid ({}; this one is {}); run the scene again, "
                   "or let resume --other-build go on without the promise of the same bits",

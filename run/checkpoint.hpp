@@ -27,8 +27,9 @@ class Checkpoint {
   static std::string scene_of(const std::filesystem::path& run);
   /// What stands there, whoever ran it. Throws RunError where there is nothing.
   static std::string text_of(const std::filesystem::path& run);
-  /// Throws RunError where another build of lagroid made the checkpoint (machine.hpp), or it cannot be read.
-  static void require_this_build(const std::filesystem::path& run);
+  /// Throws RunError where another build of lagroid made the checkpoint (machine.hpp), unless `other_build` takes that
+  /// too, where another minor version did, or it cannot be read.
+  static void require_this_build(const std::filesystem::path& run, bool other_build);
   /// Sets the rows, and returns the state. Throws RunError where there is none, or a damaged one.
   nlohmann::json restore(Trajectory& trajectory);
   /// The other builds that had a part in what was restored, the first one first.

@@ -34,7 +34,7 @@ void run_with_files(RunResult& result, const std::filesystem::path& folder, bool
       throw RunError(
           fmt::format("{}: holds a run of another system, start, step or method; give another folder, or run anew",
                       folder.string()));
-    Checkpoint::require_this_build(folder);
+    Checkpoint::require_this_build(folder, false);
   }
   go({.record = true, .folder = folder, .resume = resume});
   write_outputs_if_possible(result, folder);

@@ -2,8 +2,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, AttitudeControl);
-
 bool AttitudeControl::is_axial() const {
   using Square = Matrix<double, 3, 3>;
   const Square across = Square::Identity() - forbidden * forbidden.transpose();

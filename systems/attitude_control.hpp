@@ -19,6 +19,13 @@ struct AttitudeControl : GroupControl<AttitudeControl, SO3, /*constraints*/ 1> {
   Vector<double, 3> weights{1, 1, 1};    ///< W = diag(weights), > 0
   Vector<double, 3> forbidden{0, 0, 1};  ///< n, a unit vector in the body
 
+  static auto parameters() {
+    return std::tuple(
+        parameter("weights", &AttitudeControl::weights, "1", "three weights of the cost w.W w / 2", positive),
+        direction("forbidden", &AttitudeControl::forbidden, "the forbidden axis in the body"),
+        map_parameter("rotation", "how a rotation becomes an angular velocity"));
+  }
+
   template <class S> S l(const Vector<S, 3>& w) const {
     return (w(0) * w(0) * weights(0) + w(1) * w(1) * weights(1) + w(2) * w(2) * weights(2)) * 0.5;
   }

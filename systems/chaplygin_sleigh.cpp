@@ -5,8 +5,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, ChaplyginSleigh);
-
 Vector<double, 2> ChaplyginSleigh::closed_form(const State<SE2>& start, double t) const {
   const Vector<double, 2> v = velocities(start);
   const double c = std::sqrt(2 * energy(start));

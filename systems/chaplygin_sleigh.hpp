@@ -26,6 +26,13 @@ struct ChaplyginSleigh : GroupControl<ChaplyginSleigh, SE2, /*constraints*/ 1> {
   double inertia = 1;  ///< I, about the centre of mass, kg m^2
   double offset = 1;   ///< a, m
 
+  static auto parameters() {
+    return std::tuple(parameter("mass", &ChaplyginSleigh::mass, "kg", "of the body", positive),
+                      parameter("inertia", &ChaplyginSleigh::inertia, "kg m^2", "about its centre of mass", positive),
+                      parameter("offset", &ChaplyginSleigh::offset, "m", "from the blade ahead to the centre of mass"),
+                      map_parameter());
+  }
+
   template <class S> S l(const Vector<S, 3>& xi) const {
     const S across = xi(2) + xi(0) * offset;
     return (xi(1) * xi(1) * mass + across * across * mass + xi(0) * xi(0) * inertia) * 0.5;

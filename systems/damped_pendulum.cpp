@@ -3,8 +3,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, DampedPendulum);
-
 State<Pair<1>> DampedPendulum::reference(const State<Pair<1>>& start, double t) const {
   using V = Vector<double, 1>;
   return reference_motion(

@@ -11,6 +11,11 @@ namespace lagroid {
 struct DampedPendulum : Pendulum {
   double damping = 0.1;  ///< c, N m s
 
+  static auto parameters() {
+    return std::tuple_cat(Pendulum::parameters(), std::tuple(parameter("damping", &DampedPendulum::damping, "N m s",
+                                                                       "torque over angular velocity", nonnegative)));
+  }
+
   template <class S, class T> Forces<S, 1> forces(const PairArrow<S, 1>& g, const T& /*step*/) const {
     const Vector<S, 1> half = (g.target - g.source) * (-0.5 * damping);
     return {half, half};

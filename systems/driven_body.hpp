@@ -12,6 +12,13 @@ struct DrivenBody : RigidBody {
   double drag = 0.1;                  ///< c, N m s
   Vector<double, 3> torque{0, 0, 0};  ///< T, N m, in the body
 
+  static auto parameters() {
+    return std::tuple_cat(
+        RigidBody::parameters(),
+        std::tuple(parameter("torque", &DrivenBody::torque, "N m", "of a thruster, fixed in the body"),
+                   parameter("drag", &DrivenBody::drag, "N m s", "torque over angular velocity", nonnegative)));
+  }
+
   template <class S, class T> Forces<S, 3> forces(const Matrix<S, 3, 3>& g, const T& step) const {
     const Vector<S, 3> turn = SO3::retract_inverse(rotation, g);
     Vector<S, 3> half = turn * (-0.5 * drag);

@@ -3,8 +3,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, DrivenPendulum);
-
 State<Pair<1>> DrivenPendulum::reference(const State<Pair<1>>& start, double t) const {
   using V = Vector<double, 1>;
   const auto force = [&](const V& q, const V&, double at) {

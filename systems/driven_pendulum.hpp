@@ -1,6 +1,7 @@
 #pragma once
 /// A pendulum that is driven: by a torque, or by its moving support.
 
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -25,6 +26,18 @@ struct DrivenPendulum : System<DrivenPendulum, Pair<1>> {
   double frequency = 1;  ///< nu, rad/s
   double torque = 0;     ///< b, N m
   double amplitude = 0;  ///< a, m
+
+  static auto parameters() {
+    return std::tuple(parameter("mass", &DrivenPendulum::bob_mass, "kg", "of the bob", positive),
+                      parameter("length", &DrivenPendulum::length, "m", "of the rod", positive),
+                      parameter("gravity", &DrivenPendulum::gravity, "m/s^2", "acceleration"),
+                      parameter("frequency", &DrivenPendulum::frequency, "rad/s", "of the drive"),
+                      parameter("torque", &DrivenPendulum::torque, "N m", "amplitude of the torque"),
+                      parameter("amplitude", &DrivenPendulum::amplitude, "m", "of the support's motion up and down"));
+  }
+  std::optional<Refusal> refused() const {
+    return refuse_lost_digits({"length", "mass"}, "the inertia m l^2", bob_mass * length * length);
+  }
 
   double mass() const { return bob_mass * length * length; }
 

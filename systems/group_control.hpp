@@ -1,6 +1,7 @@
 #pragma once
 /// Constrained mechanics and optimal control on matrix groups. [G] 6.1
 
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/groupoids/matrix_group.hpp>
 #include <lagroid/systems/reference.hpp>
@@ -47,6 +48,11 @@ template <class Derived, class G, int Constraints = 0> class GroupControl : publ
 
   double h = 0.01;
   Retraction map = Retraction::exponential;  ///< tau
+
+  static constexpr auto map_parameter(std::string_view name = "map",
+                                      std::string_view meaning = "how a motion becomes a velocity") {
+    return choice(name, &GroupControl::map, retraction_words, meaning);
+  }
 
   /// xi = tau^{-1}(g) / h.
   template <class S, class T> Algebra<S> velocity(const Element<S>& g, const T& step) const {

@@ -5,8 +5,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, HeavyTop);
-
 double HeavyTop::kovalevskaya_integral(const State<GroupoidType>& s) const {
   const Vector<double, 3> velocity = s.momentum.cwiseQuotient(inertia);
   const std::complex<double> w(velocity(0), velocity(1));

@@ -20,6 +20,13 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   Vector<double, 3> weight{0, 0, 1};     ///< N m
   RotationMap rotation = RotationMap::exponential;
 
+  static auto parameters() {
+    return std::tuple(
+        inertia_parameter(&HeavyTop::inertia),
+        required(parameter("weight", &HeavyTop::weight, "N m", "weight times the vector to the centre of mass")),
+        rotation_parameter(&HeavyTop::rotation));
+  }
+
   template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const Vector<S, 3> verticals = g.point + groupoid.target(g);
     return rotational_action(g.element, inertia, step, rotation) -

@@ -16,6 +16,12 @@ namespace lagroid {
 struct Kepler : MechanicalSystem<Kepler, 2> {
   double strength = 1;  ///< k, m^3/s^2
 
+  Kepler() { quadrature = Quadrature::trapezoid; }
+
+  static auto parameters() {
+    return std::tuple(parameter("strength", &Kepler::strength, "m^3/s^2", "of the attraction"), quadrature_parameter());
+  }
+
   static double mass() { return 1; }
   static constexpr bool attractive = true;
   template <class S> S potential(const Vector<S, 2>& q) const {

@@ -2,6 +2,7 @@
 /// Point-mass mechanics on R^n: what pendulum, Kepler and spherical pendulum have in common.
 
 #include <lagroid/core/directional.hpp>
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/rates.hpp>
 #include <lagroid/core/split_system.hpp>
@@ -16,6 +17,7 @@ namespace lagroid {
 /// Where the potential is evaluated on an arrow (q0, q1). Both are symmetric, symplectic and of order 2; the trapezoid
 /// is the Stormer-Verlet method.
 enum class Quadrature { midpoint, trapezoid };
+inline constexpr std::array<std::string_view, 2> quadrature_words{"midpoint", "trapezoid"};
 
 /// L(q0, q1) = m |q1 - q0|^2 / (2 h) - h U, with U the potential by the chosen quadrature. Discretises
 /// L = m |q'|^2 / 2 - U(q).
@@ -71,6 +73,10 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   double potential_energy(const Vector<double, N>& q) const { return self().potential(q); }
 
  protected:
+  static constexpr auto quadrature_parameter() {
+    return choice("quadrature", &MechanicalSystem::quadrature, quadrature_words, "of the potential over a step");
+  }
+
   /// -dU/dq: of the derived class' `gradient(q)`, if it has one, else by automatic differentiation.
   template <class S> Vector<S, N> force(const Vector<S, N>& q) const {
     if constexpr (requires { self().gradient(q); }) {

@@ -15,6 +15,15 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
   double length = 1;    ///< l, m
   double gravity = 1;   ///< g, m/s^2
 
+  static auto parameters() {
+    return std::tuple(parameter("mass", &Pendulum::bob_mass, "kg", "of the bob", positive),
+                      parameter("length", &Pendulum::length, "m", "of the rod", positive),
+                      parameter("gravity", &Pendulum::gravity, "m/s^2", "acceleration"), quadrature_parameter());
+  }
+  std::optional<Refusal> refused() const {
+    return refuse_lost_digits({"length", "mass"}, "the inertia m l^2", bob_mass * length * length);
+  }
+
   /// The inertia m l^2.
   double mass() const { return bob_mass * length * length; }
   template <class S> S potential(const Vector<S, 1>& q) const {

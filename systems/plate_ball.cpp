@@ -8,8 +8,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, PlateBall);
-
 Matrix<double, 3, 3> PlateBall::rotation_of(const Vector<double, 3>& w) const {
   if (rotation != RotationForm::trace) return SO3::retract(retraction(), w);
   const double sine = std::min(w.norm(), 0.99);

@@ -2,6 +2,7 @@
 /// Optimal control of a ball that rolls on a rotating plate. [G] 6.2
 
 #include <lagroid/core/noether.hpp>
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/so3.hpp>
@@ -16,6 +17,7 @@ namespace lagroid {
 /// How the rotation g of one step becomes w = h omega: the paper's trace form w = vee(g) (rotation angle below pi/2),
 /// w = log g, or w = cay^{-1}(g).
 enum class RotationForm { trace, exponential, cayley };
+inline constexpr std::array<std::string_view, 3> rotation_form_words{"trace", "exp", "cayley"};
 
 /// The plate-ball system on the groupoid R^2 x R^2 x SO(3) => R^2.
 ///
@@ -36,6 +38,13 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   double plate_rate = 0;  ///< Omega, rad/s
   double spin = 0;        ///< c, the prescribed rate about the vertical, rad/s
   RotationForm rotation = RotationForm::trace;
+
+  static auto parameters() {
+    return std::tuple(parameter("radius", &PlateBall::radius, "m", "of the ball", positive),
+                      parameter("plate_rate", &PlateBall::plate_rate, "rad/s", "angular velocity of the plate"),
+                      parameter("spin", &PlateBall::spin, "rad/s", "prescribed rate about the vertical"),
+                      choice("rotation", &PlateBall::rotation, rotation_form_words, "form of the constraints"));
+  }
 
   template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const auto& [move, turn] = g;

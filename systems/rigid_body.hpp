@@ -16,6 +16,10 @@ struct RigidBody : System<RigidBody, SO3> {
   Vector<double, 3> inertia{1, 2, 3};  ///< principal moments, kg m^2
   RotationMap rotation = RotationMap::exponential;
 
+  static auto parameters() {
+    return std::tuple(inertia_parameter(&RigidBody::inertia), rotation_parameter(&RigidBody::rotation));
+  }
+
   template <class S, class T> S lagrangian(const Matrix<S, 3, 3>& g, const T& step) const {
     return rotational_action(g, inertia, step, rotation);
   }

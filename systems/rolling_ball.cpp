@@ -5,8 +5,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, RollingBall);
-
 State<RollingBall::GroupoidType> RollingBall::rolling(const Vector<double, 2>& position,
                                                       const Vector<double, 2>& velocity, double spin) const {
   State<GroupoidType> s;

@@ -2,6 +2,7 @@
 /// A ball that rolls on a rotating plate.
 
 #include <lagroid/core/noether.hpp>
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/so3.hpp>
@@ -33,6 +34,17 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
   double radius = 1;            ///< r, m
   double inertia_factor = 0.4;  ///< k: 2/5 for a homogeneous ball, 2/3 for a hollow one
   double plate_rate = 0;        ///< Omega, rad/s
+
+  static auto parameters() {
+    return std::tuple(parameter("mass", &RollingBall::mass, "kg", "of the ball", positive),
+                      parameter("radius", &RollingBall::radius, "m", "of the ball", positive),
+                      parameter("inertia_factor", &RollingBall::inertia_factor, "1",
+                                "moment of inertia over mass times radius squared", positive),
+                      parameter("plate_rate", &RollingBall::plate_rate, "rad/s", "angular velocity of the plate"));
+  }
+  std::optional<Refusal> refused() const {
+    return refuse_lost_digits({"radius", "mass"}, "the inertia k m r^2", inertia());
+  }
 
   template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const auto& [move, turn] = g;

@@ -2,8 +2,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, RollingDisk);
-
 double RollingDisk::energy(const State<GroupoidType>& s) const {
   const auto& mu = s.momentum;
   return 0.5 *

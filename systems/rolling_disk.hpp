@@ -2,6 +2,7 @@
 /// An upright disk that rolls on the plane.
 
 #include <lagroid/core/balance.hpp>
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/se2.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -29,6 +30,14 @@ struct RollingDisk : System<RollingDisk, Product<SE2, SO2>, /*arrow constraints*
   double radius = 1;              ///< R, m
   double rolling_inertia = 0.5;   ///< I, about the disk's axis, kg m^2
   double turning_inertia = 0.25;  ///< J, about the vertical, kg m^2
+
+  static auto parameters() {
+    return std::tuple(
+        parameter("mass", &RollingDisk::mass, "kg", "of the disk", positive),
+        parameter("radius", &RollingDisk::radius, "m", "of the disk", positive),
+        parameter("rolling_inertia", &RollingDisk::rolling_inertia, "kg m^2", "about its axis", positive),
+        parameter("turning_inertia", &RollingDisk::turning_inertia, "kg m^2", "about the vertical", positive));
+  }
 
   template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const auto& [move, roll] = g;

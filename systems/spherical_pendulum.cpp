@@ -2,8 +2,6 @@
 
 namespace lagroid {
 
-LAGROID_STEPS(template, SphericalPendulum);
-
 State<Pair<3>> SphericalPendulum::reference(const State<Pair<3>>& start, double t) const {
   using V = Vector<double, 3>;
   const auto force = [&](const V& q, const V& velocity, double) { return rates({q, velocity * bob_mass}).momentum; };

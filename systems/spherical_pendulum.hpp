@@ -21,6 +21,16 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
 
   SphericalPendulum() { quadrature = Quadrature::trapezoid; }
 
+  static auto parameters() {
+    return std::tuple(parameter("mass", &SphericalPendulum::bob_mass, "kg", "of the bob", positive),
+                      parameter("length", &SphericalPendulum::length, "m", "of the rod", positive),
+                      parameter("gravity", &SphericalPendulum::gravity, "m/s^2", "acceleration"),
+                      quadrature_parameter());
+  }
+  std::optional<Refusal> refused() const {
+    return refuse_lost_digits({"length", "mass"}, "the inertia m l^2", bob_mass * length * length);
+  }
+
   double mass() const { return bob_mass; }
   template <class S> S potential(const Vector<S, 3>& q) const { return q(2) * (bob_mass * gravity); }
   template <class S> Vector<S, 1> object_constraint(const Vector<S, 3>& q) const {

@@ -18,6 +18,10 @@ namespace lagroid {
 struct Unicycle : GroupControl<Unicycle, SE2, /*constraints*/ 2> {
   double speed = 1;  ///< m/s
 
+  static auto parameters() {
+    return std::tuple(parameter("speed", &Unicycle::speed, "m/s", "forward speed", positive), map_parameter());
+  }
+
   template <class S> S l(const Vector<S, 3>& xi) const { return xi(0) * xi(0) * 0.5; }
   template <class S> Vector<S, 2> psi(const Vector<S, 3>& xi) const { return {xi(1) - speed, xi(2)}; }
   Control<3, 2> control(const Vector<double, 3>& mu) const { return {{mu(0), speed, 0}, mu.tail<2>()}; }

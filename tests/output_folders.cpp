@@ -339,17 +339,20 @@ TEST_F(Folders, ListsOfOtherLengthsInACheckpointAreRefused) {
   EXPECT_NE(r.err.find("checkpoint"), std::string::npos) << r.err;
 }
 
-/// The program that is said to have made it is another one.
-void make_of_another_build(const fs::path& file) {
+/// Whoever is said to have made the file, `change` names another.
+template <class Change> void make_of_another(const fs::path& file, const Change& change) {
   std::ifstream in(file, std::ios::binary);
   std::string kept{std::istreambuf_iterator<char>(in), {}};
   in.close();
   auto json = nlohmann::json::from_cbor(kept.substr(sizeof(std::size_t)));
   std::string program = json.at("program");
   EXPECT_NE(program.find("build "), std::string::npos) << program;
-  json["program"] = program + "x";
+  json["program"] = change(program);
   const auto cbor = nlohmann::json::to_cbor(json);
   keep_cbor(file, {cbor.begin(), cbor.end()});
+}
+void make_of_another_build(const fs::path& file) {
+  make_of_another(file, [](const std::string& program) { return program + "x"; });
 }
 
 TEST_F(Folders, ACheckpointNestedBeyondAllMeaningIsRefused) {
@@ -360,6 +363,21 @@ TEST_F(Folders, ACheckpointNestedBeyondAllMeaningIsRefused) {
   const Outcome r = run("resume " + out + " --set time.steps=100");
   EXPECT_EQ(r.code, 2);
   EXPECT_NE(r.err.find("checkpoint"), std::string::npos) << r.err;
+}
+
+TEST_F(Folders, TheRunOfAnotherMinorVersionIsRefusedWhateverIsAskedFor) {
+  const std::string out = path("out");
+  ASSERT_EQ(run("run " + example("kepler") + " --set time.steps=40 --out " + out).code, 0);
+  make_of_another(out + "/checkpoint/state.cbor", [](const std::string& program) {
+    return std::regex_replace(program, std::regex(R"(lagroid [0-9.]+)"), "lagroid 0.2.0");
+  });
+  for (const std::string also : {"", " --other-build"}) {
+    const Outcome r = run("resume " + out + also + " --set time.steps=100");
+    EXPECT_EQ(r.code, 2);
+    EXPECT_NE(r.err.find("was made by lagroid 0.2.0"), std::string::npos) << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  }
+  EXPECT_EQ(run("view " + out).code, 0);
 }
 
 TEST_F(Folders, TheRunOfAnotherBuildIsRefused) {

@@ -2,7 +2,6 @@
 
 #include "command_line.hpp"
 
-#include <families/registry.hpp>
 #include <lagroid/run/study/costs.hpp>
 #include <lagroid/run/study/measure.hpp>
 #include <lagroid/run/study/methods.hpp>

@@ -1,6 +1,6 @@
 #include "scene_bodies.hpp"
 
-#include "../systems/attitude.hpp"
+#include "../reading/parameter.hpp"
 
 #include <lagroid/systems/multibody/joints.hpp>
 
@@ -30,7 +30,8 @@ Vec vector_or(const Section& table, std::string_view key, std::string_view meani
 namespace {
 
 Vec read_moments(const Section& table) {
-  const Vec inertia = read_inertia(table);
+  Vec inertia;
+  reading::read_vector(table, "inertia", "principal moments", positive, true, false, inertia.data(), 3);
   for (int i = 0; i < 3; ++i) {
     const double others = inertia((i + 1) % 3) + inertia((i + 2) % 3);
     if (inertia(i) > others * (1 + 1e-12))

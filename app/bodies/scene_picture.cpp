@@ -1,6 +1,6 @@
 #include "scene_picture.hpp"
 
-#include "../systems/attitude.hpp"
+#include "../reading/attitude.hpp"
 
 #include <fmt/format.h>
 

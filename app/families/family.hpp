@@ -2,8 +2,8 @@
 /// The kinds of scenes: which one a scene is, and what can be asked of any.
 
 #include "../reading/motion_scene.hpp"
-#include "../reading/parameter.hpp"
 #include "../reading/scene_reader.hpp"
+#include "../reading/system_module.hpp"
 #include "references.hpp"
 
 #include <span>
@@ -12,16 +12,6 @@
 #include <vector>
 
 namespace lagroid::app {
-
-/// What `lagroid list` says of a system that scenes can name.
-struct ListedSystem {
-  std::string name;
-  std::string summary;
-  std::string groupoid;
-  std::vector<Parameter> parameters;
-  std::vector<std::string> symmetries;  ///< declared by the system with its default parameters
-  std::vector<std::string> conserved;   ///< quantities promised as conserved
-};
 
 /// A kind of scene. Commands know no other way to a scene than this.
 class SceneFamily {
@@ -62,6 +52,8 @@ const SceneFamily& bodies_family();
 const SceneFamily& spheres_family();
 /// Initial and boundary values of systems whose groupoid is a type.
 const SceneFamily& systems_family();
+/// The one of `system_modules` that such a scene names. Throws SceneError where it names none.
+const SystemModule& module_of_scene(const Section& scene);
 /// Functions to be minimised on manifolds.
 const SceneFamily& optimisation_family();
 /// Many members of a scene.

@@ -1,7 +1,7 @@
 #include "family.hpp"
 
-#include "../reading/simulation.hpp"
-#include "registry.hpp"
+#include "../reading/system_module.hpp"
+#include "../spheres/sphere_system.hpp"
 
 namespace lagroid::app {
 
@@ -12,15 +12,10 @@ class Systems final : public SceneFamily {
   bool recognises(const Section& scene) const override { return scene.has("system"); }
   /// A boundary value too, and a first step that is found for an accuracy.
   RunResult run(const Section& scene, const RunContext& context) const override {
-    return with_system_of(scene, [&](const auto& entry) { return entry.read(scene, context).run(nullptr); });
+    return module_of_scene(scene).run(scene, context);
   }
   MotionScene read(const Section& scene, const RunContext& context) const override {
-    return with_system_of(scene, [&](const auto& entry) {
-      const auto task = entry.read(scene, context);
-      if (!task.begin)
-        scene.fail("boundary", "a study compares how initial values are marched: give a scene with [initial]");
-      return MotionScene{task.begin(), read_pace(scene, context), task.methods};
-    });
+    return module_of_scene(scene).read(scene, context);
   }
   std::vector<Use> uses(const Section& scene) const override {
     const Section time = scene.section_or_empty("time");
@@ -29,7 +24,7 @@ class Systems final : public SceneFamily {
         time.choice_or("method", "variational", {"variational", "splitting", "moser-veselov", "runge-kutta"});
     std::vector<Use> uses{{&reference("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};
     add_uses_of_time(mode, method, uses);
-    if (with_system_of(scene, []<class Sys>(const Entry<Sys>&) { return Sys::principle == Principle::nonholonomic; }))
+    if (module_of_scene(scene).nonholonomic())
       uses.push_back({&reference("iglesias2008"), "nonholonomic constraints on Lie groupoids"});
     const std::string solver =
         scene.section_or_empty("solver").choice_or("method", "newton", {"newton", "shooting", "ceres"});
@@ -39,16 +34,7 @@ class Systems final : public SceneFamily {
   }
   std::vector<ListedSystem> systems() const override {
     std::vector<ListedSystem> all;
-    for_each_system([&]<class Sys>(const Entry<Sys>& entry) {
-      ListedSystem one{
-          std::string(entry.name), std::string(entry.summary), Sys::GroupoidType::name(), entry.parameters, {}, {}};
-      const Sys system;
-      if constexpr (requires { system.symmetries(); })
-        for (const auto& symmetry : system.symmetries()) one.symmetries.push_back(symmetry.name);
-      for (const auto& quantity : system.quantities())
-        if (quantity.promise == Promise::conserved) one.conserved.push_back(quantity.name);
-      all.push_back(std::move(one));
-    });
+    for (const SystemModule* module : system_modules()) all.push_back(module->listed());
     return all;
   }
 };
@@ -58,6 +44,16 @@ class Systems final : public SceneFamily {
 const SceneFamily& systems_family() {
   static const Systems family;
   return family;
+}
+
+const SystemModule& module_of_scene(const Section& scene) {
+  std::vector<std::string> names;
+  for (const SystemModule* module : system_modules()) names.emplace_back(module->name());
+  for (const SphereEntry& entry : sphere_systems()) names.emplace_back(entry.name);
+  const std::string name = scene.choice("system", names);
+  for (const SystemModule* module : system_modules())
+    if (module->name() == name) return *module;
+  scene.fail("system", "is of another kind than those whose groupoid is a type");
 }
 
 }  // namespace lagroid::app

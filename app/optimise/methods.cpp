@@ -102,17 +102,17 @@ MadeMethod read_trust_region(const Section& section) {
   return std::make_unique<TrustRegion>(options);
 }
 
-const Parameter constraint_key{"constraint", "", "multipliers", "multipliers, projection or penalty"};
-const Parameter penalty_key{"penalty", "", "1e4", "the weight, with constraint = \"penalty\""};
-const Parameter rescale_key{"rescale", "", "false", "shorten a step that leads off the manifold"};
-const Parameter restart_key{"restart", "", "false", "forget the momentum after a step that went uphill"};
-const Parameter ahead_key{"look_ahead", "", "false", "the gradient where the momentum alone would lead"};
-const Parameter retraction_key{"retraction", "", "qr", "qr, polar, exponential, orthographic or cayley"};
-const Parameter cap_key{"cap", "1/L", "1", "upper bound of the gradient's share s, L the Lipschitz constant"};
-const Parameter capped_key{"capped", "", "true", "false: as in the paper's uncapped runs, which lose convergence"};
+const ListedParameter constraint_key{"constraint", "", "multipliers", "multipliers, projection or penalty"};
+const ListedParameter penalty_key{"penalty", "", "1e4", "the weight, with constraint = \"penalty\""};
+const ListedParameter rescale_key{"rescale", "", "false", "shorten a step that leads off the manifold"};
+const ListedParameter restart_key{"restart", "", "false", "forget the momentum after a step that went uphill"};
+const ListedParameter ahead_key{"look_ahead", "", "false", "the gradient where the momentum alone would lead"};
+const ListedParameter retraction_key{"retraction", "", "qr", "qr, polar, exponential, orthographic or cayley"};
+const ListedParameter cap_key{"cap", "1/L", "1", "upper bound of the gradient's share s, L the Lipschitz constant"};
+const ListedParameter capped_key{"capped", "", "true", "false: as in the paper's uncapped runs, which lose convergence"};
 
-std::vector<Parameter> hamiltonian_keys(bool adaptive) {
-  std::vector<Parameter> out{{"p", "", "6", "rate O(t^-p)"}};
+std::vector<ListedParameter> hamiltonian_keys(bool adaptive) {
+  std::vector<ListedParameter> out{{"p", "", "6", "rate O(t^-p)"}};
   if (adaptive) out.push_back({"po", "", "2", "p-ring, of the adaptive time"});
   out.insert(out.end(), {{"C", "", "1", "the factor of f in the Hamiltonian"},
                          {"h", "", "1e-3", "the step"},
@@ -139,7 +139,7 @@ const OptimiserEntry& named(const Section& method) {
 
 std::optional<double> read_penalty(const Section& method) {
   const auto& keys = named(method).keys;
-  if (std::none_of(keys.begin(), keys.end(), [](const Parameter& key) { return key.name == penalty_key.name; }))
+  if (std::none_of(keys.begin(), keys.end(), [](const ListedParameter& key) { return key.name == penalty_key.name; }))
     return std::nullopt;
   const double weight = method.number_or("penalty", 1e4, positive);
   const bool penalises =

@@ -17,7 +17,7 @@ namespace lagroid::app {
 struct OptimiserEntry {
   std::string_view name;
   std::string_view summary;
-  std::vector<Parameter> keys;
+  std::vector<ListedParameter> keys;
   std::unique_ptr<optimisation::Method> (*read)(const Section& section);
 };
 

@@ -78,7 +78,7 @@ Instance read_procrustes(const Section& scene, const fs::path& folder) {
   return made(scene, "data", "B", [&] { return optimisation::procrustes_instance(a, b); });
 }
 
-const Parameter data_a{"data.A", "", "", "a symmetric matrix: a file, or {random = \"symmetric\", rows, seed}"};
+const ListedParameter data_a{"data.A", "", "", "a symmetric matrix: a file, or {random = \"symmetric\", rows, seed}"};
 
 }  // namespace
 

@@ -16,7 +16,7 @@ namespace lagroid::app {
 struct ProblemEntry {
   std::string_view name;
   std::string_view summary;
-  std::vector<Parameter> keys;
+  std::vector<ListedParameter> keys;
   /// Reads [data] and [parameters] of `scene`; files are seen from `folder`.
   optimisation::Instance (*read)(const Section& scene, const std::filesystem::path& folder);
 };

@@ -1,15 +1,104 @@
 #pragma once
-/// A key of a scene, as listings show it.
+/// [parameters] of a scene, as a system declares them (core/parameter.hpp).
 
+#include "scene_reader.hpp"
+
+#include <lagroid/core/parameter.hpp>
+#include <lagroid/core/types.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 namespace lagroid::app {
 
-struct Parameter {
-  std::string_view name;
-  std::string_view unit;
-  std::string_view fallback;  ///< empty where the key must be given
-  std::string_view meaning;
+/// A key of a scene, as listings show it.
+struct ListedParameter {
+  std::string name;
+  std::string unit;
+  std::string fallback;  ///< empty where the key must be given
+  std::string meaning;
 };
+
+namespace reading {
+
+void read_number(const Section& parameters, std::string_view name, const NumberRule& rule, bool required,
+                 double& value);
+/// Into as many numbers as there are.
+void read_vector(const Section& parameters, std::string_view name, std::string_view meaning, const NumberRule& rule,
+                 bool required, bool direction, double* values, std::size_t size);
+std::size_t read_word(const Section& parameters, std::string_view name, std::span<const std::string_view> words,
+                      std::size_t fallback);
+std::string listed_numbers(const double* values, std::size_t size);
+/// "a, b or c".
+std::string listed_words(std::span<const std::string_view> words);
+
+template <class Sys, class Owner, class Member>
+void read(const Section& parameters, const Parameter<Owner, Member>& p, Sys& system) {
+  if constexpr (std::is_arithmetic_v<Member>) {
+    double value = double(system.*p.member);
+    read_number(parameters, p.name, p.rule, p.required, value);
+    system.*p.member = Member(value);
+  } else {
+    auto& vector = system.*p.member;
+    read_vector(parameters, p.name, p.meaning, p.rule, p.required, p.direction, vector.data(),
+                std::size_t(vector.size()));
+  }
+}
+template <class Sys, class Owner, class Enum, std::size_t N>
+void read(const Section& parameters, const Choice<Owner, Enum, N>& p, Sys& system) {
+  system.*p.member = Enum(read_word(parameters, p.name, p.words, std::size_t(system.*p.member)));
+}
+
+template <class Sys, class Owner, class Member>
+ListedParameter listed(const Parameter<Owner, Member>& p, const Sys& system) {
+  ListedParameter out{std::string(p.name), std::string(p.unit), "", std::string(p.meaning)};
+  if (p.required) return out;
+  if constexpr (std::is_arithmetic_v<Member>) {
+    const auto value = double(system.*p.member);
+    out.fallback = listed_numbers(&value, 1);
+  } else {
+    out.fallback = listed_numbers((system.*p.member).data(), std::size_t((system.*p.member).size()));
+  }
+  return out;
+}
+template <class Sys, class Owner, class Enum, std::size_t N>
+ListedParameter listed(const Choice<Owner, Enum, N>& p, const Sys& system) {
+  return {std::string(p.name), "", std::string(p.words[std::size_t(system.*p.member)]),
+          fmt::format("{}: {}", p.meaning, listed_words(p.words))};
+}
+
+/// Blames the first of its parameters that stands there.
+[[noreturn]] void blame(const Section& parameters, const Refusal& refusal);
+
+}  // namespace reading
+
+/// The system with the parameters of a scene.
+template <class Sys> Sys read_parameters(const Section& scene) {
+  std::string needed;
+  for_each_parameter<Sys>([&](const auto& p) {
+    if constexpr (requires { p.required; })
+      if (p.required) needed += fmt::format("{}{}", needed.empty() ? "" : ", ", p.name);
+  });
+  const Section parameters =
+      needed.empty() ? scene.section_or_empty("parameters") : scene.section("parameters", needed);
+  Sys system;
+  for_each_parameter<Sys>([&](const auto& p) { reading::read(parameters, p, system); });
+  if (const auto refusal = refusal_of(system)) reading::blame(parameters, *refusal);
+  return system;
+}
+
+template <class Sys> std::vector<ListedParameter> listed_parameters() {
+  const Sys system;
+  std::vector<ListedParameter> all;
+  for_each_parameter<Sys>([&](const auto& p) { all.push_back(reading::listed(p, system)); });
+  return all;
+}
 
 }  // namespace lagroid::app

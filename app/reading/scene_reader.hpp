@@ -1,6 +1,8 @@
 #pragma once
 /// Reading scenes: TOML with every mistake reported by file, line and key.
 
+#include <lagroid/core/parameter.hpp>
+
 #include <toml++/toml.h>
 
 #include <array>
@@ -28,15 +30,6 @@ class SceneError : public std::runtime_error {
  private:
   std::string problem_;
 };
-
-/// What a number must satisfy, with the words to say so.
-struct NumberRule {
-  std::string_view words;
-  bool (*holds)(double);
-};
-inline constexpr NumberRule any_number{"a finite number", [](double) { return true; }};
-inline constexpr NumberRule positive{"positive", [](double x) { return x > 0; }};
-inline constexpr NumberRule nonnegative{"zero or positive", [](double x) { return x >= 0; }};
 
 /// Numbers that take the place of others in a scene: at a dotted path, one or an array of them.
 struct Change {

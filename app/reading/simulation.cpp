@@ -33,6 +33,14 @@ TimeGrid read_time(const Section& scene) {
   return grid;
 }
 
+double read_start(const Section& scene) {
+  const Section time = scene.section_or_empty("time");
+  const double start = time.number_or("start", 0);
+  if (start + 0.5 * read_time(scene).step == start)
+    time.fail("start", "is so late that a step is lost in its rounding; begin earlier");
+  return start;
+}
+
 void refuse_accuracy(const Section& scene) {
   const Section time = scene.section_or_empty("time");
   if (time.has("accuracy"))

@@ -23,6 +23,8 @@ struct TimeGrid {
   long steps = 0;
 };
 TimeGrid read_time(const Section& scene);
+/// `start` of [time]: when the first arrow of a system that depends on time begins, zero where it is not given.
+double read_start(const Section& scene);
 /// Where the step is not searched for.
 void refuse_accuracy(const Section& scene);
 

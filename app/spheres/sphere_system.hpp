@@ -63,7 +63,7 @@ struct SphereEntry {
   std::string_view name;
   std::string_view summary;
   std::string_view groupoid;
-  std::vector<Parameter> parameters;
+  std::vector<ListedParameter> parameters;
   std::vector<std::string> symmetries;
   std::vector<std::string> conserved;
   /// Reads [parameters] of a scene.

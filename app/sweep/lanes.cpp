@@ -1,7 +1,6 @@
 #include "lanes.hpp"
 
-#include "../reading/simulation.hpp"
-#include "../systems/readers.hpp"
+#include "../reading/system_module.hpp"
 
 #include <lagroid/run/interrupt.hpp>
 #include <lagroid/run/recorder.hpp>
@@ -19,21 +18,22 @@ namespace lagroid::app {
 
 namespace {
 
-template <class Sys> using Reader = Task<Sys> (*)(const Section&, const RunContext&);
-
-/// Visits name and reader of every system that has compiled ensembles.
-template <class Visit> void for_each_ensemble(const Visit& visit) {
-  visit("rigid_body", Reader<RigidBody>(read_rigid_body));
-  visit("pendulum", Reader<Pendulum>(read_pendulum));
-  visit("plate_ball", Reader<PlateBall>(read_plate_ball));
+/// Visits the module where its system has compiled ensembles.
+template <class Visit> void visit_ensemble(const SystemModule& module, const Visit& visit) {
+  const auto ask = [&](const auto* of) {
+    if (of) visit(*of);
+  };
+  ask(module_of<RigidBody>(module));
+  ask(module_of<Pendulum>(module));
+  ask(module_of<PlateBall>(module));
 }
 
 template <class Sys> class LaneRunner final : public MemberRunner {
  public:
   using G = typename Sys::GroupoidType;
 
-  LaneRunner(Reader<Sys> read, const Section& scene, const Design& design, const Keep& keep)
-      : read_(read), scene_(recording(scene, keep)), design_(design), keep_(keep) {}
+  LaneRunner(const ModuleOf<Sys>& module, const Section& scene, const Design& design, const Keep& keep)
+      : module_(module), scene_(recording(scene, keep)), design_(design), keep_(keep) {}
 
   std::string_view name() const override { return "lanes"; }
 
@@ -43,7 +43,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     for (long at = 0; at < count; ++at) {
       if (InterruptGuard::interrupted()) return std::nullopt;
       try {
-        members.emplace_back(at, read_(scene_.with(design_.member(first + at)), {.record = true}));
+        members.emplace_back(at, module_.task(scene_.with(design_.member(first + at)), {.record = true}));
       } catch (const SceneError& error) {
         part.end(at, "invalid_scene", error.problem());
       } catch (const std::exception& error) {
@@ -104,7 +104,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     Recorder recorder;
   };
 
-  Reader<Sys> read_;
+  const ModuleOf<Sys>& module_;
   Section scene_;
   const Design& design_;
   const Keep& keep_;
@@ -125,11 +125,12 @@ std::pair<std::unique_ptr<MemberRunner>, std::string> make_lanes(const Section& 
   std::pair<std::unique_ptr<MemberRunner>, std::string> out{nullptr, "this system has none"};
   if (!scene.has("system")) return out;
   const std::string system = scene.text("system", "its name");
-  for_each_ensemble([&]<class Sys>(std::string_view name, Reader<Sys> read) {
-    if (name != system) return;
+  const auto found = std::ranges::find(system_modules(), system, &SystemModule::name);
+  if (found == system_modules().end()) return out;
+  visit_ensemble(**found, [&]<class Sys>(const ModuleOf<Sys>& module) {
     try {
-      if (read(scene, {}).plain)
-        out = {std::make_unique<LaneRunner<Sys>>(read, scene, design, keep), ""};
+      if (module.task(scene, {}).plain)
+        out = {std::make_unique<LaneRunner<Sys>>(module, scene, design, keep), ""};
       else
         out.second = "they take initial values by equal steps of order 2 by Newton's method";
     } catch (const SceneError& error) {

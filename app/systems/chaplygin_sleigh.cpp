@@ -1,18 +1,16 @@
+#include "../reading/scene_arrow.hpp"
 #include "../reading/simulation.hpp"
-#include "group_map.hpp"
-#include "pose.hpp"
-#include "readers.hpp"
+#include "../reading/system_module.hpp"
+
+#include <lagroid/systems/chaplygin_sleigh.hpp>
 
 namespace lagroid::app {
 
-Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunContext& context) {
+namespace {
+
+Task<ChaplyginSleigh> read(const Section& scene, const RunContext& context) {
   using Point = TrajectoryPoint<ChaplyginSleigh>;
-  const Section parameters = scene.section_or_empty("parameters");
-  ChaplyginSleigh system;
-  system.mass = parameters.number_or("mass", 1, positive);
-  system.inertia = parameters.number_or("inertia", 1, positive);
-  system.offset = parameters.number_or("offset", 1);
-  system.map = read_group_map(parameters, "map");
+  auto system = read_parameters<ChaplyginSleigh>(scene);
   system.h = read_time(scene).step;
 
   Presentation<ChaplyginSleigh> p;
@@ -22,7 +20,7 @@ Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunConte
   p.momentum = {"M", "p1", "p2"};
   p.momentum_unit = "kg m^2/s for M; kg m/s for p";
   p.multipliers = {"lambda"};
-  p.position_of = [](const Point& point) { return coordinates_of_pose(point.configuration); };
+  p.position_of = [](const Point& point) { return SceneArrow<SE2>::coordinates(point.configuration, {}); };
   p.extras = {{{"velocities", {"w", "v1"}, "rad/s for w, m/s for v1", "turning, and the blade's ahead", false, {}},
                [system](const Point& point, double* out) {
                  Eigen::Map<Vector<double, 2>> velocities(out);
@@ -42,9 +40,16 @@ Task<ChaplyginSleigh> read_chaplygin_sleigh(const Section& scene, const RunConte
 
   refuse_boundary<ChaplyginSleigh>(scene);
   const Section initial = scene.section("initial", "position and velocity");
-  const Matrix<double, 3, 3> pose = read_pose(initial);
+  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, "position");
   const auto velocity = initial.numbers("velocity", 2, "turning (rad/s), ahead (m/s)");
   return simulation(scene, context, system, p, system.sliding(velocity[0], velocity[1]), pose);
+}
+
+}  // namespace
+
+const SystemModule& chaplygin_sleigh_module() {
+  static const ModuleOf<ChaplyginSleigh> module("chaplygin_sleigh", "body sliding on a blade (nonholonomic)", read);
+  return module;
 }
 
 }  // namespace lagroid::app

@@ -1,20 +1,17 @@
+#include "../reading/system_module.hpp"
 #include "mechanical.hpp"
-#include "readers.hpp"
+
+#include <lagroid/systems/kepler.hpp>
 
 namespace lagroid::app {
 
-Task<Kepler> read_kepler(const Section& scene, const RunContext& context) {
+namespace {
+
+Task<Kepler> read(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<Kepler, 2>("kepler", {"x", "y"}, "m", {"px", "py"}, "m/s");
   p.panels = {{"orbit", "x", "y", "x", {"y"}, true},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"momentum error", "t", "|L - L_0|", "t", {"drift angular momentum"}}};
-  const auto read_system = [](const Section& s) {
-    const Section parameters = s.section_or_empty("parameters");
-    Kepler system;
-    system.strength = parameters.number_or("strength", 1);
-    system.quadrature = read_quadrature(parameters, "trapezoid");
-    return system;
-  };
   const auto off_centre = [](const Kepler&, const Section& section, const Vector<double, 2>& q) {
     if (q.norm() == 0) section.fail("position", "lies on the centre of attraction; move it away from 0, 0");
     return q;
@@ -25,7 +22,14 @@ Task<Kepler> read_kepler(const Section& scene, const RunContext& context) {
     planet.trail = true;
     return std::vector<Shape>{{"sphere", {0.1}}, planet};
   };
-  return read_mechanical<Kepler, 2>(scene, context, p, "x, y", "px, py", read_system, off_centre, any_state, shapes);
+  return read_mechanical<Kepler, 2>(scene, context, p, "x, y", "px, py", off_centre, any_state, shapes);
+}
+
+}  // namespace
+
+const SystemModule& kepler_module() {
+  static const ModuleOf<Kepler> module("kepler", "planar Kepler problem", read);
+  return module;
 }
 
 }  // namespace lagroid::app

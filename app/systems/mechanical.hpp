@@ -2,26 +2,10 @@
 /// What the scenes of point masses on R^n have in common.
 
 #include "../reading/boundary_value.hpp"
-#include "readers.hpp"
 
 #include <lagroid/systems/mechanical.hpp>
 
 namespace lagroid::app {
-
-/// [parameters] quadrature, shared by all systems with a potential on R^n.
-inline Quadrature read_quadrature(const Section& parameters, const std::string& fallback) {
-  return parameters.choice_or("quadrature", fallback, {"midpoint", "trapezoid"}) == "midpoint" ? Quadrature::midpoint
-                                                                                               : Quadrature::trapezoid;
-}
-
-/// [parameters] of every pendulum: mass, length, gravity.
-template <class Sys> void read_rod_and_bob(const Section& parameters, Sys& system) {
-  system.bob_mass = parameters.number_or("mass", 1, positive);
-  system.length = parameters.number_or("length", 1, positive);
-  system.gravity = parameters.number_or("gravity", 1);
-  require_digits(parameters, parameters.has("length") ? "length" : "mass", "the inertia m l^2",
-                 system.bob_mass * system.length * system.length);
-}
 
 /// [initial] position and momentum as vectors of R^n.
 template <int N>
@@ -69,17 +53,17 @@ BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::s
           PairArrow<double, N>{from, from}};
 }
 
-/// Reads [initial] or [boundary]. `system(scene)` reads the parameters; `check(system, section, q)` refuses a position
-/// or returns it; `shapes(system)` draws it.
-template <class Sys, int N, class ReadSystem, class Check, class CheckState, class Shapes>
+/// Reads [initial] or [boundary]. `check(system, section, q)` refuses a position or returns it; `shapes(system)` draws
+/// it.
+template <class Sys, int N, class Check, class CheckState, class Shapes>
 Task<Sys> read_mechanical(const Section& scene, const RunContext& context, Presentation<Sys> p,
-                          std::string_view position, std::string_view momentum, const ReadSystem& read_system,
-                          const Check& check, const CheckState& check_state, const Shapes& shapes) {
-  Sys system = read_system(scene);
+                          std::string_view position, std::string_view momentum, const Check& check,
+                          const CheckState& check_state, const Shapes& shapes) {
+  Sys system = read_parameters<Sys>(scene);
   p.shapes = shapes(system);
   if (is_boundary_value(scene, "position and momentum"))
     return boundary_value<Sys>(scene, context, p, [=](const Section& s) {
-      return read_vector_boundary<Sys, N>(s, read_system(s), position, check);
+      return read_vector_boundary<Sys, N>(s, read_parameters<Sys>(s), position, check);
     });
   const Section section = scene.section("initial", "position and momentum");
   auto initial = read_vector_state<N>(section, position, momentum);

@@ -1,23 +1,28 @@
-#include "mechanical.hpp"
-#include "readers.hpp"
+#include "../reading/any_system.hpp"
+
+#include <lagroid/systems/pendulum.hpp>
 
 namespace lagroid::app {
 
-Task<Pendulum> read_pendulum(const Section& scene, const RunContext& context) {
-  auto p = vector_presentation<Pendulum, 1>("pendulum", {"q"}, "rad", {"p"}, "kg m^2/s");
+namespace {
+
+void dress(Presentation<Pendulum>& p, const Pendulum& system) {
+  p.position = {"q"};
+  p.position_unit = "rad";
+  p.momentum = {"p"};
+  p.momentum_unit = "kg m^2/s";
+  p.conventions = {{"state", "object q and momentum p at the nodes"}};
   p.panels = {{"angle", "t", "q", "t", {"q"}},
               {"phase plane", "q", "p", "q", {"p"}},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}}};
-  const auto read_system = [](const Section& s) {
-    const Section parameters = s.section_or_empty("parameters");
-    Pendulum system;
-    read_rod_and_bob(parameters, system);
-    system.quadrature = read_quadrature(parameters, "midpoint");
-    return system;
-  };
-  return read_mechanical<Pendulum, 1>(scene, context, p, "the angle from the downward vertical", "m l^2 dq/dt",
-                                      read_system, any_position, any_state,
-                                      [](const Pendulum& system) { return hanging(system.length, "q"); });
+  p.shapes = hanging(system.length, "q");
+}
+
+}  // namespace
+
+const SystemModule& pendulum_module() {
+  static const auto module = any_module<Pendulum>("pendulum", "planar pendulum", dress);
+  return module;
 }
 
 }  // namespace lagroid::app

@@ -1,6 +1,8 @@
+#include "../reading/attitude.hpp"
 #include "../reading/boundary_value.hpp"
-#include "attitude.hpp"
-#include "readers.hpp"
+#include "../reading/system_module.hpp"
+
+#include <lagroid/systems/plate_ball.hpp>
 
 #include <lagroid/systems/plate_ball_boundary.hpp>
 
@@ -62,7 +64,7 @@ Presentation<PlateBall> presentation(const PlateBall& system) {
 ArrowOf<G> end_point(const Section& end) {
   const auto q = end.numbers("position", 2, "x, y");
   const Vector<double, 2> at(q[0], q[1]);
-  return {PairArrow<double, 2>{at, at}, read_rotation(end)};
+  return {PairArrow<double, 2>{at, at}, SceneArrow<SO3>::read(end, "attitude")};
 }
 
 Task<PlateBall> initial_value(const Section& scene, const RunContext& context, const PlateBall& system) {
@@ -77,15 +79,7 @@ Task<PlateBall> initial_value(const Section& scene, const RunContext& context, c
 
 /// [parameters] and [time].
 PlateBall read_system(const Section& scene) {
-  const Section parameters = scene.section_or_empty("parameters");
-  PlateBall system;
-  system.radius = parameters.number_or("radius", 1, positive);
-  system.plate_rate = parameters.number_or("plate_rate", 0);
-  system.spin = parameters.number_or("spin", 0);
-  const std::string form = parameters.choice_or("rotation", "trace", {"trace", "exp", "cayley"});
-  system.rotation = form == "trace" ? RotationForm::trace
-                    : form == "exp" ? RotationForm::exponential
-                                    : RotationForm::cayley;
+  auto system = read_parameters<PlateBall>(scene);
   system.h = read_time(scene).step;
   if (const auto why = system.infeasible()) refuse_time(scene, *why);
   return system;
@@ -113,13 +107,18 @@ MultistartResult<PlateBall> search(const BoundarySolver<PlateBall>& solver, cons
   return solve_plate_ball(solver, stage.problem.system, stage.problem.boundary, options);
 }
 
-}  // namespace
-
-Task<PlateBall> read_plate_ball(const Section& scene, const RunContext& context) {
+Task<PlateBall> read(const Section& scene, const RunContext& context) {
   const PlateBall system = read_system(scene);
   if (is_boundary_value(scene, "position, attitude, momentum"))
     return boundary_value<PlateBall>(scene, context, presentation(system), read_boundary, search);
   return initial_value(scene, context, system);
+}
+
+}  // namespace
+
+const SystemModule& plate_ball_module() {
+  static const ModuleOf<PlateBall> module("plate_ball", "optimal control of a ball rolling on a rotating plate", read);
+  return module;
 }
 
 }  // namespace lagroid::app

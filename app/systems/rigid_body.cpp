@@ -1,44 +1,30 @@
-#include "readers.hpp"
+#include "../reading/any_system.hpp"
 #include "rotating.hpp"
 
 #include <lagroid/systems/moser_veselov.hpp>
+#include <lagroid/systems/rigid_body.hpp>
 
 namespace lagroid::app {
 
 namespace {
 
-RigidBody read_system(const Section& scene) {
-  const Section parameters = scene.section("parameters", "inertia, the three principal moments");
-  RigidBody system;
-  system.inertia = read_inertia(parameters);
-  system.rotation = read_rotation_map(parameters);
-  system.h = read_time(scene).step;
-  return system;
-}
-
-BoundaryScene<RigidBody> read_boundary(const Section& scene) { return read_turn(scene, read_system(scene)); }
-
-template <class Sys> Presentation<Sys> presentation(const Sys& system) {
-  using Point = TrajectoryPoint<Sys>;
-  Presentation<Sys> p;
-  p.name = "rigid_body";
-  p.has_attitude = true;
+template <class Sys> void dress(Presentation<Sys>& p, const Sys& system) {
   p.momentum = {"M1", "M2", "M3"};
   p.momentum_unit = "kg m^2/s";
-  p.position_of = [](const Point&) { return std::vector<double>{}; };
-  p.attitude_of = [](const Point& point) { return quaternion_of(point.configuration); };
   p.conventions = {{"attitude", "A_k = A_{k-1} g_k carries body to space"}, {"momentum", "body angular momentum M"}};
   p.shapes = {box_of({system.inertia(0), system.inertia(1), system.inertia(2)})};
   p.extras = {angular_velocity_of<Sys>(system.inertia)};
   p.panels = turning_panels();
   p.panels.push_back({"energy error", "t", "|H - H_0|", "t", {"drift energy"}});
   p.panels.push_back({"spatial momentum error", "t", "|A M - (A M)_0|", "t", {"drift spatial momentum A M"}});
-  return p;
 }
 
+constexpr const char* name = "rigid_body";
+
 /// [time] method = "moser-veselov": the same motion by the preprocessed discrete Moser-Veselov algorithm.
-Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, const RigidBody& body,
-                              const State<SO3>& state, const Matrix<double, 3, 3>& attitude) {
+Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context) {
+  const auto body = read_system<RigidBody>(scene);
+  const auto initial = read_initial(body, scene, {"M1", "M2", "M3"});
   const Section time = scene.section("time", "step and steps");
   time.choice_or("method", "", {"moser-veselov"});
   time.choice_or("mode", "fixed", {"fixed"});
@@ -49,19 +35,20 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
   scene.finish();
   MoserVeselov system;
   try {
-    system = MoserVeselov::preprocessed(body.inertia, state.momentum, body.h, order);
+    system = MoserVeselov::preprocessed(body.inertia, initial.state.momentum, body.h, order);
   } catch (const std::domain_error& error) {
     time.fail(time.has("step") ? "step" : "duration", error.what());
   }
+  const auto presentation = dressed<MoserVeselov>(system, name, dress);
   return {body,
           [=](const Observer<RigidBody>& observer) {
             const Observer<MoserVeselov> as_body = [&](const TrajectoryPoint<MoserVeselov>& p) {
               observer({p.index, p.time, p.step_size, p.state, p.configuration, {p.step.arrow, {}}});
             };
-            return simulate(system, presentation(system), state, attitude, {}, pace, context,
+            return simulate(system, presentation, initial.state, initial.configuration, {}, pace, context,
                             observer ? as_body : nullptr);
           },
-          [=] { return motion_of(system, presentation(system), state, attitude, {}); }};
+          [=] { return motion_of(system, presentation, initial.state, initial.configuration, {}); }};
 }
 
 void add_moser_veselov(std::vector<Method>& methods) {
@@ -73,22 +60,21 @@ void add_moser_veselov(std::vector<Method>& methods) {
                        {"time.method=moser-veselov", fmt::format("time.order={}", order)}});
 }
 
+Task<RigidBody> read(const Section& scene, const RunContext& context) {
+  const Section time = scene.section_or_empty("time");
+  if (!scene.has("boundary") && time.has("method") &&
+      time.text("method", "variational, splitting or moser-veselov") == "moser-veselov")
+    return moser_veselov(scene, context);
+  Task<RigidBody> task = read_any_system<RigidBody>(scene, context, name, dress);
+  if (task.begin) add_moser_veselov(task.methods);
+  return task;
+}
+
 }  // namespace
 
-Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context) {
-  const RigidBody system = read_system(scene);
-  const auto p = presentation(system);
-  if (is_boundary_value(scene, "attitude and momentum"))
-    return boundary_value<RigidBody>(scene, context, p, read_boundary);
-  const Section initial = scene.section("initial", "attitude and momentum");
-  const State<SO3> state = read_turning(initial);
-  const Matrix<double, 3, 3> attitude = read_rotation(initial);
-  const Section time = scene.section_or_empty("time");
-  if (time.has("method") && time.text("method", "variational, splitting or moser-veselov") == "moser-veselov")
-    return moser_veselov(scene, context, system, state, attitude);
-  Task<RigidBody> task = simulation(scene, context, system, p, state, attitude);
-  add_moser_veselov(task.methods);
-  return task;
+const SystemModule& rigid_body_module() {
+  static const ModuleOf<RigidBody> module(name, "free rigid body on SO(3)", read);
+  return module;
 }
 
 }  // namespace lagroid::app

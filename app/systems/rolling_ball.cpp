@@ -1,6 +1,8 @@
+#include "../reading/attitude.hpp"
 #include "../reading/simulation.hpp"
-#include "attitude.hpp"
-#include "readers.hpp"
+#include "../reading/system_module.hpp"
+
+#include <lagroid/systems/rolling_ball.hpp>
 
 namespace lagroid::app {
 
@@ -9,13 +11,7 @@ namespace {
 using G = RollingBall::GroupoidType;
 
 RollingBall read_system(const Section& scene) {
-  const Section parameters = scene.section_or_empty("parameters");
-  RollingBall system;
-  system.mass = parameters.number_or("mass", 1, positive);
-  system.radius = parameters.number_or("radius", 1, positive);
-  system.inertia_factor = parameters.number_or("inertia_factor", 0.4, positive);
-  require_digits(parameters, parameters.has("radius") ? "radius" : "mass", "the inertia k m r^2", system.inertia());
-  system.plate_rate = parameters.number_or("plate_rate", 0);
+  auto system = read_parameters<RollingBall>(scene);
   system.h = read_time(scene).step;
   return system;
 }
@@ -55,9 +51,7 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
   return p;
 }
 
-}  // namespace
-
-Task<RollingBall> read_rolling_ball(const Section& scene, const RunContext& context) {
+Task<RollingBall> read(const Section& scene, const RunContext& context) {
   const RollingBall system = read_system(scene);
   refuse_boundary<RollingBall>(scene);
   const Section initial = scene.section("initial", "position, velocity, spin and attitude");
@@ -65,8 +59,15 @@ Task<RollingBall> read_rolling_ball(const Section& scene, const RunContext& cont
   const auto velocity = initial.numbers("velocity", 2, "dx/dt, dy/dt");
   const Vector<double, 2> q(position[0], position[1]);
   const auto state = system.rolling(q, {velocity[0], velocity[1]}, initial.number_or("spin", 0));
-  const ArrowOf<G> configuration{PairArrow<double, 2>{q, q}, read_rotation(initial).transpose()};
+  const ArrowOf<G> configuration{PairArrow<double, 2>{q, q}, SceneArrow<SO3>::read(initial, "attitude").transpose()};
   return simulation(scene, context, system, presentation(system), state, configuration);
+}
+
+}  // namespace
+
+const SystemModule& rolling_ball_module() {
+  static const ModuleOf<RollingBall> module("rolling_ball", "ball rolling on a rotating plate (nonholonomic)", read);
+  return module;
 }
 
 }  // namespace lagroid::app

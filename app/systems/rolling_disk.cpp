@@ -1,19 +1,18 @@
+#include "../reading/scene_arrow.hpp"
 #include "../reading/simulation.hpp"
-#include "pose.hpp"
-#include "readers.hpp"
+#include "../reading/system_module.hpp"
+
+#include <lagroid/systems/rolling_disk.hpp>
 
 #include <numbers>
 
 namespace lagroid::app {
 
-Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& context) {
+namespace {
+
+Task<RollingDisk> read(const Section& scene, const RunContext& context) {
   using Point = TrajectoryPoint<RollingDisk>;
-  const Section parameters = scene.section_or_empty("parameters");
-  RollingDisk system;
-  system.mass = parameters.number_or("mass", 1, positive);
-  system.radius = parameters.number_or("radius", 1, positive);
-  system.rolling_inertia = parameters.number_or("rolling_inertia", 0.5, positive);
-  system.turning_inertia = parameters.number_or("turning_inertia", 0.25, positive);
+  auto system = read_parameters<RollingDisk>(scene);
   system.h = read_time(scene).step;
 
   Presentation<RollingDisk> p;
@@ -25,7 +24,7 @@ Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& cont
   p.multipliers = {"lambda1", "lambda2"};
   p.position_of = [](const Point& point) {
     const auto& [pose, roll] = point.configuration;
-    auto position = coordinates_of_pose(pose);
+    auto position = SceneArrow<SE2>::coordinates(pose, {});
     position.push_back(SO2::log(roll)(0));
     return position;
   };
@@ -52,10 +51,17 @@ Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& cont
 
   refuse_boundary<RollingDisk>(scene);
   const Section initial = scene.section("initial", "position and rates");
-  const Matrix<double, 3, 3> pose = read_pose(initial);
+  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, "position");
   const auto rates = initial.numbers("rates", 2, "turning, rolling (rad/s)");
   const ArrowOf<RollingDisk::GroupoidType> configuration{pose, Matrix<double, 2, 2>::Identity()};
   return simulation(scene, context, system, p, system.rolling(rates[0], rates[1]), configuration);
+}
+
+}  // namespace
+
+const SystemModule& rolling_disk_module() {
+  static const ModuleOf<RollingDisk> module("rolling_disk", "upright disk rolling on the plane (nonholonomic)", read);
+  return module;
 }
 
 }  // namespace lagroid::app

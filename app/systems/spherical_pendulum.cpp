@@ -1,9 +1,13 @@
+#include "../reading/system_module.hpp"
 #include "mechanical.hpp"
-#include "readers.hpp"
+
+#include <lagroid/systems/spherical_pendulum.hpp>
 
 namespace lagroid::app {
 
-Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunContext& context) {
+namespace {
+
+Task<SphericalPendulum> read(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<SphericalPendulum, 3>("spherical_pendulum", {"x", "y", "z"}, "m", {"px", "py", "pz"},
                                                      "kg m/s");
   p.multipliers = {"lambda"};
@@ -11,13 +15,6 @@ Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunC
   p.panels = {{"seen from above", "x", "y", "x", {"y"}, true},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},
               {"vertical momentum and constraint", "t", "error", "t", {"drift vertical angular momentum", "residual"}}};
-  const auto read_system = [](const Section& s) {
-    const Section parameters = s.section_or_empty("parameters");
-    SphericalPendulum system;
-    read_rod_and_bob(parameters, system);
-    system.quadrature = read_quadrature(parameters, "trapezoid");
-    return system;
-  };
   const auto on_sphere = [](const SphericalPendulum& system, const Section& section,
                             const Vector<double, 3>& q) -> Vector<double, 3> {
     const double length = system.length;
@@ -45,8 +42,16 @@ Task<SphericalPendulum> read_spherical_pendulum(const Section& scene, const RunC
     bob.trail = true;
     return std::vector<Shape>{rod, bob};
   };
-  return read_mechanical<SphericalPendulum, 3>(scene, context, p, "x, y, z with z up", "px, py, pz", read_system,
-                                               on_sphere, tangent, shapes);
+  return read_mechanical<SphericalPendulum, 3>(scene, context, p, "x, y, z with z up", "px, py, pz", on_sphere, tangent,
+                                               shapes);
+}
+
+}  // namespace
+
+const SystemModule& spherical_pendulum_module() {
+  static const ModuleOf<SphericalPendulum> module("spherical_pendulum",
+                                                  "spherical pendulum, R^3 with an object constraint", read);
+  return module;
 }
 
 }  // namespace lagroid::app

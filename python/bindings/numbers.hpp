@@ -1,7 +1,7 @@
 #pragma once
 /// Numbers from Python, held to the rules of scenes.
 
-#include <reading/scene_reader.hpp>
+#include <lagroid/core/parameter.hpp>
 
 #include <fmt/format.h>
 
@@ -15,12 +15,12 @@ namespace lagroid::python {
 namespace py = pybind11;
 
 /// x, if the rule holds of it; else ValueError, in the words that a scene gets.
-inline double held(std::string_view name, double x, const app::NumberRule& rule) {
+inline double held(std::string_view name, double x, const NumberRule& rule) {
   if (!rule.holds(x)) throw py::value_error(fmt::format("{}: must be {}, got {}", name, rule.words, x));
   return x;
 }
 /// The same of a finite number.
-inline double finite(std::string_view name, double x, const app::NumberRule& rule = app::any_number) {
+inline double finite(std::string_view name, double x, const NumberRule& rule = any_number) {
   if (!std::isfinite(x)) throw py::value_error(fmt::format("{}: must be finite, got {}", name, x));
   return held(name, x, rule);
 }

@@ -136,12 +136,12 @@ std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::f
   keys.finish();
   const Point from = start ? flat(*start, maker.layout, "start") : random_start(*manifold, seed);
   Stopping stopping;
-  stopping.gradient = finite("gradient", gradient, app::nonnegative);
+  stopping.gradient = finite("gradient", gradient, nonnegative);
   stopping.relative_gradient =
       finite("relative_gradient", relative_gradient, {"from 0 to below 1", [](double x) { return x >= 0 && x < 1; }});
   if (iterations < 1) throw py::value_error(fmt::format("iterations: must be at least 1, got {}", iterations));
   stopping.iterations = iterations;
-  stopping.seconds = held("seconds", seconds, app::positive);
+  stopping.seconds = held("seconds", seconds, positive);
   return std::make_shared<Optimum>(
       Optimum{computing([&] {
                 return optimisation::minimise(*manifold, objective, from, *by, stopping, {history, watch()});

@@ -51,7 +51,7 @@ std::shared_ptr<RunResult> resume(const fs::path& folder, std::optional<long> st
   std::vector<std::string> overrides;
   if (steps) overrides.push_back(fmt::format("time.steps={}", *steps));
   const std::string text = lagroid::Checkpoint::scene_of(folder);
-  if (!other_build) lagroid::Checkpoint::require_this_build(folder);
+  lagroid::Checkpoint::require_this_build(folder, other_build);
   return run(app::parse_scene(text, folder.string() + "/checkpoint/scene.toml", overrides), true, folder, true);
 }
 

@@ -5,11 +5,17 @@
     run["x"], run["drift energy"], run.ledger
 """
 
-from . import plot
+from . import _lagroid, plot
 from ._lagroid import (
+    AttitudeControl,
     BoundaryPath,
+    ChaplyginSleigh,
     Columns,
+    DampedPendulum,
+    DrivenBody,
+    DrivenPendulum,
     Endpoint,
+    Gyrostat,
     HeavyTop,
     Integrator,
     Kepler,
@@ -20,8 +26,11 @@ from ._lagroid import (
     Pendulum,
     PlateBall,
     RigidBody,
+    RollingBall,
+    RollingDisk,
     Run,
     SphericalPendulum,
+    Unicycle,
     __version__,
 )
 from .errors import DataError, Error, Interrupted, OutputError, ProgramError, SceneError, SolveError
@@ -34,13 +43,19 @@ from .studies import Method, check, methods, study
 from .sweeps import Sweep, sweep
 
 __all__ = [
+    "AttitudeControl",
     "BoundaryPath",
+    "ChaplyginSleigh",
     "Columns",
+    "DampedPendulum",
     "DataError",
     "DiscreteLagrangian",
+    "DrivenBody",
+    "DrivenPendulum",
     "Endpoint",
     "Error",
     "Groupoid",
+    "Gyrostat",
     "HeavyTop",
     "Integrator",
     "Interrupted",
@@ -64,6 +79,8 @@ __all__ = [
     "PrototypeIntegrator",
     "PrototypeMarch",
     "RigidBody",
+    "RollingBall",
+    "RollingDisk",
     "Run",
     "SE2",
     "SE3",
@@ -75,6 +92,7 @@ __all__ = [
     "Stiefel",
     "Sweep",
     "Trajectories",
+    "Unicycle",
     "__version__",
     "check",
     "learn",
@@ -91,3 +109,9 @@ __all__ = [
     "systems",
     "trajectories",
 ]
+
+# Systems that are not named above, each a class.
+for _name in _lagroid.system_classes:
+    globals()[_name] = getattr(_lagroid, _name)
+    if _name not in __all__:
+        __all__.append(_name)

@@ -12,6 +12,8 @@ _Path = str | os.PathLike[str]
 
 __version__: str
 
+system_classes: tuple[str, ...]
+
 def listing() -> str: ...
 def read_hdf5(file: _Path, dataset: str) -> _Array: ...
 
@@ -285,6 +287,77 @@ class _System:
     def boundary(
         self, arrow: ArrayLike, steps: int, *, method: str = "newton", starts: int = 40, seed: int = 1
     ) -> list[BoundaryPath]: ...
+
+class Unicycle(_System):
+    speed: float
+    map: str
+
+class AttitudeControl(_System):
+    @property
+    def weights(self) -> _Array: ...
+    @weights.setter
+    def weights(self, value: ArrayLike) -> None: ...
+    @property
+    def forbidden(self) -> _Array: ...
+    @forbidden.setter
+    def forbidden(self, value: ArrayLike) -> None: ...
+    rotation: str
+
+class Gyrostat(_System):
+    @property
+    def inertia(self) -> _Array: ...
+    @inertia.setter
+    def inertia(self, value: ArrayLike) -> None: ...
+    @property
+    def rotors(self) -> _Array: ...
+    @rotors.setter
+    def rotors(self, value: ArrayLike) -> None: ...
+    rotation: str
+
+class RollingBall(_System):
+    mass: float
+    radius: float
+    inertia_factor: float
+    plate_rate: float
+
+class RollingDisk(_System):
+    mass: float
+    radius: float
+    rolling_inertia: float
+    turning_inertia: float
+
+class ChaplyginSleigh(_System):
+    mass: float
+    inertia: float
+    offset: float
+    map: str
+
+class DampedPendulum(_System):
+    mass: float
+    length: float
+    gravity: float
+    damping: float
+    quadrature: str
+
+class DrivenPendulum(_System):
+    mass: float
+    length: float
+    gravity: float
+    frequency: float
+    torque: float
+    amplitude: float
+
+class DrivenBody(_System):
+    @property
+    def inertia(self) -> _Array: ...
+    @inertia.setter
+    def inertia(self, value: ArrayLike) -> None: ...
+    @property
+    def torque(self) -> _Array: ...
+    @torque.setter
+    def torque(self, value: ArrayLike) -> None: ...
+    drag: float
+    rotation: str
 
 class Kepler(_System):
     strength: float

@@ -1,0 +1,89 @@
+#pragma once
+/// The laws of a system along the run of its scene.
+
+#include "../reading/system_module.hpp"
+#include "check_options.hpp"
+
+#include <lagroid/core/testing/property.hpp>
+#include <lagroid/run/certificate.hpp>
+#include <lagroid/solvers/constrained_momentum.hpp>
+#include <lagroid/systems/certificates.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace checking {
+
+/// Points of a run, evenly spread and never more than a few thousand.
+template <class Sys> class Thinned {
+ public:
+  void add(const TrajectoryPoint<Sys>& point) {
+    if (point.index % stride_ != 0) return;
+    points_.push_back(point);
+    if (points_.size() < 4096) return;
+    for (std::size_t i = 0; 2 * i < points_.size(); ++i) points_[i] = points_[2 * i];
+    points_.resize(points_.size() / 2);
+    stride_ *= 2;
+  }
+  const std::vector<TrajectoryPoint<Sys>>& points() const { return points_; }
+
+ private:
+  std::vector<TrajectoryPoint<Sys>> points_;
+  long stride_ = 1;
+};
+
+/// A state of the run, its momentum moved by a tenth of the largest.
+template <DiscreteSystem Sys>
+State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vector<TrajectoryPoint<Sys>>& points,
+                                             double largest) {
+  auto state = points[*rc::gen::inRange<std::size_t>(0, points.size())].state;
+  const double size = 0.1 * largest;
+  for (double& x : state.momentum) x += size * laws::draw_uniform();
+  state.momentum = tangent_momentum(system, state);
+  return state;
+}
+
+}  // namespace checking
+
+template <DiscreteSystem Sys> Certificate certify(const Task<Sys>& task, const CheckOptions& options) {
+  checking::Thinned<Sys> run;
+  const RunResult result = task.run([&](const TrajectoryPoint<Sys>& point) { run.add(point); });
+  auto points = run.points();
+  std::vector<Step<Sys>> steps;
+  double largest = 0;
+  for (const auto& point : points) {
+    if (point.index > 0) steps.push_back(point.step);
+    largest = std::max(largest, point.state.momentum.norm());
+  }
+  // From the last one there need not be another step: the end of a boundary value.
+  if (points.size() > 1) points.pop_back();
+
+  Certificate certificate;
+  certificate.system = result.system;
+  certificate.groupoid = Sys::GroupoidType::name();
+  certificate.states = points.size();
+  certificate.samples = options.samples;
+  certificate.seed = options.seed;
+  if (!result.converged()) {
+    certificate.failure = result.message;
+    certificate.failure_status = result.status;
+    return certificate;
+  }
+  certificate.suites =
+      laws::certificate<Sys>(task.system, [&] { return checking::draw_state(task.system, points, largest); });
+  if constexpr (requires { task.system.symmetries(); }) {
+    for (const auto& symmetry : task.system.symmetries()) {
+      const auto found = examine<Sys>(task.system, symmetry, steps);
+      certificate.symmetries.push_back(
+          {symmetry.name, std::string(to_string(found.kind)), found.defect, found.kind != SymmetryKind::none});
+    }
+  }
+  return certificate;
+}
+
+/// Of the system of the library that the module is of.
+Certificate certify_system(const SystemModule& module, const Section& scene, const CheckOptions& options);
+
+}  // namespace lagroid::app

@@ -1,0 +1,46 @@
+/// The program lagroid-check: `lagroid check`.
+
+#include "../study/accuracy.hpp"
+#include "../systems/library_systems.hpp"
+#include "family_laws.hpp"
+
+#include <lagroid/core/testing/sampling.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace {
+
+using namespace lagroid;
+using namespace lagroid::app;
+
+Certificate certified(const Section& scene, const CheckOptions& options) {
+  const laws::Sampling sampling(options.samples, options.seed);
+  const auto clock = std::chrono::steady_clock::now();
+  Certificate certificate = laws_of(scene).certify(scene, options);
+  certificate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return certificate;
+}
+
+int check(const CheckOptions& options) {
+  Section scene = read_scene(options.scene, options.overrides);
+  if (scene.has("accuracy")) scene = choose_by_accuracy(scene).scene;
+  const Certificate certificate = certified(scene, options);
+  print(options.json ? json_certificate(certificate) + "\n" : text_certificate(certificate));
+  if (!certificate.failure.empty()) complain(fmt::format("{}: {}", options.scene, certificate.failure));
+  return certificate.holds() ? 0 : exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  use_systems(library_systems());
+  CLI::App app{"ask a scene's system, along its run, every law that applies", "lagroid check"};
+  CheckOptions options;
+  add_scene_options(app, options);
+  app.add_option("--samples", options.samples, "random samples a law")->check(CLI::Range(1, 1000000));
+  app.add_option("--seed", options.seed, "of the samples; the certificate is reproducible")
+      ->check(CLI::Range(0L, 1'000'000'000'000L));
+  return command_line(app, argc, argv, options, [&] { return check(options); });
+}

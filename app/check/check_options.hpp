@@ -1,0 +1,13 @@
+#pragma once
+/// What `lagroid check` is given.
+
+#include "../command/command.hpp"
+
+namespace lagroid::app {
+
+struct CheckOptions : SceneOptions {
+  int samples = 100;
+  long seed = 20261120;
+};
+
+}  // namespace lagroid::app

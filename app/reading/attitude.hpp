@@ -1,0 +1,18 @@
+#pragma once
+/// The attitude over time, in reports of scenes.
+
+#include "scene_arrow.hpp"
+
+#include <lagroid/run/run_result.hpp>
+
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+inline Panel attitude_panel(const std::vector<std::string>& quaternion = attitude_columns,
+                            const std::string& title = "attitude") {
+  return {title + ", unit quaternion", "t", "w, x, y, z", "t", quaternion};
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,93 @@
+#pragma once
+/// Systems as a program knows them: by name, whatever their type.
+
+#include "motion_scene.hpp"
+#include "parameter.hpp"
+#include "scene_reader.hpp"
+#include "simulation.hpp"
+#include "task.hpp"
+
+#include <lagroid/core/noether.hpp>
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+/// What `lagroid list` says of a system that scenes can name.
+struct ListedSystem {
+  std::string name;
+  std::string summary;
+  std::string groupoid;
+  std::vector<ListedParameter> parameters;
+  std::vector<std::string> symmetries;  ///< declared by the system with its default parameters
+  std::vector<std::string> conserved;   ///< quantities promised as conserved
+};
+
+/// A system that scenes can name, with all that a program does with it.
+class SystemModule {
+ public:
+  SystemModule(std::string name, std::string summary) : name_(std::move(name)), summary_(std::move(summary)) {}
+  virtual ~SystemModule() = default;
+
+  const std::string& name() const { return name_; }
+  const std::string& summary() const { return summary_; }
+  virtual bool nonholonomic() const = 0;
+  virtual ListedSystem listed() const = 0;
+
+  /// Runs an initial or a boundary value.
+  virtual RunResult run(const Section& scene, const RunContext& context) const = 0;
+  /// Reads an initial value. Throws SceneError for a boundary value.
+  virtual MotionScene read(const Section& scene, const RunContext& context) const = 0;
+
+ private:
+  std::string name_;
+  std::string summary_;
+};
+
+/// The module of a system, given how its scenes are read.
+template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
+ public:
+  using Read = std::function<Task<Sys>(const Section& scene, const RunContext& context)>;
+  ModuleOf(std::string name, std::string summary, Read read)
+      : SystemModule(std::move(name), std::move(summary)), read_(std::move(read)) {}
+
+  Task<Sys> task(const Section& scene, const RunContext& context) const { return read_(scene, context); }
+
+  bool nonholonomic() const override { return Nonholonomic<Sys>; }
+  RunResult run(const Section& scene, const RunContext& context) const override {
+    return task(scene, context).run(nullptr);
+  }
+  MotionScene read(const Section& scene, const RunContext& context) const override {
+    const Task<Sys> read = task(scene, context);
+    if (!read.begin)
+      scene.fail("boundary", "a study compares how initial values are marched: give a scene with [initial]");
+    return {read.begin(), read_pace(scene, context), read.methods};
+  }
+  ListedSystem listed() const override {
+    ListedSystem out{name(), summary(), Sys::GroupoidType::name(), listed_parameters<Sys>(), {}, {}};
+    const Sys system;
+    if constexpr (requires { system.symmetries(); })
+      for (const auto& symmetry : system.symmetries()) out.symmetries.push_back(symmetry.name);
+    for (const auto& quantity : quantities_of(system))
+      if (quantity.promise == Promise::conserved) out.conserved.push_back(quantity.name);
+    return out;
+  }
+
+ private:
+  Read read_;
+};
+
+/// The systems of this program, in the order in which they are listed. A program says at its start which it has.
+std::span<const SystemModule* const> system_modules();
+void use_systems(std::vector<const SystemModule*> modules);
+
+/// The module of that type, if it is one.
+template <DiscreteSystem Sys> const ModuleOf<Sys>* module_of(const SystemModule& module) {
+  return dynamic_cast<const ModuleOf<Sys>*>(&module);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,103 @@
+#pragma once
+/// The parameters of a system, declared once: scenes, listings, Python and tables read them from here.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace lagroid {
+
+/// What a number must satisfy, with the words to say so.
+struct NumberRule {
+  std::string_view words;
+  bool (*holds)(double);
+};
+inline constexpr NumberRule any_number{"a finite number", [](double) { return true; }};
+inline constexpr NumberRule positive{"positive", [](double x) { return x > 0; }};
+inline constexpr NumberRule nonnegative{"zero or positive", [](double x) { return x >= 0; }};
+
+/// A member of a system that its user sets: a number, or a vector of them. The scalar of the member need not be
+/// double. `Owner` may be a base of the system. A direction is a vector of which the length does not count: it is
+/// normalised, and not zero.
+template <class Owner, class Member> struct Parameter {
+  std::string_view name;
+  Member Owner::*member;
+  std::string_view unit;
+  std::string_view meaning;
+  NumberRule rule = any_number;
+  bool required = false;   ///< whether a scene must give it; else it is what the system's constructor makes of it
+  bool direction = false;  ///< of a vector
+};
+
+/// A member of enumeration type; `words` name its values 0, 1, ... in order.
+template <class Owner, class Enum, std::size_t N> struct Choice {
+  std::string_view name;
+  Enum Owner::*member;
+  std::array<std::string_view, N> words;
+  std::string_view meaning;
+};
+
+/// A system declares its parameters by
+///
+///     static auto parameters() {
+///       return std::tuple(parameter("mass", &Pendulum::bob_mass, "kg", "of the bob", positive),
+///                         choice("quadrature", &Pendulum::quadrature, quadrature_words, "of the potential"));
+///     }
+///
+/// in the order in which they are listed to users. What it is without being told is what its constructor says.
+template <class Owner, class Member>
+constexpr Parameter<Owner, Member> parameter(std::string_view name, Member Owner::*member, std::string_view unit,
+                                             std::string_view meaning, const NumberRule& rule = any_number) {
+  return {name, member, unit, meaning, rule};
+}
+/// A parameter that scenes must give.
+template <class Owner, class Member> constexpr Parameter<Owner, Member> required(Parameter<Owner, Member> parameter) {
+  parameter.required = true;
+  return parameter;
+}
+/// A vector of unit length.
+template <class Owner, class Member>
+constexpr Parameter<Owner, Member> direction(std::string_view name, Member Owner::*member, std::string_view meaning) {
+  return {name, member, "1", meaning, any_number, false, true};
+}
+template <class Owner, class Enum, std::size_t N>
+constexpr Choice<Owner, Enum, N> choice(std::string_view name, Enum Owner::*member,
+                                        const std::array<std::string_view, N>& words, std::string_view meaning) {
+  static_assert(std::is_enum_v<Enum>);
+  return {name, member, words, meaning};
+}
+
+template <class Sys>
+concept HasParameters = requires {
+  Sys::parameters();
+};
+
+/// Visits the declarations of a system's parameters in order; none where it has none.
+template <class Sys, class Visit> void for_each_parameter(const Visit& visit) {
+  if constexpr (HasParameters<Sys>) std::apply([&](const auto&... each) { (visit(each), ...); }, Sys::parameters());
+}
+
+/// Parameters that are allowed one by one, but not together. A system says so by
+///
+///     std::optional<Refusal> refused() const
+struct Refusal {
+  std::vector<std::string_view> parameters;  ///< the first of them that was given is to blame
+  std::string why;
+};
+/// Refuses a product of parameters that overflows, or is too small to keep its digits.
+std::optional<Refusal> refuse_lost_digits(std::vector<std::string_view> parameters, const std::string& product,
+                                          double value);
+
+template <class Sys> std::optional<Refusal> refusal_of(const Sys& system) {
+  if constexpr (requires { system.refused(); }) {
+    return system.refused();
+  } else {
+    return std::nullopt;
+  }
+}
+
+}  // namespace lagroid

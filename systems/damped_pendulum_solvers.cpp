@@ -1,8 +1,0 @@
-#include <lagroid/solvers/march_methods.hpp>
-#include <lagroid/systems/damped_pendulum.hpp>
-
-namespace lagroid {
-
-LAGROID_STEP_SOLVERS(template, DampedPendulum);
-
-}  // namespace lagroid

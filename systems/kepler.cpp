@@ -1,7 +1,0 @@
-#include <lagroid/systems/kepler.hpp>
-
-namespace lagroid {
-
-LAGROID_STEPS(template, Kepler);
-
-}  // namespace lagroid

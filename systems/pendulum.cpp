@@ -1,7 +1,0 @@
-#include <lagroid/systems/pendulum.hpp>
-
-namespace lagroid {
-
-LAGROID_STEPS(template, Pendulum);
-
-}  // namespace lagroid
