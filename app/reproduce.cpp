@@ -57,7 +57,8 @@ int conclude(nlohmann::ordered_json result, std::string text, const std::vector<
   return code_after_writing(0, "reproduce");
 }
 
-int reproduce_newton(const ReproduceOptions& options, bool json) {
+int reproduce_newton(const ReproduceOptions& options) {
+  const bool json = options.json;
   const NewtonStudy& study = options.newton;
   if (study.smallest > study.largest)
     return refuse(json, exit_bad_input, "invalid_command_line",
@@ -94,7 +95,8 @@ int reproduce_newton(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
-int reproduce_time_steps(const ReproduceOptions& options, bool json) {
+int reproduce_time_steps(const ReproduceOptions& options) {
+  const bool json = options.json;
   const OutputFolder folder = folder_for_report(options.time_out, time_name, time_report_files);
   const auto start = std::chrono::steady_clock::now();
   TimeFindings findings;
@@ -124,7 +126,8 @@ int reproduce_time_steps(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
-int reproduce_accelerated(const ReproduceOptions& options, bool json) {
+int reproduce_accelerated(const ReproduceOptions& options) {
+  const bool json = options.json;
   const OutputFolder folder = folder_for_report(options.accelerated_out, accelerated_name, accelerated_report_files);
   const AcceleratedStudy& study = options.accelerated;
   const auto start = std::chrono::steady_clock::now();
@@ -160,7 +163,8 @@ int reproduce_accelerated(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
-int reproduce_maps(const ReproduceOptions& options, bool json) {
+int reproduce_maps(const ReproduceOptions& options) {
+  const bool json = options.json;
   const OutputFolder folder = folder_for_report(options.maps_out, maps_name, map_report_files);
   std::vector<MapMethod> methods;
   {
@@ -187,7 +191,8 @@ int reproduce_maps(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
-int reproduce_learning(const ReproduceOptions& options, bool json) {
+int reproduce_learning(const ReproduceOptions& options) {
+  const bool json = options.json;
   const OutputFolder folder = folder_for_report(options.learning_out, learning_name, learning_report_files);
   const LearningStudy& study = options.learning;
   const auto start = std::chrono::steady_clock::now();
@@ -220,7 +225,8 @@ int reproduce_learning(const ReproduceOptions& options, bool json) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
-int reproduce_scaling(const ReproduceOptions& options, bool json) {
+int reproduce_scaling(const ReproduceOptions& options) {
+  const bool json = options.json;
   const double start = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   try {
     require_writable(options.scaling_out, sweep_scaling_files);
@@ -336,7 +342,7 @@ struct Reproduction {
   const char* name;
   const char* summary;
   void (*options)(CLI::App& command, ReproduceOptions& options);
-  int (*run)(const ReproduceOptions& options, bool json);
+  int (*run)(const ReproduceOptions& options);
 };
 constexpr Reproduction reproductions[] = {
     {time_name, "fixed, adaptive and controlled steps, composed and split ones: error against time and evaluations",
@@ -354,20 +360,20 @@ constexpr Reproduction reproductions[] = {
 
 }  // namespace
 
-void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json) {
+void add_reproductions(CLI::App& command, ReproduceOptions& options) {
   command.require_subcommand(1);
   for (const Reproduction& each : reproductions) {
     CLI::App* added = command.add_subcommand(each.name, each.summary);
     each.options(*added, options);
-    added->add_flag("--json", json, "print one JSON object and nothing else on standard output");
+    added->add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
     added->callback([&options, &each] { options.name = each.name; });
   }
 }
 
-int reproduce(const ReproduceOptions& options, bool json) {
+int reproduce(const ReproduceOptions& options) {
   return std::find_if(std::begin(reproductions), std::end(reproductions),
                       [&](const Reproduction& each) { return options.name == each.name; })
-      ->run(options, json);
+      ->run(options);
 }
 
 }  // namespace lagroid::app

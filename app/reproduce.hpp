@@ -11,6 +11,7 @@ namespace lagroid::app {
 
 struct ReproduceOptions {
   std::string name;  ///< of the one to carry out
+  bool json = false;
   NewtonStudy newton;
   std::string newton_out = "out/newton-on-lie-groups";
   std::string time_out = "out/time-steps";
@@ -26,9 +27,9 @@ struct ReproduceOptions {
 };
 
 /// The subcommands of `reproduce`.
-void add_reproductions(CLI::App& command, ReproduceOptions& options, bool& json);
+void add_reproductions(CLI::App& command, ReproduceOptions& options);
 
 /// Carries out the one that was named; returns the exit code.
-int reproduce(const ReproduceOptions& options, bool json);
+int reproduce(const ReproduceOptions& options);
 
 }  // namespace lagroid::app

@@ -117,52 +117,6 @@ inline bool is_parameter(const py::handle& type, const py::handle& name) {
   return PyObject_TypeCheck(found.ptr(), &PyProperty_Type) != 0 && !found.attr("fset").is_none();
 }
 
-/// x, if it is finite and the rule holds of it; else ValueError, in the words that a scene gets.
-inline double held(std::string_view name, std::string_view of, double x, const NumberRule& rule) {
-  if (!std::isfinite(x)) throw py::value_error(fmt::format("{}: must be finite, got {}", name, x));
-  if (!rule.holds(x)) throw py::value_error(fmt::format("{}: {}must be {}, got {}", name, of, rule.words, x));
-  return x;
-}
-
-/// The property of a declared parameter (core/parameter.hpp). A vector is read as an array of its own.
-template <class Sys, class Owner, class Member>
-void bind_parameter(py::class_<Sys>& made, const Parameter<Owner, Member>& p) {
-  const std::string name(p.name);
-  const std::string doc = fmt::format("{}{}{}", p.meaning, p.unit.empty() ? "" : ", ", p.unit);
-  if constexpr (std::is_arithmetic_v<Member>) {
-    made.def_property(
-        name.c_str(), [p](const Sys& self) { return self.*p.member; },
-        [p](Sys& self, double x) { self.*p.member = Member(held(p.name, "", x, p.rule)); }, doc.c_str());
-  } else {
-    made.def_property(
-        name.c_str(),
-        [p](const Sys& self) {
-          py::array_t<double> out((self.*p.member).size(), (self.*p.member).data());
-          out.attr("flags").attr("writeable") = false;
-          return out;
-        },
-        [p](Sys& self, const Array& given) {
-          auto v = vector_of<Member>(given, std::string(p.name));
-          for (const double x : v) held(p.name, fmt::format("{} ", p.meaning), x, p.rule);
-          if (p.direction) {
-            if (v.norm() == 0) throw py::value_error(fmt::format("{}: is no direction: all zero", p.name));
-            v.normalize();
-          }
-          self.*p.member = v;
-        },
-        doc.c_str());
-  }
-}
-template <class Sys, class Owner, class Enum, std::size_t N>
-void bind_parameter(py::class_<Sys>& made, const Choice<Owner, Enum, N>& p) {
-  made.def_property(
-      std::string(p.name).c_str(), [p](const Sys& self) { return std::string(p.words[std::size_t(self.*p.member)]); },
-      [p](Sys& self, const std::string& word) {
-        self.*p.member = Enum(choice(std::string(p.name).c_str(), word, p.words));
-      },
-      std::string(p.meaning).c_str());
-}
-
 /// A system with these parameters, the others as they are by default.
 template <class Sys> Sys with_parameters(const py::dict& parameters) {
   Sys system;
@@ -224,6 +178,52 @@ std::size_t choice(const char* key, const std::string& word, const std::array<st
   std::string all;
   for (const auto& each : words) all += (all.empty() ? "" : ", ") + std::string(each);
   throw py::value_error(std::string(key) + ": \"" + word + "\" is none of " + all);
+}
+
+/// x, if it is finite and the rule holds of it; else ValueError, in the words that a scene gets.
+inline double held(std::string_view name, std::string_view of, double x, const NumberRule& rule) {
+  if (!std::isfinite(x)) throw py::value_error(fmt::format("{}: must be finite, got {}", name, x));
+  if (!rule.holds(x)) throw py::value_error(fmt::format("{}: {}must be {}, got {}", name, of, rule.words, x));
+  return x;
+}
+
+/// The property of a declared parameter (core/parameter.hpp). A vector is read as an array of its own.
+template <class Sys, class Owner, class Member>
+void bind_parameter(py::class_<Sys>& made, const Parameter<Owner, Member>& p) {
+  const std::string name(p.name);
+  const std::string doc = fmt::format("{}{}{}", p.meaning, p.unit.empty() ? "" : ", ", p.unit);
+  if constexpr (std::is_arithmetic_v<Member>) {
+    made.def_property(
+        name.c_str(), [p](const Sys& self) { return self.*p.member; },
+        [p](Sys& self, double x) { self.*p.member = Member(held(p.name, "", x, p.rule)); }, doc.c_str());
+  } else {
+    made.def_property(
+        name.c_str(),
+        [p](const Sys& self) {
+          py::array_t<double> out((self.*p.member).size(), (self.*p.member).data());
+          out.attr("flags").attr("writeable") = false;
+          return out;
+        },
+        [p](Sys& self, const Array& given) {
+          auto v = vector_of<Member>(given, std::string(p.name));
+          for (const double x : v) held(p.name, fmt::format("{} ", p.meaning), x, p.rule);
+          if (p.direction) {
+            if (v.norm() == 0) throw py::value_error(fmt::format("{}: is no direction: all zero", p.name));
+            v.normalize();
+          }
+          self.*p.member = v;
+        },
+        doc.c_str());
+  }
+}
+template <class Sys, class Owner, class Enum, std::size_t N>
+void bind_parameter(py::class_<Sys>& made, const Choice<Owner, Enum, N>& p) {
+  made.def_property(
+      std::string(p.name).c_str(), [p](const Sys& self) { return std::string(p.words[std::size_t(self.*p.member)]); },
+      [p](Sys& self, const std::string& word) {
+        self.*p.member = Enum(choice(std::string(p.name).c_str(), word, p.words));
+      },
+      std::string(p.meaning).c_str());
 }
 
 inline Composition composition_of(std::optional<int> order, const std::optional<std::string>& name, bool split) {

@@ -1,10 +1,13 @@
-// Tests that read scenes in their own process know the library's systems, as the program does.
-#include <systems/library_systems.hpp>
+// Tests that read scenes in their own process know what the whole program knows.
+#include <program.hpp>
+#include <whole_program.hpp>
 
 namespace {
 
 const bool known = [] {
-  lagroid::app::use_systems(lagroid::app::library_systems());
+  lagroid::app::ProgramParts parts = lagroid::app::whole_program();
+  lagroid::app::use_families(parts.families);
+  lagroid::app::use_systems(parts.systems);
   return true;
 }();
 

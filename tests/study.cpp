@@ -10,6 +10,7 @@
 #include <study/scene_experiment.hpp>
 
 #include <lagroid/solvers/testing/order_laws.hpp>
+#include <lagroid/systems/kepler.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -35,6 +35,7 @@ int check(const CheckOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  use_families({&systems_family(), &spheres_family(), &bodies_family()});
   use_systems(library_systems());
   CLI::App app{"ask a scene's system, along its run, every law that applies", "lagroid check"};
   CheckOptions options;

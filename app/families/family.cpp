@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <ranges>
+#include <utility>
 
 namespace lagroid::app {
 
@@ -21,11 +21,17 @@ void SceneFamily::refuse(const Section& scene) const {
       "", fmt::format("is no motion: lagroid {} carries it out; give a scene with [initial] or [boundary]", command()));
 }
 
-std::span<const SceneFamily* const> families() {
-  static const std::array<const SceneFamily*, 5> all{&systems_family(), &spheres_family(), &bodies_family(),
-                                                     &optimisation_family(), &sweeps_family()};
-  return all;
+namespace {
+
+std::vector<const SceneFamily*>& known() {
+  static std::vector<const SceneFamily*> families;
+  return families;
 }
+
+}  // namespace
+
+std::span<const SceneFamily* const> families() { return known(); }
+void use_families(std::vector<const SceneFamily*> families) { known() = std::move(families); }
 
 const SceneFamily& family_of(const Section& scene) {
   for (const SceneFamily* family : std::views::reverse(families()))

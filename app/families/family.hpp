@@ -32,6 +32,8 @@ class SceneFamily {
   virtual std::vector<Use> uses(const Section& scene) const = 0;
   /// Its systems.
   virtual std::vector<ListedSystem> systems() const { return {}; }
+  /// Their names.
+  virtual std::vector<std::string> names() const { return {}; }
 
  protected:
   /// Throws the SceneError for a scene that is no motion.
@@ -39,8 +41,10 @@ class SceneFamily {
   friend const SceneFamily& motions_of(const Section& scene);
 };
 
-/// In the order in which their systems are listed; the last is the first to be asked whether a scene is its own.
+/// Those of this program, in the order in which their systems are listed; the last is the first to be asked whether a
+/// scene is its own. A program says at its start which it has, the family of systems among them.
 std::span<const SceneFamily* const> families();
+void use_families(std::vector<const SceneFamily*> families);
 /// The one that the scene is of: of systems where it is of no other.
 const SceneFamily& family_of(const Section& scene);
 /// The same of a scene to be studied, checked or run as a motion or a path. Throws SceneError for others.

@@ -34,6 +34,11 @@ class Spheres final : public SceneFamily {
                      entry.symmetries, entry.conserved});
     return all;
   }
+  std::vector<std::string> names() const override {
+    std::vector<std::string> all;
+    for (const SphereEntry& entry : sphere_systems()) all.emplace_back(entry.name);
+    return all;
+  }
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
 #include "family.hpp"
 
 #include "../reading/system_module.hpp"
-#include "../spheres/sphere_system.hpp"
+
+#include <utility>
 
 namespace lagroid::app {
 
@@ -37,6 +38,11 @@ class Systems final : public SceneFamily {
     for (const SystemModule* module : system_modules()) all.push_back(module->listed());
     return all;
   }
+  std::vector<std::string> names() const override {
+    std::vector<std::string> all;
+    for (const SystemModule* module : system_modules()) all.push_back(module->name());
+    return all;
+  }
 };
 
 }  // namespace
@@ -48,8 +54,8 @@ const SceneFamily& systems_family() {
 
 const SystemModule& module_of_scene(const Section& scene) {
   std::vector<std::string> names;
-  for (const SystemModule* module : system_modules()) names.emplace_back(module->name());
-  for (const SphereEntry& entry : sphere_systems()) names.emplace_back(entry.name);
+  for (const SceneFamily* family : families())
+    for (std::string& each : family->names()) names.push_back(std::move(each));
   const std::string name = scene.choice("system", names);
   for (const SystemModule* module : system_modules())
     if (module->name() == name) return *module;

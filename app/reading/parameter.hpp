@@ -4,7 +4,6 @@
 #include "scene_reader.hpp"
 
 #include <lagroid/core/parameter.hpp>
-#include <lagroid/core/types.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

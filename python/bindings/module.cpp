@@ -8,7 +8,7 @@
 #include <optimise/matrices.hpp>
 #include <reading/scene_reader.hpp>
 #include <spheres/model_file.hpp>
-#include <systems/library_systems.hpp>
+#include <whole_program.hpp>
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/run/output_folder.hpp>
@@ -19,6 +19,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace lagroid::python {
 
@@ -53,7 +54,9 @@ void translate(std::exception_ptr thrown) {
 PYBIND11_MODULE(_lagroid, module) {
   module.doc() = "Discrete mechanics on Lie groupoids: what is compiled. Use the package lagroid.";
   py::register_exception_translator(translate);
-  app::use_systems(app::library_systems());
+  app::ProgramParts parts = app::whole_program();
+  app::use_families(std::move(parts.families));
+  app::use_systems(std::move(parts.systems));
   module.attr("__version__") = LAGROID_VERSION;
   module.def("listing", app::json_listing, "The systems a scene can name, as JSON.");
   module.def(

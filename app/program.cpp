@@ -1,0 +1,188 @@
+#include "program.hpp"
+
+#include "cite/cite.hpp"
+#include "command/written.hpp"
+#include "listing.hpp"
+#include "study/run_scene.hpp"
+#include "study/study.hpp"
+#include "view.hpp"
+
+#include <lagroid/core/version.hpp>
+#include <lagroid/run/checkpoint.hpp>
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/output.hpp>
+#include <lagroid/run/report.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace {
+
+struct RunOptions : SceneOptions {
+  std::optional<std::string> out;
+  bool other_build = false;
+};
+
+/// The scene of a run that is taken up, of which only the number of steps may change.
+Section kept_scene(const std::string& folder, const std::vector<std::string>& overrides) {
+  const std::string text = Checkpoint::scene_of(folder);
+  for (const std::string& given : overrides)
+    if (!given.starts_with("time.steps="))
+      throw RunError(fmt::format("--set {}: a run goes on as it began; only time.steps can be set", given));
+  return parse_scene(text, folder + "/checkpoint/scene.toml", overrides);
+}
+
+/// Carries out a scene that is no motion by the command that is made for it.
+int hand_over(std::string_view name, const RunOptions& options, const std::vector<ProgramCommand>& commands) {
+  const auto command = std::ranges::find(commands, name, &ProgramCommand::name);
+  if (command == commands.end() || !command->run_scene)
+    return refuse(options.json, exit_bad_input, "invalid_command_line",
+                  fmt::format("{}: is carried out by lagroid {}, which this program does not have", options.scene, name));
+  return command->run_scene(options, options.out);
+}
+
+/// Runs the scene, or takes up the run in the folder `out`.
+int run(const RunOptions& options, bool resume, const std::vector<ProgramCommand>& commands) {
+  RunResult result;
+  std::optional<OutputFolder> folder;
+  try {
+    const Section scene =
+        resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
+    if (const auto command = family_of(scene).command(); command != "run") return hand_over(command, options, commands);
+    if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene.whole()));
+    if (resume) Checkpoint::require_this_build(*options.out, options.other_build);
+    result = run_scene(scene, {.record = options.out.has_value(),
+                               .progress = !options.json,
+                               .folder = options.out.value_or(""),
+                               .resume = resume});
+  } catch (const RunError& error) {
+    return refuse(options.json, exit_bad_input, "invalid_run", error.what());
+  }
+  std::string report;
+  if (options.out) {
+    for (const auto& file : write_outputs_if_possible(result, *options.out))
+      report += fmt::format("  wrote {}\n", file.string());
+  } else {
+    report = "  (no files written; --out DIR writes trajectory, plot and summary)\n";
+  }
+  print(options.json ? json_report(result) + "\n" : text_report(result) + report);
+  if (!result.converged()) complain(fmt::format("{}: {}", resume ? *options.out : options.scene, result.message));
+  if (!result.output_error.empty()) complain(result.output_error);
+  if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
+  if (!result.converged() || !result.output_error.empty()) return exit_failed;
+  return code_after_writing(0, resume ? *options.out : options.scene);
+}
+
+/// Writes something from a run's folder: `make` returns the files.
+int from_run(const std::function<std::vector<std::filesystem::path>()>& make) {
+  try {
+    std::string report;
+    for (const auto& file : make()) report += fmt::format("  wrote {}\n", file.string());
+    print(report);
+    return 0;
+  } catch (const RunError& error) {
+    return refuse(false, InterruptGuard::interrupted() ? exit_interrupted : exit_bad_input, "invalid_run",
+                  error.what());
+  }
+}
+
+/// Hands over to lagroid-check, which stands beside this program: the laws of every system take long to compile, and
+/// whoever only runs scenes need not wait for them.
+int check(SceneOptions options, int argc, char** argv) {
+  options.json = asks_for_json(argc, argv);
+  const auto program = std::filesystem::canonical("/proc/self/exe").parent_path() / "lagroid-check";
+  ::execv(program.c_str(), argv);
+  return refuse(options.json, exit_internal_error, "internal_error",
+                fmt::format("{}: {}; build the target lagroid_check", program.string(), std::strerror(errno)));
+}
+
+}  // namespace
+
+int program(int argc, char** argv, ProgramParts parts) {
+  use_families(std::move(parts.families));
+  use_systems(std::move(parts.systems));
+  const std::vector<ProgramCommand>& commands = parts.commands;
+  CLI::App app{"lagroid: discrete mechanics on Lie groupoids", "lagroid"};
+  app.set_version_flag("--version", LAGROID_VERSION);
+  RunOptions options;
+  CLI::App* run_command = app.add_subcommand("run", "run a scene (see docs/scenes.md)");
+  add_scene_options(*run_command, options);
+  run_command->add_option("--out", options.out, "write trajectory, plot and summary files into this folder");
+  CLI::App* resume_command =
+      app.add_subcommand("resume", "go on with a run that was broken off, or with a finished one");
+  resume_command->add_option("run", options.out, "the folder that lagroid run --out wrote")->required();
+  resume_command->add_option("--set", options.overrides, "time.steps=N: go on to so many steps")
+      ->allow_extra_args(false);
+  resume_command->add_flag("--other-build", options.other_build,
+                           "go on with the work of another build of lagroid; the same bits are not promised then");
+  resume_command->add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
+  ViewOptions view;
+  CLI::App* view_command = app.add_subcommand(
+      "view", "write view.html into a run's folder: bodies in motion, curves and ledger, for any browser");
+  view_command->add_option("run", view.run, "the folder that lagroid run --out wrote")->required();
+  view_command->add_option("--rows", view.most_rows, "of the trajectory, at most (default 4000)")
+      ->check(CLI::Range(2L, 1'000'000L));
+  PlotOptions plot;
+  CLI::App* plot_command =
+      app.add_subcommand("plot", "draw plot.svg and plot.png of a run anew, by its plot.gp, which may be edited");
+  plot_command->add_option("run", plot.run, "the folder that lagroid run --out wrote")->required();
+  plot_command->add_flag("--own-script", plot.own_script, "draw by a plot.gp that was edited: it can run anything");
+  CLI::App* check_command =
+      app.add_subcommand("check", "ask a scene's system every law that applies: lagroid check --help");
+  check_command->set_help_flag();
+  check_command->prefix_command();
+  CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
+  list_command->add_flag("--json", options.json, "print one JSON array and nothing else on standard output");
+  StudyOptions study_options;
+  CLI::App* study_command = app.add_subcommand(
+      "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
+  add_study_options(*study_command, study_options);
+  CiteOptions cite_options;
+  CLI::App* cite_command = app.add_subcommand("cite", "how to cite the program, and the papers that a scene rests on");
+  add_cite_options(*cite_command, cite_options);
+  std::vector<CLI::App*> added;
+  for (const ProgramCommand& command : commands) added.push_back(command.add(app));
+  app.require_subcommand(0, 1);
+  return command_line(app, argc, argv, options, [&] {
+    if (list_command->parsed()) {
+      print(options.json ? json_listing() : text_listing());
+      return 0;
+    }
+    if (check_command->parsed()) return check(options, argc - 1, argv + 1);
+    if (run_command->parsed()) return run(options, false, commands);
+    if (resume_command->parsed()) return run(options, true, commands);
+    if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });
+    if (plot_command->parsed()) return from_run([&] { return draw_plots(plot); });
+    if (study_command->parsed()) {
+      static_cast<SceneOptions&>(options) = study_options;
+      return study(study_options);
+    }
+    if (cite_command->parsed()) {
+      options.json = cite_options.json;
+      return cite(cite_options);
+    }
+    std::string names;
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      if (added[i]->parsed()) return commands[i].run(options);
+      names += ", " + commands[i].name;
+    }
+    return refuse(options.json, exit_bad_input, "invalid_command_line",
+                  fmt::format("name a command: run, resume, view, plot, study, check, list{} or cite; see lagroid --help",
+                              names));
+  });
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,22 @@
+#pragma once
+/// A program: the commands that all have, and the parts that it is given.
+
+#include "command/program_command.hpp"
+#include "families/family.hpp"
+#include "reading/system_module.hpp"
+
+#include <vector>
+
+namespace lagroid::app {
+
+/// What a program is made of, beside the commands run, resume, view, plot, study, check, list and cite.
+struct ProgramParts {
+  std::vector<const SceneFamily*> families;  ///< in the order in which their systems are listed
+  std::vector<const SystemModule*> systems;
+  std::vector<ProgramCommand> commands;
+};
+
+/// Serves a command line. Returns the exit code.
+int program(int argc, char** argv, ProgramParts parts);
+
+}  // namespace lagroid::app
