@@ -28,4 +28,42 @@ template <class X>
 concept Winding = loops_of<X>()
 > 0;
 
+namespace detail {
+
+/// Who says how the paths of a system wind: the system itself, or else its groupoid.
+template <class Sys> const auto& winder(const Sys& system) {
+  if constexpr (Winding<Sys>) {
+    return system;
+  } else {
+    return system.groupoid;
+  }
+}
+template <class Sys>
+inline constexpr int windings = Winding<Sys> ? loops_of<Sys>() : loops_of<typename Sys::GroupoidType>();
+
+}  // namespace detail
+
+/// In how many loops the paths of a system can wind. (A SizedSystem knows it when it runs.)
+template <class Sys> int loop_count(const Sys& system) {
+  if constexpr (requires { system.loop_count(); }) {
+    return system.loop_count();
+  } else {
+    return detail::windings<Sys>;
+  }
+}
+
+/// The loop over q about `axis` with so many turns, of a system or its groupoid. Requires `loop_count` turns, and that
+/// there are any.
+template <class Sys>
+auto loop_of(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q,
+             const AlgebroidVector<typename Sys::GroupoidType>& axis, const Eigen::VectorXd& turns) {
+  if constexpr (requires { system.loop_count(); }) {
+    return system.loop(q, axis, turns);
+  } else if constexpr (detail::windings<Sys> > 0) {
+    return detail::winder(system).loop(q, axis, Vector<double, detail::windings<Sys>>(turns));
+  } else {
+    return system.groupoid.unit(q);
+  }
+}
+
 }  // namespace lagroid

@@ -78,12 +78,24 @@ second_derivatives_in_one_pass(const Sys& system, const ArrowOf<typename Sys::Gr
   return out;
 }
 
-/// Every second derivative: in one pass where the ends of an arrow share displacements (d < 2n), else in three.
+/// A system that writes all its second derivatives itself.
+template <class Sys>
+concept HasSecondDerivatives = requires(const Sys& system, const Step<Sys>& step) {
+  { system.second_derivatives(step.arrow, step.multipliers) } -> std::convertible_to<SecondDerivativesOf<Sys>>;
+};
+
+/// Every second derivative: the system's own, or in one pass where the ends of an arrow share displacements (d < 2n),
+/// else in three.
 template <DiscreteSystem Sys>
 SecondDerivativesOf<Sys> second_derivatives(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                             const typename Sys::Multipliers& lambda) {
+  static_assert(
+      HasSecondDerivatives<Sys> || !requires { &Sys::second_derivatives; },
+      "second_derivatives is there but does not fit (see HasSecondDerivatives)");
   constexpr int d = arrow_dimension_of<typename Sys::GroupoidType>();
-  if constexpr (d > 0 && d < 2 * Sys::dimension && !HasAnalyticDerivatives<Sys>) {
+  if constexpr (HasSecondDerivatives<Sys>) {
+    return system.second_derivatives(g, lambda);
+  } else if constexpr (d > 0 && d < 2 * Sys::dimension && !HasAnalyticDerivatives<Sys>) {
     return second_derivatives_in_one_pass(system, g, lambda);
   } else {
     return second_derivatives_in_three_passes(system, g, lambda);

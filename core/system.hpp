@@ -6,6 +6,7 @@
 
 #include <concepts>
 #include <type_traits>
+#include <vector>
 
 namespace lagroid {
 
@@ -181,6 +182,43 @@ template <class Sys>
 concept HasTimeStep = requires(Sys& system) {
   { system.h } -> std::convertible_to<double>;
   system.h = 1.0;
+};
+
+/// Whether there is a time step: a member h, or what a system says of which the sizes alone are known (SizedSystem).
+template <class Sys> bool has_time_step(const Sys& system) {
+  if constexpr (requires { system.has_time_step(); }) {
+    return system.has_time_step();
+  } else {
+    return HasTimeStep<Sys>;
+  }
+}
+/// The time step; one where there is none.
+template <class Sys> double time_step(const Sys& system) {
+  if constexpr (HasTimeStep<Sys>) {
+    return system.h;
+  } else if constexpr (requires { system.time_step(); }) {
+    return system.time_step();
+  } else {
+    return 1;
+  }
+}
+/// Another time step, where there is one.
+template <class Sys> void set_time_step(Sys& system, double h) {
+  if constexpr (HasTimeStep<Sys>) {
+    system.h = h;
+  } else if constexpr (requires { system.set_time_step(h); }) {
+    system.set_time_step(h);
+  }
+}
+
+/// A system that writes paths of its own for guesses to begin with in the place of straight lines, near its
+/// constraints:
+///
+///     std::vector<Arrow<double>> path(const Arrow<double>& boundary, long steps) const        of the product
+///     `boundary`; none where it has none after all
+template <class Sys>
+concept HasPath = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary) {
+  { system.path(boundary, 1L) } -> std::same_as<std::vector<ArrowOf<typename Sys::GroupoidType>>>;
 };
 
 namespace detail {

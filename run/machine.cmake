@@ -33,7 +33,7 @@ file(CONFIGURE OUTPUT ${machine_folder}/sources.txt CONTENT "${lines}" @ONLY)
 file(GENERATE OUTPUT ${machine_folder}/build.txt CONTENT
 "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}
 ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${configuration}}
-$<FILTER:$<TARGET_PROPERTY:lagroid,COMPILE_OPTIONS>,EXCLUDE,^-W>
+$<FILTER:$<TARGET_PROPERTY:lagroid_part_base,COMPILE_OPTIONS>,EXCLUDE,^-W>
 $<TARGET_PROPERTY:lagroid_core,INTERFACE_COMPILE_OPTIONS>
 $<TARGET_PROPERTY:lagroid_core,INTERFACE_COMPILE_DEFINITIONS>
 Eigen ${Eigen3_VERSION}, Ceres ${Ceres_VERSION}, Boost ${Boost_VERSION}
@@ -50,6 +50,6 @@ add_custom_command(
 add_library(lagroid_machine STATIC ${CMAKE_CURRENT_LIST_DIR}/machine.cpp ${machine_folder}/build_hash.cpp)
 set_target_properties(lagroid_machine PROPERTIES POSITION_INDEPENDENT_CODE ON)
 target_include_directories(lagroid_machine PRIVATE ${CMAKE_CURRENT_LIST_DIR})
-target_link_libraries(lagroid_machine PRIVATE lagroid $<BUILD_INTERFACE:lagroid_warnings>)
+target_link_libraries(lagroid_machine PRIVATE $<BUILD_INTERFACE:lagroid_compiled> $<BUILD_INTERFACE:lagroid_warnings>)
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/machine.cpp PROPERTIES COMPILE_DEFINITIONS
   "LAGROID_ARCH=\"${LAGROID_ARCH}\";LAGROID_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\"")

@@ -7,37 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <random>
 #include <vector>
 
 namespace lagroid {
-
-/// A system that writes paths of its own for guesses to begin with in the place of straight lines, near its
-/// constraints:
-///
-///     std::vector<Arrow<double>> path(const Arrow<double>& boundary, long steps) const        of the product
-///     `boundary`
-template <class Sys>
-concept HasPath = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary) {
-  { system.path(boundary, 1L) } -> std::same_as<std::vector<ArrowOf<typename Sys::GroupoidType>>>;
-};
-
-namespace detail {
-
-/// Who says how the paths of a system wind: the system itself, or else its groupoid.
-template <DiscreteSystem Sys> const auto& winder(const Sys& system) {
-  if constexpr (Winding<Sys>) {
-    return system;
-  } else {
-    return system.groupoid;
-  }
-}
-template <DiscreteSystem Sys>
-inline constexpr int windings = Winding<Sys> ? loops_of<Sys>() : loops_of<typename Sys::GroupoidType>();
-
-}  // namespace detail
 
 /// The path through tau_q(t v), t = k / count, tau_q(v) the boundary arrow: the straight line from one end to the
 /// other.
@@ -59,13 +33,12 @@ template <DiscreteSystem Sys> Path<Sys> geodesic_path(const BoundaryProblem<Sys>
 /// reaches after k of N arrows.
 template <DiscreteSystem Sys>
 Path<Sys> wound(const Sys& system, const Path<Sys>& path, const AlgebroidVector<typename Sys::GroupoidType>& axis,
-                const Vector<double, detail::windings<Sys>>& turns) requires(detail::windings<Sys> > 0) {
+                const Eigen::VectorXd& turns) {
   const auto& groupoid = system.groupoid;
   auto reach = detail::reaches(system, path);
   for (std::size_t k = 1; k + 1 < reach.size(); ++k) {
     const double t = double(k) / double(path.size());
-    const auto turned =
-        detail::winder(system).loop(groupoid.target(reach[k]), axis, Vector<double, detail::windings<Sys>>(t * turns));
+    const auto turned = loop_of(system, groupoid.target(reach[k]), axis, t * turns);
     reach[k] = groupoid.project(groupoid.compose(reach[k], turned));
   }
   return detail::path_through(system, reach, path);
@@ -88,8 +61,7 @@ struct BoundaryGuesses {
     const double size = amplitude > 0 ? amplitude : length > 1e-3 ? length : 1;
     std::uniform_real_distribution<double> octave(-3, 1);
     std::normal_distribution<double> normal(0, size * std::exp2(octave(generator)));
-    if constexpr (constexpr int loops = detail::windings<Sys>; loops > 0)
-      path = wound_by_chance(problem, path, index, generator);
+    if (loop_count(problem.system) > 0) path = wound_by_chance(problem, path, index, generator);
     return displaced(problem, path, sine_modes<Sys>(count, 3, [&] { return normal(generator); }), 1.0);
   }
 
@@ -104,17 +76,16 @@ struct BoundaryGuesses {
       Path<Sys> path;
       for (const auto& arrow : problem.system.path(problem.boundary, long(count)))
         path.push_back({arrow, Sys::Multipliers::Zero()});
-      return path;
-    } else {
-      return geodesic_path(problem, count);
+      if (!path.empty()) return path;
     }
+    return geodesic_path(problem, count);
   }
 
   template <DiscreteSystem Sys>
   Path<Sys> wound_by_chance(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, int index,
                             std::mt19937_64& generator) const {
     constexpr std::array<int, 3> ways{0, 1, -1};
-    Vector<double, detail::windings<Sys>> turns;
+    Eigen::VectorXd turns(loop_count(problem.system));
     const int block = (index - 1) / 3;
     auto shuffler = generator_of(1, block);
     std::array<int, 3> order{0, 1, 2};

@@ -44,8 +44,7 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     coupling_.assign(count, Coupling::Zero());
     residual_.assign(count, Column::Zero());
     gradient_.assign(count, Vector<double, n>::Zero());
-    double metric = 1;
-    if constexpr (HasTimeStep<Sys>) metric = 1 / system.h;
+    const double metric = 1 / time_step(system);
     for (std::size_t k = 0; k < count; ++k) {
       if (hessian == Hessian::exact) {
         const auto d = second_derivatives(system, path[k].arrow, path[k].multipliers);

@@ -1,23 +1,24 @@
 #pragma once
-/// Solvers of a boundary-value problem by name, and the search of its solutions: all that a system of your own needs.
+/// Solvers of a boundary-value problem by name, and the search of its solutions, for systems of any sizes.
 
 #include <lagroid/solvers/boundary_ceres.hpp>
 #include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/boundary_shooting.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 
-namespace lagroid {
+namespace lagroid::detail {
 
-template <DiscreteSystem Sys>
-std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method, BoundaryOptions options, Seek seek) {
+template <DiscreteSystem Sized>
+std::unique_ptr<BoundarySolver<Sized>> make_sized_boundary_solver(BoundaryMethod method, BoundaryOptions options,
+                                                                  Seek seek) {
   switch (method) {
     case BoundaryMethod::shooting:
-      return std::make_unique<BoundaryShooting<Sys>>(options, seek);
+      return std::make_unique<BoundaryShooting<Sized>>(options, seek);
     case BoundaryMethod::ceres:
-      return std::make_unique<BoundaryCeres<Sys>>(options, seek);
+      return std::make_unique<BoundaryCeres<Sized>>(options, seek);
     default:
-      return std::make_unique<BoundaryNewton<Sys>>(options, seek);
+      return std::make_unique<BoundaryNewton<Sized>>(options, seek);
   }
 }
 
-}  // namespace lagroid
+}  // namespace lagroid::detail

@@ -1,6 +1,7 @@
 #pragma once
 /// Boundary-value problems: critical points of the action over trajectories with a fixed product.
 
+#include <lagroid/core/displaced_arrow.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/core/two_sided.hpp>
 #include <lagroid/solvers/status.hpp>
@@ -75,10 +76,7 @@ void displace(const BoundaryProblem<Sys>& problem, const Path<Sys>& path, const 
       break;
     }
     const AlgebroidVector<G> v = fraction * by.nodes[k];
-    const ArrowOf<G> forth = groupoid.tau(groupoid.target(path[k].arrow), v);
-    out[k].arrow = groupoid.project(groupoid.compose(groupoid.compose(back, path[k].arrow), forth));
-    product = groupoid.project(groupoid.compose(product, out[k].arrow));
-    back = groupoid.inverse(forth);
+    displace_next(groupoid, path[k].arrow, v, back, out[k].arrow, product);
   }
 }
 template <DiscreteSystem Sys>
@@ -193,18 +191,20 @@ struct Classification {
   long negative_directions = 0;  ///< negative eigenvalues of that Hessian
 };
 
-/// A solution of a boundary-value problem, or the best iterate of a solve that failed.
-template <DiscreteSystem Sys> struct BoundarySolution {
+/// How a solve of a boundary-value problem ended.
+struct BoundaryOutcome {
   SolveStatus status = SolveStatus::not_converged;
   int iterations = 0;
   double residual = std::numeric_limits<double>::infinity();  ///< largest scaled component of the KKT equations
   double cost = 0;                                            ///< sum_k L(g_k)
   Classification kind;
-  int starts = 0;  ///< of a multistart, those that led here; none where a way down from a saddle did
-  Path<Sys> path;
+  int starts = 0;       ///< of a multistart, those that led here; none where a way down from a saddle did
   std::string message;  ///< of a failure, where more can be said than its status
   bool converged() const { return status == SolveStatus::converged; }
 };
+
+/// A solution of a boundary-value problem, or the best iterate of a solve that failed.
+template <DiscreteSystem Sys> struct BoundarySolution : BoundaryOutcome { Path<Sys> path; };
 
 /// F- of the first arrow: the momentum at the start.
 template <DiscreteSystem Sys>

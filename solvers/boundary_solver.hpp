@@ -39,6 +39,8 @@ struct BoundaryOptions {
   bool classify = true;               ///< find out what kind of stationary point the solution is
 };
 
+template <DiscreteSystem Sys> class BoundarySolverBySizes;
+
 /// Finds a stationary path near a given one. Virtual: one call per solve.
 template <DiscreteSystem Sys> class BoundarySolver {
  public:
@@ -71,13 +73,16 @@ template <DiscreteSystem Sys> class BoundarySolver {
 
   BoundaryOptions options_;
   Seek seek_;
+
+ private:
+  template <DiscreteSystem> friend class BoundarySolverBySizes;  // which has asked for `inadmissible_path`
 };
 
 /// The solvers of a boundary-value problem that a user can name.
 enum class BoundaryMethod { newton, shooting, ceres };
 
-/// A solver of the named kind. Include `boundary_methods.hpp` for a system of your own; those of `systems/` are
-/// compiled.
+/// A solver of the named kind, which knows of the system its sizes alone. Include `boundary_methods.hpp` for a system
+/// whose sizes the library has not (boundary_sizes.hpp), and `boundary_values.hpp` for others of your own.
 template <DiscreteSystem Sys>
 std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method = BoundaryMethod::newton,
                                                           BoundaryOptions options = {}, Seek seek = natural_seek<Sys>);

@@ -22,12 +22,12 @@ struct MultistartOptions {
   int threads = 0;                               ///< solves at a time; 0: as many as there are processors
 };
 
-/// Stationary paths of the last of `stages`, each an easier problem than the next: multistart with the first, then
-/// continuation. Where that led nowhere, the problem asked for gets starts of its own. Throws std::invalid_argument
-/// where `inadmissible_ends` has a reason or an option is out of range.
+namespace detail {
+
+/// What `solve_stages` below does, of any system.
 template <DiscreteSystem Sys>
 MultistartResult<Sys> solve_stages(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
-                                   const MultistartOptions& options = {}) {
+                                   const MultistartOptions& options) {
   if (const auto why = inadmissible_ends(stages.back().problem)) throw std::invalid_argument(*why);
   if (stages.back().steps < 2) throw std::invalid_argument("a boundary-value problem needs at least 2 steps");
   if (options.starts < 1) throw std::invalid_argument("starts must be at least 1");
@@ -37,7 +37,7 @@ MultistartResult<Sys> solve_stages(const BoundarySolver<Sys>& solver, const std:
     const auto guess = [&](int index) {
       return BoundaryGuesses{options.seed, options.amplitude}(along.front().problem, along.front().steps, index);
     };
-    return multistart(solver, along, options.starts, guess, options.report, options.threads);
+    return detail::multistart<Sys>(solver, along, options.starts, guess, options.report, options.threads);
   };
   auto result = solved(stages);
   if (result.solutions.empty() && stages.size() > 1) {
@@ -48,6 +48,35 @@ MultistartResult<Sys> solve_stages(const BoundarySolver<Sys>& solver, const std:
   return result;
 }
 
+/// What `solve_boundary` below does, of any system.
+template <DiscreteSystem Sys>
+MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem,
+                                     std::size_t steps, const MultistartOptions& options) {
+  if (options.coarse_steps < 2) throw std::invalid_argument("coarse_steps must be at least 2");
+  std::vector<BoundaryStage<Sys>> stages{{problem, steps}};
+  if (has_time_step(problem.system)) {
+    stages.clear();
+    for (std::size_t n = std::min(steps, options.coarse_steps);; n = std::min(2 * n, steps)) {
+      stages.push_back({problem, n});
+      if (n == steps) break;
+      set_time_step(stages.back().problem.system, time_step(problem.system) * double(steps) / double(n));
+    }
+  }
+  return detail::solve_stages(solver, stages, options);
+}
+
+}  // namespace detail
+
+/// Stationary paths of the last of `stages`, each an easier problem than the next: multistart with the first, then
+/// continuation. Where that led nowhere, the problem asked for gets starts of its own. Throws std::invalid_argument
+/// where `inadmissible_ends` has a reason or an option is out of range.
+template <DiscreteSystem Sys>
+MultistartResult<Sys> solve_stages(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
+                                   const MultistartOptions& options = {}) {
+  const SizedBoundarySolver<Sys> sized(solver);
+  return of_system(stages.back().problem.system, detail::solve_stages(*sized, by_sizes(stages), options));
+}
+
 /// Stationary paths between the ends of the problem's boundary arrow, `steps` arrows long: `solve_stages` with at most
 /// `coarse_steps` arrows over the same time, then with more of them. A system without a time step is solved as it is.
 /// Needs nothing of the system but what every system has; of what it or its groupoid say of windings (loops.hpp) the
@@ -55,17 +84,10 @@ MultistartResult<Sys> solve_stages(const BoundarySolver<Sys>& solver, const std:
 template <DiscreteSystem Sys>
 MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>& solver, const BoundaryProblem<Sys>& problem,
                                      std::size_t steps, const MultistartOptions& options = {}) {
-  if (options.coarse_steps < 2) throw std::invalid_argument("coarse_steps must be at least 2");
-  std::vector<BoundaryStage<Sys>> stages{{problem, steps}};
-  if constexpr (HasTimeStep<Sys>) {
-    stages.clear();
-    for (std::size_t n = std::min(steps, options.coarse_steps);; n = std::min(2 * n, steps)) {
-      stages.push_back({problem, n});
-      if (n == steps) break;
-      stages.back().problem.system.h = problem.system.h * double(steps) / double(n);
-    }
-  }
-  return solve_stages(solver, stages, options);
+  const SizedBoundarySolver<Sys> sized(solver);
+  return of_system(problem.system, detail::solve_boundary(*sized, by_sizes(problem), steps, options));
 }
 
 }  // namespace lagroid
+
+#include <lagroid/solvers/boundary_sizes.hpp>

@@ -1,13 +1,14 @@
 #pragma once
 /// Solutions carried from one boundary-value problem to the next: along stages, or along a homotopy.
 
-#include <lagroid/solvers/boundary_solver.hpp>
+#include <lagroid/solvers/boundary_by_sizes.hpp>
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -140,17 +141,13 @@ template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem
   return displaced(problem, path, sine_modes<Sys>(path.size(), 3, [&] { return normal(generator); }), 1.0);
 }
 
-}  // namespace detail
-
-/// The solution of a neighbouring problem as a start for this stage: its path (or a better `prediction` of the new one)
-/// brought to the stage's number of arrows and boundary, and solved from there. At an abnormal extremal the path may
-/// have to bend to reach its ends at all: a few bent ones are tried.
+/// What `carry` below does, of any system.
 template <DiscreteSystem Sys>
 BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage,
                             const BoundarySolution<Sys>& from, const Path<Sys>& prediction) {
   const auto& [problem, steps] = stage;
   BoundarySolution<Sys> out;
-  const auto based = detail::rebased(problem, prediction);
+  const auto based = rebased(problem, prediction);
   if (!based) {
     out.status = SolveStatus::left_domain;
     out.message = "the start moves to an object that no short arrow joins to the old one";
@@ -161,12 +158,26 @@ BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundarySta
   out = solver.solve(problem, path, /*keep_multipliers=*/true);
   int iterations = out.iterations;
   for (int bend = 1; bend <= 6 && !out.converged() && !from.kind.normal; ++bend) {
-    out = solver.solve(problem, detail::bent(problem, path, bend), /*keep_multipliers=*/false);
+    out = solver.solve(problem, bent(problem, path, bend), /*keep_multipliers=*/false);
     iterations += out.iterations;
   }
   out.iterations = iterations;
   out.starts = from.starts;
   return out;
+}
+
+}  // namespace detail
+
+/// The solution of a neighbouring problem as a start for this stage: its path (or a better `prediction` of the new one)
+/// brought to the stage's number of arrows and boundary, and solved from there. At an abnormal extremal the path may
+/// have to bend to reach its ends at all: a few bent ones are tried.
+template <DiscreteSystem Sys>
+BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage,
+                            const BoundarySolution<Sys>& from, const Path<Sys>& prediction) {
+  const Sys& system = stage.problem.system;
+  const SizedBoundarySolver<Sys> sized(solver);
+  return of_system(system,
+                   detail::carry(*sized, by_sizes(stage), by_sizes(system, from), by_sizes(system, prediction)));
 }
 
 struct HomotopyOptions {
@@ -175,24 +186,27 @@ struct HomotopyOptions {
   double largest_jump = 0.25;   ///< of a node from its prediction to the solution, over the extent of the path
 };
 
-/// How a homotopy ended, and with what.
-template <DiscreteSystem Sys> struct HomotopyResult {
+/// How a homotopy ended.
+struct HomotopyOutcome {
   SolveStatus status = SolveStatus::not_converged;  ///< converged: s = 1 was reached; else of the last attempt
   double reached = 0;                               ///< the largest s with a solution
   int solves = 0;
   int failures = 0;  ///< solves that failed, each halving the step
   int iterations = 0;
-  BoundarySolution<Sys> solution;  ///< at `reached`
   bool converged() const { return status == SolveStatus::converged; }
 };
 
-/// Follows a solution of stage(0) to stage(1), s -> BoundaryStage any continuous family: of parameters, boundary data,
-/// step sizes. The predictor is the secant through the last two solutions. A step that fails, or whose solution lies
-/// too far from its prediction to be believed on the same sheet (`left_domain`), is halved; where solutions end or turn
-/// back (a fold) the homotopy gives up, with the last solution and how far it came.
-template <DiscreteSystem Sys, class Stage>
-HomotopyResult<Sys> follow(const BoundarySolver<Sys>& solver, const Stage& stage, BoundarySolution<Sys> start,
-                           const HomotopyOptions& options = {}) {
+/// How a homotopy ended, and with what.
+template <DiscreteSystem Sys> struct HomotopyResult : HomotopyOutcome {
+  BoundarySolution<Sys> solution;  ///< at `reached`
+};
+
+namespace detail {
+
+/// What `follow` below does, of any system.
+template <DiscreteSystem Sys>
+HomotopyResult<Sys> follow(const BoundarySolver<Sys>& solver, const std::function<BoundaryStage<Sys>(double)>& stage,
+                           BoundarySolution<Sys> start, const HomotopyOptions& options) {
   HomotopyResult<Sys> out;
   out.solution = std::move(start);
   std::optional<std::pair<double, Path<Sys>>> before;
@@ -203,14 +217,13 @@ HomotopyResult<Sys> follow(const BoundarySolver<Sys>& solver, const Stage& stage
     Path<Sys> prediction = out.solution.path;
     if (before && before->second.size() == prediction.size()) {
       const double factor = (next - out.reached) / (out.reached - before->first);
-      if (auto path = detail::extrapolated(there.problem.system, before->second, prediction, factor))
-        prediction = *path;
+      if (auto path = extrapolated(there.problem.system, before->second, prediction, factor)) prediction = *path;
     }
-    auto solution = carry(solver, there, out.solution, prediction);
+    auto solution = detail::carry(solver, there, out.solution, prediction);
     ++out.solves;
     out.iterations += solution.iterations;
     if (solution.converged() && solution.path.size() == prediction.size() &&
-        !detail::near(there.problem, prediction, solution.path, options.largest_jump))
+        !near(there.problem, prediction, solution.path, options.largest_jump))
       solution.status = SolveStatus::left_domain;
     if (solution.converged()) {
       before = {out.reached, std::move(out.solution.path)};
@@ -228,6 +241,24 @@ HomotopyResult<Sys> follow(const BoundarySolver<Sys>& solver, const Stage& stage
   }
   out.status = SolveStatus::converged;
   return out;
+}
+
+}  // namespace detail
+
+/// Follows a solution of stage(0) to stage(1), s -> BoundaryStage any continuous family: of parameters, boundary data,
+/// step sizes. The predictor is the secant through the last two solutions. A step that fails, or whose solution lies
+/// too far from its prediction to be believed on the same sheet (`left_domain`), is halved; where solutions end or turn
+/// back (a fold) the homotopy gives up, with the last solution and how far it came.
+template <DiscreteSystem Sys, class Stage>
+HomotopyResult<Sys> follow(const BoundarySolver<Sys>& solver, const Stage& stage, const BoundarySolution<Sys>& start,
+                           const HomotopyOptions& options = {}) {
+  using Sized = SizedSystemOf<Sys>;
+  const BoundaryStage<Sys> last = stage(1.0);
+  const Sys& system = last.problem.system;
+  const SizedBoundarySolver<Sys> sized(solver);
+  const auto sized_stage = [&](double s) { return by_sizes(BoundaryStage<Sys>(stage(s))); };
+  const HomotopyResult<Sized> found = detail::follow<Sized>(*sized, sized_stage, by_sizes(system, start), options);
+  return {found, of_system(system, found.solution)};
 }
 
 }  // namespace lagroid

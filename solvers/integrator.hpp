@@ -53,8 +53,9 @@ template <DiscreteSystem Sys> LAGROID_FLATTEN StepReport Integrator<Sys>::advanc
   const StepReport report = stepper_.solve(point().state, solution);
   if (report.converged()) {
     walk_.join(system().groupoid, solution);
-    if constexpr (HasTimeStep<Sys>) {
-      walk_.arrive_at(start_ + double(point().index + 1) * system().h, system().h);
+    if (has_time_step(system())) {
+      const double h = time_step(system());
+      walk_.arrive_at(start_ + double(point().index + 1) * h, h);
       set_time(stepper_.system(), point().time);
     } else {
       walk_.arrive(0);

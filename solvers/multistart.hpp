@@ -6,25 +6,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
 
 namespace lagroid {
 
-/// What a multistart found.
-template <DiscreteSystem Sys> struct MultistartResult {
-  std::vector<BoundarySolution<Sys>> solutions;  ///< distinct stationary points, cheapest of those found first
-  int starts = 0;                                ///< all that were made
-  std::map<SolveStatus, int> outcomes;           ///< of the starts, at the first stage
-  int lost = 0;                                  ///< solutions of the first stage that could not be continued
+/// What a multistart took.
+struct MultistartEffort {
+  int starts = 0;                       ///< all that were made
+  std::map<SolveStatus, int> outcomes;  ///< of the starts, at the first stage
+  int lost = 0;                         ///< solutions of the first stage that could not be continued
   int iterations = 0;
-  int start_iterations = 0;            ///< of all starts at the first stage
-  int most_iterations = 0;             ///< of one start
-  BoundarySolution<Sys> best_failure;  ///< smallest residual among failures
+  int start_iterations = 0;  ///< of all starts at the first stage
+  int most_iterations = 0;   ///< of one start
 
   /// Counts what another multistart of the same problem took as this one's own.
-  void add_effort(const MultistartResult& other) {
+  void add_effort(const MultistartEffort& other) {
     starts += other.starts;
     for (const auto& [status, count] : other.outcomes) outcomes[status] += count;
     iterations += other.iterations;
@@ -32,6 +31,20 @@ template <DiscreteSystem Sys> struct MultistartResult {
     most_iterations = std::max(most_iterations, other.most_iterations);
   }
 };
+
+/// What a multistart found.
+template <DiscreteSystem Sys> struct MultistartResult : MultistartEffort {
+  std::vector<BoundarySolution<Sys>> solutions;  ///< distinct stationary points, cheapest of those found first
+  BoundarySolution<Sys> best_failure;            ///< smallest residual among failures
+};
+
+template <DiscreteSystem Sys>
+MultistartResult<Sys> of_system(const Sys& system, const MultistartResult<SizedSystemOf<Sys>>& found) {
+  MultistartResult<Sys> out{found, {}, of_system(system, found.best_failure)};
+  out.solutions.reserve(found.solutions.size());
+  for (const auto& solution : found.solutions) out.solutions.push_back(of_system(system, solution));
+  return out;
+}
 
 namespace detail {
 
@@ -81,16 +94,11 @@ void descend_from_saddles(const BoundarySolver<Sys>& solver, const BoundaryProbl
   }
 }
 
-}  // namespace detail
-
-/// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
-/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
-/// `solver.seek()`; `guess(i)` is the i-th starting path of the first stage; `report(i)` is called after each start.
-/// Solves go on `threads` threads at once (0: all there are), and so do calls of `guess`; what is found does not depend
-/// on their number.
-template <DiscreteSystem Sys, class Guess, class Report>
+/// What `multistart` below does, of any system.
+template <DiscreteSystem Sys>
 MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
-                                 int starts, const Guess& guess, const Report& report, int threads = 0) {
+                                 int starts, const std::function<Path<Sys>(int)>& guess,
+                                 const std::function<void(int)>& report, int threads) {
   MultistartResult<Sys> result;
   result.starts = starts;
   std::vector<BoundarySolution<Sys>> found;
@@ -104,35 +112,52 @@ MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::v
     ++result.outcomes[solution.status];
     if (solution.converged()) {
       solution.starts = 1;
-      detail::keep_if_new(found, stages.front().problem.system, std::move(solution));
+      keep_if_new(found, stages.front().problem.system, std::move(solution));
     } else {
-      detail::note_failure(result, std::move(solution));
+      note_failure(result, std::move(solution));
     }
   }
   const bool minima = solver.seek() == Seek::minima;
-  if (minima) detail::descend_from_saddles(solver, stages.front().problem, threads, found, result);
+  if (minima) descend_from_saddles(solver, stages.front().problem, threads, found, result);
   for (std::size_t s = 1; s < stages.size(); ++s) {
     const BoundaryProblem<Sys>& problem = stages[s].problem;
     std::vector<BoundarySolution<Sys>> carried;
     const auto carried_on = [&](long i) {
       const auto& solution = found[std::size_t(i)];
-      return carry(solver, stages[s], solution, solution.path);
+      return detail::carry(solver, stages[s], solution, solution.path);
     };
     for (auto& next : results_of_tasks(long(found.size()), threads, carried_on, [](int) {})) {
       result.iterations += next.iterations;
       if (next.converged()) {
-        detail::keep_if_new(carried, problem.system, std::move(next));
+        keep_if_new(carried, problem.system, std::move(next));
       } else {
         ++result.lost;
-        detail::note_failure(result, std::move(next));
+        note_failure(result, std::move(next));
       }
     }
     found = std::move(carried);
   }
-  if (minima && stages.size() > 1) detail::descend_from_saddles(solver, stages.back().problem, threads, found, result);
+  if (minima && stages.size() > 1) descend_from_saddles(solver, stages.back().problem, threads, found, result);
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   result.solutions = std::move(found);
   return result;
+}
+
+}  // namespace detail
+
+/// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
+/// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
+/// `solver.seek()`; `guess(i)` is the i-th starting path of the first stage; `report(i)` is called after each start.
+/// Solves go on `threads` threads at once (0: all there are), and so do calls of `guess`; what is found does not depend
+/// on their number.
+template <DiscreteSystem Sys, class Guess, class Report>
+MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
+                                 int starts, const Guess& guess, const Report& report, int threads = 0) {
+  using Sized = SizedSystemOf<Sys>;
+  const Sys& system = stages.front().problem.system;
+  const SizedBoundarySolver<Sys> sized(solver);
+  const auto sized_guess = [&](int index) { return by_sizes(system, Path<Sys>(guess(index))); };
+  return of_system(system, detail::multistart<Sized>(*sized, by_sizes(stages), starts, sized_guess, report, threads));
 }
 
 }  // namespace lagroid

@@ -32,7 +32,11 @@ template <DiscreteSystem Sys> class Stepper {
   void forget() { past_.clear(); }
   /// Visits all that the next solve goes on from.
   void persist(Tape& tape) {
-    if constexpr (HasTimeStep<Sys>) tape(system_.h);
+    if (has_time_step(system_)) {
+      double h = time_step(system_);
+      tape(h);
+      set_time_step(system_, h);
+    }
     if constexpr (TimeDependent<Sys>) tape(system_.time);
     past_.persist(tape);
     solver_->persist(tape);
@@ -114,7 +118,7 @@ template <DiscreteSystem Sys>
 
 template <DiscreteSystem Sys> StepReport Stepper<Sys>::first_step(const State<G>& state, StepSolution<Sys>& solution) {
   int iterations = 0;
-  if constexpr (HasTimeStep<Sys>) {
+  if (has_time_step(system_)) {
     const StepReport continued = continue_in_step_size(state, solution);
     if (continued.converged()) return continued;
     iterations = continued.iterations;
@@ -134,14 +138,15 @@ StepReport Stepper<Sys>::continue_in_step_size(const State<G>& state, StepSoluti
   const auto& groupoid = system_.groupoid;
   Sys scaled = system_;
   double fraction = start;
-  scaled.h = fraction * system_.h;
+  const double h = time_step(system_);
+  set_time_step(scaled, fraction * h);
   solution.step = guess(scaled, state);
   StepReport report = solver_->solve(scaled, state, solution);
   int iterations = report.iterations;
   double factor = 2;
   while (report.converged() && fraction < 1) {
     const double next = std::min(1.0, fraction * factor);
-    scaled.h = next == 1 ? system_.h : next * system_.h;
+    set_time_step(scaled, next == 1 ? h : next * h);
     const AlgebroidVector<G> v = groupoid.chart(solution.step.arrow) * (next / fraction);
     StepSolution<Sys> trial;
     trial.step = {groupoid.arrow_in_chart(state.object, v), solution.step.multipliers};

@@ -7,6 +7,7 @@
 /// whose critical points the boundary solvers would look for, holds LAGROID_STEP_SOLVERS in place of LAGROID_SOLVERS,
 /// and so does one that depends on time.
 
+#include <lagroid/core/any_system_of.hpp>
 #include <lagroid/core/second_derivatives.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/solvers/integrator.hpp>
@@ -31,6 +32,7 @@
   LAGROID_STEP_SOLVERS(prefix, Sys);                                                                                \
   prefix SecondDerivativesOf<Sys> second_derivatives(const Sys&, const ArrowOf<Sys::GroupoidType>&,                 \
                                                      const Sys::Multipliers&);                                      \
+  prefix class AnySystemOf<Sys>;                                                                                    \
   prefix std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod, BoundaryOptions, Seek);          \
   prefix MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>&, const BoundaryProblem<Sys>&, std::size_t, \
                                               const MultistartOptions&)

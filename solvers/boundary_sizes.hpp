@@ -1,0 +1,41 @@
+#pragma once
+/// The sizes for which the library has compiled the algorithms of boundary values.
+///
+/// These serve every system of such sizes, a user's own included: n, the numbers of arrow and of object constraints,
+/// and the room that the coordinates of an arrow need (coordinate_room). What other sizes need is compiled where it is
+/// used. The lines here stand without `extern` in a .cpp file each, in solvers/boundary_sizes/.
+
+#include <lagroid/solvers/boundary_values.hpp>
+
+#define LAGROID_BOUNDARY_SIZES(prefix, ...)                                                                           \
+  prefix std::unique_ptr<BoundarySolver<SizedSystem<__VA_ARGS__>>> make_sized_boundary_solver(BoundaryMethod,         \
+                                                                                              BoundaryOptions, Seek); \
+  prefix BoundarySolution<SizedSystem<__VA_ARGS__>> carry(                                                            \
+      const BoundarySolver<SizedSystem<__VA_ARGS__>>&, const BoundaryStage<SizedSystem<__VA_ARGS__>>&,                \
+      const BoundarySolution<SizedSystem<__VA_ARGS__>>&, const Path<SizedSystem<__VA_ARGS__>>&);                      \
+  prefix HomotopyResult<SizedSystem<__VA_ARGS__>> follow(                                                             \
+      const BoundarySolver<SizedSystem<__VA_ARGS__>>&,                                                                \
+      const std::function<BoundaryStage<SizedSystem<__VA_ARGS__>>(double)>&,                                          \
+      BoundarySolution<SizedSystem<__VA_ARGS__>>, const HomotopyOptions&);                                            \
+  prefix MultistartResult<SizedSystem<__VA_ARGS__>> multistart(                                                       \
+      const BoundarySolver<SizedSystem<__VA_ARGS__>>&, const std::vector<BoundaryStage<SizedSystem<__VA_ARGS__>>>&,   \
+      int, const std::function<Path<SizedSystem<__VA_ARGS__>>(int)>&, const std::function<void(int)>&, int);          \
+  prefix MultistartResult<SizedSystem<__VA_ARGS__>> solve_stages(                                                     \
+      const BoundarySolver<SizedSystem<__VA_ARGS__>>&, const std::vector<BoundaryStage<SizedSystem<__VA_ARGS__>>>&,   \
+      const MultistartOptions&);                                                                                      \
+  prefix MultistartResult<SizedSystem<__VA_ARGS__>> solve_boundary(const BoundarySolver<SizedSystem<__VA_ARGS__>>&,   \
+                                                                   const BoundaryProblem<SizedSystem<__VA_ARGS__>>&,  \
+                                                                   std::size_t, const MultistartOptions&)
+
+namespace lagroid::detail {
+
+LAGROID_BOUNDARY_SIZES(extern template, 1, 0, 0, 16);  // a pendulum
+LAGROID_BOUNDARY_SIZES(extern template, 2, 0, 0, 16);  // a point in the plane
+LAGROID_BOUNDARY_SIZES(extern template, 3, 0, 0, 16);  // rigid bodies, tops
+LAGROID_BOUNDARY_SIZES(extern template, 3, 0, 1, 16);  // a spherical pendulum
+LAGROID_BOUNDARY_SIZES(extern template, 3, 1, 0, 16);  // rotations with two controls
+LAGROID_BOUNDARY_SIZES(extern template, 3, 2, 0, 16);  // plane poses with one control
+LAGROID_BOUNDARY_SIZES(extern template, 5, 3, 0, 16);  // the plate-ball
+LAGROID_BOUNDARY_SIZES(extern template, 6, 0, 0, 16);  // bodies in space
+
+}  // namespace lagroid::detail
