@@ -1,12 +1,13 @@
 # The systems that scenes, checks and Python know, in the order in which they are listed to users: systems/NAME.hpp with
 # the class, app/systems/NAME.cpp with how its scenes are read and shown. What the solvers make of each is compiled once,
 # from files that are made here (systems/instances.hpp). INITIAL_VALUES: it is forced, nonholonomic or depends on time,
-# and has no boundary values. Further sources of its own stand after SOURCES.
+# and has no boundary values; others name their sizes (solvers/boundary_sizes). Further sources of its own stand after
+# SOURCES.
 set(system_names)
 set(system_classes)
 set(certificate_sources)  # of lagroid_certificates
 function(lagroid_system name class)
-  cmake_parse_arguments(ARG "INITIAL_VALUES" "" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "INITIAL_VALUES" "SIZES" "SOURCES" ${ARGN})
   set(solvers LAGROID_SOLVERS)
   set(boundary_methods "#include <lagroid/solvers/boundary_methods.hpp>\n")
   if(ARG_INITIAL_VALUES)
@@ -21,18 +22,20 @@ function(lagroid_system name class)
   set(system_classes ${system_classes} ${class} PARENT_SCOPE)
   lagroid_part(${name} ${made}/${name}_steps.cpp ${made}/${name}_solvers.cpp ${ARG_SOURCES})
   set(lagroid_parts ${lagroid_parts} PARENT_SCOPE)
+  set(sizes_of_${name} ${ARG_SIZES} PARENT_SCOPE)
   set(certificate_sources ${certificate_sources} ${made}/${name}_certificate.cpp PARENT_SCOPE)
 endfunction()
-lagroid_system(plate_ball PlateBall SOURCES systems/plate_ball.cpp systems/plate_ball_boundary.cpp)
-lagroid_system(unicycle Unicycle)
-lagroid_system(attitude_control AttitudeControl SOURCES systems/attitude_control.cpp)
-lagroid_system(rigid_body RigidBody SOURCES systems/rigid_body.cpp systems/moser_veselov.cpp
-               systems/moser_veselov_solvers.cpp)
-lagroid_system(heavy_top HeavyTop SOURCES systems/heavy_top.cpp)
-lagroid_system(pendulum Pendulum)
-lagroid_system(kepler Kepler)
-lagroid_system(spherical_pendulum SphericalPendulum SOURCES systems/spherical_pendulum.cpp)
-lagroid_system(gyrostat Gyrostat)
+lagroid_system(plate_ball PlateBall SIZES 5_3_0
+               SOURCES systems/plate_ball.cpp systems/plate_ball_boundary.cpp)
+lagroid_system(unicycle Unicycle SIZES 3_2_0)
+lagroid_system(attitude_control AttitudeControl SIZES 3_1_0 SOURCES systems/attitude_control.cpp)
+lagroid_system(rigid_body RigidBody SIZES 3_0_0
+               SOURCES systems/rigid_body.cpp systems/moser_veselov.cpp systems/moser_veselov_solvers.cpp)
+lagroid_system(heavy_top HeavyTop SIZES 3_0_0 SOURCES systems/heavy_top.cpp)
+lagroid_system(pendulum Pendulum SIZES 1_0_0)
+lagroid_system(kepler Kepler SIZES 2_0_0)
+lagroid_system(spherical_pendulum SphericalPendulum SIZES 3_0_1 SOURCES systems/spherical_pendulum.cpp)
+lagroid_system(gyrostat Gyrostat SIZES 6_0_0)
 lagroid_system(rolling_ball RollingBall INITIAL_VALUES SOURCES systems/rolling_ball.cpp)
 lagroid_system(rolling_disk RollingDisk INITIAL_VALUES SOURCES systems/rolling_disk.cpp)
 lagroid_system(chaplygin_sleigh ChaplyginSleigh INITIAL_VALUES SOURCES systems/chaplygin_sleigh.cpp)

@@ -1,19 +1,17 @@
-/// The program lagroid-check: `lagroid check`.
+#include "check.hpp"
 
 #include "../study/accuracy.hpp"
-#include "../systems/library_systems.hpp"
-#include "family_laws.hpp"
 
 #include <lagroid/core/testing/sampling.hpp>
 
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
+
+namespace lagroid::app {
 
 namespace {
-
-using namespace lagroid;
-using namespace lagroid::app;
 
 Certificate certified(const Section& scene, const CheckOptions& options) {
   const laws::Sampling sampling(options.samples, options.seed);
@@ -34,9 +32,10 @@ int check(const CheckOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  use_families({&systems_family(), &spheres_family(), &bodies_family()});
-  use_systems(library_systems());
+int check_program(int argc, char** argv, ProgramParts parts, std::vector<const FamilyLaws*> laws) {
+  use_families(std::move(parts.families));
+  use_systems(std::move(parts.systems));
+  use_laws(std::move(laws));
   CLI::App app{"ask a scene's system, along its run, every law that applies", "lagroid check"};
   CheckOptions options;
   add_scene_options(app, options);
@@ -45,3 +44,5 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0L, 1'000'000'000'000L));
   return command_line(app, argc, argv, options, [&] { return check(options); });
 }
+
+}  // namespace lagroid::app

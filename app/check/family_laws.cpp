@@ -1,14 +1,25 @@
 #include "family_laws.hpp"
 
-#include <array>
+#include <utility>
 
 namespace lagroid::app {
 
+namespace {
+
+std::vector<const FamilyLaws*>& known() {
+  static std::vector<const FamilyLaws*> laws;
+  return laws;
+}
+
+}  // namespace
+
+void use_laws(std::vector<const FamilyLaws*> laws) { known() = std::move(laws); }
+
 const FamilyLaws& laws_of(const Section& scene) {
   const SceneFamily& family = motions_of(scene);
-  for (const FamilyLaws* laws : std::array{&systems_laws(), &spheres_laws(), &bodies_laws()})
+  for (const FamilyLaws* laws : known())
     if (&laws->family() == &family) return *laws;
-  scene.fail("", "is of a kind that has no laws");
+  scene.fail("", "is of a kind that this program has no laws of");
 }
 
 }  // namespace lagroid::app

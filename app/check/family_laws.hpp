@@ -7,6 +7,8 @@
 
 #include <lagroid/run/certificate.hpp>
 
+#include <vector>
+
 namespace lagroid::app {
 
 class FamilyLaws {
@@ -16,6 +18,8 @@ class FamilyLaws {
   virtual Certificate certify(const Section& scene, const CheckOptions& options) const = 0;
 };
 
+/// Which laws this program has; it says so at its start.
+void use_laws(std::vector<const FamilyLaws*> laws);
 /// Those of the family that the scene is of. Throws SceneError for what is no motion and no path.
 const FamilyLaws& laws_of(const Section& scene);
 
