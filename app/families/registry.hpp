@@ -5,6 +5,9 @@
 #include "../spheres/sphere_system.hpp"
 #include "../systems/readers.hpp"
 
+#include <lagroid/solvers/declared_methods.hpp>
+#include <lagroid/systems/moser_veselov_method.hpp>
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +21,8 @@ template <DiscreteSystem Sys> struct Entry {
   std::string_view summary;
   Task<Sys> (*read)(const Section& scene, const RunContext& context);
   std::vector<Parameter> parameters;
+  /// Methods beside those declared for every system.
+  std::vector<DeclaredMethod> own_methods = {};
 };
 
 /// Visits the entry of every system whose groupoid is a type, in the order in which they are listed to users; those of
@@ -48,7 +53,8 @@ template <class Visit> void for_each_system(const Visit& visit) {
                                {{"weights", "1", "1, 1, 1", "three weights of the cost w.W w / 2"},
                                 {"forbidden", "1", "0, 0, 1", "the forbidden axis in the body"},
                                 rotation}});
-  visit(Entry<RigidBody>{"rigid_body", "free rigid body on SO(3)", read_rigid_body, {inertia, rotation}});
+  visit(Entry<RigidBody>{
+      "rigid_body", "free rigid body on SO(3)", read_rigid_body, {inertia, rotation}, {moser_veselov_method}});
   visit(Entry<HeavyTop>{"heavy_top",
                         "rigid body with a fixed point under gravity, SO(3) acting on S^2",
                         read_heavy_top,

@@ -2,6 +2,10 @@
 #include "rotating.hpp"
 
 #include <lagroid/systems/moser_veselov.hpp>
+#include <lagroid/systems/moser_veselov_method.hpp>
+
+#include <algorithm>
+#include <array>
 
 namespace lagroid::app {
 
@@ -36,15 +40,15 @@ template <class Sys> Presentation<Sys> presentation(const Sys& system) {
   return p;
 }
 
-/// [time] method = "moser-veselov": the same motion by the preprocessed discrete Moser-Veselov algorithm.
+/// The method of [time] that is the body's own: the same motion by the preprocessed discrete Moser-Veselov algorithm.
 Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, const RigidBody& body,
                               const State<SO3>& state, const Matrix<double, 3, 3>& attitude) {
   const Section time = scene.section("time", "step and steps");
-  time.choice_or("method", "", {"moser-veselov"});
-  time.choice_or("mode", "fixed", {"fixed"});
   refuse_accuracy(scene);
-  const int order = int(time.integer_or("order", 10, 2, 10));
-  if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6, 8 or 10, got {}", order));
+  const auto& orders = moser_veselov_orders;
+  const int order = int(time.integer_or("order", moser_veselov_method.order, orders.front(), orders.back()));
+  if (std::find(orders.begin(), orders.end(), order) == orders.end())
+    time.fail("order", fmt::format("must be {}, got {}", any_of_these(orders), order));
   const Pace pace = read_pace(scene, context);
   scene.finish();
   MoserVeselov system;
@@ -65,12 +69,13 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context, c
 }
 
 void add_moser_veselov(std::vector<Method>& methods) {
-  for (int order = 2; order <= 10; order += 2)
-    methods.push_back({fmt::format("moser-veselov/{}", order),
+  const std::string_view name = moser_veselov_method.name;
+  for (const int order : moser_veselov_orders)
+    methods.push_back({fmt::format("{}/{}", name, order),
                        order,
-                       1,
+                       moser_veselov_method.stages,
                        true,
-                       {"time.method=moser-veselov", fmt::format("time.order={}", order)}});
+                       {fmt::format("time.method={}", name), fmt::format("time.order={}", order)}});
 }
 
 }  // namespace
@@ -83,8 +88,8 @@ Task<RigidBody> read_rigid_body(const Section& scene, const RunContext& context)
   const Section initial = scene.section("initial", "attitude and momentum");
   const State<SO3> state = read_turning(initial);
   const Matrix<double, 3, 3> attitude = read_rotation(initial);
-  const Section time = scene.section_or_empty("time");
-  if (time.has("method") && time.text("method", "variational, splitting or moser-veselov") == "moser-veselov")
+  const std::array own{moser_veselov_method};
+  if (read_method_word(scene.section_or_empty("time"), own) == moser_veselov_method.name)
     return moser_veselov(scene, context, system, state, attitude);
   Task<RigidBody> task = simulation(scene, context, system, p, state, attitude);
   add_moser_veselov(task.methods);
