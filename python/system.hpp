@@ -13,8 +13,9 @@
 #include <lagroid/python/rows.hpp>
 #include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
-#include <lagroid/solvers/compositions.hpp>
+#include <lagroid/solvers/boundary_words.hpp>
 #include <lagroid/solvers/constrained_momentum.hpp>
+#include <lagroid/solvers/declared_methods.hpp>
 #include <lagroid/solvers/march.hpp>
 
 #include <pybind11/eigen.h>
@@ -171,13 +172,17 @@ inline py::object kept(const std::optional<Array>& array) {
 template <class V> void put(const V& v, double* out) { std::copy(v.data(), v.data() + v.size(), out); }
 
 /// One of the words, by its place.
-template <std::size_t N>
-std::size_t choice(const char* key, const std::string& word, const std::array<std::string_view, N>& words) {
+template <class Words> std::size_t choice(const char* key, const std::string& word, const Words& words) {
   const auto found = std::find(words.begin(), words.end(), word);
   if (found != words.end()) return std::size_t(found - words.begin());
   std::string all;
   for (const auto& each : words) all += (all.empty() ? "" : ", ") + std::string(each);
   throw py::value_error(std::string(key) + ": \"" + word + "\" is none of " + all);
+}
+/// What a declared word chooses.
+template <class T, std::size_t N>
+T choice(const char* key, const std::string& word, const std::array<Word<T>, N>& words) {
+  return words[choice(key, word, words_of(words))].choice;
 }
 
 /// x, if it is finite and the rule holds of it; else ValueError, in the words that a scene gets.
@@ -226,51 +231,40 @@ void bind_parameter(py::class_<Sys>& made, const Choice<Owner, Enum, N>& p) {
       std::string(p.meaning).c_str());
 }
 
-inline Composition composition_of(std::optional<int> order, const std::optional<std::string>& name, bool split) {
-  std::vector<Composition> offered(compositions::all.begin(), compositions::all.end());
-  if (split) offered.insert(offered.end(), splittings::all.begin(), splittings::all.end());
+/// `order` and `composition` of a method.
+inline Composition composition_of(const MarchMethod& method, std::optional<int> order,
+                                  const std::optional<std::string>& name) {
+  if (!method.composed()) {
+    if (name || order.value_or(method.order) != method.order)
+      throw py::value_error(fmt::format("order: of \"{}\" is {}, without a composition", method.name, method.order));
+    return compositions::single;
+  }
   if (name) {
-    for (const auto& each : offered)
-      if (each.name == *name) {
-        if (order && each.order != *order)
-          throw py::value_error("composition: \"" + *name + "\" is of order " + std::to_string(each.order));
-        return each;
-      }
-    std::string all;
-    for (const auto& each : offered) all += (all.empty() ? "" : ", ") + std::string(each.name);
-    throw py::value_error("composition: \"" + *name + "\" is none of " + all);
+    const std::vector<Composition> offered = compositions_of(method.other_orders);
+    std::vector<std::string> names;
+    for (const auto& each : offered) names.emplace_back(each.name);
+    const Composition& named = offered[choice("composition", *name, names)];
+    if (order && named.order != *order)
+      throw py::value_error(fmt::format("composition: \"{}\" is of order {}", *name, named.order));
+    return named;
   }
-  switch (order.value_or(2)) {
-    case 2:
-      return compositions::single;
-    case 4:
-      return compositions::suzuki;
-    case 6:
-      return compositions::kahan_li_6;
-    case 8:
-      return compositions::kahan_li_8;
-    default:
-      throw py::value_error("order: must be 2, 4, 6 or 8");
-  }
+  const Composition* const usual = usual_composition(order.value_or(method.order));
+  if (usual == nullptr) throw py::value_error("order: must be " + usual_orders());
+  return *usual;
 }
 
 /// The keys of [time] and [solver] of a scene.
 inline MarchOptions march_options(const std::string& mode, const std::string& method, std::optional<int> order,
                                   const std::optional<std::string>& composition, const std::string& without_root,
                                   int max_iterations, double tolerance) {
-  MarchOptions options;
-  options.mode = TimeMode(choice<4>("mode", mode, {"fixed", "adaptive", "controlled", "transformed"}));
-  options.fixed = StepKind(choice<3>("method", method, {"variational", "splitting", "runge-kutta"}));
-  options.without_root = WithoutRoot(choice<3>("without_root", without_root, {"stop", "constant", "controlled"}));
-  const bool split = options.fixed == StepKind::splitting;
-  if (options.fixed == StepKind::runge_kutta) {
-    if (composition || order.value_or(4) != 4) throw py::value_error("order: of Runge-Kutta steps is 4");
-  } else {
-    options.composition = composition_of(order, composition, split);
-  }
-  constexpr int most = 100000;
-  if (max_iterations < 0 || max_iterations > most)
-    throw py::value_error(fmt::format("max_iterations: must be from 0 to {}, got {}", most, max_iterations));
+  choice("mode", mode, mode_words());
+  choice("method", method, method_words());
+  const MarchMethod& declared = march_method(mode, method);
+  MarchOptions options = options_of(declared);
+  options.without_root = choice("without_root", without_root, without_root_words);
+  options.composition = composition_of(declared, order, composition);
+  if (max_iterations < 0 || max_iterations > most_iterations)
+    throw py::value_error(fmt::format("max_iterations: must be from 0 to {}, got {}", most_iterations, max_iterations));
   if (!std::isfinite(tolerance)) throw py::value_error(fmt::format("tolerance: must be finite, got {}", tolerance));
   if (tolerance < 0) throw py::value_error(fmt::format("tolerance: must be zero or positive, got {}", tolerance));
   options.step = {max_iterations, tolerance};
@@ -346,7 +340,7 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
                                            const std::string& method, int starts, std::uint64_t seed,
                                            std::string& failure) {
   using G = typename Sys::GroupoidType;
-  const auto kind = BoundaryMethod(detail::choice<3>("method", method, {"newton", "shooting", "ceres"}));
+  const auto kind = detail::choice("method", method, boundary_words);
   detail::require_step(system);
   if (steps < 2) throw py::value_error(fmt::format("steps: must be at least 2, got {}", steps));
   if (starts < 1) throw py::value_error(fmt::format("starts: must be at least 1, got {}", starts));
@@ -434,9 +428,9 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
         return integrator(py::cast(march), ledger, py::make_tuple(py::cast(Sys(self)), arguments));
       },
       py::arg("momentum") = py::none(), py::arg("object") = py::none(), py::arg("configuration") = py::none(),
-      py::arg("mode") = "fixed", py::arg("method") = "variational", py::arg("order") = py::none(),
-      py::arg("composition") = py::none(), py::arg("without_root") = "stop", py::arg("max_iterations") = 0,
-      py::arg("tolerance") = 0.0, py::arg("ledger") = true,
+      py::arg("mode") = mode_words().front(), py::arg("method") = method_words().front(), py::arg("order") = py::none(),
+      py::arg("composition") = py::none(), py::arg("without_root") = words_of(without_root_words).front(),
+      py::arg("max_iterations") = 0, py::arg("tolerance") = 0.0, py::arg("ledger") = true,
       "An Integrator at the state (object, momentum), all by name. `configuration` is the arrow that ends at the\n"
       "object, in the coordinates of arrows; it is carried along (an attitude). The keywords are those of [time] and\n"
       "[solver] of scenes (docs/scenes.md). Raises ValueError for what the system does not have.");
@@ -459,8 +453,8 @@ template <DiscreteSystem Sys> void bind_boundary(py::class_<Sys>& made) {
         }
         return paths;
       },
-      py::arg("arrow"), py::arg("steps"), py::kw_only(), py::arg("method") = "newton", py::arg("starts") = 40,
-      py::arg("seed") = 1,
+      py::arg("arrow"), py::arg("steps"), py::kw_only(), py::arg("method") = words_of(boundary_words).front(),
+      py::arg("starts") = 40, py::arg("seed") = 1,
       "The stationary paths of `steps` arrows whose product is `arrow`, the cheapest of those found first; `starts`\n"
       "of each says how many led to it. Raises SolveError where no start leads to one.");
 }

@@ -5,6 +5,7 @@
 #include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/composed_step.hpp>
 #include <lagroid/solvers/compositions.hpp>
+#include <lagroid/solvers/declared_methods.hpp>
 #include <lagroid/systems/pendulum_chain.hpp>
 
 #include <algorithm>
@@ -14,6 +15,12 @@
 #include <utility>
 
 namespace lagroid {
+
+inline constexpr DeclaredMethod rattle_method{
+    .name = "rattle",
+    .other_orders = OtherOrders::composed_steps,
+    .implicit = true,
+    .source = {"marrero2015", "discrete mechanics with constraints, of which RATTLE is a case"}};
 
 /// RATTLE on (S^2)^k: the discrete Euler-Lagrange equations of the trapezoid Lagrangian h (L(q, (q' - q)/h) + L(q', (q'
 /// - q)/h)) / 2 with |q_i| = 1, in O(k) by tensions (Ryckaert, Ciccotti and Berendsen 1977; Andersen 1983; Hairer,
@@ -56,8 +63,9 @@ template <int K> class ChainRattle {
   }
 
   static MethodTraits traits(const Composition& composition) {
-    const bool single = composition.stages() == 1;
-    return {single ? "rattle" : "rattle, " + std::string(composition.name), composition.order, true, true, false};
+    std::string name(rattle_method.name);
+    if (composition.stages() > 1) name += ", " + std::string(composition.name);
+    return {std::move(name), composition.order, true, true, false};
   }
   MethodTraits traits() const { return traits(composition_); }
   double time() const { return double(index_) * h_; }

@@ -41,7 +41,7 @@ std::unique_ptr<SphereMarch> make_chain_march(const Chain& chain, const SphereMa
   if (start.cols() != chain.links())
     throw std::invalid_argument("a chain of " + std::to_string(chain.links()) +
                                 " links starts from as many points, not " + std::to_string(start.cols()));
-  if (options.method == "rattle") {
+  if (options.method == rattle_method.name) {
     if (!std::isfinite(options.step) || options.step == 0)
       throw std::invalid_argument("the steps of rattle are finite and not zero");
     if (options.tolerance != 0) throw std::invalid_argument("rattle estimates no error");

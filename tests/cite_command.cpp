@@ -38,14 +38,23 @@ TEST_F(Cite, SaysWhatASceneRestsOn) {
   EXPECT_EQ(cited(example("kepler") + " --set time.method=splitting"), Keys{"marrero2015"});
   EXPECT_EQ(cited(example("kepler") + " --set solver.method=ceres"), Keys{"marrero2015"});
   EXPECT_EQ(cited(example("kepler_adaptive")), (Keys{"marrero2015", "kane1999", "owren2000"}));
+  EXPECT_EQ(cited(example("kepler") + " --set time.order=4"), (Keys{"marrero2015", "suzuki1990", "owren2000"}));
+  EXPECT_EQ(cited(example("kepler") + " --set time.method=splitting --set time.composition=nystrom-6"),
+            (Keys{"marrero2015", "blanes2002"}));
+  EXPECT_EQ(cited(example("kepler") + " --set time.mode=transformed --set time.order=8"),
+            (Keys{"marrero2015", "mikkola1999", "kahan1997"}));
+  EXPECT_EQ(cited(example("chain_drop") + " --set time.order=6"), (Keys{"marrero2015", "kahan1997"}));
   EXPECT_EQ(cited(example("rigid_body_moser_veselov")), (Keys{"marrero2015", "hairer2006"}));
   EXPECT_EQ(cited(example("rolling_disk")), (Keys{"marrero2015", "iglesias2008", "owren2000"}));
   EXPECT_EQ(cited(example("chain_drop")), Keys{"marrero2015"});
   EXPECT_EQ(cited(example("rolling_balls")), (Keys{"marrero2015", "iglesias2008"}));
   EXPECT_EQ(cited(example("sweeps/basins")), (Keys{"marrero2015", "owren2000"}));
   EXPECT_EQ(cited(example("pendulum_chain")), Keys{"marrero2015"});
-  EXPECT_EQ(cited(example("pendulum_chain") + " --set time.method=munthe-kaas-54"), Keys{"celledoni2022"});
-  EXPECT_EQ(cited(example("learned_hamiltonian")), (Keys{"celledoni2023", "celledoni2022"}));
+  EXPECT_EQ(cited(example("pendulum_chain") + " --set time.method=munthe-kaas-54"),
+            (Keys{"celledoni2022", "munthe-kaas1999"}));
+  EXPECT_EQ(cited(example("pendulum_chain") + " --set time.method=runge-kutta-4"), Keys{});
+  EXPECT_EQ(cited(example("pendulum_chain") + " --set time.order=4"), (Keys{"marrero2015", "suzuki1990"}));
+  EXPECT_EQ(cited(example("learned_hamiltonian")), (Keys{"celledoni2023", "celledoni2022", "celledoni2003"}));
   EXPECT_EQ(cited(example("optimisation/membrane")), Keys{"duruisseaux2022"});
   EXPECT_EQ(cited(example("optimisation/membrane") + " --set method.name=trust-region"), Keys{});
 }
@@ -81,8 +90,8 @@ TEST_F(Cite, TheCitationFileIsWhatItPrints) {
 TEST_F(Cite, RefusesWhatItCannotRead) {
   for (const std::string& wrong :
        {std::string("nowhere.toml"), folder_.string(), example("kepler") + " --set system=nothing",
-        example("kepler") + " --set time.method=eular", example("pendulum_chain") + " --set time.method=eular",
-        std::string("--json --bibtex")})
+        example("kepler") + " --set time.method=eular", example("kepler") + " --set time.method=moser-veselov",
+        example("pendulum_chain") + " --set time.method=eular", std::string("--json --bibtex")})
     expect_refused("cite " + wrong);
 }
 

@@ -23,25 +23,17 @@ using multibody::Vec;
 
 namespace {
 
-/// Whether steps are controlled.
-bool read_mode(const Section& scene) {
-  const Section time = scene.section("time", "step and steps, or duration and steps");
-  const bool controlled = time.choice_or("mode", "fixed", {"fixed", "controlled"}) == "controlled";
-  if (controlled) refuse_duration(time);
-  return controlled;
-}
-
 /// [time] and [solver]: how the scene is stepped.
 multibody::Options read_options(const Section& scene, const SceneBodies& bodies) {
   refuse_accuracy(scene);
   const Section solver = scene.section_or_empty("solver");
   multibody::Options options;
-  options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, 100000));
+  options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, most_iterations));
   options.tolerance =
       solver.number_or("tolerance", 0, {"between 0 and 0.001", [](double x) { return x >= 0 && x <= 1e-3; }});
-  options.controlled = read_mode(scene);
   const Section time = scene.section("time", "step and steps, or duration and steps");
-  time.choice_or("method", "variational", {"variational"});
+  options.controlled = !read_bodies_method(time).equal_steps();
+  if (options.controlled) refuse_duration(time);
   options.composition = read_composition(time, compositions::all);
   if (options.composition.stages() > 1 && (options.controlled || !is_composable(bodies)))
     time.fail(time.has("order") ? "order" : "composition",
@@ -192,6 +184,15 @@ class BodiesMotion final : public Motion {
 
 }  // namespace
 
+const MarchMethod& read_bodies_method(const Section& time) {
+  const MarchMethod& equal = march_method(MarchOptions{});
+  const MarchMethod& controlled = march_method({.mode = TimeMode::controlled});
+  const std::string fixed(mode_of_equal_steps);
+  const std::string mode = time.choice_or("mode", fixed, {fixed, std::string(controlled.name)});
+  time.choice_or("method", std::string(equal.name), {std::string(equal.name)});
+  return mode == fixed ? equal : controlled;
+}
+
 BodiesScene read_bodies(const Section& scene, const RunContext& context) {
   SceneBodies bodies = read_scene_bodies(scene);
   if (bodies.bodies.empty()) scene.fail("body", "there is no body in it");
@@ -205,11 +206,18 @@ BodiesScene read_bodies(const Section& scene, const RunContext& context) {
   for (const NamedBody* body : bodies.chosen(output, "bodies"))
     if (output.has("bodies")) chosen.insert(body->name);
   scene.finish();
-  out.methods = composed_methods("variational", steps_composed(is_composable(bodies)));
+  out.methods = composed_methods(march_method(MarchOptions{}).name, steps_composed(is_composable(bodies)));
   out.to_check = {name, [scene] { return std::move(read_scene_bodies(scene).scene); }, step, is_symplectic(bodies),
                   is_reversible(bodies)};
   auto motion = std::make_unique<BodiesMotion>(scene, name, std::move(bodies), step, options, std::move(chosen));
-  if (motion->has_time_scale()) out.methods.push_back({"controlled", 2, 1, false, {"time.mode=controlled"}});
+  if (motion->has_time_scale()) {
+    const MarchMethod& controlled = march_method({.mode = TimeMode::controlled});
+    out.methods.push_back({std::string(controlled.name),
+                           controlled.order,
+                           controlled.stages,
+                           controlled.equal_steps(),
+                           {fmt::format("time.mode={}", controlled.name)}});
+  }
   out.motion = std::move(motion);
   return out;
 }

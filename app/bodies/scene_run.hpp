@@ -3,6 +3,7 @@
 
 #include "../reading/motion_scene.hpp"
 
+#include <lagroid/solvers/declared_methods.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <functional>
@@ -25,6 +26,8 @@ struct BodiesToCheck {
 struct BodiesScene : MotionScene {
   BodiesToCheck to_check;
 };
+/// The method that [time] names: equal steps of a variational method, or controlled ones.
+const MarchMethod& read_bodies_method(const Section& time);
 BodiesScene read_bodies(const Section& scene, const RunContext& context);
 
 }  // namespace lagroid::app

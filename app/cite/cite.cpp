@@ -2,7 +2,6 @@
 
 #include "../command/command.hpp"
 #include "../families/family.hpp"
-#include "../sweep/sweep_scene.hpp"
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/run/checkpoint.hpp>
@@ -25,8 +24,6 @@ constexpr std::string_view authors = "The Lagroid authors";
 constexpr std::string_view what_it_is = "Discrete mechanics on Lie groupoids";
 constexpr int year = 2026;
 
-std::vector<Use> uses_of(const Section& scene) { return family_of(scene).uses(scene); }
-
 std::vector<Use> uses_in(const CiteOptions& options) {
   std::vector<Use> all;
   if (options.subject.empty() || options.cff) {
@@ -36,15 +33,16 @@ std::vector<Use> uses_in(const CiteOptions& options) {
   std::error_code ignored;
   if (!fs::is_directory(options.subject, ignored)) {
     const Section scene = read_scene(options.subject, options.overrides);
-    const bool is_sweep = &family_of(scene) == &sweeps_family();
-    return uses_of(is_sweep ? read_sweep(options.subject, options.overrides).scene : scene);
+    return family_of(scene).uses(scene);
   }
-  if (fs::exists(fs::path(options.subject) / "model.json")) return uses_of_learning();
+  for (const SceneFamily* family : families())
+    if (std::vector<Use> uses = family->uses_of_folder(options.subject); !uses.empty()) return uses;
   if (!fs::exists(fs::path(options.subject) / "checkpoint" / "scene.toml"))
     throw RunError(fmt::format("\"{}\" holds neither the scene of a run nor a learned model; name the scene's file",
                                options.subject));
-  return uses_of(parse_scene(Checkpoint::scene_of(options.subject), options.subject + "/checkpoint/scene.toml",
-                             options.overrides));
+  const Section scene =
+      parse_scene(Checkpoint::scene_of(options.subject), options.subject + "/checkpoint/scene.toml", options.overrides);
+  return family_of(scene).uses(scene);
 }
 
 std::string pages(const Reference& r, std::string_view dash) {

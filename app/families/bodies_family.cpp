@@ -2,6 +2,7 @@
 
 #include "../bodies/scene_bodies.hpp"
 #include "../bodies/scene_run.hpp"
+#include "../reading/simulation.hpp"
 
 namespace lagroid::app {
 
@@ -15,7 +16,10 @@ class Bodies final : public SceneFamily {
   }
   std::vector<Use> uses(const Section& scene) const override {
     std::vector<Use> uses{{&reference("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};
-    add_uses_of_time(scene.section_or_empty("time").choice_or("mode", "fixed", {"fixed", "controlled"}), "", uses);
+    const Section time = scene.section_or_empty("time");
+    const MarchMethod& method = read_bodies_method(time);
+    add_use(method.source, uses);
+    if (method.composed()) add_use(source_of(read_composition(time, compositions::all)), uses);
     if (read_scene_bodies(scene).nonholonomic)
       uses.push_back({&reference("iglesias2008"), "nonholonomic constraints on Lie groupoids"});
     return uses;

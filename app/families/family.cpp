@@ -45,11 +45,4 @@ const SceneFamily& motions_of(const Section& scene) {
   return family;
 }
 
-void add_uses_of_time(const std::string& mode, const std::string& method, std::vector<Use>& uses) {
-  if (mode == "adaptive") uses.push_back({&reference("kane1999"), "steps whose size keeps the discrete energy"});
-  if (mode == "controlled") uses.push_back({&reference("hairer2005"), "reversibly controlled steps"});
-  if (method == "moser-veselov")
-    uses.push_back({&reference("hairer2006"), "the preprocessed discrete Moser-Veselov algorithm"});
-}
-
 }  // namespace lagroid::app

@@ -6,6 +6,7 @@
 #include "../reading/system_module.hpp"
 #include "references.hpp"
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,6 +31,8 @@ class SceneFamily {
   /// What its system and method rest on; nothing where that is by a classical method. No more is read than says so.
   /// Throws SceneError where there is no such system or method.
   virtual std::vector<Use> uses(const Section& scene) const = 0;
+  /// The same of a folder that a command other than `run` left; nothing where the folder is not of this family.
+  virtual std::vector<Use> uses_of_folder(const std::filesystem::path&) const { return {}; }
   /// Its systems.
   virtual std::vector<ListedSystem> systems() const { return {}; }
   /// Their names.
@@ -62,8 +65,5 @@ const SystemModule& module_of_scene(const Section& scene);
 const SceneFamily& optimisation_family();
 /// Many members of a scene.
 const SceneFamily& sweeps_family();
-
-/// Steps of a size that varies, and the one method that papers were written on, as [time] names them.
-void add_uses_of_time(const std::string& mode, const std::string& method, std::vector<Use>& uses);
 
 }  // namespace lagroid::app

@@ -3,6 +3,7 @@
 #include "family.hpp"
 
 #include "../optimise/methods.hpp"
+#include "../reading/its_scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,8 +31,11 @@ class Sweeps final : public SceneFamily {
  public:
   bool recognises(const Section& scene) const override { return scene.has("scene"); }
   std::string_view command() const override { return "sweep"; }
-  /// Its scene is elsewhere: `cite` reads it.
-  std::vector<Use> uses(const Section&) const override { return {}; }
+  /// What each of its members rests on.
+  std::vector<Use> uses(const Section& sweep) const override {
+    const Section scene = read_its_scene(sweep);
+    return family_of(scene).uses(scene);
+  }
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 #pragma once
 /// The papers behind the program: the one place where they stand. CITATION.cff is written from here.
 
+#include <lagroid/solvers/sources.hpp>
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,7 +42,7 @@ struct Use {
   std::string what;
 };
 
-/// What a learned Hamiltonian rests on (`lagroid learn`).
-std::vector<Use> uses_of_learning();
+/// Adds what a method or a system names as its source, if it names one.
+void add_use(const Source& source, std::vector<Use>& uses);
 
 }  // namespace lagroid::app

@@ -1,7 +1,11 @@
 #include "family.hpp"
 
+#include "../reading/simulation.hpp"
+#include "../spheres/learned_scene.hpp"
+#include "../spheres/model_file.hpp"
 #include "../spheres/sphere_run.hpp"
 #include "../spheres/sphere_system.hpp"
+#include "../spheres/sphere_time.hpp"
 
 namespace lagroid::app {
 
@@ -14,17 +18,24 @@ class Spheres final : public SceneFamily {
     return read_spheres(*sphere_system_of(scene), scene, context);
   }
   std::vector<Use> uses(const Section& scene) const override {
-    constexpr std::string_view rattle = "rattle";  // of pendulum chains, where no other is named
-    std::vector<std::string> names{std::string(rattle)};
-    for (const LieGroupMethod& method : lie_group_methods::all) names.emplace_back(method.name);
-    const bool learned = sphere_system_of(scene)->name == "learned_hamiltonian";
+    const SphereEntry& entry = *sphere_system_of(scene);
+    const Section time = scene.section_or_empty("time");
     std::vector<Use> uses;
-    if (learned) uses = uses_of_learning();
-    const std::string usual = learned ? names.back() : names.front();
-    if (scene.section_or_empty("time").choice_or("method", usual, names) == rattle)
-      uses.push_back({&reference("marrero2015"), "discrete mechanics with constraints, of which RATTLE is a case"});
-    else
-      uses.push_back({&reference("celledoni2022"), "Lie group integrators on products of T*S^2"});
+    add_use(entry.source, uses);
+    const std::string name = read_sphere_method(time, entry);
+    if (const DeclaredMethod* own = own_method(entry, name)) {
+      add_use(own->source, uses);
+      add_use(source_of(read_composition(time, compositions_of(own->other_orders))), uses);
+    } else if (const Source source = source_of(*lie_group_methods::named(name)); !source.key.empty()) {
+      add_use({"celledoni2022", "Lie group integrators on products of T*S^2"}, uses);
+      add_use(source, uses);
+    }
+    return uses;
+  }
+  /// What `lagroid learn` leaves is a system that a scene of this family runs.
+  std::vector<Use> uses_of_folder(const std::filesystem::path& folder) const override {
+    std::vector<Use> uses;
+    if (std::filesystem::exists(folder / model_file_name)) add_use(learned_hamiltonian_source, uses);
     return uses;
   }
   std::vector<ListedSystem> systems() const override {

@@ -2,6 +2,8 @@
 
 #include "../reading/system_module.hpp"
 
+#include <lagroid/solvers/boundary_words.hpp>
+
 #include <utility>
 
 namespace lagroid::app {
@@ -19,17 +21,18 @@ class Systems final : public SceneFamily {
     return module_of_scene(scene).read(scene, context);
   }
   std::vector<Use> uses(const Section& scene) const override {
-    const Section time = scene.section_or_empty("time");
-    const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled", "transformed"});
-    const std::string method =
-        time.choice_or("method", "variational", {"variational", "splitting", "moser-veselov", "runge-kutta"});
+    const SystemModule& module = module_of_scene(scene);
     std::vector<Use> uses{{&reference("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};
-    add_uses_of_time(mode, method, uses);
-    if (module_of_scene(scene).nonholonomic())
+    const Section time = scene.section_or_empty("time");
+    const DeclaredMethod& method = read_declared_method(time, module.own_methods());
+    add_use(method.source, uses);
+    if (const auto compositions = compositions_of(method.other_orders); !compositions.empty())
+      add_use(source_of(read_composition(time, compositions)), uses);
+    if (module.nonholonomic())
       uses.push_back({&reference("iglesias2008"), "nonholonomic constraints on Lie groupoids"});
-    const std::string solver =
-        scene.section_or_empty("solver").choice_or("method", "newton", {"newton", "shooting", "ceres"});
-    if (mode != "transformed" && method == "variational" && solver == "newton")
+    const auto solvers = words_of(boundary_words);
+    const std::string solver = scene.section_or_empty("solver").choice_or("method", solvers.front(), solvers);
+    if (method.implicit && choice_of(boundary_words, solver) == BoundaryMethod::newton)
       uses.push_back({&reference("owren2000"), "Newton's iteration, carried from Lie groups to groupoids"});
     return uses;
   }

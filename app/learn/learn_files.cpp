@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using learning::Stage;
 
-constexpr std::array<const char*, 8> files{"model.json",  "history.csv", "errors.csv", "summary.json",
-                                           "summary.txt", "plot.gp",     "plot.svg",   "plot.png"};
+constexpr std::array<const char*, 8> files{model_file_name, "history.csv", "errors.csv", "summary.json",
+                                           "summary.txt",   "plot.gp",     "plot.svg",   "plot.png"};
 
 std::string history_csv(const Lesson& lesson) {
   std::string out = "line,start,iteration,training,validation,damping,seconds\n";
@@ -197,8 +197,8 @@ OutputFolder folder_for_lesson(const fs::path& folder, const Lesson& lesson) {
 
 std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder, std::string& note) {
   const auto make = [&](const fs::path& staging) {
-    std::vector<std::string> names{"model.json", "history.csv", "summary.json", "summary.txt", "plot.gp"};
-    write_text(model_text(lesson.learned), staging / "model.json");
+    std::vector<std::string> names{model_file_name, "history.csv", "summary.json", "summary.txt", "plot.gp"};
+    write_text(model_text(lesson.learned), staging / model_file_name);
     write_text(history_csv(lesson), staging / "history.csv");
     if (lesson.measures) {
       write_text(errors_csv(lesson), staging / "errors.csv");

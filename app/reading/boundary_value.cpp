@@ -1,5 +1,7 @@
 #include "boundary_value.hpp"
 
+#include <lagroid/solvers/boundary_words.hpp>
+
 #include <fmt/ranges.h>
 
 #include <limits>
@@ -15,10 +17,8 @@ MultistartOptions read_multistart(const Section& solver) {
 
 BoundaryChoice read_boundary_solver(const Section& solver) {
   BoundaryChoice choice;
-  const std::string method = solver.choice_or("method", "newton", {"newton", "shooting", "ceres"});
-  choice.method = method == "shooting" ? BoundaryMethod::shooting
-                  : method == "ceres"  ? BoundaryMethod::ceres
-                                       : BoundaryMethod::newton;
+  const auto words = words_of(boundary_words);
+  choice.method = choice_of(boundary_words, solver.choice_or("method", words.front(), words));
   if (solver.has("seek"))
     choice.seek = solver.choice("seek", {"minima", "stationary"}) == "minima" ? Seek::minima : Seek::stationary;
   choice.multistart = read_multistart(solver);

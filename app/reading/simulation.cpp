@@ -1,6 +1,5 @@
 #include "simulation.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -48,86 +47,92 @@ void refuse_accuracy(const Section& scene) {
 }
 
 Composition read_composition(const Section& time, std::span<const Composition> offered) {
-  const long order = time.integer_or("order", 2, 2, 8);
-  if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6 or 8, got {}", order));
-  constexpr std::array defaults{compositions::single, compositions::suzuki, compositions::kahan_li_6,
-                                compositions::kahan_li_8};
-  const Composition& usual = defaults[std::size_t(order / 2 - 1)];
+  const long order = time.integer_or("order", 2, 2, usual_compositions.back().order);
+  const Composition* const usual = usual_composition(order);
+  if (usual == nullptr) time.fail("order", fmt::format("must be {}, got {}", usual_orders(), order));
   std::vector<std::string> names;
   for (const auto& composition : offered) names.emplace_back(composition.name);
-  const std::string name = time.choice_or("composition", std::string(usual.name), names);
-  for (const auto& composition : offered) {
-    if (composition.name != name) continue;
-    if (time.has("order") && composition.order != order)
-      time.fail("composition", fmt::format("\"{}\" is of order {}, not {}; leave out order or composition", name,
-                                           composition.order, order));
-    return composition;
-  }
-  return usual;
+  const std::string name = time.choice_or("composition", std::string(usual->name), names);
+  const Composition* const named = composition_named(offered, name);
+  if (named == nullptr) return *usual;
+  if (time.has("order") && named->order != order)
+    time.fail("composition",
+              fmt::format("\"{}\" is of order {}, not {}; leave out order or composition", name, named->order, order));
+  return *named;
 }
 
 namespace {
 
+std::string read_mode_word(const Section& time) {
+  const auto words = mode_words();
+  return time.choice_or("mode", words.front(), words);
+}
+
+/// Refuses a key that asks for what the system lacks.
+void need(const Section& time, std::string_view key, std::span<const Requirement> requirements, const Abilities& able) {
+  if (const Requirement* lacking = unmet(requirements, able))
+    time.fail(key, fmt::format("this system has no {}; see docs/time.md for those that do", lacking->what));
+}
+
+/// The options of the method itself.
+void read_options(const Section& time, const MarchMethod& method, const Abilities& able, MarchOptions& options) {
+  if (method.composed()) {
+    const bool flows = method.other_orders == OtherOrders::composed_flows;
+    options.composition =
+        read_composition(time, flows ? std::span<const Composition>(able.splittings) : compositions::all);
+    if (!flows && options.composition.stages() > 1)
+      need(time, time.has("order") ? "order" : "composition", requirements::of_composed_steps, able);
+  } else {
+    if (time.has("composition"))
+      time.fail("composition",
+                fmt::format("goes with steps that are composed, which \"{}\" ones are not; leave it out", method.name));
+    if (time.integer_or("order", method.order, 2, usual_compositions.back().order) != method.order)
+      time.fail("order", fmt::format("of \"{}\" is {}", method.name, method.order));
+  }
+  if (options.mode == TimeMode::adaptive) {
+    const auto words = words_of(without_root_words);
+    options.without_root = choice_of(without_root_words, time.choice_or("without_root", words.front(), words));
+    if (options.without_root == WithoutRoot::controlled) need(time, "without_root", requirements::of_controlled, able);
+  } else if (time.has("without_root")) {
+    time.fail("without_root", fmt::format("goes with mode = \"{}\"", march_method({.mode = TimeMode::adaptive}).name));
+  }
+}
+
 void read_stepper(const Section& solver, MarchOptions& options) {
-  if (solver.choice_or("method", "newton", {"newton", "ceres"}) == "ceres") options.method = StepMethod::ceres;
-  if (solver.has("max_iterations")) options.step.max_iterations = int(solver.integer("max_iterations", 1, 100000));
+  const auto words = words_of(solver_words);
+  options.method = choice_of(solver_words, solver.choice_or("method", words.front(), words));
+  if (solver.has("max_iterations"))
+    options.step.max_iterations = int(solver.integer("max_iterations", 1, most_iterations));
   options.step.tolerance = solver.number_or("tolerance", 0, nonnegative);
 }
 
 }  // namespace
 
+std::string read_method_word(const Section& time, std::span<const DeclaredMethod> own) {
+  std::vector<std::string> words = method_words();
+  for (const DeclaredMethod& each : own) words.emplace_back(each.name);
+  const std::string word = time.choice_or("method", words.front(), words);
+  if (time.has("method") && read_mode_word(time) != mode_of_equal_steps)
+    time.fail("method", fmt::format("goes with mode = \"{}\"", mode_of_equal_steps));
+  return word;
+}
+
+const DeclaredMethod& read_declared_method(const Section& time, std::span<const DeclaredMethod> own) {
+  const std::string word = read_method_word(time, own);
+  for (const DeclaredMethod& each : own)
+    if (each.name == word) return each;
+  return march_method(read_mode_word(time), word);
+}
+
 MarchChoice read_march(const Section& scene, const Abilities& able) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
+  const MarchMethod& method = march_method(read_mode_word(time), read_method_word(time, {}));
+  need(time, method.equal_steps() ? "method" : "mode", method.needs, able);
   MarchChoice choice;
   MarchOptions& options = choice.options;
-  const auto need = [&](bool has, std::string_view key, std::string_view what) {
-    if (!has) time.fail(key, fmt::format("this system has no {}; see docs/time.md for those that do", what));
-  };
-  const std::string_view timed = able.variational ? "Lagrangian for every step size" : "action principle";
-  const std::string mode = time.choice_or("mode", "fixed", {"fixed", "adaptive", "controlled", "transformed"});
-  if (mode == "fixed") {
-    const std::string method = time.choice_or("method", "variational", {"variational", "splitting", "runge-kutta"});
-    if (method == "runge-kutta") {
-      options.fixed = StepKind::runge_kutta;
-      need(able.rates, "method", "vector field written for it");
-      if (time.integer_or("order", 4, 2, 8) != 4) time.fail("order", "of Runge-Kutta steps is 4");
-      if (time.has("composition")) time.fail("composition", "is of symmetric steps; leave it out");
-    } else if (method == "splitting") {
-      options.fixed = StepKind::splitting;
-      need(!able.splittings.empty(), "method", "explicit splitting");
-      options.composition = read_composition(time, able.splittings);
-    } else {
-      options.composition = read_composition(time, compositions::all);
-    }
-    if (options.fixed == StepKind::variational && options.composition.stages() > 1)
-      need(able.variational, time.has("order") ? "order" : "composition", "action principle, and no order above 2");
-  } else if (mode == "adaptive") {
-    need(able.timed, "mode", timed);
-    options.mode = TimeMode::adaptive;
-    const std::string instead = time.choice_or("without_root", "stop", {"stop", "constant", "controlled"});
-    if (instead == "constant") options.without_root = WithoutRoot::constant;
-    if (instead == "controlled") {
-      need(able.time_scale, "without_root", "time scale to control steps by");
-      options.without_root = WithoutRoot::controlled;
-    }
-  } else if (mode == "transformed") {
-    need(able.attractive, "mode", "attraction whose energy is negative everywhere");
-    options.mode = TimeMode::transformed;
-    options.composition = read_composition(time, compositions::all);
-  } else {
-    need(able.time_scale, "mode", able.variational ? "time scale to control steps by" : timed);
-    options.mode = TimeMode::controlled;
-  }
-  if (mode != "fixed") {
-    if (time.has("method")) time.fail("method", "goes with mode = \"fixed\"");
-    if (mode != "transformed") {
-      if (time.has("composition")) time.fail("composition", "goes with mode = \"fixed\" or \"transformed\"");
-      if (time.integer_or("order", 2, 2, 8) != 2)
-        time.fail("order", "above 2 goes with mode = \"fixed\" or \"transformed\"");
-    }
-    refuse_duration(time);
-  }
-  if (mode != "adaptive" && time.has("without_root")) time.fail("without_root", "goes with mode = \"adaptive\"");
+  options = options_of(method);
+  read_options(time, method, able, options);
+  if (!method.equal_steps()) refuse_duration(time);
   if (time.has("accuracy")) {
     choice.accuracy = time.number("accuracy", positive);
     if (time.has("duration")) time.fail("accuracy", "chooses the step: leave out duration");
@@ -138,14 +143,14 @@ MarchChoice read_march(const Section& scene, const Abilities& able) {
   return choice;
 }
 
-std::vector<Method> composed_methods(const std::string& step, std::span<const Composition> composed_by) {
+std::vector<Method> composed_methods(std::string_view step, std::span<const Composition> composed_by) {
   std::vector<Method> all;
   for (const auto& composition : composed_by)
     all.push_back({composed_name(step, composition),
                    composition.order,
                    composition.stages(),
                    true,
-                   {"time.mode=fixed", "time.method=" + step, fmt::format("time.composition={}", composition.name)}});
+                   {fmt::format("time.method={}", step), fmt::format("time.composition={}", composition.name)}});
   return all;
 }
 
@@ -153,20 +158,12 @@ namespace {
 
 /// What [time] of a scene says for them.
 std::vector<std::string> settings_of(const MarchOptions& options) {
-  const std::string composition = fmt::format("time.composition={}", options.composition.name);
-  switch (options.mode) {
-    case TimeMode::adaptive:
-      return {"time.mode=adaptive"};
-    case TimeMode::controlled:
-      return {"time.mode=controlled"};
-    case TimeMode::transformed:
-      return {"time.mode=transformed", composition};
-    default:
-      break;
-  }
-  if (options.fixed == StepKind::runge_kutta) return {"time.method=runge-kutta"};
-  return {"time.mode=fixed", options.fixed == StepKind::splitting ? "time.method=splitting" : "time.method=variational",
-          composition};
+  const MarchMethod& method = march_method(options);
+  std::vector<std::string> settings{
+      fmt::format("time.mode={}", method.equal_steps() ? mode_of_equal_steps : method.name)};
+  if (method.equal_steps()) settings.push_back(fmt::format("time.method={}", method.name));
+  if (method.composed()) settings.push_back(fmt::format("time.composition={}", options.composition.name));
+  return settings;
 }
 
 }  // namespace

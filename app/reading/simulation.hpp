@@ -43,12 +43,16 @@ struct MarchChoice {
   MarchOptions options;
   double accuracy = 0;  ///< of the first step; 0: its size is given
 };
+/// `method` of [time]: a method of equal steps, or one of the system's own.
+std::string read_method_word(const Section& time, std::span<const DeclaredMethod> own);
+/// The method that `mode` and `method` of [time] name; it is one of `own`, or one that is declared for every system.
+const DeclaredMethod& read_declared_method(const Section& time, std::span<const DeclaredMethod> own);
 /// Refuses what the system does not have.
 MarchChoice read_march(const Section& scene, const Abilities& able);
 /// `order`, `composition`: of a fixed step.
 Composition read_composition(const Section& time, std::span<const Composition> offered);
 /// The fixed steps of a kind, by each of the compositions.
-std::vector<Method> composed_methods(const std::string& step, std::span<const Composition> composed_by);
+std::vector<Method> composed_methods(std::string_view step, std::span<const Composition> composed_by);
 /// All that it would accept.
 std::vector<Method> march_methods(const Abilities& able);
 

@@ -8,6 +8,7 @@
 #include "task.hpp"
 
 #include <lagroid/core/noether.hpp>
+#include <lagroid/solvers/declared_methods.hpp>
 
 #include <functional>
 #include <span>
@@ -36,6 +37,8 @@ class SystemModule {
   const std::string& name() const { return name_; }
   const std::string& summary() const { return summary_; }
   virtual bool nonholonomic() const = 0;
+  /// Its methods beside those declared for every system.
+  virtual std::span<const DeclaredMethod> own_methods() const = 0;
   virtual ListedSystem listed() const = 0;
 
   /// Runs an initial or a boundary value.
@@ -48,16 +51,17 @@ class SystemModule {
   std::string summary_;
 };
 
-/// The module of a system, given how its scenes are read.
+/// The module of a system, given how its scenes are read; its own methods outlive it.
 template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
  public:
   using Read = std::function<Task<Sys>(const Section& scene, const RunContext& context)>;
-  ModuleOf(std::string name, std::string summary, Read read)
-      : SystemModule(std::move(name), std::move(summary)), read_(std::move(read)) {}
+  ModuleOf(std::string name, std::string summary, Read read, std::span<const DeclaredMethod> own_methods = {})
+      : SystemModule(std::move(name), std::move(summary)), read_(std::move(read)), own_methods_(own_methods) {}
 
   Task<Sys> task(const Section& scene, const RunContext& context) const { return read_(scene, context); }
 
   bool nonholonomic() const override { return Nonholonomic<Sys>; }
+  std::span<const DeclaredMethod> own_methods() const override { return own_methods_; }
   RunResult run(const Section& scene, const RunContext& context) const override {
     return task(scene, context).run(nullptr);
   }
@@ -79,6 +83,7 @@ template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
 
  private:
   Read read_;
+  std::span<const DeclaredMethod> own_methods_;
 };
 
 /// The systems of this program, in the order in which they are listed. A program says at its start which it has.

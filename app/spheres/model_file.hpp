@@ -10,6 +10,9 @@
 
 namespace lagroid::app {
 
+/// What the file is called in the folder that `lagroid learn` leaves.
+inline constexpr const char* model_file_name = "model.json";
+
 /// A model that is none. The message is one line: which file, which key, what to do.
 class ModelError : public std::runtime_error {
   using std::runtime_error::runtime_error;

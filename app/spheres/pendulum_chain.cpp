@@ -1,6 +1,6 @@
 #include "pendulum_chain.hpp"
 
-#include <lagroid/systems/chain_rattle.hpp>
+#include <lagroid/systems/pendulum_chain.hpp>
 
 #include <fmt/format.h>
 
@@ -20,9 +20,6 @@ class ChainSystem final : public SphereSystem {
 
   std::string_view name() const override { return "pendulum_chain"; }
   std::vector<SphereForm> forms() const override { return {SphereForm::velocities, SphereForm::momenta}; }
-  std::vector<MethodTraits> own_methods() const override {
-    return {ChainRattle<Eigen::Dynamic>::traits(compositions::single)};
-  }
   Points in_form(const Points& z, SphereForm from, SphereForm to) const override {
     if (from == to) return z;
     return to == SphereForm::momenta ? chain_.to_momenta(z) : chain_.to_velocities(z);

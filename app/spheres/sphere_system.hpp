@@ -5,6 +5,7 @@
 #include "../reading/scene_reader.hpp"
 
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/solvers/declared_methods.hpp>
 #include <lagroid/systems/sphere_march.hpp>
 
 #include <memory>
@@ -36,8 +37,6 @@ class SphereSystem {
   virtual std::string_view name() const = 0;
   /// The forms that it has, the usual one first; its momenta are always known.
   virtual std::vector<SphereForm> forms() const = 0;
-  /// Methods beside those for Lie groups: implicit ones, made for the system. The first is what scenes get.
-  virtual std::vector<MethodTraits> own_methods() const { return {}; }
   /// Points in another form; only for forms that it has.
   virtual Points in_form(const Points& z, SphereForm from, SphereForm to) const = 0;
   virtual std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const = 0;
@@ -66,6 +65,10 @@ struct SphereEntry {
   std::vector<ListedParameter> parameters;
   std::vector<std::string> symmetries;
   std::vector<std::string> conserved;
+  /// Methods beside those for Lie groups, made for the system. The first is what scenes get.
+  std::vector<DeclaredMethod> own_methods;
+  /// The paper that the system itself is from, if there is one.
+  Source source;
   /// Reads [parameters] of a scene.
   std::unique_ptr<SphereSystem> (*read)(const Section& scene);
 };

@@ -2,6 +2,8 @@
 #include "pendulum_chain.hpp"
 #include "sphere_system.hpp"
 
+#include <lagroid/systems/chain_rattle.hpp>
+
 namespace lagroid::app {
 
 const std::vector<SphereEntry>& sphere_systems() {
@@ -15,6 +17,8 @@ const std::vector<SphereEntry>& sphere_systems() {
         {"gravity", "m/s^2", "9.81", "acceleration"}},
        {"turning about the vertical"},
        {"vertical angular momentum"},
+       {rattle_method},
+       {},
        read_pendulum_chain},
       {"learned_hamiltonian",
        "a Hamiltonian that lagroid learn found",
@@ -22,6 +26,8 @@ const std::vector<SphereEntry>& sphere_systems() {
        {{"model", "", "", "path of the model.json that lagroid learn --out left"}},
        {},
        {},
+       {},
+       learned_hamiltonian_source,
        read_learned_hamiltonian}};
   return all;
 }

@@ -15,33 +15,43 @@ namespace {
 
 const char* word(SphereForm form) { return form == SphereForm::velocities ? "velocities" : "momenta"; }
 
-std::string usual_method(const SphereSystem& system) {
-  const auto own = system.own_methods();
-  return own.empty() ? std::string(lie_group_methods::commutator_free_4.name) : own.front().name;
+std::string usual_method(const SphereEntry& entry) {
+  return std::string(entry.own_methods.empty() ? lie_group_methods::commutator_free_4.name
+                                               : entry.own_methods.front().name);
 }
 
 }  // namespace
 
-SphereMarchOptions read_sphere_time(const Section& scene, const SphereSystem& system) {
+const DeclaredMethod* own_method(const SphereEntry& entry, std::string_view name) {
+  for (const DeclaredMethod& own : entry.own_methods)
+    if (own.name == name) return &own;
+  return nullptr;
+}
+
+std::string read_sphere_method(const Section& time, const SphereEntry& entry) {
+  std::vector<std::string> names;
+  for (const DeclaredMethod& own : entry.own_methods) names.emplace_back(own.name);
+  for (const LieGroupMethod& method : lie_group_methods::all) names.emplace_back(method.name);
+  return time.choice_or("method", usual_method(entry), names);
+}
+
+SphereMarchOptions read_sphere_time(const Section& scene, const SphereEntry& entry, const SphereSystem& system) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
   SphereMarchOptions options;
   options.step = read_time(scene).step;
   refuse_accuracy(scene);
-  std::vector<std::string> names;
-  for (const MethodTraits& own : system.own_methods()) names.push_back(own.name);
-  for (const LieGroupMethod& method : lie_group_methods::all) names.emplace_back(method.name);
-  options.method = time.choice_or("method", usual_method(system), names);
+  options.method = read_sphere_method(time, entry);
   const auto forms = system.forms();
   std::vector<std::string> words;
   for (const SphereForm form : forms) words.emplace_back(word(form));
   const std::string chosen = time.choice_or("form", words.front(), words);
   for (const SphereForm form : forms)
     if (word(form) == chosen) options.form = form;
-  if (lie_group_methods::named(options.method) == nullptr) {
+  if (own_method(entry, options.method) != nullptr) {
     options.composition = read_composition(time, compositions::all);
   } else {
     for (const char* key : {"order", "composition"})
-      if (time.has(key)) time.fail(key, fmt::format("is of the steps of {}", usual_method(system)));
+      if (time.has(key)) time.fail(key, fmt::format("is of the steps of {}", usual_method(entry)));
   }
   if (!time.has("tolerance")) return options;
   const LieGroupMethod* method = lie_group_methods::named(options.method);
@@ -53,15 +63,14 @@ SphereMarchOptions read_sphere_time(const Section& scene, const SphereSystem& sy
   return options;
 }
 
-std::vector<Method> sphere_methods(const SphereSystem& system) {
+std::vector<Method> sphere_methods(const SphereEntry& entry, const SphereSystem& system) {
   const auto forms = system.forms();
   const auto settings = [](std::string_view method, SphereForm form) -> std::vector<std::string> {
     return {fmt::format("time.method={}", method), fmt::format("time.form={}", word(form))};
   };
   std::vector<Method> all;
-  for (const MethodTraits& own : system.own_methods())
-    for (Method& method : composed_methods(own.name, steps_composed(own.symmetric))) {
-      std::erase(method.settings, "time.mode=fixed");
+  for (const DeclaredMethod& own : entry.own_methods)
+    for (Method& method : composed_methods(own.name, compositions_of(own.other_orders))) {
       method.settings.push_back(fmt::format("time.form={}", word(forms.front())));
       all.push_back(std::move(method));
     }

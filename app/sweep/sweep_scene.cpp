@@ -1,5 +1,7 @@
 #include "sweep_scene.hpp"
 
+#include "../reading/its_scene.hpp"
+
 #include <lagroid/run/machine.hpp>
 
 #include <fmt/format.h>
@@ -18,27 +20,6 @@ namespace fs = std::filesystem;
 /// So many that threads and ranks are kept busy to the end, so few that a folder holds them easily.
 constexpr long most_parts = 512;  ///< unless more are asked for
 constexpr long most_files = 1'000'000;
-
-fs::path scene_file(const Section& at, const char* key, const std::string& sweep) {
-  const std::string name = at.text(key, "the path of a scene");
-  const fs::path beside = fs::path(sweep).parent_path() / name;
-  std::error_code ignored;
-  return fs::exists(beside, ignored) ? beside : fs::path(name);
-}
-
-Section read_its_scene(const Section& sweep) {
-  if (!sweep.is_table("scene")) return read_scene(scene_file(sweep, "scene", sweep.file()), {});
-  const Section section = sweep.section("scene", "the scene");
-  std::vector<std::string> overrides = section.as_overrides();
-  try {
-    const std::string overrider = sweep.file() + ": scene.";
-    if (!section.has("file")) return parse_scene("", sweep.file(), overrides, overrider);
-    std::erase_if(overrides, [](const std::string& each) { return each.starts_with("file="); });
-    return read_scene(scene_file(section, "file", sweep.file()), overrides, overrider);
-  } catch (const SceneError& error) {
-    section.fail("", error.problem());
-  }
-}
 
 SweepPlot read_plot(const Section& sweep) {
   const Section section = sweep.section_or_empty("plot");

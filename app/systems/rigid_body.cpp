@@ -2,7 +2,11 @@
 #include "rotating.hpp"
 
 #include <lagroid/systems/moser_veselov.hpp>
+#include <lagroid/systems/moser_veselov_method.hpp>
 #include <lagroid/systems/rigid_body.hpp>
+
+#include <algorithm>
+#include <array>
 
 namespace lagroid::app {
 
@@ -21,16 +25,16 @@ template <class Sys> void dress(Presentation<Sys>& p, const Sys& system) {
 
 constexpr const char* name = "rigid_body";
 
-/// [time] method = "moser-veselov": the same motion by the preprocessed discrete Moser-Veselov algorithm.
+/// The method of [time] that is the body's own: the same motion by the preprocessed discrete Moser-Veselov algorithm.
 Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context) {
   const auto body = read_system<RigidBody>(scene);
   const auto initial = read_initial(body, scene, {"M1", "M2", "M3"});
   const Section time = scene.section("time", "step and steps");
-  time.choice_or("method", "", {"moser-veselov"});
-  time.choice_or("mode", "fixed", {"fixed"});
   refuse_accuracy(scene);
-  const int order = int(time.integer_or("order", 10, 2, 10));
-  if (order % 2 != 0) time.fail("order", fmt::format("must be 2, 4, 6, 8 or 10, got {}", order));
+  const auto& orders = moser_veselov_orders;
+  const int order = int(time.integer_or("order", moser_veselov_method.order, orders.front(), orders.back()));
+  if (std::find(orders.begin(), orders.end(), order) == orders.end())
+    time.fail("order", fmt::format("must be {}, got {}", any_of_these(orders), order));
   const Pace pace = read_pace(scene, context);
   scene.finish();
   MoserVeselov system;
@@ -52,18 +56,20 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context) {
 }
 
 void add_moser_veselov(std::vector<Method>& methods) {
-  for (int order = 2; order <= 10; order += 2)
-    methods.push_back({fmt::format("moser-veselov/{}", order),
+  const std::string_view name = moser_veselov_method.name;
+  for (const int order : moser_veselov_orders)
+    methods.push_back({fmt::format("{}/{}", name, order),
                        order,
-                       1,
+                       moser_veselov_method.stages,
                        true,
-                       {"time.method=moser-veselov", fmt::format("time.order={}", order)}});
+                       {fmt::format("time.method={}", name), fmt::format("time.order={}", order)}});
 }
 
+const std::array own_methods{moser_veselov_method};
+
 Task<RigidBody> read(const Section& scene, const RunContext& context) {
-  const Section time = scene.section_or_empty("time");
-  if (!scene.has("boundary") && time.has("method") &&
-      time.text("method", "variational, splitting or moser-veselov") == "moser-veselov")
+  if (!scene.has("boundary") &&
+      read_method_word(scene.section_or_empty("time"), own_methods) == moser_veselov_method.name)
     return moser_veselov(scene, context);
   Task<RigidBody> task = read_any_system<RigidBody>(scene, context, name, dress);
   if (task.begin) add_moser_veselov(task.methods);
@@ -73,7 +79,7 @@ Task<RigidBody> read(const Section& scene, const RunContext& context) {
 }  // namespace
 
 const SystemModule& rigid_body_module() {
-  static const ModuleOf<RigidBody> module(name, "free rigid body on SO(3)", read);
+  static const ModuleOf<RigidBody> module(name, "free rigid body on SO(3)", read, own_methods);
   return module;
 }
 
