@@ -116,7 +116,7 @@ def options(*path):
     """The options of a subcommand, such as ("run",) or ("reproduce", "time-steps"); None if there is no such one."""
     arm = re.search(rf"^  (?:\w+ \| )*{path[0]}(?: \| \w+)*\)(.*?)^    ;;", script, re.M | re.S)
     if path == ("check",):  # takes minutes to build: its options as its source names them
-        said = "".join((root / "app" / name).read_text() for name in ("check.cpp", "command/command.cpp"))
+        said = "".join((root / "app" / name).read_text() for name in ("check/check.cpp", "command/command.cpp"))
         return set(re.findall(r"--[\w-]+", said))
     if arm:
         mentions = re.findall(rf"^#.*lagroid {path[0]} .*", script, re.M)
