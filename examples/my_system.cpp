@@ -1,8 +1,8 @@
 // A groupoid and a constrained system of your own, in one file; docs/tutorial.md goes through it.
 //
 // Dido's problem: the shortest shore that encloses a given area. Run it: build/release/bin/my_system [FOLDER]
+#include <lagroid/run/check_of.hpp>
 #include <lagroid/run/run.hpp>
-#include <lagroid/solvers/testing/certificate.hpp>
 
 #include <fmt/format.h>
 
@@ -86,11 +86,10 @@ int main(int argc, char** argv) {
   const Vector<double, 5> shore = walk.point().configuration;
   fmt::print("once round: at ({:.2f}, {:.2f}), area {:.2f}\n", shore(2), shore(3), shore(4));
 
-  bool all_hold = true;
-  for (const auto& report : laws::certificate(system, draw)) {
+  const Certificate certificate = check(system, draw, {.name = "Dido"});
+  for (const auto& report : certificate.suites)
     fmt::print("{}: {}\n", report.subject, report.holds() ? "holds" : "BROKEN");
-    all_hold = all_hold && report.holds();
-  }
+  bool all_hold = certificate.holds();
 
   const RunResult once_round =
       run(system, {{0, 0}, {1, 0, 1}}, {.steps = 126, .name = "Dido", .folder = argc > 1 ? argv[1] : ""});

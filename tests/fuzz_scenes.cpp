@@ -1,9 +1,7 @@
 // libFuzzer on scenes of bodies and of systems on spheres: whatever the file holds, it is refused by a SceneError, or
 // read and begun, and what converges is finite.
 
-#include "bodies/scene_run.hpp"
-#include "reading/scene_reader.hpp"
-#include "spheres/sphere_run.hpp"
+#include "families/family.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +15,11 @@ namespace {
 using namespace lagroid;
 using namespace lagroid::app;
 
-template <class Read> RunResult run_a_little(Read read) {
+/// None where it is no motion, or one whose inner steps could take long.
+std::optional<RunResult> run(const Section& scene) {
+  const SceneFamily& family = family_of(scene);
+  if (family.command() != "run" || scene.section_or_empty("time").has("tolerance")) return std::nullopt;
+  MotionScene read = family.read(scene, {});
   constexpr long most_steps = 2;
   read.pace.steps = std::min(read.pace.steps, most_steps);
   RunResult result;
@@ -25,15 +27,13 @@ template <class Read> RunResult run_a_little(Read read) {
   return result;
 }
 
-/// None where it is no such scene, or one whose inner steps could take long.
-std::optional<RunResult> run(const Section& scene) {
-  if (scene.has("body")) return run_a_little(read_bodies(scene, {}));
-  const SphereEntry* entry = sphere_system_of(scene);
-  if (entry == nullptr || scene.section_or_empty("time").has("tolerance")) return std::nullopt;
-  return run_a_little(read_spheres(*entry, scene, {}));
-}
-
 }  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  // Of the families those that compile quickly: systems are read by the same code.
+  use_families({&systems_family(), &spheres_family(), &bodies_family()});
+  return 0;
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -1,4 +1,5 @@
 // Certificates of systems that are not of the library: a wrong promise is found out, and nothing else is.
+#include <lagroid/run/check_of.hpp>
 #include <lagroid/solvers/testing/certificate.hpp>
 #include <lagroid/systems/pendulum.hpp>
 
@@ -7,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 using namespace lagroid;
@@ -35,6 +38,26 @@ TEST(Certificate, OfAWrongPromiseIsWithheld) {
     EXPECT_TRUE(of_promises ? laws::seen_broken(suite.law("energy")) : suite.holds()) << suite;
   }
   EXPECT_EQ(promises, 1);
+}
+
+/// From C++ as by `lagroid check`, and the same each time.
+TEST(Certificate, FromCheckNamesWhatIsBroken) {
+  Boastful pendulum;
+  pendulum.h = 0.1;
+  const auto draw = [] {
+    return State<Pair<1>>{Vector<double, 1>(1 + laws::draw_uniform()), laws::draw_vector<1>(1.0)};
+  };
+  const Certificate found = check<Boastful>(pendulum, draw, {.name = "boastful", .samples = 20});
+  EXPECT_FALSE(found.holds());
+  const std::string words = text_certificate(found);
+  EXPECT_NE(words.find("boastful on Pair<1>: up to 20 samples a law, seed"), std::string::npos) << words;
+  EXPECT_NE(words.find("NOT certified"), std::string::npos) << words;
+  const Certificate again = check<Boastful>(pendulum, draw, {.samples = 20});
+  ASSERT_EQ(again.suites.size(), found.suites.size());
+  for (std::size_t i = 0; i < found.suites.size(); ++i)
+    for (std::size_t k = 0; k < found.suites[i].laws.size(); ++k)
+      EXPECT_EQ(again.suites[i].laws[k].worst, found.suites[i].laws[k].worst) << found.suites[i].laws[k].name;
+  EXPECT_THROW(check<Boastful>(pendulum, draw, {.samples = 0}), std::invalid_argument);
 }
 
 TEST(Certificate, OfForcesAndSkatesOnASphere) {
