@@ -220,6 +220,8 @@ template <class Sys>
 concept HasPath = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary) {
   { system.path(boundary, 1L) } -> std::same_as<std::vector<ArrowOf<typename Sys::GroupoidType>>>;
 };
+/// Whether `path`, where there is one, is that.
+template <class Sys> inline constexpr bool path_fits = HasPath<Sys> || !requires { &Sys::path; };
 
 namespace detail {
 

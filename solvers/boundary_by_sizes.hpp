@@ -3,6 +3,7 @@
 
 #include <lagroid/core/sized_system.hpp>
 #include <lagroid/solvers/boundary_solver.hpp>
+#include <lagroid/solvers/optional_members.hpp>
 
 #include <memory>
 #include <utility>
@@ -120,6 +121,11 @@ template <DiscreteSystem Sys> class SizedBoundarySolver {
 
 namespace detail {
 
+/// All solvers of sizes: complete where `boundary_methods.hpp` is included.
+template <DiscreteSystem Sized> struct BoundarySolvers;
+/// Whether the library has them compiled (boundary_sizes.hpp).
+template <class Sized> inline constexpr bool boundary_sizes_compiled = false;
+
 /// `make_boundary_solver` of sizes.
 template <DiscreteSystem Sized>
 std::unique_ptr<BoundarySolver<Sized>> make_sized_boundary_solver(BoundaryMethod method, BoundaryOptions options,
@@ -129,8 +135,20 @@ std::unique_ptr<BoundarySolver<Sized>> make_sized_boundary_solver(BoundaryMethod
 
 template <DiscreteSystem Sys>
 std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method, BoundaryOptions options, Seek seek) {
-  return std::make_unique<BoundarySolverBySizes<Sys>>(
-      options, detail::make_sized_boundary_solver<SizedSystemOf<Sys>>(method, options, seek));
+  using Sized = SizedSystemOf<Sys>;
+  constexpr bool available = detail::boundary_sizes_compiled<Sized> || requires {
+    sizeof(detail::BoundarySolvers<Sized>);
+  };
+  static_assert(available,
+                "include <lagroid/solvers/boundary_methods.hpp>: the library has compiled no boundary values for a "
+                "system of these sizes");
+  static_assert(path_fits<Sys>,
+                "path is there but does not fit: a const function path(boundary, steps) that returns a std::vector of "
+                "arrows (see HasPath)");
+  require_optional_members_to_fit<Sys>();
+  if constexpr (available)
+    return std::make_unique<BoundarySolverBySizes<Sys>>(
+        options, detail::make_sized_boundary_solver<Sized>(method, options, seek));
 }
 
 }  // namespace lagroid

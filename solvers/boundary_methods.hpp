@@ -8,17 +8,23 @@
 
 namespace lagroid::detail {
 
+template <DiscreteSystem Sized> struct BoundarySolvers {
+  static std::unique_ptr<BoundarySolver<Sized>> make(BoundaryMethod method, BoundaryOptions options, Seek seek) {
+    switch (method) {
+      case BoundaryMethod::shooting:
+        return std::make_unique<BoundaryShooting<Sized>>(options, seek);
+      case BoundaryMethod::ceres:
+        return std::make_unique<BoundaryCeres<Sized>>(options, seek);
+      default:
+        return std::make_unique<BoundaryNewton<Sized>>(options, seek);
+    }
+  }
+};
+
 template <DiscreteSystem Sized>
 std::unique_ptr<BoundarySolver<Sized>> make_sized_boundary_solver(BoundaryMethod method, BoundaryOptions options,
                                                                   Seek seek) {
-  switch (method) {
-    case BoundaryMethod::shooting:
-      return std::make_unique<BoundaryShooting<Sized>>(options, seek);
-    case BoundaryMethod::ceres:
-      return std::make_unique<BoundaryCeres<Sized>>(options, seek);
-    default:
-      return std::make_unique<BoundaryNewton<Sized>>(options, seek);
-  }
+  return BoundarySolvers<Sized>::make(method, options, seek);
 }
 
 }  // namespace lagroid::detail

@@ -27,15 +27,19 @@
                                                                    const BoundaryProblem<SizedSystem<__VA_ARGS__>>&,  \
                                                                    std::size_t, const MultistartOptions&)
 
+#define LAGROID_COMPILED_SIZES(...)                                                           \
+  template <> inline constexpr bool boundary_sizes_compiled<SizedSystem<__VA_ARGS__>> = true; \
+  LAGROID_BOUNDARY_SIZES(extern template, __VA_ARGS__)
+
 namespace lagroid::detail {
 
-LAGROID_BOUNDARY_SIZES(extern template, 1, 0, 0, 16);  // a pendulum
-LAGROID_BOUNDARY_SIZES(extern template, 2, 0, 0, 16);  // a point in the plane
-LAGROID_BOUNDARY_SIZES(extern template, 3, 0, 0, 16);  // rigid bodies, tops
-LAGROID_BOUNDARY_SIZES(extern template, 3, 0, 1, 16);  // a spherical pendulum
-LAGROID_BOUNDARY_SIZES(extern template, 3, 1, 0, 16);  // rotations with two controls
-LAGROID_BOUNDARY_SIZES(extern template, 3, 2, 0, 16);  // plane poses with one control
-LAGROID_BOUNDARY_SIZES(extern template, 5, 3, 0, 16);  // the plate-ball
-LAGROID_BOUNDARY_SIZES(extern template, 6, 0, 0, 16);  // bodies in space
+LAGROID_COMPILED_SIZES(1, 0, 0, 16);  // a pendulum
+LAGROID_COMPILED_SIZES(2, 0, 0, 16);  // a point in the plane
+LAGROID_COMPILED_SIZES(3, 0, 0, 16);  // rigid bodies, tops
+LAGROID_COMPILED_SIZES(3, 0, 1, 16);  // a spherical pendulum
+LAGROID_COMPILED_SIZES(3, 1, 0, 16);  // rotations with two controls
+LAGROID_COMPILED_SIZES(3, 2, 0, 16);  // plane poses with one control
+LAGROID_COMPILED_SIZES(5, 3, 0, 16);  // the plate-ball
+LAGROID_COMPILED_SIZES(6, 0, 0, 16);  // bodies in space
 
 }  // namespace lagroid::detail

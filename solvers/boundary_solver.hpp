@@ -2,6 +2,7 @@
 /// The interface of everything that solves one boundary-value problem.
 
 #include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/optional_members.hpp>
 
 #include <memory>
 #include <stdexcept>
