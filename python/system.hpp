@@ -2,8 +2,7 @@
 /// A discrete Lagrangian system of one's own as a Python class (docs/python.md).
 ///
 ///     PYBIND11_MODULE(mine, module) {
-///       lagroid::python::bind_system<MySystem>(module, "MySystem", "What it is.")
-///           .def_readwrite("mass", &MySystem::mass, "kg");
+///       lagroid::python::bind_system<MySystem>(module, "MySystem", "What it is.");
 ///     }
 ///
 /// Its march is the class Integrator of the package lagroid.

@@ -56,13 +56,13 @@ Task<RigidBody> moser_veselov(const Section& scene, const RunContext& context) {
 }
 
 void add_moser_veselov(std::vector<Method>& methods) {
-  const std::string_view name = moser_veselov_method.name;
+  const std::string_view word = moser_veselov_method.name;
   for (const int order : moser_veselov_orders)
-    methods.push_back({fmt::format("{}/{}", name, order),
+    methods.push_back({fmt::format("{}/{}", word, order),
                        order,
                        moser_veselov_method.stages,
                        true,
-                       {fmt::format("time.method={}", name), fmt::format("time.order={}", order)}});
+                       {fmt::format("time.method={}", word), fmt::format("time.order={}", order)}});
 }
 
 const std::array own_methods{moser_veselov_method};

@@ -14,6 +14,12 @@ struct Bead : System<Bead, Pair<1>> {
   double bend = 1;
   double gravity = 1;
 
+  static auto parameters() {
+    return std::tuple(parameter("mass", &Bead::mass, "kg", "of the bead", positive),
+                      parameter("bend", &Bead::bend, "1/m", "of the wire at its lowest point"),
+                      parameter("gravity", &Bead::gravity, "m/s^2", "acceleration"));
+  }
+
   template <class S, class T> S lagrangian(const PairArrow<S, 1>& g, const T& step) const {
     const S dx = g.target(0) - g.source(0);
     const S y0 = g.source(0) * g.source(0) * (0.5 * bend);
@@ -32,8 +38,5 @@ struct Bead : System<Bead, Pair<1>> {
 };
 
 PYBIND11_MODULE(my_system, module) {
-  python::bind_system<Bead>(module, "Bead", "A bead on a parabolic wire: object x (1,), m.")
-      .def_readwrite("mass", &Bead::mass, "kg")
-      .def_readwrite("bend", &Bead::bend, "Of the wire at its lowest point, 1/m.")
-      .def_readwrite("gravity", &Bead::gravity, "m/s^2");
+  python::bind_system<Bead>(module, "Bead", "A bead on a parabolic wire: object x (1,), m.");
 }

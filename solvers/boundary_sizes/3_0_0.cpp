@@ -1,7 +1,0 @@
-#include <lagroid/solvers/boundary_methods.hpp>
-
-namespace lagroid::detail {
-
-LAGROID_BOUNDARY_SIZES(template, 3, 0, 0, 16);
-
-}  // namespace lagroid::detail
