@@ -86,7 +86,6 @@ class SizedSystem : public System<SizedSystem<N, ArrowConstraints, ObjectConstra
  public:
   using Multipliers = typename Base::Multipliers;
   using Coordinates = Vector<double, Room>;
-
   using Asked = AnySystemSized<N, ArrowConstraints, ObjectConstraints>;
 
   explicit SizedSystem(std::unique_ptr<Asked> system) : system_(std::move(system)) {
@@ -164,8 +163,10 @@ template <DiscreteSystem Sys>
 using SizedSystemOf = SizedSystem<Sys::dimension, Sys::arrow_constraints, Sys::object_constraints,
                                   coordinate_room<typename Sys::GroupoidType>>;
 
-/// The system, of which the algorithm that it is given to knows the sizes alone.
-template <DiscreteSystem Sys> SizedSystemOf<Sys> by_sizes(const Sys& system) {
+/// The system, of which the algorithm that it is given to knows the sizes alone. (Impulses beside those of L, of forces
+/// and reactions, are in its derivatives; but SizedSystem does not say what they are.)
+template <DiscreteSystem Sys>
+requires Variational<Sys> SizedSystemOf<Sys> by_sizes(const Sys& system) {
   return SizedSystemOf<Sys>(std::make_unique<AnySystemOf<Sys>>(system));
 }
 
