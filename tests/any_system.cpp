@@ -266,6 +266,7 @@ template <class Sys> void solves_alike(const Known<Sys>& k, Seek seek) {
   const auto start = geodesic_path(k.problem, k.path.size());
   const auto typed = BoundaryNewton<Sys>(BoundaryOptions{}, seek).solve(k.problem, start, false);
   const auto sized = make_boundary_solver<Sys>(BoundaryMethod::newton, {}, seek)->solve(k.problem, start, false);
+  EXPECT_TRUE(typed.converged());
   EXPECT_EQ(typed.status, sized.status);
   EXPECT_EQ(typed.iterations, sized.iterations);
   EXPECT_EQ(typed.residual, sized.residual);
