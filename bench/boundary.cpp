@@ -1,5 +1,5 @@
 // The plate-ball boundary-value problem: one Newton iteration and the whole solve.
-#include <lagroid/solvers/boundary_ceres.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
 
 #include "boundary_case.hpp"
 #include "comparison.hpp"
@@ -17,6 +17,7 @@ namespace {
 
 constexpr const char* by_hand = "by hand";
 constexpr const char* by_framework = "framework";
+constexpr const char* by_type = "framework, compiled for the system";  // and not for its sizes
 constexpr const char* by_ipopt = "IPOPT";
 constexpr double tolerance = 1e-10;
 
@@ -26,25 +27,27 @@ std::string iteration_of(std::size_t count) {
 std::string solve_of(std::size_t count) { return fmt::format("boundary values, whole solve, N = {}", count); }
 
 /// Evaluation, elimination and the new path.
-class FrameworkIteration {
+template <class Sys> class FrameworkIteration {
  public:
-  explicit FrameworkIteration(const BoundaryCase& c) : case_(c), variation_(c.start.size()) {}
+  FrameworkIteration(BoundaryProblem<Sys> problem, Path<Sys> start)
+      : problem_(std::move(problem)), start_(std::move(start)), variation_(start_.size()) {}
   void operator()() {
-    kkt_.evaluate(case_.problem.system, case_.start);
+    kkt_.evaluate(problem_.system, start_);
     kkt_.choose_scale();
     kkt_.newton_side(step_);
     kkt_.factor(0, 0);
     kkt_.solve_in_place(step_);
     kkt_.unscale(step_, variation_);
-    displace(case_.problem, case_.start, variation_, 1.0, moved_);
+    displace(problem_, start_, variation_, 1.0, moved_);
   }
 
  private:
-  BoundaryCase case_;
-  BoundaryKkt<PlateBall> kkt_;
-  BoundaryKkt<PlateBall>::Columns step_;
-  Variation<PlateBall> variation_;
-  Path<PlateBall> moved_;
+  BoundaryProblem<Sys> problem_;
+  Path<Sys> start_;
+  BoundaryKkt<Sys> kkt_;
+  typename BoundaryKkt<Sys>::Columns step_;
+  Variation<Sys> variation_;
+  Path<Sys> moved_;
 };
 
 template <class F> Subject repeated(std::string group, std::string name, F run, bool reference = false) {
@@ -71,17 +74,26 @@ void add(std::vector<Subject>& out, std::size_t count) {
         return true;
       },
       /*reference=*/true));
-  const auto iteration = std::make_shared<FrameworkIteration>(*c);
-  out.push_back(repeated(iteration_of(count), by_framework, [iteration] {
-    (*iteration)();
-    return true;
-  }));
+  const auto add_iteration = [&]<class Sys>(const char* name, const BoundaryProblem<Sys>& problem,
+                                            const Path<Sys>& path) {
+    const auto iteration = std::make_shared<FrameworkIteration<Sys>>(problem, path);
+    out.push_back(repeated(iteration_of(count), name, [iteration] {
+      (*iteration)();
+      return true;
+    }));
+  };
+  add_iteration(by_framework, by_sizes(c->problem), by_sizes(c->problem.system, c->start));
+  add_iteration(by_type, c->problem, c->start);
   BoundaryOptions options;
   options.tolerance = tolerance;
   options.classify = false;
   out.push_back(repeated(
       solve_of(count), by_framework,
-      [c, options] { return BoundaryNewton<PlateBall>(options).solve(c->problem, c->start, true).converged(); },
+      [c, options] {
+        return make_boundary_solver<PlateBall>(BoundaryMethod::newton, options)
+            ->solve(c->problem, c->start, true)
+            .converged();
+      },
       /*reference=*/true));
   out.push_back(repeated(solve_of(count), by_hand,
                          [p, start] { return kernels::PlateBallBoundary(p, start).solve(tolerance) < 50; }));
@@ -89,7 +101,9 @@ void add(std::vector<Subject>& out, std::size_t count) {
                          [p, start] { return kernels::solve_with_ipopt(p, start, tolerance).solved; }));
   if (count <= 1000)
     out.push_back(repeated(solve_of(count), "Ceres", [c, options] {
-      return BoundaryCeres<PlateBall>(options).solve(c->problem, c->start, true).converged();
+      return make_boundary_solver<PlateBall>(BoundaryMethod::ceres, options)
+          ->solve(c->problem, c->start, true)
+          .converged();
     }));
 }
 
