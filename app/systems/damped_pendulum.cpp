@@ -1,4 +1,5 @@
 #include "../reading/any_system.hpp"
+#include "swinging.hpp"
 
 #include <lagroid/systems/damped_pendulum.hpp>
 
@@ -7,19 +8,12 @@ namespace lagroid::app {
 namespace {
 
 void dress(Presentation<DampedPendulum>& p, const DampedPendulum& system) {
-  p.position = {"q"};
-  p.position_unit = "rad";
-  p.momentum = {"p"};
-  p.momentum_unit = "kg m^2/s";
-  p.conventions = {{"state", "object q and momentum p at the nodes"}};
+  dress_swinging(p, system);
   p.extras = {
       {{"energy", {"H"}, "J", "p^2 / (2 m l^2) - m g l cos q", false, {}},
        [system](const TrajectoryPoint<DampedPendulum>& point, double* out) { *out = system.energy(point.state); }}};
-  p.shapes = hanging(system.length, "q");
-  p.panels = {{"angle", "t", "q", "t", {"q"}},
-              {"phase plane", "q", "p", "q", {"p"}},
-              {"energy", "t", "H", "t", {"H"}},
-              {"energy less work, error", "t", "deviation", "t", {"drift energy less work"}}};
+  p.panels.push_back({"energy", "t", "H", "t", {"H"}});
+  p.panels.push_back({"energy less work, error", "t", "deviation", "t", {"drift energy less work"}});
 }
 
 }  // namespace

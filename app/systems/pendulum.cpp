@@ -1,4 +1,5 @@
 #include "../reading/any_system.hpp"
+#include "swinging.hpp"
 
 #include <lagroid/systems/pendulum.hpp>
 
@@ -7,15 +8,8 @@ namespace lagroid::app {
 namespace {
 
 void dress(Presentation<Pendulum>& p, const Pendulum& system) {
-  p.position = {"q"};
-  p.position_unit = "rad";
-  p.momentum = {"p"};
-  p.momentum_unit = "kg m^2/s";
-  p.conventions = {{"state", "object q and momentum p at the nodes"}};
-  p.panels = {{"angle", "t", "q", "t", {"q"}},
-              {"phase plane", "q", "p", "q", {"p"}},
-              {"energy error", "t", "|H - H_0|", "t", {"drift energy"}}};
-  p.shapes = hanging(system.length, "q");
+  dress_swinging(p, system);
+  p.panels.push_back({"energy error", "t", "|H - H_0|", "t", {"drift energy"}});
 }
 
 }  // namespace
