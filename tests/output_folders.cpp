@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <random>
+#include <regex>
 #include <thread>
 #include <vector>
 

@@ -6,6 +6,7 @@
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/so2.hpp>
 #include <lagroid/groupoids/so3.hpp>
+#include <lagroid/solvers/march_methods.hpp>
 #include <lagroid/systems/pendulum.hpp>
 
 #include <gtest/gtest.h>
