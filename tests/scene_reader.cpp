@@ -130,7 +130,7 @@ TEST_F(Scene, OtherSystems) {
   expect("system = \"spherical_pendulum\"\n[initial]\nposition = [1, 0, 0]\nmomentum = [1, 0, 1]\n",
          {":4", "initial.momentum", "tangent"});
   expect("system = \"attitude_control\"\n[parameters]\nforbidden = [0, 0, 0]\n",
-         {":3", "parameters.forbidden", "no axis"});
+         {":3", "parameters.forbidden", "no direction"});
   expect("system = \"attitude_control\"\n[parameters]\nweights = [1, 0, 1]\n",
          {":3", "parameters.weights", "positive"});
   expect("system = \"pendulum\"\n[initial]\nposition = [1]\nmomentum = [0]\n", {"missing key \"time\"", "[time]"});
