@@ -3,6 +3,8 @@
 
 #include <lagroid/core/groupoid.hpp>
 
+#include <concepts>
+
 namespace lagroid {
 
 /// The number of loops that X, a groupoid or a system, says there are; zero where it says nothing.
@@ -27,5 +29,26 @@ template <class X> constexpr int loops_of() {
 template <class X>
 concept Winding = loops_of<X>()
 > 0;
+
+namespace detail {
+
+template <class Sys>
+concept HasLoop = requires(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q,
+                           const AlgebroidVector<typename Sys::GroupoidType>& axis,
+                           const Vector<double, loops_of<Sys>()>& turns) {
+  { system.loop(q, axis, turns) } -> std::convertible_to<ArrowOf<typename Sys::GroupoidType>>;
+};
+
+}  // namespace detail
+
+/// Whether a system that says how its paths wind, in part, says all of it.
+template <class Sys> constexpr bool loops_and_loop_fit() {
+  if constexpr (Winding<Sys>) {
+    return detail::HasLoop<Sys>;
+  } else {
+    return !requires { &Sys::loop; };
+  }
+}
+template <class Sys> inline constexpr bool loops_fit = loops_and_loop_fit<Sys>();
 
 }  // namespace lagroid

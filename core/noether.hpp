@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <span>
@@ -51,14 +52,40 @@ template <class Sys> struct Symmetry {
   }
 };
 
+/// A system that declares what a ledger is to watch, `std::vector<Quantity<Sys>> quantities() const`.
+template <class Sys>
+concept HasQuantities = requires(const Sys& system) {
+  { system.quantities() } -> std::convertible_to<std::vector<Quantity<Sys>>>;
+};
+/// A system that declares its symmetries, `std::vector<Symmetry<Sys>> symmetries() const`.
+template <class Sys>
+concept HasSymmetries = requires(const Sys& system) {
+  { system.symmetries() } -> std::convertible_to<std::vector<Symmetry<Sys>>>;
+};
+/// Whether these, where they are there, are those.
+template <class Sys>
+inline constexpr bool quantities_fit =
+    HasQuantities<Sys> || !(
+                              requires { &Sys::quantities; } || requires(Sys & system) { system.quantities(); });
+template <class Sys>
+inline constexpr bool symmetries_fit =
+    HasSymmetries<Sys> || !(
+                              requires { &Sys::symmetries; } || requires(Sys & system) { system.symmetries(); });
+
 /// What a ledger watches of a system: its own quantities or, of one that declares symmetries alone, their constants of
 /// the motion.
 template <DiscreteSystem Sys> std::vector<Quantity<Sys>> quantities_of(const Sys& system) {
-  if constexpr (requires { system.quantities(); }) {
+  static_assert(quantities_fit<Sys>,
+                "quantities() is there but does not fit: a const function that returns std::vector<Quantity<Sys>> of "
+                "the system itself");
+  static_assert(symmetries_fit<Sys>,
+                "symmetries() is there but does not fit: a const function that returns std::vector<Symmetry<Sys>> of "
+                "the system itself");
+  if constexpr (HasQuantities<Sys>) {
     return system.quantities();
   } else {
     std::vector<Quantity<Sys>> out;
-    if constexpr (requires { system.symmetries(); })
+    if constexpr (HasSymmetries<Sys>)
       for (const auto& symmetry : system.symmetries()) out.push_back(symmetry.quantity());
     return out;
   }

@@ -22,4 +22,15 @@ concept HasRates = DiscreteSystem<Sys> && HasTimeStep<Sys> &&
   { system.rates(z) } -> std::same_as<Rates<typename Sys::GroupoidType>>;
 };
 
+namespace detail {
+template <class Sys>
+concept SpeaksOfRates = requires {
+  &Sys::rates;
+}
+|| requires(Sys& system, const State<typename Sys::GroupoidType>& z) { system.rates(z); };
+}  // namespace detail
+
+/// Whether `rates`, where there is one, is that.
+template <class Sys> inline constexpr bool rates_fit = HasRates<Sys> || !detail::SpeaksOfRates<Sys>;
+
 }  // namespace lagroid

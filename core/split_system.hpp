@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <type_traits>
+#include <utility>
 
 namespace lagroid {
 
@@ -52,6 +53,53 @@ concept SplitSystem = DiscreteSystem<Sys> && Variational<Sys> && Sys::arrow_cons
 template <class Sys>
 concept NystromSystem = SplitSystem<Sys> && requires {
   requires Sys::nystrom;
+};
+
+/// A system of two flows, of a potential and of a kinetic energy, that writes
+///
+///     double kinetic_energy(const AlgebroidVector<G>& mu) const
+///     double potential_energy(const Object<double>& q) const        negative wherever the motion goes
+///
+/// and declares `static constexpr bool attractive = true`.
+template <class Sys>
+concept AttractiveSystem = SplitSystem<Sys> && Sys::parts == 2 &&
+                           requires(const Sys& system, const State<typename Sys::GroupoidType>& z) {
+  requires Sys::attractive;
+  { system.kinetic_energy(z.momentum) } -> std::convertible_to<double>;
+  { system.potential_energy(z.object) } -> std::convertible_to<double>;
+};
+
+namespace detail {
+
+template <class Sys>
+concept CountsParts = requires {
+  requires std::same_as<decltype(Sys::parts), const int>;
+  requires Sys::parts >= 1;
+};
+template <class Sys>
+concept SpeaksOfFlows = requires {
+  Sys::parts;
+}
+|| requires { &Sys::template flow<0, double>; }
+|| requires(Sys& system, const State<typename Sys::GroupoidType>& z) {
+  system.template flow<0>(1.0, z.object, z.momentum);
+};
+template <class Sys> constexpr bool counted_flows_fit() {
+  if constexpr (CountsParts<Sys>) {
+    return HasTimeStep<Sys> && has_flows<Sys>();
+  } else {
+    return false;
+  }
+}
+
+}  // namespace detail
+
+/// Whether the flows, where there are any, are those. (A system derived from one that splits, with forces of its own,
+/// has flows and no use for them.)
+template <class Sys> inline constexpr bool flows_fit = !detail::SpeaksOfFlows<Sys> || detail::counted_flows_fit<Sys>();
+/// Whether a system that declares itself attractive, and could be, is.
+template <class Sys> inline constexpr bool attraction_fits = AttractiveSystem<Sys> || !Variational<Sys> || !requires {
+  requires Sys::attractive;
 };
 
 }  // namespace lagroid

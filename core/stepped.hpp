@@ -18,7 +18,7 @@ concept StepDependent = HasTimeStep<Sys> &&
     requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double step) {
   { system.lagrangian(g, step) } -> std::convertible_to<double>;
   requires Sys::arrow_constraints == 0 || requires {
-    { system.constraint(g, step) } -> std::convertible_to<Vector<double, Sys::arrow_constraints>>;
+    { system.constraint(g, step) } -> ColumnOf<Sys::arrow_constraints>;
   };
 };
 
@@ -33,10 +33,32 @@ concept TimeDependent = HasTimeStep<Sys> &&
     requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double start, double step) {
   { system.lagrangian(g, start, step) } -> std::convertible_to<double>;
   requires Sys::arrow_constraints == 0 || requires {
-    { system.constraint(g, start, step) } -> std::convertible_to<Vector<double, Sys::arrow_constraints>>;
+    { system.constraint(g, start, step) } -> ColumnOf<Sys::arrow_constraints>;
   };
   system.time = 1.0;
 };
+
+namespace detail {
+
+/// Members that can be called with these arguments at all, const or not, whatever comes of it.
+template <class Sys>
+concept SpeaksOfStep = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double step) {
+  system.lagrangian(g, step);
+}
+|| requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double step) { system.constraint(g, step); };
+template <class Sys>
+concept SpeaksOfStart = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double start, double step) {
+  system.lagrangian(g, start, step);
+}
+|| requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g, double start, double step) {
+  system.constraint(g, start, step);
+};
+
+}  // namespace detail
+
+/// Whether functions that take the step, or start and step, are those of a system of that kind, where there are any.
+template <class Sys> inline constexpr bool step_arguments_fit = StepDependent<Sys> || !detail::SpeaksOfStep<Sys>;
+template <class Sys> inline constexpr bool start_arguments_fit = TimeDependent<Sys> || !detail::SpeaksOfStart<Sys>;
 
 /// The time at which a system's next arrow starts: zero where it depends on none.
 template <class Sys> double start_time(const Sys& system) {

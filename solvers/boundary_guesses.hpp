@@ -23,6 +23,8 @@ template <class Sys>
 concept HasPath = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary) {
   { system.path(boundary, 1L) } -> std::same_as<std::vector<ArrowOf<typename Sys::GroupoidType>>>;
 };
+/// Whether `path`, where there is one, is that.
+template <class Sys> inline constexpr bool path_fits = HasPath<Sys> || !requires { &Sys::path; };
 
 namespace detail {
 
@@ -100,6 +102,9 @@ struct BoundaryGuesses {
   }
 
   template <DiscreteSystem Sys> static Path<Sys> straight(const BoundaryProblem<Sys>& problem, std::size_t count) {
+    static_assert(path_fits<Sys>,
+                  "path(boundary, steps) is there but does not fit: a const function that returns a std::vector of "
+                  "arrows (see HasPath)");
     if constexpr (HasPath<Sys>) {
       Path<Sys> path;
       for (const auto& arrow : problem.system.path(problem.boundary, long(count)))

@@ -8,16 +8,17 @@
 
 namespace lagroid {
 
-template <DiscreteSystem Sys>
-std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method, BoundaryOptions options, Seek seek) {
-  switch (method) {
-    case BoundaryMethod::shooting:
-      return std::make_unique<BoundaryShooting<Sys>>(options, seek);
-    case BoundaryMethod::ceres:
-      return std::make_unique<BoundaryCeres<Sys>>(options, seek);
-    default:
-      return std::make_unique<BoundaryNewton<Sys>>(options, seek);
+template <DiscreteSystem Sys> struct detail::BoundarySolvers {
+  static std::unique_ptr<BoundarySolver<Sys>> make(BoundaryMethod method, BoundaryOptions options, Seek seek) {
+    switch (method) {
+      case BoundaryMethod::shooting:
+        return std::make_unique<BoundaryShooting<Sys>>(options, seek);
+      case BoundaryMethod::ceres:
+        return std::make_unique<BoundaryCeres<Sys>>(options, seek);
+      default:
+        return std::make_unique<BoundaryNewton<Sys>>(options, seek);
+    }
   }
-}
+};
 
 }  // namespace lagroid

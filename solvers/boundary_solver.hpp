@@ -2,6 +2,7 @@
 /// The interface of everything that solves one boundary-value problem.
 
 #include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/optional_members.hpp>
 
 #include <memory>
 #include <stdexcept>
@@ -76,10 +77,23 @@ template <DiscreteSystem Sys> class BoundarySolver {
 /// The solvers of a boundary-value problem that a user can name.
 enum class BoundaryMethod { newton, shooting, ceres };
 
+namespace detail {
+
+/// All of these for a system: complete where `boundary_methods.hpp` is included.
+template <DiscreteSystem Sys> struct BoundarySolvers;
+
+}  // namespace detail
+
 /// A solver of the named kind. Include `boundary_methods.hpp` for a system of your own; those of `systems/` are
 /// compiled.
 template <DiscreteSystem Sys>
 std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method = BoundaryMethod::newton,
-                                                          BoundaryOptions options = {}, Seek seek = natural_seek<Sys>);
+                                                          BoundaryOptions options = {}, Seek seek = natural_seek<Sys>) {
+  constexpr bool included = requires { sizeof(detail::BoundarySolvers<Sys>); };
+  static_assert(included,
+                "include <lagroid/solvers/boundary_methods.hpp> to solve boundary values of a system of your own");
+  require_optional_members_to_fit<Sys>();
+  if constexpr (included) return detail::BoundarySolvers<Sys>::make(method, options, seek);
+}
 
 }  // namespace lagroid

@@ -28,7 +28,7 @@ template <DiscreteSystem Sys> class Integrator {
   const Sys& system() const { return stepper_.system(); }
   /// The system's own, else those of a self-adjoint discretisation.
   MethodTraits traits() const {
-    if constexpr (requires(const Sys& s) { s.traits(); }) {
+    if constexpr (HasTraits<Sys>) {
       return system().traits();
     } else {
       return {"equal steps", 2, true, Variational<Sys>, false};

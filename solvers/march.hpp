@@ -62,6 +62,13 @@ template <DiscreteSystem Sys> class March {
   virtual void persist(Tape& tape) = 0;
 };
 
+namespace detail {
+
+/// All marches of a system by their names: complete where `march_methods.hpp` is included.
+template <DiscreteSystem Sys> struct Marches;
+
+}  // namespace detail
+
 /// A march from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed, and one
 /// with a time scale for controlled steps, a SplitSystem for splitting, an AttractiveSystem for a transformed time, one
 /// that HasRates for Runge-Kutta steps and a variational one with a step `h` for orders above two (throws
@@ -70,13 +77,21 @@ template <DiscreteSystem Sys> class March {
 template <DiscreteSystem Sys>
 std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,
                                        const ArrowOf<typename Sys::GroupoidType>& configuration,
-                                       const MarchOptions& options);
+                                       const MarchOptions& options) {
+  constexpr bool included = requires { sizeof(detail::Marches<Sys>); };
+  static_assert(included, "include <lagroid/solvers/march_methods.hpp> to march a system of your own by name");
+  if constexpr (included) return detail::Marches<Sys>::make(system, initial, configuration, options);
+}
 
 /// The step size at which one step and two of half its size differ, relative to the motion over the step, by
 /// `accuracy`, up to a tenth; searched from system.h, and at most about a thousand times as large. Momenta are taken as
 /// they are reported. Zero where no such step was found.
 template <DiscreteSystem Sys>
 double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidType>& initial, double accuracy,
-                         const MarchOptions& options);
+                         const MarchOptions& options) {
+  constexpr bool included = requires { sizeof(detail::Marches<Sys>); };
+  static_assert(included, "include <lagroid/solvers/march_methods.hpp> to find the step of a system of your own");
+  if constexpr (included) return detail::Marches<Sys>::step_for_accuracy(system, initial, accuracy, options);
+}
 
 }  // namespace lagroid

@@ -5,6 +5,7 @@
 #include <lagroid/solvers/composition.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march_of.hpp>
+#include <lagroid/solvers/methods.hpp>
 #include <lagroid/solvers/runge_kutta.hpp>
 #include <lagroid/solvers/splitting.hpp>
 #include <lagroid/solvers/step_control.hpp>
@@ -18,93 +19,78 @@
 
 namespace lagroid {
 
-template <DiscreteSystem Sys>
-std::unique_ptr<March<Sys>> make_march(const Sys& system, const State<typename Sys::GroupoidType>& initial,
-                                       const ArrowOf<typename Sys::GroupoidType>& configuration,
-                                       const MarchOptions& options) {
-  const auto solver = [&] { return make_step_solver(system, options.method, options.step); };
-  if constexpr (Timed<Sys>) {
-    if (options.mode == TimeMode::adaptive) {
-      if (options.without_root == WithoutRoot::controlled && !HasTimeScale<Sys>)
-        throw std::invalid_argument("controlled steps need a system with time_scale_rate");
-      return std::make_unique<detail::MarchOf<Sys, AdaptiveIntegrator<Sys>>>(
-          system, initial, configuration, solver(),
-          make_step_solver(FreeTime<Sys>(system), options.method, options.step),
-          AdaptiveOptions{.without_root = options.without_root});
-    }
-    if constexpr (HasTimeScale<Sys>)
-      if (options.mode == TimeMode::controlled)
-        return std::make_unique<detail::MarchOf<Sys, ControlledIntegrator<Sys>>>(system, initial, configuration,
-                                                                                 solver());
-  }
-  if constexpr (AttractiveSystem<Sys>)
-    if (options.mode == TimeMode::transformed)
-      return std::make_unique<detail::MarchOf<Sys, TransformedIntegrator<Sys>>>(system, initial, configuration,
-                                                                                options.composition);
-  if (options.mode == TimeMode::adaptive)
-    throw std::invalid_argument("adaptive steps need a system with lagrangian(g, step)");
-  if (options.mode == TimeMode::controlled)
-    throw std::invalid_argument("controlled steps need a system with time_scale_rate");
-  if (options.mode == TimeMode::transformed)
-    throw std::invalid_argument("steps of a transformed time need an attractive system");
-  if constexpr (SplitSystem<Sys>)
-    if (options.fixed == StepKind::splitting)
-      return std::make_unique<detail::MarchOf<Sys, SplittingIntegrator<Sys>>>(system, initial, configuration,
-                                                                              options.composition);
-  if constexpr (HasRates<Sys>)
-    if (options.fixed == StepKind::runge_kutta)
-      return std::make_unique<detail::MarchOf<Sys, RungeKuttaIntegrator<Sys>>>(system, initial, configuration);
-  if (options.fixed != StepKind::variational)
-    throw std::invalid_argument(options.fixed == StepKind::splitting ? "splitting needs a system with flows"
-                                                                     : "Runge-Kutta steps need a system with rates");
-  if (options.composition.stages() > 1 && !Variational<Sys>)
-    throw std::invalid_argument("orders above two are for variational systems");
-  if (options.composition.stages() > 1 && !HasTimeStep<Sys>)
-    throw std::invalid_argument(
-        "orders above two are composed of steps of several sizes: the system needs its step, h");
-  if constexpr (HasTimeStep<Sys> && Variational<Sys>)
-    if (options.composition.stages() > 1)
-      return std::make_unique<detail::MarchOf<Sys, CompositionIntegrator<Sys>>>(system, initial, configuration,
-                                                                                options.composition, solver);
-  return std::make_unique<detail::MarchOf<Sys, Integrator<Sys>>>(system, initial, configuration, solver());
-}
+template <DiscreteSystem Sys> struct detail::Marches {
+  using Start = State<typename Sys::GroupoidType>;
 
-template <DiscreteSystem Sys>
-double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidType>& initial, double accuracy,
-                         const MarchOptions& options) {
-  using G = typename Sys::GroupoidType;
-  const G& groupoid = system.groupoid;
-  const auto error = [&](double h) {
-    const auto unit = groupoid.unit(initial.object);
-    Sys whole = system;
-    whole.h = h;
-    Sys half = system;
-    half.h = 0.5 * h;
-    Integrator<Sys> once(whole, initial, unit, make_step_solver(whole, options.method, options.step));
-    Integrator<Sys> twice(half, initial, unit, make_step_solver(half, options.method, options.step));
-    if (!once.advance().converged() || !twice.advance().converged() || !twice.advance().converged())
-      return std::numeric_limits<double>::infinity();
-    const auto& a = once.point();
-    const auto& b = twice.point();
-    const AlgebroidVector<G> momentum = tangent_momentum(whole, b.state);
-    const AlgebroidVector<G> between =
-        groupoid.tau_inverse(groupoid.multiply(groupoid.inverse(a.configuration), b.configuration));
-    const AlgebroidVector<G> moved = groupoid.tau_inverse(b.configuration);
-    return std::max(between.norm() / moved.norm(),
-                    (tangent_momentum(whole, a.state) - momentum).norm() / momentum.norm());
-  };
-  constexpr int order = 2;  // of the error O(h^3) over the motion O(h)
-  constexpr double close = 1.1;
-  const double largest = 1e3 * system.h;  // where a step is exact whatever its size
-  double h = system.h;
-  for (int trial = 0; trial < 40; ++trial) {
-    const double at = error(h);
-    if (h >= largest && at <= accuracy) return h;
-    const double factor = std::isfinite(at) ? std::clamp(std::pow(accuracy / at, 1.0 / order), 0.1, 4.0) : 0.25;
-    if (factor < close && factor > 1 / close) return h * factor;
-    h *= factor;
+  static std::unique_ptr<March<Sys>> make(const Sys& system, const Start& initial,
+                                          const ArrowOf<typename Sys::GroupoidType>& configuration,
+                                          const MarchOptions& options) {
+    if (const std::string why = why_not(options, abilities_of(system)); !why.empty()) throw std::invalid_argument(why);
+    const auto solver = [&] { return make_step_solver(system, options.method, options.step); };
+    if constexpr (Timed<Sys>) {
+      if (options.mode == TimeMode::adaptive)
+        return std::make_unique<MarchOf<Sys, AdaptiveIntegrator<Sys>>>(
+            system, initial, configuration, solver(),
+            make_step_solver(FreeTime<Sys>(system), options.method, options.step),
+            AdaptiveOptions{.without_root = options.without_root});
+      if constexpr (HasTimeScale<Sys>)
+        if (options.mode == TimeMode::controlled)
+          return std::make_unique<MarchOf<Sys, ControlledIntegrator<Sys>>>(system, initial, configuration, solver());
+    }
+    if constexpr (AttractiveSystem<Sys>)
+      if (options.mode == TimeMode::transformed)
+        return std::make_unique<MarchOf<Sys, TransformedIntegrator<Sys>>>(system, initial, configuration,
+                                                                          options.composition);
+    if constexpr (SplitSystem<Sys>)
+      if (options.fixed == StepKind::splitting)
+        return std::make_unique<MarchOf<Sys, SplittingIntegrator<Sys>>>(system, initial, configuration,
+                                                                        options.composition);
+    if constexpr (HasRates<Sys>)
+      if (options.fixed == StepKind::runge_kutta)
+        return std::make_unique<MarchOf<Sys, RungeKuttaIntegrator<Sys>>>(system, initial, configuration);
+    if constexpr (HasTimeStep<Sys> && Variational<Sys>)
+      if (options.composition.stages() > 1)
+        return std::make_unique<MarchOf<Sys, CompositionIntegrator<Sys>>>(system, initial, configuration,
+                                                                          options.composition, solver);
+    return std::make_unique<MarchOf<Sys, Integrator<Sys>>>(system, initial, configuration, solver());
   }
-  return 0;
-}
+
+  static double step_for_accuracy(const Sys& system, const Start& initial, double accuracy,
+                                  const MarchOptions& options) {
+    using G = typename Sys::GroupoidType;
+    const G& groupoid = system.groupoid;
+    const auto error = [&](double h) {
+      const auto unit = groupoid.unit(initial.object);
+      Sys whole = system;
+      whole.h = h;
+      Sys half = system;
+      half.h = 0.5 * h;
+      Integrator<Sys> once(whole, initial, unit, make_step_solver(whole, options.method, options.step));
+      Integrator<Sys> twice(half, initial, unit, make_step_solver(half, options.method, options.step));
+      if (!once.advance().converged() || !twice.advance().converged() || !twice.advance().converged())
+        return std::numeric_limits<double>::infinity();
+      const auto& a = once.point();
+      const auto& b = twice.point();
+      const AlgebroidVector<G> momentum = tangent_momentum(whole, b.state);
+      const AlgebroidVector<G> between =
+          groupoid.tau_inverse(groupoid.multiply(groupoid.inverse(a.configuration), b.configuration));
+      const AlgebroidVector<G> moved = groupoid.tau_inverse(b.configuration);
+      return std::max(between.norm() / moved.norm(),
+                      (tangent_momentum(whole, a.state) - momentum).norm() / momentum.norm());
+    };
+    constexpr int order = 2;  // of the error O(h^3) over the motion O(h)
+    constexpr double close = 1.1;
+    const double largest = 1e3 * system.h;  // where a step is exact whatever its size
+    double h = system.h;
+    for (int trial = 0; trial < 40; ++trial) {
+      const double at = error(h);
+      if (h >= largest && at <= accuracy) return h;
+      const double factor = std::isfinite(at) ? std::clamp(std::pow(accuracy / at, 1.0 / order), 0.1, 4.0) : 0.25;
+      if (factor < close && factor > 1 / close) return h * factor;
+      h *= factor;
+    }
+    return 0;
+  }
+};
 
 }  // namespace lagroid

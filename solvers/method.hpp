@@ -1,6 +1,7 @@
 #pragma once
 /// What a one-step method declares of itself; tests hold it to its order (laws::order_laws).
 
+#include <concepts>
 #include <string>
 
 namespace lagroid {
@@ -14,5 +15,17 @@ struct MethodTraits {
   bool explicit_;   ///< explicit: no equations are solved
   int stages = 0;  ///< evaluations of a step in closed form (Strang steps, rates); 0 where the solver counts iterations
 };
+
+/// A system whose discretisation has other traits than a self-adjoint one of order two: it writes `MethodTraits
+/// traits() const`.
+template <class Sys>
+concept HasTraits = requires(const Sys& system) {
+  { system.traits() } -> std::same_as<MethodTraits>;
+};
+/// Whether `traits`, where there are any, are those.
+template <class Sys>
+inline constexpr bool traits_fit =
+    HasTraits<Sys> || !(
+                          requires { &Sys::traits; } || requires(Sys & system) { system.traits(); });
 
 }  // namespace lagroid

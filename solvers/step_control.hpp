@@ -2,6 +2,7 @@
 /// Reversible control of the step size.
 
 #include <lagroid/core/stepped.hpp>
+#include <lagroid/core/time_scale.hpp>
 #include <lagroid/solvers/constrained_momentum.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/stepper.hpp>
@@ -11,14 +12,6 @@
 #include <utility>
 
 namespace lagroid {
-
-/// A system that knows how fast it moves: d log sigma / dt along its motion, where sigma(q, mu) is a time in which
-/// little changes and to which the step is to be proportional. sigma must be the same, its rate the opposite, when the
-/// motion is reversed.
-template <class Sys>
-concept HasTimeScale = requires(const Sys& system, const State<typename Sys::GroupoidType>& state) {
-  { system.time_scale_rate(state) } -> std::convertible_to<double>;
-};
 
 /// The rate at a state on its way, whose momentum may leave the object constraints.
 template <HasTimeScale Sys> double time_scale_rate(const Sys& system, const State<typename Sys::GroupoidType>& state) {

@@ -51,9 +51,20 @@ struct StepOptions {
   double tolerance = 0;    ///< a scaled residual this small is accepted; 0: iterate to round-off
 };
 
+namespace detail {
+
+/// All solvers of a step by their names: complete where `step_methods.hpp` is included.
+template <DiscreteSystem Sys> struct StepSolvers;
+
+}  // namespace detail
+
 /// A solver of the named kind. Include `step_methods.hpp` for a system of your own; those of `systems/` are compiled.
 template <DiscreteSystem Sys>
-std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys& system, StepMethod method, StepOptions options = {});
+std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys& system, StepMethod method, StepOptions options = {}) {
+  constexpr bool included = requires { sizeof(detail::StepSolvers<Sys>); };
+  static_assert(included, "include <lagroid/solvers/step_methods.hpp> to solve steps of a system of your own by name");
+  if constexpr (included) return detail::StepSolvers<Sys>::make(system, method, options);
+}
 
 /// What round-off in mu, in the products J_ij lambda_j and in the arrow puts into each step equation.
 template <DiscreteSystem Sys, class S = double>

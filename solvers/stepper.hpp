@@ -4,6 +4,7 @@
 #include <lagroid/core/gradient_check.hpp>
 #include <lagroid/core/stepped.hpp>
 #include <lagroid/solvers/extrapolation.hpp>
+#include <lagroid/solvers/optional_members.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
 #include <algorithm>
@@ -21,7 +22,9 @@ template <DiscreteSystem Sys> class Stepper {
   using G = typename Sys::GroupoidType;
 
   Stepper(Sys system, std::unique_ptr<StepSolver<Sys>> solver)
-      : system_(std::move(system)), solver_(std::move(solver)) {}
+      : system_(std::move(system)), solver_(std::move(solver)) {
+    require_optional_members_to_fit<Sys>();
+  }
 
   const Sys& system() const { return system_; }
   /// For a step or a time that changes from one step to the next. Smoothly, or `forget` what was.

@@ -9,20 +9,6 @@
 
 namespace lagroid {
 
-/// A system of two flows, of a potential and of a kinetic energy, that writes
-///
-///     double kinetic_energy(const AlgebroidVector<G>& mu) const
-///     double potential_energy(const Object<double>& q) const        negative wherever the motion goes
-///
-/// and declares `static constexpr bool attractive = true`.
-template <class Sys>
-concept AttractiveSystem = SplitSystem<Sys> && Sys::parts == 2 &&
-                           requires(const Sys& system, const State<typename Sys::GroupoidType>& z) {
-  requires Sys::attractive;
-  { system.kinetic_energy(z.momentum) } -> std::convertible_to<double>;
-  { system.potential_energy(z.object) } -> std::convertible_to<double>;
-};
-
 /// Marches H = T + U, U < 0, by splitting the logarithmic Hamiltonian log(T - E) - log(-U), E the energy at the start
 /// (Mikkola and Tanikawa, Celest. Mech. Dyn. Astron. 74 (1999) 287; Preto and Tremaine, Astron. J. 118 (1999) 2532).
 /// Where H = E its motion is that of H in the time s with dt = ds / (T - E) = ds / (-U), so that equal steps of s are
