@@ -4,7 +4,6 @@
 #include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/solvers/march.hpp>
 #elif defined(PATH) || defined(FITS)
-#include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
 #endif
 #include <lagroid/core/noether.hpp>
@@ -101,6 +100,13 @@ struct Particle : System<Particle, Pair<1>, told> {
 #endif
 };
 
+#if defined(NO_BOUNDARY_METHODS)
+/// Of sizes for which the library has compiled nothing.
+struct Wide : System<Wide, Pair<4>> {
+  template <class S> S lagrangian(const PairArrow<S, 4>& g) const { return (g.target - g.source).squaredNorm(); }
+};
+#endif
+
 }  // namespace
 
 int main() {
@@ -112,13 +118,13 @@ int main() {
 #elif defined(NO_STEP_METHODS)
   make_step_solver(system, StepMethod::newton);
 #elif defined(NO_BOUNDARY_METHODS)
-  make_boundary_solver<Particle>();
+  make_boundary_solver<Wide>();
 #else
   quantities_of(system);
   Integrator<Particle> integrator(system, start, unit, std::make_unique<NewtonStep<Particle>>());
   integrator.traits();
 #if defined(PATH) || defined(FITS)
-  solve_boundary(BoundaryNewton<Particle>(), BoundaryProblem<Particle>{system, unit}, 2);
+  make_boundary_solver<Particle>();
 #endif
 #endif
 }
