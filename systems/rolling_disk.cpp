@@ -12,7 +12,7 @@ double RollingDisk::energy(const State<GroupoidType>& s) const {
 
 State<RollingDisk::GroupoidType> RollingDisk::reference(const State<GroupoidType>& start,
                                                         ArrowOf<GroupoidType>& configuration, double t) const {
-  const Vector<double, 2> rate = rates(start);
+  const Vector<double, 2> rate = turning_and_rolling(start);
   const ArrowOf<GroupoidType> motion{SE2::exp(Vector<double, 3>(t * rate(0), t * radius * rate(1), 0)),
                                      SO2::exp(Vector<double, 1>(t * rate(1)))};
   configuration = groupoid.project(groupoid.compose(configuration, motion));

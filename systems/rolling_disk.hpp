@@ -55,7 +55,7 @@ struct RollingDisk : System<RollingDisk, Product<SE2, SO2>, /*arrow constraints*
     return s;
   }
   /// (w, s) of a state that rolls.
-  Vector<double, 2> rates(const State<GroupoidType>& s) const {
+  Vector<double, 2> turning_and_rolling(const State<GroupoidType>& s) const {
     return {s.momentum(0) / turning_inertia, s.momentum(3) / rolling_inertia};
   }
 

@@ -4,7 +4,8 @@
 #include <lagroid/solvers/boundary_values.hpp>
 #include <lagroid/solvers/march.hpp>
 #elif defined(PATH) || defined(FITS)
-#include <lagroid/solvers/boundary_methods.hpp>
+#include <lagroid/solvers/boundary_newton.hpp>
+#include <lagroid/solvers/boundary_values.hpp>
 #endif
 #include <lagroid/core/noether.hpp>
 #include <lagroid/groupoids/pair.hpp>
@@ -117,7 +118,7 @@ int main() {
   Integrator<Particle> integrator(system, start, unit, std::make_unique<NewtonStep<Particle>>());
   integrator.traits();
 #if defined(PATH) || defined(FITS)
-  solve_boundary(*make_boundary_solver<Particle>(), BoundaryProblem<Particle>{system, unit}, 2);
+  solve_boundary(BoundaryNewton<Particle>(), BoundaryProblem<Particle>{system, unit}, 2);
 #endif
 #endif
 }

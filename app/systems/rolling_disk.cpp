@@ -32,7 +32,7 @@ Task<RollingDisk> read_rolling_disk(const Section& scene, const RunContext& cont
   p.extras = {{{"rates", {"w", "s"}, "rad/s", "of turning and of rolling", false, {}},
                [system](const Point& point, double* out) {
                  Eigen::Map<Vector<double, 2>> rates(out);
-                 rates = system.rates(point.state);
+                 rates = system.turning_and_rolling(point.state);
                }}};
   p.conventions = {{"position",
                     "x, y of the point of contact, the angle from the x axis to where it rolls, and how far "
