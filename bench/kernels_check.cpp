@@ -184,6 +184,7 @@ TYPED_TEST_SUITE(KeplerKernel, KeplerKernels);
 TYPED_TEST(KeplerKernel, IsTheFramework) {
   Kepler system;
   system.h = 0.01;
+  system.quadrature = Quadrature::midpoint;
   system.strength = 1.2;
   const State<Pair<2>> start{Vector2d(0.4, 0.1), Vector2d(-0.3, 2.0)};
   auto peer = framework(system, start, {start.object, start.object});

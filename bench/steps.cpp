@@ -131,7 +131,8 @@ void add_ball(std::vector<Subject>& out) {
 }
 
 void add_points(std::vector<Subject>& out) {
-  const Kepler kepler;
+  Kepler kepler;
+  kepler.quadrature = Quadrature::midpoint;
   const State<Pair<2>> orbit{Vector2d(0.8, 0), Vector2d(0, 1.2)};
   out.push_back(kernel(kepler_orbit, by_hand, kernels::Kepler<1>(kepler.h, 1, orbit.object, orbit.momentum), true));
   out.push_back(steps<NewtonStep<Kepler>>(kepler_orbit, by_framework, kepler, orbit, {orbit.object, orbit.object}));

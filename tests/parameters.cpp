@@ -59,6 +59,12 @@ Section scene(const std::string& parameters, const std::string& rest = "") {
                      "spring.toml", {});
 }
 
+/// The family of systems has read which one it is.
+Section named(const Section& of) {
+  EXPECT_EQ(of.choice("system", {"spring"}), "spring");
+  return of;
+}
+
 /// The message of the SceneError.
 template <class F> std::string refusal(const F& read) {
   try {
@@ -118,13 +124,13 @@ TEST(Parameters, CarryAnyScalar) {
 
 TEST(AnySystem, IsReadFromItsParametersAndItsGroupoid) {
   const auto module = any_module<Spring>("spring", "a mass on a spring");
-  const RunResult result = module.run(scene("stiffness = 4"), {.record = true});
+  const RunResult result = module.run(named(scene("stiffness = 4")), {.record = true});
   EXPECT_TRUE(result.converged()) << result.message;
   EXPECT_EQ(result.steps, 5);
   EXPECT_EQ(result.system, "spring");
-  const auto unknown = refusal([&] { module.run(scene("stiffness = 4\ncolour = 3"), {}); });
+  const auto unknown = refusal([&] { module.run(named(scene("stiffness = 4\ncolour = 3")), {}); });
   EXPECT_NE(unknown.find("parameters.colour"), std::string::npos) << unknown;
-  EXPECT_FALSE(module.read(scene("stiffness = 4"), {}).methods.empty());
+  EXPECT_FALSE(module.read(named(scene("stiffness = 4")), {}).methods.empty());
   EXPECT_EQ(module.listed().groupoid, "Pair<2>");
 }
 
@@ -134,10 +140,10 @@ TEST(AnySystem, HasBoundaryValues) {
       "system = \"spring\"\n[parameters]\nstiffness = 4\n[boundary]\nstart = { position = [1, 0] }\nend = { position = "
       "[0, 1] }\n[time]\nduration = 1\nsteps = 20\n",
       "ends.toml", {});
-  const RunResult result = module.run(ends, {});
+  const RunResult result = module.run(named(ends), {});
   EXPECT_TRUE(result.converged()) << result.message;
   EXPECT_EQ(result.minima.size(), 1u) << "of a quadratic action";
-  EXPECT_THROW(module.read(ends, {}), SceneError) << "no initial value";
+  EXPECT_THROW(module.read(named(ends), {}), SceneError) << "no initial value";
 }
 
 /// Factors of one kind are told apart by number.

@@ -284,15 +284,17 @@ class _System:
         tolerance: float = 0.0,
         ledger: bool = True,
     ) -> Integrator: ...
+
+class _WithBoundary(_System):
     def boundary(
         self, arrow: ArrayLike, steps: int, *, method: str = "newton", starts: int = 40, seed: int = 1
     ) -> list[BoundaryPath]: ...
 
-class Unicycle(_System):
+class Unicycle(_WithBoundary):
     speed: float
     map: str
 
-class AttitudeControl(_System):
+class AttitudeControl(_WithBoundary):
     @property
     def weights(self) -> _Array: ...
     @weights.setter
@@ -303,7 +305,7 @@ class AttitudeControl(_System):
     def forbidden(self, value: ArrayLike) -> None: ...
     rotation: str
 
-class Gyrostat(_System):
+class Gyrostat(_WithBoundary):
     @property
     def inertia(self) -> _Array: ...
     @inertia.setter
@@ -359,30 +361,30 @@ class DrivenBody(_System):
     drag: float
     rotation: str
 
-class Kepler(_System):
+class Kepler(_WithBoundary):
     strength: float
     quadrature: str
 
-class Pendulum(_System):
+class Pendulum(_WithBoundary):
     mass: float
     length: float
     gravity: float
     quadrature: str
 
-class SphericalPendulum(_System):
+class SphericalPendulum(_WithBoundary):
     mass: float
     length: float
     gravity: float
     quadrature: str
 
-class RigidBody(_System):
+class RigidBody(_WithBoundary):
     @property
     def inertia(self) -> _Array: ...
     @inertia.setter
     def inertia(self, value: ArrayLike) -> None: ...
     rotation: str
 
-class HeavyTop(_System):
+class HeavyTop(_WithBoundary):
     @property
     def inertia(self) -> _Array: ...
     @inertia.setter
@@ -395,7 +397,7 @@ class HeavyTop(_System):
     @staticmethod
     def arrow(attitude: ArrayLike) -> _Array: ...
 
-class PlateBall(_System):
+class PlateBall(_WithBoundary):
     radius: float
     plate_rate: float
     spin: float
