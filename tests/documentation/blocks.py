@@ -118,7 +118,7 @@ def options(*path):
     if path == ("check",):  # takes minutes to build: its options as its source names them
         said = "".join((root / "app" / name).read_text() for name in ("check/check.cpp", "command/command.cpp"))
         return set(re.findall(r"--[\w-]+", said))
-    if arm:
+    if arm and 'exec "$program" "$@"' not in arm[1]:  # else it is the program's
         mentions = re.findall(rf"^#.*lagroid {path[0]} .*", script, re.M)
         return set(re.findall(r"--[\w-]+", "\n".join([arm[1], *mentions])))
     said = run([*path, "--help"], root).stdout

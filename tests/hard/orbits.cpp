@@ -23,6 +23,7 @@ State<Pair<2>> far_end(double e) { return {V2(1 + e, 0), V2(0, std::sqrt((1 - e)
 
 std::unique_ptr<March<Kepler>> orbit(const State<Pair<2>>& start, double h, TimeMode mode) {
   Kepler system;
+  system.quadrature = Quadrature::midpoint;
   system.h = h;
   MarchOptions options;
   options.mode = mode;
@@ -41,6 +42,7 @@ struct Round {
 Round round(double e, double h, TimeMode mode, double duration = period) {
   const auto start = far_end(e);
   Kepler system;
+  system.quadrature = Quadrature::midpoint;
   const auto march = orbit(start, h, mode);
   const double energy = system.energy(start);
   const double momentum = start.object(0) * start.momentum(1);
@@ -67,6 +69,7 @@ Round round(double e, double h, TimeMode mode, double duration = period) {
 Round equally(double e, const Round& other) {
   const auto start = far_end(e);
   Kepler system;
+  system.quadrature = Quadrature::midpoint;
   system.h = period / other.steps;
   MarchOptions options;
   options.fixed = StepKind::splitting;
@@ -124,6 +127,7 @@ double from_the_centre(bool splitting) {
 double without_a_root() {
   const auto march = orbit(far_end(0.99), 0.01, TimeMode::adaptive);
   Kepler system;
+  system.quadrature = Quadrature::midpoint;
   double first = not_a_number;
   double worst = 0;
   for (int k = 0; k < 100'000; ++k) {
