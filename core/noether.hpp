@@ -78,7 +78,8 @@ template <DiscreteSystem Sys> std::vector<Quantity<Sys>> quantities_of(const Sys
   static_assert(quantities_fit<Sys>,
                 "quantities() is there but does not fit: a const function that returns std::vector<Quantity<Sys>> of "
                 "the system itself");
-  static_assert(symmetries_fit<Sys>,
+  // One derived from another system inherits that one's, for which its own quantities stand in.
+  static_assert(HasQuantities<Sys> || symmetries_fit<Sys>,
                 "symmetries() is there but does not fit: a const function that returns std::vector<Symmetry<Sys>> of "
                 "the system itself");
   if constexpr (HasQuantities<Sys>) {
