@@ -49,8 +49,9 @@ Section kept_scene(const std::string& folder, const std::vector<std::string>& ov
 int hand_over(std::string_view name, const RunOptions& options, const std::vector<ProgramCommand>& commands) {
   const auto command = std::ranges::find(commands, name, &ProgramCommand::name);
   if (command == commands.end() || !command->run_scene)
-    return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  fmt::format("{}: is carried out by lagroid {}, which this program does not have", options.scene, name));
+    return refuse(
+        options.json, exit_bad_input, "invalid_command_line",
+        fmt::format("{}: is carried out by lagroid {}, which this program does not have", options.scene, name));
   return command->run_scene(options, options.out);
 }
 
@@ -179,9 +180,10 @@ int program(int argc, char** argv, ProgramParts parts) {
       if (added[i]->parsed()) return commands[i].run(options);
       names += ", " + commands[i].name;
     }
-    return refuse(options.json, exit_bad_input, "invalid_command_line",
-                  fmt::format("name a command: run, resume, view, plot, study, check, list{} or cite; see lagroid --help",
-                              names));
+    return refuse(
+        options.json, exit_bad_input, "invalid_command_line",
+        fmt::format("name a command: run, resume, view, plot, study, check, list{} or cite; see lagroid --help",
+                    names));
   });
 }
 

@@ -19,7 +19,7 @@ struct SymmetryFinding {
 struct Certificate {
   std::string system;
   std::string groupoid;
-  std::string failure;         ///< why the run along which laws are asked ended early, if it did: then nothing was asked
+  std::string failure;  ///< why the run along which laws are asked ended early, if it did: then nothing was asked
   std::string failure_status;  ///< as in RunResult
   std::size_t states = 0;      ///< of that run, from which samples were drawn; 0: they were drawn by the caller
   int samples = 0;             ///< asked of each law

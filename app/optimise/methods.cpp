@@ -109,7 +109,8 @@ const ListedParameter restart_key{"restart", "", "false", "forget the momentum a
 const ListedParameter ahead_key{"look_ahead", "", "false", "the gradient where the momentum alone would lead"};
 const ListedParameter retraction_key{"retraction", "", "qr", "qr, polar, exponential, orthographic or cayley"};
 const ListedParameter cap_key{"cap", "1/L", "1", "upper bound of the gradient's share s, L the Lipschitz constant"};
-const ListedParameter capped_key{"capped", "", "true", "false: as in the paper's uncapped runs, which lose convergence"};
+const ListedParameter capped_key{"capped", "", "true",
+                                 "false: as in the paper's uncapped runs, which lose convergence"};
 
 std::vector<ListedParameter> hamiltonian_keys(bool adaptive) {
   std::vector<ListedParameter> out{{"p", "", "6", "rate O(t^-p)"}};
