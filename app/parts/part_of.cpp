@@ -35,6 +35,7 @@ std::string part_of(const Section& scene) {
 int main(int argc, char** argv) {
   CLI::App app{"which part of lagroid a command line needs"};
   SceneOptions options;
+  options.json = asks_for_json(argc, argv);
   std::string out;
   const auto with_scene = [&](const char* name, const char* file) {
     CLI::App* command = app.add_subcommand(name, "");
