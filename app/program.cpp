@@ -100,14 +100,17 @@ int from_run(const std::function<std::vector<std::filesystem::path>()>& make) {
   }
 }
 
-/// Hands over to lagroid-check, which stands beside this program: the laws of every system take long to compile, and
-/// whoever only runs scenes need not wait for them.
+/// Hands over to lagroid-check, which stands beside lagroid, as NAME-check does beside NAME: the laws of every system
+/// take long to compile, and whoever only runs scenes need not wait for them.
 int check(SceneOptions options, int argc, char** argv) {
   options.json = asks_for_json(argc, argv);
-  const auto program = std::filesystem::canonical("/proc/self/exe").parent_path() / "lagroid-check";
-  ::execv(program.c_str(), argv);
-  return refuse(options.json, exit_internal_error, "internal_error",
-                fmt::format("{}: {}; build the target lagroid_check", program.string(), std::strerror(errno)));
+  const std::string program = std::filesystem::canonical("/proc/self/exe").string();
+  const std::string laws = program + "-check";
+  ::execv(laws.c_str(), argv);
+  return refuse(options.json, exit_bad_input, "no_laws",
+                fmt::format("{}: {}; it holds the laws, and was not built: build the target {}_check, or install a "
+                            "package that has it",
+                            laws, std::strerror(errno), std::filesystem::path(program).filename().string()));
 }
 
 }  // namespace

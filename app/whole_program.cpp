@@ -3,6 +3,7 @@
 #include "learn/draw.hpp"
 #include "learn/learn.hpp"
 #include "optimise/optimise.hpp"
+#include "own/new_folder.hpp"
 #include "reproduce.hpp"
 #include "sweep/sweep.hpp"
 #include "systems/library_systems.hpp"
@@ -10,22 +11,6 @@
 namespace lagroid::app {
 
 namespace {
-
-ProgramCommand sweep_command() {
-  ProgramCommand command =
-      command_of("sweep", "run many members of one scene, on all threads or under mpirun (see docs/sweeps.md)",
-                 add_sweep_options, sweep);
-  command.run_scene = [](const SceneOptions& scene, const std::optional<std::string>& out) {
-    if (!out)
-      return refuse(scene.json, exit_bad_input, "invalid_command_line",
-                    scene.scene + ": is a sweep, whose members are written into a folder: give --out DIR");
-    SweepOptions options;
-    static_cast<SceneOptions&>(options) = scene;
-    options.out = *out;
-    return sweep(options);
-  };
-  return command;
-}
 
 ProgramCommand optimize_command() {
   ProgramCommand command = command_of("optimize", "minimise a function on a manifold (see docs/optimisation.md)",
@@ -44,7 +29,7 @@ ProgramCommand optimize_command() {
 ProgramParts whole_program() {
   return {{&systems_family(), &spheres_family(), &bodies_family(), &optimisation_family(), &sweeps_family()},
           library_systems(),
-          {sweep_command(), optimize_command(),
+          {new_command(), sweep_command(), optimize_command(),
            command_of("learn", "fit a Hamiltonian on (T*S^2)^k to trajectories (see docs/learning.md)",
                       add_learn_options, learn),
            command_of("trajectories", "draw trajectories of a pendulum chain into a file, to learn from",

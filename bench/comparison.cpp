@@ -89,11 +89,10 @@ std::string time_of(double ns) {
 
 std::string key_of(const std::string& group, const std::string& name) { return group + ": " + name; }
 
-void timed(benchmark::State& state, const std::function<void(long)>& steps) {
+void timed(benchmark::State& state, const std::function<void(long)>& steps, long at_once) {
   static const InstructionCounter counter;
-  constexpr long batch = 64;
   const double before = counter.read_now();
-  while (state.KeepRunningBatch(batch)) steps(batch);
+  while (state.KeepRunningBatch(at_once)) steps(at_once);
   const double counted = counter.read_now() - before;
   if (counted > 0) state.counters["instructions"] = counted / double(state.iterations());
 }

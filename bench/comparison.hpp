@@ -49,8 +49,9 @@ Results run(const std::vector<Subject>& subjects, int repetitions, double min_ti
 std::string table(const std::vector<Subject>& subjects, const Results& results);
 std::string goals_table(const std::vector<Goal>& goals, const Results& results, bool every);
 
-/// Runs `step` in the timed loop, and counts its instructions where the machine has a counter.
-void timed(benchmark::State& state, const std::function<void(long)>& steps);
+/// Runs `steps`, which takes as many as it is told, in the timed loop, and counts the instructions of one where the
+/// machine has a counter.
+void timed(benchmark::State& state, const std::function<void(long)>& steps, long at_once = 64);
 
 /// What each file contributes.
 std::vector<Subject> step_subjects();
@@ -59,6 +60,7 @@ std::vector<Subject> lie_newton_subjects();
 std::vector<Goal> lie_newton_goals();
 std::vector<Subject> boundary_subjects();
 std::vector<Goal> boundary_goals();
+std::vector<Subject> recorded_subjects();
 std::vector<Subject> scene_subjects();
 std::vector<Goal> scene_goals();
 std::vector<Subject> pendulum_chain_subjects();

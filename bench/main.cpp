@@ -38,6 +38,7 @@ int main(int argc, char** argv) try {
   };
   std::vector<Chapter> chapters{
       {"@STEPS@", bench::step_subjects(), bench::step_goals(), 21},
+      {"@RUNS@", bench::recorded_subjects(), {}, 7},
       {"@SCENES@", bench::scene_subjects(), bench::scene_goals(), 21},
       {"@PENDULUM_CHAINS@", bench::pendulum_chain_subjects(), bench::pendulum_chain_goals(), 21},
       {"@ENSEMBLES@", bench::ensemble_subjects(), bench::ensemble_goals(), 11},

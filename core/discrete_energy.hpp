@@ -23,8 +23,9 @@ template <Timed Sys> double discrete_energy(const Sys& system, const Step<Sys>& 
   return energy;
 }
 
-/// E_d as a quantity of trajectory points. Its round-off is relative to the power of the momentum, were it to carry the
-/// arrow's coordinates along in one step: far from the origin, velocities lose digits.
+/// E_d as a quantity of trajectory points. Where it is kept, its round-off is relative to the power of the momentum,
+/// were it to carry the arrow's coordinates along in one step: far from the origin, velocities lose digits. Where it is
+/// bounded, its size is that of its terms: the momentum's power along the arrow is that of the kinetic one.
 template <Timed Sys> Quantity<Sys> discrete_energy_quantity(const Sys& system, Promise promise) {
   using Point = TrajectoryPoint<Sys>;
   return {"discrete energy E_d",
@@ -34,9 +35,12 @@ template <Timed Sys> Quantity<Sys> discrete_energy_quantity(const Sys& system, P
           [system](const Point& p, double* out) {
             *out = discrete_energy(system, p.step, p.time - p.step_size, p.step_size);
           },
-          [system](const Point& p) {
+          [system, kept = promise == Promise::conserved](const Point& p) {
+            const auto& m = p.state.momentum;
+            const double along = kept ? m.cwiseAbs().dot(system.groupoid.coordinate_scale(p.step.arrow))
+                                      : std::abs(m.dot(system.groupoid.tau_inverse(p.step.arrow)));
             return std::abs(discrete_energy(system, p.step, p.time - p.step_size, p.step_size)) +
-                   p.state.momentum.cwiseAbs().dot(system.groupoid.coordinate_scale(p.step.arrow)) / p.step_size;
+                   along / std::abs(p.step_size);
           }};
 }
 

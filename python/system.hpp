@@ -9,6 +9,7 @@
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
+#include <lagroid/python/numbers.hpp>
 #include <lagroid/python/rows.hpp>
 #include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
@@ -184,13 +185,6 @@ T choice(const char* key, const std::string& word, const std::array<Word<T>, N>&
   return words[choice(key, word, words_of(words))].choice;
 }
 
-/// x, if it is finite and the rule holds of it; else ValueError, in the words that a scene gets.
-inline double held(std::string_view name, std::string_view of, double x, const NumberRule& rule) {
-  if (!std::isfinite(x)) throw py::value_error(fmt::format("{}: must be finite, got {}", name, x));
-  if (!rule.holds(x)) throw py::value_error(fmt::format("{}: {}must be {}, got {}", name, of, rule.words, x));
-  return x;
-}
-
 /// The property of a declared parameter (core/parameter.hpp). A vector is read as an array of its own.
 template <class Sys, class Owner, class Member>
 void bind_parameter(py::class_<Sys>& made, const Parameter<Owner, Member>& p) {
@@ -199,7 +193,7 @@ void bind_parameter(py::class_<Sys>& made, const Parameter<Owner, Member>& p) {
   if constexpr (std::is_arithmetic_v<Member>) {
     made.def_property(
         name.c_str(), [p](const Sys& self) { return self.*p.member; },
-        [p](Sys& self, double x) { self.*p.member = Member(held(p.name, "", x, p.rule)); }, doc.c_str());
+        [p](Sys& self, double x) { self.*p.member = Member(finite(p.name, x, p.rule)); }, doc.c_str());
   } else {
     made.def_property(
         name.c_str(),
@@ -210,7 +204,7 @@ void bind_parameter(py::class_<Sys>& made, const Parameter<Owner, Member>& p) {
         },
         [p](Sys& self, const Array& given) {
           auto v = vector_of<Member>(given, std::string(p.name));
-          for (const double x : v) held(p.name, fmt::format("{} ", p.meaning), x, p.rule);
+          for (const double x : v) finite(p.name, x, p.rule, fmt::format("{} ", p.meaning));
           if (p.direction) {
             if (v.norm() == 0) throw py::value_error(fmt::format("{}: is no direction: all zero", p.name));
             v.normalize();

@@ -277,6 +277,9 @@ void OutputFolder::refuse_others(const std::optional<OutputSource>& source) {
   if (!known_ && (kind_ == OutputKind::data || there(description(kind_)))) return;
   if (!known_) held = std::find_if(kinds().begin(), kinds().end(), there);
   if (held == kinds().end()) return;
+  if (held->kind != kind_ && !source)
+    throw FolderRefused(fmt::format("{}: it holds {} ({}), and not {}", folder_.string(), held->told,
+                                    sign_of(folder_, *held), description(kind_).told));
   if (held->kind != kind_) refuse(*held, fmt::format(" ({}), whose files would be lost", sign_of(folder_, *held)));
   if (!source) return;
   const Json ours = mark_of(kind_, *source)["of"];

@@ -7,11 +7,20 @@
 
 namespace lagroid {
 
-/// What has to be the same for such a run to be taken up, as text. Throws std::invalid_argument where the name is not
-/// one line of text.
-std::string scene_of_program(const std::string& name, const std::string& method, double step,
-                             std::span<const double> object, std::span<const double> momentum,
-                             std::span<const double> configuration);
+/// What has to be the same for such a run to be taken up. `marks` tell the system from others (system_marks.hpp).
+struct ProgramRun {
+  std::string name;
+  std::string method;
+  double step = 0;
+  long every = 1;
+  std::span<const double> marks;
+  std::span<const double> object;
+  std::span<const double> momentum;
+  std::span<const double> configuration;
+};
+
+/// It as text. Throws std::invalid_argument where the name is not one line of text, or the start no numbers.
+std::string scene_of_program(const ProgramRun& run);
 
 /// Whether the text is one of these, and no scene.
 bool is_of_a_program(std::string_view text);

@@ -31,9 +31,10 @@ void run_with_files(RunResult& result, const std::filesystem::path& folder, bool
   const OutputFolder held = resume ? folder_of_run(folder) : folder_for_run(folder, scene);
   if (resume) {
     if (Checkpoint::text_of(folder) != scene)
-      throw RunError(
-          fmt::format("{}: holds a run of another system, start, step or method; give another folder, or run anew",
-                      folder.string()));
+      throw RunError(fmt::format(
+          "{}: holds a run of another system, parameter, start, step, method or RunOptions::every; give another "
+          "folder, or run anew",
+          folder.string()));
     Checkpoint::require_this_build(folder, false);
   }
   go({.record = true, .folder = folder, .resume = resume});

@@ -5,6 +5,7 @@
 #include <lagroid/run/output.hpp>
 #include <lagroid/run/program_scene.hpp>
 #include <lagroid/run/report.hpp>
+#include <lagroid/run/system_marks.hpp>
 #include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/integrator.hpp>
 #include <lagroid/solvers/march_of.hpp>
@@ -56,17 +57,6 @@ void require_counts(long steps, long every);
 void run_with_files(RunResult& result, const std::filesystem::path& folder, bool resume, const std::string& scene,
                     const std::function<void(const RunContext&)>& go);
 
-template <DiscreteSystem Sys>
-std::vector<Quantity<Sys>> watched_without_being_asked(const Sys& system, const MarchOptions& march) {
-  auto all = watched(system, march);
-  if constexpr (Timed<Sys> && !TimeDependent<Sys>)
-    // The last arrow of a composed step does not last as long as the step.
-    if (march.mode == TimeMode::fixed && march.fixed == StepKind::variational && march.composition.stages() == 1 &&
-        std::none_of(all.begin(), all.end(), [](const auto& q) { return q.name.starts_with("energy"); }))
-      all.push_back(discrete_energy_quantity(system, Promise::bounded));
-  return all;
-}
-
 }  // namespace detail
 
 /// Runs a march of the system that was made with the options `how` (`make_march`), to be recorded from its present
@@ -74,15 +64,16 @@ std::vector<Quantity<Sys>> watched_without_being_asked(const Sys& system, const 
 /// momenta; and the discrete energy where the Lagrangian has the step as its argument.
 ///
 /// A step that fails, Ctrl-C or SIGTERM ends the run with what was computed so far, and RunResult::status tells which.
-/// Throws std::invalid_argument for a name that is not one line of text, or steps and every that count nothing;
+/// Throws std::invalid_argument for a name that is not one line of text, a start that is not finite, or steps and every
+/// that count nothing;
 /// FolderRefused where the folder holds something else or is not to be written in; RunError where it holds no run, or
-/// one of another system, start or method, to go on with.
+/// one of another system, with other parameters, from another start or by another method, to go on with.
 template <DiscreteSystem Sys>
 RunResult run(const Sys& system, std::unique_ptr<March<Sys>> march, const MarchOptions& how,
               const RunOptions<Sys>& options) {
   using G = typename Sys::GroupoidType;
   detail::require_counts(options.steps, options.every);
-  auto quantities = detail::watched_without_being_asked(system, how);
+  auto quantities = watched(system, how);
   Presentation<Sys> presentation =
       with_step_sizes(options.presentation.value_or(plain_presentation<Sys>(system, options.name, quantities)), how);
   const TrajectoryPoint<Sys> start = march->point();
@@ -93,8 +84,9 @@ RunResult run(const Sys& system, std::unique_ptr<March<Sys>> march, const MarchO
   const auto object = groupoid.coordinates_of_object(start.state.object);
   const auto configuration = groupoid.coordinates_of_arrow(start.configuration);
   const auto flat = [](const auto& v) { return std::span<const double>(v.data(), std::size_t(v.size())); };
-  const std::string scene = scene_of_program(presentation.name, description(method), step, flat(object),
-                                             flat(start.state.momentum), flat(configuration));
+  const auto marks = marks_of(system, start.state.object);
+  const std::string scene = scene_of_program({presentation.name, description(method), step, options.every, flat(marks),
+                                              flat(object), flat(start.state.momentum), flat(configuration)});
   SystemMotion<Sys> motion(system, std::move(presentation), std::move(quantities), std::move(march), how);
   RunResult result;
   detail::run_with_files(result, options.folder, options.resume, scene, [&](RunContext context) {

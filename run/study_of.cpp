@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -29,10 +30,29 @@ Findings study_with_files(Experiment experiment, StudyRequest request, const std
   return findings;
 }
 
+void require_study(const StudyRequest& request, double step, long steps) {
+  const auto require = [](bool holds, const char* what, const char* rule, double got) {
+    if (!holds) throw std::invalid_argument(fmt::format("{}: must be {}, got {}", what, rule, got));
+  };
+  const auto positive = [&](const char* what, double x) {
+    require(std::isfinite(x) && x > 0, what, "positive and finite", x);
+  };
+  positive("the system's step h", step);
+  require(steps >= 1, "StudyOptions::steps", "at least 1", double(steps));
+  for (const double size : request.steps.sizes) positive("StudyOptions::step_sizes", size);
+  positive("StudyOptions::longest", request.steps.longest);
+  positive("StudyOptions::target", request.target);
+  positive("StudyOptions::budget", request.budget);
+  require(request.repetitions >= 1, "StudyOptions::repetitions", "at least 1", request.repetitions);
+}
+
 std::string studied(const std::string& name, double step, long steps, const std::vector<NamedVector>& start) {
   if (const std::string problem = text_problem(name); !problem.empty())
     throw std::invalid_argument(fmt::format("StudyOptions::name: {}", problem));
-  if (steps < 1) throw std::invalid_argument(fmt::format("StudyOptions::steps: must be at least 1, got {}", steps));
+  for (const NamedVector& each : start)
+    if (!std::ranges::all_of(each.values, [](double x) { return std::isfinite(x); }))
+      throw std::invalid_argument(
+          fmt::format("the start of a study must be finite, got {} [{}]", each.name, fmt::join(each.values, ", ")));
   std::string out = fmt::format("{}, {} steps of {:.17g}", name, steps, step);
   for (const NamedVector& each : start) out += fmt::format("\n{} {:.17g}", each.name, fmt::join(each.values, " "));
   return out;

@@ -3,6 +3,7 @@
 
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
+#include <lagroid/run/system_marks.hpp>
 #include <lagroid/run/system_motion.hpp>
 #include <lagroid/solvers/march_methods.hpp>
 #include <lagroid/solvers/methods.hpp>
@@ -69,7 +70,11 @@ namespace detail {
 Findings study_with_files(Experiment experiment, StudyRequest request, const std::string& methods,
                           const std::filesystem::path& folder, const std::string& of, bool progress);
 
-/// What has to be the same for two studies to be of the same motion.
+/// Throws std::invalid_argument unless these are numbers of a study.
+void require_study(const StudyRequest& request, double step, long steps);
+
+/// What has to be the same for two studies to be of the same motion. Throws std::invalid_argument where the name is not
+/// one line of text, or the start no numbers.
 std::string studied(const std::string& name, double step, long steps, const std::vector<NamedVector>& start);
 
 }  // namespace detail
@@ -81,8 +86,8 @@ std::string studied(const std::string& name, double step, long steps, const std:
 ///     std::cout << study_text(findings);
 ///
 /// Ctrl-C ends it with what was measured so far. Throws std::invalid_argument for a name that is not one line of text,
-/// or steps that count nothing; UnknownMethod for a pattern that is no method's name; std::domain_error where no two
-/// runs agree, so that there is nothing to compare with; FolderRefused where the folder holds something else.
+/// or numbers of which there is no study; UnknownMethod for a pattern that is no method's name; std::domain_error where
+/// no two runs agree, so that there is nothing to compare with; FolderRefused where the folder holds something else.
 template <DiscreteSystem Sys>
 requires HasTimeStep<Sys> Findings study(const Sys& system, const State<typename Sys::GroupoidType>& start,
                                          const StudyOptions<Sys>& options = {}) {
@@ -91,7 +96,9 @@ requires HasTimeStep<Sys> Findings study(const Sys& system, const State<typename
                        .target = options.target,
                        .budget = options.budget,
                        .repetitions = options.repetitions};
-  const auto from = experiment.begin(experiment.methods.front(), system.h)->state();
+  detail::require_study(request, system.h, options.steps);
+  auto from = experiment.begin(experiment.methods.front(), system.h)->state();
+  from.push_back({"system", marks_of(system, start.object)});
   const std::string of = detail::studied(options.name, system.h, options.steps, from);
   return detail::study_with_files(std::move(experiment), std::move(request), options.methods, options.folder, of,
                                   options.progress);

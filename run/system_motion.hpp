@@ -9,6 +9,7 @@
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/step_messages.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,13 +18,20 @@
 
 namespace lagroid {
 
-/// What the ledger watches: `quantities_of` the system, and E_d where the steps keep it or vary.
+/// What the ledger watches: `quantities_of` the system, and E_d where the steps keep it or vary, or where they are
+/// equal and the system names no energy of its own.
 template <DiscreteSystem Sys> std::vector<Quantity<Sys>> watched(const Sys& system, const MarchOptions& options) {
   auto all = quantities_of(system);
-  if constexpr (Timed<Sys>) {
-    if (options.mode == TimeMode::adaptive && !TimeDependent<Sys>) {
+  if constexpr (Timed<Sys> && !TimeDependent<Sys>) {
+    const auto energy = [](const auto& q) { return q.name.find("energy") != std::string::npos; };
+    // The last arrow of a composed step does not last as long as the step.
+    const bool equal =
+        options.mode == TimeMode::fixed && options.fixed == StepKind::variational && options.composition.stages() == 1;
+    if (options.mode == TimeMode::adaptive) {
       const bool kept = options.without_root == WithoutRoot::stop;
       all.push_back(discrete_energy_quantity(system, kept ? Promise::conserved : Promise::bounded));
+    } else if (equal && std::none_of(all.begin(), all.end(), energy)) {
+      all.push_back(discrete_energy_quantity(system, Promise::bounded));
     }
   }
   return all;

@@ -1,10 +1,9 @@
 #pragma once
 /// Newton's iteration on the alpha-fibre of a groupoid.
 
+#include <lagroid/solvers/factored_square.hpp>
 #include <lagroid/solvers/small_inverse.hpp>
 #include <lagroid/solvers/step_solver.hpp>
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +88,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   Scaling<E::size> scaling_;
   SmallInverse<E::size> inverse_;
   Chord chord_;
-  Eigen::PartialPivLU<typename E::Jacobian> lu_;
+  FactoredSquare<E::size> lu_;
 };
 
 template <DiscreteSystem Sys>

@@ -4,6 +4,7 @@
 #include <lagroid/core/lanes.hpp>
 #include <lagroid/core/step_equations.hpp>
 #include <lagroid/core/tape.hpp>
+#include <lagroid/solvers/small_sizes.hpp>
 
 #include <Eigen/LU>
 
@@ -23,36 +24,11 @@ template <int Size> class SmallInverse {
   using Column = Eigen::Matrix<double, Size, 1, Eigen::DontAlign>;
 
   /// Chooses scales and permutation that serve matrices near `a`.
-  void choose_pivots(const Square& a, const Scaling<Size>& scaling) {
-    if constexpr (blocked) {
-      const Eigen::FullPivLU<Square> lu(scaling.apply(a));
-      for (int i = 0; i < Size; ++i) {
-        row_of_[std::size_t(lu.permutationP().indices()(i))] = i;
-        column_of_[std::size_t(i)] = lu.permutationQ().indices()(i);
-      }
-    }
-    for (std::size_t i = 0; i < std::size_t(Size); ++i) {
-      row_scale_(Eigen::Index(i)) = scaling.row(row_of_[i]);
-      column_scale_(Eigen::Index(i)) = scaling.column(column_of_[i]);
-    }
-  }
+  void choose_pivots(const Square& a, const Scaling<Size>& scaling);
 
   /// Inverts `a`; false where the result is not to be trusted: an entry of the scaled inverse is beyond `largest_entry`
   /// or not finite, or one of `a` is not.
-  bool invert(const Square& a) {
-    Square m;
-    for (int j = 0; j < Size; ++j)
-      for (int i = 0; i < Size; ++i)
-        m(i, j) = a(row_of_[std::size_t(i)], column_of_[std::size_t(j)]) * row_scale_(i) * column_scale_(j);
-    const Square inverse = inverse_of(m);
-    Square negative;  // -a^{-1}, in the order and the units of a
-    for (int j = 0; j < Size; ++j)
-      for (int i = 0; i < Size; ++i)
-        negative(column_of_[std::size_t(i)], row_of_[std::size_t(j)]) =
-            -inverse(i, j) * column_scale_(i) * row_scale_(j);
-    for (int j = 0; j < Size; ++j) columns_[std::size_t(j)] = Lanes<double, Size>::load(negative.col(j).data());
-    return m.allFinite() && inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < largest_entry;
-  }
+  bool invert(const Square& a);
 
   /// Column j of -a^{-1}.
   const Lanes<double, Size>& column(int j) const { return columns_[std::size_t(j)]; }
@@ -83,28 +59,7 @@ template <int Size> class SmallInverse {
   static constexpr int tail = blocked ? Size - head : 1;
   static constexpr double largest_entry = 1e4;
 
-  static Square inverse_of(const Square& m) {
-    if constexpr (Size <= 4) {
-      return m.inverse();
-    } else if constexpr (blocked) {
-      const Matrix<double, head, head> a = m.template topLeftCorner<head, head>().inverse();
-      const Matrix<double, head, tail> u = a.lazyProduct(m.template topRightCorner<head, tail>());
-      const Matrix<double, tail, head> t = m.template bottomLeftCorner<tail, head>().lazyProduct(a);
-      const Matrix<double, tail, tail> s =
-          (m.template bottomRightCorner<tail, tail>() - m.template bottomLeftCorner<tail, head>().lazyProduct(u))
-              .eval()
-              .inverse();
-      const Matrix<double, head, tail> us = u.lazyProduct(s);
-      Square inverse;
-      inverse.template topLeftCorner<head, head>() = a + us.lazyProduct(t);
-      inverse.template topRightCorner<head, tail>() = -us;
-      inverse.template bottomLeftCorner<tail, head>() = -s.lazyProduct(t);
-      inverse.template bottomRightCorner<tail, tail>() = s;
-      return inverse;
-    } else {
-      return m.partialPivLu().inverse();
-    }
-  }
+  static Square inverse_of(const Square& m);
 
   using Order = std::array<int, std::size_t(Size)>;
   static constexpr Order in_order = [] {
@@ -119,5 +74,58 @@ template <int Size> class SmallInverse {
   Column column_scale_ = Column::Ones();
   std::array<Lanes<double, Size>, std::size_t(Size)> columns_;  ///< of -a^{-1}
 };
+
+template <int Size> void SmallInverse<Size>::choose_pivots(const Square& a, const Scaling<Size>& scaling) {
+  if constexpr (blocked) {
+    const Eigen::FullPivLU<Square> lu(scaling.apply(a));
+    for (int i = 0; i < Size; ++i) {
+      row_of_[std::size_t(lu.permutationP().indices()(i))] = i;
+      column_of_[std::size_t(i)] = lu.permutationQ().indices()(i);
+    }
+  }
+  for (std::size_t i = 0; i < std::size_t(Size); ++i) {
+    row_scale_(Eigen::Index(i)) = scaling.row(row_of_[i]);
+    column_scale_(Eigen::Index(i)) = scaling.column(column_of_[i]);
+  }
+}
+
+template <int Size> bool SmallInverse<Size>::invert(const Square& a) {
+  Square m;
+  for (int j = 0; j < Size; ++j)
+    for (int i = 0; i < Size; ++i)
+      m(i, j) = a(row_of_[std::size_t(i)], column_of_[std::size_t(j)]) * row_scale_(i) * column_scale_(j);
+  const Square inverse = inverse_of(m);
+  Square negative;  // -a^{-1}, in the order and the units of a
+  for (int j = 0; j < Size; ++j)
+    for (int i = 0; i < Size; ++i)
+      negative(column_of_[std::size_t(i)], row_of_[std::size_t(j)]) = -inverse(i, j) * column_scale_(i) * row_scale_(j);
+  for (int j = 0; j < Size; ++j) columns_[std::size_t(j)] = Lanes<double, Size>::load(negative.col(j).data());
+  return m.allFinite() && inverse.allFinite() && inverse.cwiseAbs().maxCoeff() < largest_entry;
+}
+
+template <int Size> auto SmallInverse<Size>::inverse_of(const Square& m) -> Square {
+  if constexpr (Size <= 4) {
+    return m.inverse();
+  } else if constexpr (blocked) {
+    const Matrix<double, head, head> a = m.template topLeftCorner<head, head>().inverse();
+    const Matrix<double, head, tail> u = a.lazyProduct(m.template topRightCorner<head, tail>());
+    const Matrix<double, tail, head> t = m.template bottomLeftCorner<tail, head>().lazyProduct(a);
+    const Matrix<double, tail, tail> s =
+        (m.template bottomRightCorner<tail, tail>() - m.template bottomLeftCorner<tail, head>().lazyProduct(u))
+            .eval()
+            .inverse();
+    const Matrix<double, head, tail> us = u.lazyProduct(s);
+    Square inverse;
+    inverse.template topLeftCorner<head, head>() = a + us.lazyProduct(t);
+    inverse.template topRightCorner<head, tail>() = -us;
+    inverse.template bottomLeftCorner<tail, head>() = -s.lazyProduct(t);
+    inverse.template bottomRightCorner<tail, tail>() = s;
+    return inverse;
+  } else {
+    return m.partialPivLu().inverse();
+  }
+}
+
+LAGROID_FOR_SMALL_SIZES(extern template class SmallInverse);
 
 }  // namespace lagroid

@@ -111,6 +111,10 @@ TEST_F(CommandLine, RunHandsOverWhatIsNoMotion) {
 TEST_F(CommandLine, CommandsForMotionsNameTheOneForOtherScenes) {
   expect_refused("study " + example("optimisation/membrane"), "lagroid optimize carries it out");
   expect_refused("study " + example("sweeps/kepler"), "lagroid sweep carries it out");
+  expect_refused("optimize " + example("kepler"), "lagroid run carries it out");
+  expect_refused("sweep " + example("kepler") + " --out nowhere", "lagroid run carries it out");
+  expect_refused("sweep " + example("optimisation/membrane") + " --out nowhere", "lagroid optimize carries it out");
+  expect_refused("study " + example("kepler") + " --budget nan", "--budget: give a number between 0.1 and 1e+07");
 }
 
 TEST_F(CommandLine, BoundaryValueJson) {

@@ -66,6 +66,13 @@ if [ -e "$prefix/include/lagroid/run/run.hpp" ] && find "$prefix" -name lagroid-
     grep -q "start that program again" "$work/resume.log" || fail "lagroid resume does not say who goes on with it"
   fi
 fi
+if [ -n "$whole" ] && [ -x "$prefix/bin/lagroid" ]; then
+  "$prefix/bin/lagroid" new system spring_bob --out "$work/spring_bob" >/dev/null
+  cmake -S "$work/spring_bob" -B "$work/spring_bob/build" -DCMAKE_PREFIX_PATH="$prefix" >"$work/configure.log" 2>&1 ||
+    { cat "$work/configure.log" >&2; fail "lagroid_program does not configure"; }
+  cmake --build "$work/spring_bob/build" >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "lagroid_program does not build"; }
+  (cd "$work/spring_bob/build" && ctest >"$work/ctest.log" 2>&1) || { cat "$work/ctest.log" >&2; fail "lagroid_program breaks a law"; }
+fi
 if [ -n "$whole" ]; then
   cmake --build "$work/cmake" --target laws >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "no laws"; }
   "$work/cmake/laws" 2>/dev/null
@@ -121,7 +128,7 @@ refused() { # refused ARGUMENTS-OF-FIND_PACKAGE MESSAGE
   fi
   tr -s ' \n' ' ' <"$work/refused.log" | grep -qF "$2" || { cat "$work/refused.log" >&2; fail "refused without: $2"; }
 }
-refused "COMPONENTS cores" 'lagroid has no component "cores"; it has core, solvers, systems, run, laws and program'
+refused "COMPONENTS cores" 'lagroid has no component "cores"; it has core, solvers, systems, run, commands, laws and program'
 refused "9.0" 'compatible with requested version "9.0"'
 refused "0.1" 'compatible with requested version "0.1"'
 say "holds"

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 
 using namespace lagroid;
 
@@ -22,10 +23,13 @@ namespace {
 /// A mass that hangs on a spring from the origin of the plane. Its Lagrangian has the step as an argument.
 struct Spring : System<Spring, Pair<2>> {
   double h = 0.05;
+  double stiffness = 1;
+  double mass = 1;  // which it does not declare
+  static auto parameters() { return std::tuple(parameter("stiffness", &Spring::stiffness, "N/m", "of the spring")); }
   template <class S, class T> auto lagrangian(const PairArrow<S, 2>& g, const T& step) const {
     const Vector<S, 2> v = g.target - g.source;
     const Vector<S, 2> q = (g.target + g.source) * 0.5;
-    return v.squaredNorm() * 0.5 / step - q.squaredNorm() * 0.5 * step;
+    return v.squaredNorm() * (0.5 * mass) / step - q.squaredNorm() * (0.5 * stiffness) * step;
   }
   template <class S> S lagrangian(const PairArrow<S, 2>& g) const { return lagrangian(g, h); }
   std::vector<Symmetry<Spring>> symmetries() const {
@@ -69,6 +73,7 @@ TEST_F(OwnRun, HasDeclaredSymmetriesAndTheDiscreteEnergyInItsLedger) {
   const LedgerEntry* energy = entry_of(result, "discrete energy E_d");
   ASSERT_NE(energy, nullptr);
   EXPECT_EQ(energy->verdict, "bounded");
+  EXPECT_LT(energy->bound, energy->initial.at(0));  // it would notice another energy
   EXPECT_NEAR(energy->initial.at(0), 0.5 * (0.04 + 0.49) + 0.5, 1e-3);
   EXPECT_NE(text_report(result).find("angular momentum"), std::string::npos);
 }
@@ -148,9 +153,39 @@ TEST_F(OwnRun, OfAnotherStartIsNotTakenUpNorWrittenOver) {
   EXPECT_EQ(text_of(folder_ / "trajectory.csv"), before);
 }
 
-TEST_F(OwnRun, AStepThatFailsEndsItWithWhatWasComputed) {
+TEST_F(OwnRun, OfOtherParametersIsNotTakenUpNorWrittenOver) {
+  run(Spring{}, start, {.steps = 20, .folder = folder_});
+  const auto before = text_of(folder_ / "trajectory.csv");
+  Spring stiffer;
+  stiffer.stiffness = 4;
+  Spring heavier;
+  heavier.mass = 2;
+  for (const Spring& other : {stiffer, heavier}) {
+    EXPECT_THROW(run(other, start, {.steps = 40, .folder = folder_, .resume = true}), RunError);
+    EXPECT_THROW(run(other, start, {.steps = 40, .folder = folder_}), FolderRefused);
+  }
+  EXPECT_THROW(run(Spring{}, start, {.steps = 40, .folder = folder_, .resume = true, .every = 7}), RunError);
+  EXPECT_EQ(text_of(folder_ / "trajectory.csv"), before);
+}
+
+TEST_F(OwnRun, TheDiscreteEnergyNoticesAnotherSpring) {
+  // What a run of other parameters would do to it is more than its bound allows.
+  const RunResult result = run(Spring{}, start, {.steps = 20});
+  Spring stiffer;
+  stiffer.stiffness = 4;
+  const RunResult other = run(stiffer, start, {.steps = 20});
+  const auto *mine = entry_of(result, "discrete energy E_d"), *its = entry_of(other, "discrete energy E_d");
+  EXPECT_GT(std::abs(its->initial.at(0) - mine->initial.at(0)), mine->bound);
+}
+
+TEST_F(OwnRun, AStartThatIsNoNumberIsRefused) {
   const State<Pair<2>> nowhere{{std::numeric_limits<double>::quiet_NaN(), 0}, {0, 1}};
-  const RunResult result = run(Spring{}, nowhere, {.steps = 10});
+  EXPECT_THROW(run(Spring{}, nowhere, {.steps = 10}), std::invalid_argument);
+}
+
+TEST_F(OwnRun, AStepThatFailsEndsItWithWhatWasComputed) {
+  const State<Pair<2>> too_far{{1e200, 0}, {0, 1}};  // its square overflows
+  const RunResult result = run(Spring{}, too_far, {.steps = 10});
   EXPECT_FALSE(result.converged());
   EXPECT_EQ(result.steps, 0);
   EXPECT_NE(result.message.find("step 1"), std::string::npos) << result.message;

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <map>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -74,6 +75,12 @@ TEST(OwnStudy, MeasuresEveryMethodAndItsOrder) {
 TEST(OwnStudy, WhatIsNoStudyIsRefused) {
   const State<Pair<1>> start{Vector<double, 1>(1.0), Vector<double, 1>(0.3)};
   EXPECT_THROW(study(Spring{}, start, {.steps = 0}), std::invalid_argument);
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(study(Spring{}, start, {.step_sizes = {0.1, no_number}}), std::invalid_argument);
+  EXPECT_THROW(study(Spring{}, start, {.target = no_number}), std::invalid_argument);
+  EXPECT_THROW(study(Spring{}, start, {.budget = no_number}), std::invalid_argument);
+  EXPECT_THROW(study(Spring{}, start, {.repetitions = 0}), std::invalid_argument);
+  EXPECT_THROW(study(Spring{}, {{no_number, 0}, {0, 1}}, {.budget = 1}), std::invalid_argument);
   EXPECT_THROW(study(Spring{}, start, {.name = "two\nlines"}), std::invalid_argument);
   EXPECT_THROW(study(Spring{}, start, {.methods = "euler"}), UnknownMethod);
 }

@@ -3,10 +3,12 @@
 /// is in every program, what knows laws in lagroid-check alone.)
 
 #include "../families/family.hpp"
-#include "check_options.hpp"
+#include "own_check.hpp"
 
 #include <lagroid/run/certificate.hpp>
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
@@ -18,12 +20,25 @@ class FamilyLaws {
   virtual Certificate certify(const Section& scene, const CheckOptions& options) const = 0;
 };
 
+/// Those of systems, along the runs of their scenes, given how the system of a module is asked.
+class LawsOfSystems final : public FamilyLaws {
+ public:
+  explicit LawsOfSystems(AskLaws ask) : ask_(std::move(ask)) {}
+  const SceneFamily& family() const override { return systems_family(); }
+  Certificate certify(const Section& scene, const CheckOptions& options) const override {
+    return ask_(module_of_scene(scene), scene, options);
+  }
+
+ private:
+  AskLaws ask_;
+};
+
 /// Which laws this program has; it says so at its start.
 void use_laws(std::vector<const FamilyLaws*> laws);
 /// Those of the family that the scene is of. Throws SceneError for what is no motion and no path.
 const FamilyLaws& laws_of(const Section& scene);
 
-/// Along the run of a system's scene.
+/// Of the systems of the library.
 const FamilyLaws& systems_laws();
 /// Of the method of a scene on (T*S^2)^k, beside where it starts.
 const FamilyLaws& spheres_laws();

@@ -80,6 +80,17 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
   command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
 }
 
+CLI::Validator between(double low, double high) {
+  const std::string range = fmt::format("between {:g} and {:g}", low, high);
+  return {[=](std::string& given) {
+            double x = 0;
+            const bool number = CLI::detail::lexical_cast(given, x);
+            return number && x >= low && x <= high ? std::string()
+                                                   : fmt::format("give a number {}, not {}", range, given);
+          },
+          range};
+}
+
 bool asks_for_json(int argc, char** argv) {
   return std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
 }

@@ -23,6 +23,9 @@ struct SceneOptions {
 /// SCENE, --set and --json.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
+/// A number of an option, not NaN (which CLI::Range lets pass).
+CLI::Validator between(double low, double high);
+
 /// Whether --json stands anywhere on the command line.
 bool asks_for_json(int argc, char** argv);
 

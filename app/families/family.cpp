@@ -45,4 +45,10 @@ const SceneFamily& motions_of(const Section& scene) {
   return family;
 }
 
+void require_command(const Section& scene, std::string_view command) {
+  const SceneFamily& family = family_of(scene);
+  if (family.recognises(scene) && family.command() != command)
+    scene.fail("", fmt::format("is no scene of lagroid {}: lagroid {} carries it out", command, family.command()));
+}
+
 }  // namespace lagroid::app

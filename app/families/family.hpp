@@ -53,6 +53,9 @@ const SceneFamily& family_of(const Section& scene);
 /// The same of a scene to be studied, checked or run as a motion or a path. Throws SceneError for others.
 const SceneFamily& motions_of(const Section& scene);
 
+/// Refuses a scene that is another command's. Throws SceneError.
+void require_command(const Section& scene, std::string_view command);
+
 /// Scenes of [[body]], [[joint]] and [[effect]].
 const SceneFamily& bodies_family();
 /// Scenes on (T*S^2)^k, learned Hamiltonians among them.

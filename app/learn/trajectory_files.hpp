@@ -1,7 +1,7 @@
 #pragma once
 /// Trajectories on (T*S^2)^k in files (docs/learning.md).
 
-#include "../optimise/matrices.hpp"
+#include "../reading/data_set.hpp"
 
 #include <lagroid/solvers/learning/trajectories.hpp>
 

@@ -1,20 +1,16 @@
 #pragma once
 /// Matrices from files.
 
+#include "../reading/data_set.hpp"
+
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <variant>
 
 namespace lagroid::app {
-
-/// A file without the matrix that it should hold. The message is one line: which file, where in it, what to do.
-class DataError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 using AnyMatrix = std::variant<Eigen::MatrixXd, Eigen::SparseMatrix<double>>;
 
@@ -23,10 +19,6 @@ using AnyMatrix = std::variant<Eigen::MatrixXd, Eigen::SparseMatrix<double>>;
 /// CHOLMOD), seen from `folder`, or from the working folder where it is not there. Throws DataError, also for entries
 /// that are not finite.
 AnyMatrix read_matrix(const std::string& name, const std::filesystem::path& folder);
-
-/// A data set of an HDF5 file, of one or two dimensions, with what may stand there that is not finite. Throws
-/// DataError.
-Eigen::MatrixXd read_hdf5(const std::filesystem::path& file, const std::string& dataset);
 
 Eigen::MatrixXd dense(const AnyMatrix& matrix);
 Eigen::Index rows(const AnyMatrix& matrix);

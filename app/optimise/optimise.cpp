@@ -1,6 +1,7 @@
 #include "optimise.hpp"
 
 #include "../command/written.hpp"
+#include "../families/family.hpp"
 #include "methods.hpp"
 #include "optimisation_files.hpp"
 #include "problems.hpp"
@@ -56,6 +57,7 @@ int run(const OptimiseOptions& options) {
   if (options.scene.empty())
     return refuse(options.json, exit_bad_input, "invalid_command_line", "name a scene; see lagroid optimize --help");
   const Section file = read_scene(options.scene, options.overrides);
+  require_command(file, "optimize");
   OptimisationScene scene = read_optimisation(file, options.scene);
   std::optional<OutputFolder> folder;
   if (options.out) folder.emplace(folder_for_optimisation(*options.out, file));

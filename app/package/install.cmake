@@ -48,6 +48,17 @@ endforeach()
 if(LAGROID_APP)
   install(TARGETS lagroid_run lagroid_machine EXPORT lagroid-run-targets COMPONENT development)
   install(EXPORT lagroid-run-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
+  # What programs of one's own are made of.
+  install(TARGETS lagroid_commands lagroid_viewer EXPORT lagroid-commands-targets COMPONENT development)
+  install(EXPORT lagroid-commands-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
+  install(FILES ${PROJECT_SOURCE_DIR}/app/own_program.hpp ${PROJECT_SOURCE_DIR}/app/program.hpp
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app COMPONENT development)
+  foreach(folder own reading families command check)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/app/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app
+            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "templates" EXCLUDE)
+  endforeach()
+  install(FILES ${PROJECT_BINARY_DIR}/installed/own_program.json DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid
+          COMPONENT development)
 endif()
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/lagroid-config.cmake.in ${PROJECT_BINARY_DIR}/lagroid-config.cmake
                               INSTALL_DESTINATION ${cmake_folder})

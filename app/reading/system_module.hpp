@@ -51,6 +51,17 @@ class SystemModule {
   std::string summary_;
 };
 
+/// What `list` says of a system with its default parameters.
+template <DiscreteSystem Sys> ListedSystem listed_system(const std::string& name, const std::string& summary) {
+  ListedSystem out{name, summary, Sys::GroupoidType::name(), listed_parameters<Sys>(), {}, {}};
+  const Sys system;
+  if constexpr (requires { system.symmetries(); })
+    for (const auto& symmetry : system.symmetries()) out.symmetries.push_back(symmetry.name);
+  for (const auto& quantity : quantities_of(system))
+    if (quantity.promise == Promise::conserved) out.conserved.push_back(quantity.name);
+  return out;
+}
+
 /// The module of a system, given how its scenes are read; its own methods outlive it.
 template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
  public:
@@ -71,15 +82,7 @@ template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
       scene.fail("boundary", "a study compares how initial values are marched: give a scene with [initial]");
     return {read.begin(), read_pace(scene, context), read.methods};
   }
-  ListedSystem listed() const override {
-    ListedSystem out{name(), summary(), Sys::GroupoidType::name(), listed_parameters<Sys>(), {}, {}};
-    const Sys system;
-    if constexpr (requires { system.symmetries(); })
-      for (const auto& symmetry : system.symmetries()) out.symmetries.push_back(symmetry.name);
-    for (const auto& quantity : quantities_of(system))
-      if (quantity.promise == Promise::conserved) out.conserved.push_back(quantity.name);
-    return out;
-  }
+  ListedSystem listed() const override { return listed_system<Sys>(name(), summary()); }
 
  private:
   Read read_;

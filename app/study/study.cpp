@@ -160,16 +160,16 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
                      "METHOD@STEP, or the study.json of an earlier study; by default the method of highest order, "
                      "extrapolated");
   command.add_option("--target", options.target, "the error for which a method is recommended")
-      ->check(CLI::Range(1e-15, 1.0))
+      ->check(between(1e-15, 1))
       ->capture_default_str();
   command.add_option("--longest", options.longest, "seconds that a run may take, where steps are found")
-      ->check(CLI::Range(1e-3, 1e5))
+      ->check(between(1e-3, 1e5))
       ->capture_default_str();
   command
       .add_option("--budget", options.budget,
                   "seconds of wall clock that all of it may take: spent first on the methods that are the cheapest, "
                   "or near them; what was not measured for want of time is told")
-      ->check(CLI::Range(0.1, 1e7))
+      ->check(between(0.1, 1e7))
       ->capture_default_str();
   command.add_option("--repetitions", options.repetitions, "of every run, interleaved, to be timed")
       ->check(CLI::Range(1, 1000))
@@ -183,7 +183,6 @@ int study(const StudyOptions& options) {
   std::string note;
   std::optional<OutputFolder> folder;
   try {
-    if (!std::isfinite(options.target)) throw BadOption("--target: give a number between 1e-15 and 1");
     const Section scene = read_scene(options.scene, options.overrides);
     if (scene.has("accuracy")) check_accuracy(scene);
     const Experiment experiment = read_experiment(scene);

@@ -1,6 +1,6 @@
 #include "member_list.hpp"
 
-#include "../optimise/matrices.hpp"
+#include "../reading/data_set.hpp"
 
 #include <H5Cpp.h>
 #include <fmt/format.h>

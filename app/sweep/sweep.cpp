@@ -233,4 +233,20 @@ int sweep(const SweepOptions& options) {
   }
 }
 
+ProgramCommand sweep_command() {
+  ProgramCommand command =
+      command_of("sweep", "run many members of one scene, on all threads or under mpirun (see docs/sweeps.md)",
+                 add_sweep_options, sweep);
+  command.run_scene = [](const SceneOptions& scene, const std::optional<std::string>& out) {
+    if (!out)
+      return refuse(scene.json, exit_bad_input, "invalid_command_line",
+                    scene.scene + ": is a sweep, whose members are written into a folder: give --out DIR");
+    SweepOptions options;
+    static_cast<SceneOptions&>(options) = scene;
+    options.out = *out;
+    return sweep(options);
+  };
+  return command;
+}
+
 }  // namespace lagroid::app

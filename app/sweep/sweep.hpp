@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid sweep`: many members of one scene, on all threads and on many machines.
 
-#include "../command/command.hpp"
+#include "../command/program_command.hpp"
 
 #include <string>
 
@@ -17,5 +17,8 @@ void add_sweep_options(CLI::App& command, SweepOptions& options);
 
 /// Returns the exit code. Throws SceneError for mistakes in the sweep or its scene.
 int sweep(const SweepOptions& options);
+
+/// The command, for programs that have it.
+ProgramCommand sweep_command();
 
 }  // namespace lagroid::app

@@ -1,5 +1,6 @@
 #include "sweep_scene.hpp"
 
+#include "../families/family.hpp"
 #include "../reading/its_scene.hpp"
 
 #include <lagroid/run/machine.hpp>
@@ -51,6 +52,7 @@ void read_rest(const Section& sweep, SweepScene& out) {
 
 SweepScene read_sweep(const fs::path& file, const std::vector<std::string>& overrides) {
   const Section sweep = read_scene(file, overrides);
+  require_command(sweep, "sweep");
   SweepScene out;
   out.file = file.string();
   out.text = sweep.whole();

@@ -3,13 +3,13 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "computing.hpp"
-#include "numbers.hpp"
 #include "scene.hpp"
 
 #include <optimise/methods.hpp>
 #include <optimise/optimisation_files.hpp>
 #include <optimise/optimisation_scene.hpp>
 
+#include <lagroid/python/numbers.hpp>
 #include <lagroid/solvers/optimisation/penalised.hpp>
 #include <lagroid/solvers/optimisation/product.hpp>
 #include <lagroid/solvers/optimisation/sphere.hpp>

@@ -10,6 +10,7 @@
 - Indented blocks are formulas, trees, output or commands, never code that none of this would ask.
 """
 import functools
+import os
 import pathlib
 import re
 import shlex
@@ -145,7 +146,7 @@ def misused(words):
     return f"no file {missing[0]}" if missing else ""
 
 
-momentary = {"run", "resume", "view", "plot", "list", "optimize", "trajectories", "learn", "cite"}
+momentary = {"new", "run", "resume", "view", "plot", "list", "optimize", "trajectories", "learn", "cite"}
 
 
 def examples_named(text):
@@ -164,7 +165,9 @@ def command_failures(block, folder, printed):
         return  # a form, not a command
     calls = [[program, *words] for words in given if words[0] in momentary and "network" not in " ".join(words)]
     for call in calls + [[example] for example in examples_named(block.text)]:
-        done = subprocess.run(call, cwd=folder, capture_output=True, text=True, timeout=120)
+        # Systems of one's own are compiled into a cache that goes with the folder.
+        done = subprocess.run(call, cwd=folder, capture_output=True, text=True, timeout=120,
+                              env={**os.environ, "XDG_CACHE_HOME": str(folder)})
         printed.append(done.stdout)
         if done.returncode != 0:
             yield f"{block}: {' '.join(map(str, call))}: {done.stderr.strip()}"

@@ -1,9 +1,5 @@
-/// Scenes that are no motions: another command carries them out.
-
-#include "family.hpp"
-
-#include "../optimise/methods.hpp"
-#include "../reading/its_scene.hpp"
+#include "../families/family.hpp"
+#include "methods.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,26 +23,10 @@ class Optimisation final : public SceneFamily {
   }
 };
 
-class Sweeps final : public SceneFamily {
- public:
-  bool recognises(const Section& scene) const override { return scene.has("scene"); }
-  std::string_view command() const override { return "sweep"; }
-  /// What each of its members rests on.
-  std::vector<Use> uses(const Section& sweep) const override {
-    const Section scene = read_its_scene(sweep);
-    return family_of(scene).uses(scene);
-  }
-};
-
 }  // namespace
 
 const SceneFamily& optimisation_family() {
   static const Optimisation family;
-  return family;
-}
-
-const SceneFamily& sweeps_family() {
-  static const Sweeps family;
   return family;
 }
 

@@ -1,0 +1,21 @@
+#pragma once
+/// `check` of a program of one's own (own_program.hpp).
+
+#include "../reading/system_module.hpp"
+#include "check_options.hpp"
+
+#include <lagroid/run/certificate.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace lagroid::app {
+
+/// How the system of a module is asked its laws, along the run of a scene.
+using AskLaws =
+    std::function<Certificate(const SystemModule& module, const Section& scene, const CheckOptions& options)>;
+
+/// Serves a command line of `check` for the systems. Returns the exit code.
+int own_check_program(int argc, char** argv, std::vector<const SystemModule*> systems, AskLaws ask);
+
+}  // namespace lagroid::app

@@ -1,0 +1,26 @@
+#include "../reading/its_scene.hpp"
+#include "family.hpp"
+
+namespace lagroid::app {
+
+namespace {
+
+class Sweeps final : public SceneFamily {
+ public:
+  bool recognises(const Section& scene) const override { return scene.has("scene"); }
+  std::string_view command() const override { return "sweep"; }
+  /// What each of its members rests on.
+  std::vector<Use> uses(const Section& sweep) const override {
+    const Section scene = read_its_scene(sweep);
+    return family_of(scene).uses(scene);
+  }
+};
+
+}  // namespace
+
+const SceneFamily& sweeps_family() {
+  static const Sweeps family;
+  return family;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,47 @@
+#pragma once
+/// Systems of a program that is compiled in seconds: equal steps of the discrete Lagrangian, by Newton's iteration.
+
+#include "../reading/system_module.hpp"
+#include "../reading/system_scene.hpp"
+#include "own_parts.hpp"
+
+#include <lagroid/run/run.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace lagroid::app {
+
+/// Where a program with all methods runs the scene too, both give the same bits.
+template <DiscreteSystem Sys> class StepsModule final : public SystemModule {
+ public:
+  StepsModule(std::string name, std::string summary, Dress<Sys> dress)
+      : SystemModule(std::move(name), std::move(summary)), dress_(dress) {}
+
+  bool nonholonomic() const override { return Nonholonomic<Sys>; }
+  std::span<const DeclaredMethod> own_methods() const override { return {}; }
+  ListedSystem listed() const override { return listed_system<Sys>(name(), summary()); }
+  MotionScene read(const Section&, const RunContext&) const override { throw NeedsAllMethods{}; }
+  RunResult run(const Section& scene, const RunContext& context) const override {
+    if (scene.has("boundary")) throw NeedsAllMethods{};
+    const Sys system = read_system<Sys>(scene);
+    const Presentation<Sys> presentation = dressed(system, name(), dress_);
+    const InitialValue<Sys> initial = read_initial(system, scene, presentation.momentum);
+    const MarchChoice choice = read_march(scene, abilities_of(system));
+    const Pace pace = read_pace(scene, context);
+    if (!is_plain(choice)) throw NeedsAllMethods{};
+    scene.finish();
+    auto march = std::make_unique<lagroid::detail::MarchOf<Sys, Integrator<Sys>>>(
+        system, initial.state, initial.configuration, std::make_unique<NewtonStep<Sys>>());
+    SystemMotion<Sys> motion(system, presentation, watched(system, choice.options), std::move(march), choice.options);
+    RunResult result;
+    drive(motion, pace, context, result);
+    return result;
+  }
+
+ private:
+  Dress<Sys> dress_;
+};
+
+}  // namespace lagroid::app

@@ -1,0 +1,14 @@
+#pragma once
+/// The files of own/templates, in the program.
+
+#include <cstddef>
+#include <string_view>
+
+namespace lagroid::app::templates {
+
+std::string_view system();
+std::string_view groupoid();
+std::string_view cmake();
+std::string_view scene();
+
+}  // namespace lagroid::app::templates

@@ -1,0 +1,92 @@
+#pragma once
+/// A program of one's own: the commands of lagroid, for systems of one's own.
+///
+///     int main(int argc, char** argv) { return lagroid::program(argc, argv, {lagroid::module<Dido>()}); }
+///
+/// One source makes three programs (`lagroid_program` in CMake; `lagroid run dido.cpp` builds the one that it needs):
+///
+///     LAGROID_STEPS_ALONE defined   equal steps of the discrete Lagrangian alone: seconds to compile
+///     neither                       all methods, studies, sweeps, boundary values
+///     LAGROID_WITH_LAWS defined     the laws: `check`
+
+#if defined(LAGROID_STEPS_ALONE)
+#include "own/steps_module.hpp"
+#else
+#include "reading/any_system.hpp"
+
+#include <lagroid/solvers/boundary_methods.hpp>
+#include <lagroid/solvers/march_methods.hpp>
+#endif
+#if defined(LAGROID_WITH_LAWS)
+#include "check/certify_system.hpp"
+#include "check/own_check.hpp"
+
+#include <lagroid/solvers/testing/certificate.hpp>
+#endif
+
+#include "own/own_parts.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// A system as a program knows it.
+struct Module {
+  std::shared_ptr<const app::SystemModule> of;
+#if defined(LAGROID_WITH_LAWS)
+  std::function<Certificate(const app::Section& scene, const app::CheckOptions& options)> certify;
+#endif
+};
+
+/// The module of a system for scenes that say `system = "NAME"`: its parameters are those that it declares
+/// (core/parameter.hpp). The name is the class's unless it is given: SpringPendulum becomes spring_pendulum. `dress`
+/// changes the labels, units, panels and shapes that reports would choose.
+template <DiscreteSystem Sys>
+Module module(std::string name = app::snake_case(typeid(Sys)), std::string summary = {},
+              std::type_identity_t<app::Dress<Sys>> dress = nullptr) {
+  if (summary.empty()) summary = "a system on " + Sys::GroupoidType::name();
+#if defined(LAGROID_STEPS_ALONE)
+  return {std::make_shared<const app::StepsModule<Sys>>(std::move(name), std::move(summary), dress)};
+#else
+  const auto made =
+      std::make_shared<const app::ModuleOf<Sys>>(app::any_module<Sys>(std::move(name), std::move(summary), dress));
+#if defined(LAGROID_WITH_LAWS)
+  return {made, [made](const app::Section& scene, const app::CheckOptions& options) {
+            return app::certify(made->task(scene, {.progress = !options.json}), options);
+          }};
+#else
+  return {made};
+#endif
+#endif
+}
+
+/// Serves a command line of lagroid for these systems: run, resume, view, plot, study, sweep, list, cite and, where
+/// the program beside it with the laws is built, check. Returns the exit code.
+inline int program(int argc, char** argv, std::vector<Module> modules) {
+  std::vector<const app::SystemModule*> systems;
+  for (const Module& each : modules) systems.push_back(each.of.get());
+#if defined(LAGROID_WITH_LAWS)
+  const auto ask = [&](const app::SystemModule& asked, const app::Section& scene, const app::CheckOptions& how) {
+    const auto is = [&](const Module& each) { return each.of.get() == &asked; };
+    return std::find_if(modules.begin(), modules.end(), is)->certify(scene, how);
+  };
+  return app::own_check_program(argc, argv, std::move(systems), ask);
+#elif defined(LAGROID_STEPS_ALONE)
+  try {
+    return app::own_program(argc, argv, std::move(systems));
+  } catch (const app::NeedsAllMethods&) {
+    return app::ask_for_all_methods();
+  }
+#else
+  return app::own_program(argc, argv, std::move(systems));
+#endif
+}
+
+}  // namespace lagroid

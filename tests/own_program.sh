@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# A system of one's own from its source: `lagroid new` and `lagroid run SYSTEM.cpp`.
+#   own_program.sh LAGROID WORK [whole]   in folders below WORK; whole: also with all methods and with its laws (minutes),
+#                                         and every groupoid that is offered
+set -euo pipefail
+lagroid=$1 work=$2 whole=${3:-}
+fail() {
+  printf 'own_program: %s\n' "$*" >&2
+  exit 1
+}
+rm -rf "$work"
+mkdir -p "$work/cache"
+cd "$work"
+export XDG_CACHE_HOME=$work/cache
+programs() { find "$work/cache" -type f -perm -100 | wc -l; }
+
+# A folder to begin with runs as it stands, and is compiled once.
+"$lagroid" new system spring_bob >new.log
+"$lagroid" run spring_bob/spring_bob.cpp --json >first.json 2>first.log || { cat first.log >&2; fail "it does not run"; }
+grep -q '"status": "converged"' first.json || fail "it did not converge"
+grep -q 'discrete energy E_d' first.json || fail "no energy in its ledger"
+! grep -q BROKEN first.json || fail "it breaks a promise"
+[ "$(programs)" -eq 1 ] || fail "$(programs) programs in the cache after one"
+"$lagroid" run spring_bob/spring_bob.cpp spring_bob/spring_bob.toml --set parameters.stiffness=2 --out out >again.log
+[ "$(programs)" -eq 1 ] || fail "compiled again without a change"
+"$lagroid" view out >/dev/null || fail "lagroid view does not show its run"
+"$lagroid" run spring_bob/spring_bob.cpp resume out --set time.steps=2100 >/dev/null || fail "its run is not taken up"
+"$lagroid" run spring_bob/spring_bob.cpp list >list.log
+grep -q 'stiffness' list.log || fail "its parameters are not listed"
+sed -i 's/time.step/time.step/; s/return twice \* 0.5/return twice * 0.25/' spring_bob/spring_bob.cpp
+"$lagroid" run spring_bob/spring_bob.cpp >/dev/null 2>&1 || fail "a change does not compile"
+[ "$(programs)" -eq 2 ] || fail "a change was not compiled"
+
+# What is wrong is told in a line, with an exit code, and leaves nothing.
+refused() { # refused CODE WORDS ARGUMENTS...
+  local code=0
+  "$lagroid" "${@:3}" >refused.out 2>refused.log || code=$?
+  [ "$code" -eq "$1" ] || { cat refused.log >&2; fail "${*:3}: exit code $code, not $1"; }
+  grep -qF -- "$2" refused.log || { cat refused.log >&2; fail "${*:3}: not told: $2"; }
+}
+refused 2 "is no name" new system 'Spring; rm -rf'
+refused 2 "is there already" new system spring_bob
+refused 2 "groupoid" new system other --groupoid sl7
+refused 2 "no such file" run nothing.cpp
+refused 2 "unknown" run spring_bob/spring_bob.cpp --set parameters.stifness=2
+[ ! -e other ] || fail "a folder was left"
+sed 's/return lagrangian(g, h)/return lagrangian(g, hh)/' spring_bob/spring_bob.cpp >wrong.cpp
+refused 2 "does not compile" run wrong.cpp
+sed -n 3p refused.log | grep -q "wrong.cpp.*error.*hh" || { cat refused.log >&2; fail "the user's line is not the first"; }
+sed 's|^  // Constraints psi.*|  int symmetries() const { return 0; }|' spring_bob/spring_bob.cpp >misfit.cpp
+refused 2 "does not compile" run misfit.cpp
+sed -n 3p refused.log | grep -q "symmetries" || { cat refused.log >&2; fail "the requirement is not told first"; }
+
+# A cache that others can write in is not used.
+chmod 770 "$work/cache/lagroid"
+refused 2 "nobody else may enter" run spring_bob/spring_bob.cpp
+chmod 700 "$work/cache/lagroid"
+mv "$work/cache/lagroid" "$work/elsewhere"
+ln -s "$work/elsewhere" "$work/cache/lagroid"
+refused 2 "nobody else may enter" run spring_bob/spring_bob.cpp
+rm "$work/cache/lagroid"
+
+if [ -n "$whole" ]; then
+  "$lagroid" run spring_bob/spring_bob.cpp --set time.mode=adaptive >adaptive.log 2>&1 || { cat adaptive.log >&2; fail "no adaptive steps"; }
+  "$lagroid" run spring_bob/spring_bob.cpp study spring_bob/spring_bob.toml --out study >/dev/null || fail "no study"
+  "$lagroid" run spring_bob/spring_bob.cpp check spring_bob/spring_bob.toml >check.log 2>&1 || { cat check.log >&2; fail "its laws do not hold"; }
+  for groupoid in so3 so2 se2 vector; do
+    "$lagroid" new system "on_$groupoid" --groupoid "$groupoid" >/dev/null
+    "$lagroid" run "on_$groupoid/on_$groupoid.cpp" >run.log 2>&1 || { cat run.log >&2; fail "the system on $groupoid does not run"; }
+    ! grep -q BROKEN run.log || fail "the system on $groupoid breaks a promise"
+  done
+  "$lagroid" new groupoid hills >/dev/null
+  "$lagroid" run hills/on_hills.cpp >run.log 2>&1 || { cat run.log >&2; fail "the groupoid does not run"; }
+  "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml >check.log 2>&1 || { cat check.log >&2; fail "the laws of the groupoid do not hold"; }
+  sed -i 's/g(2) + h(2)}/g(2) + h(2) * h(2)}/' hills/hills.hpp
+  ! "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml >check.log 2>&1 || fail "a broken groupoid passes"
+  grep -q associat check.log || { cat check.log >&2; fail "its broken law is not named"; }
+fi
+echo "own_program: holds"

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""What `./lagroid` builds for a scene, and that it does what the whole program does: parts.py BIN EXAMPLES.
+
+BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres and parts/files.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+bin_folder, examples = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+built = ("pendulum", "bodies", "spheres", "files")
+
+
+def run(program, *words):
+    return subprocess.run([str(program), *map(str, words)], capture_output=True, text=True, timeout=120)
+
+
+def part_of(*words):
+    told = run(bin_folder / "lagroid-part", *words)
+    assert told.returncode == 0, told.stderr
+    return told.stdout.strip()
+
+
+def of_part(name):
+    return bin_folder / "parts" / name / "lagroid"
+
+
+def without_times(text):
+    result = json.loads(text)
+    return {key: value for key, value in result.items() if key not in ("seconds", "program", "machine")}
+
+
+class Parts(unittest.TestCase):
+    def test_every_example_has_one(self):
+        listed = {system["name"] for system in json.loads(run(bin_folder / "lagroid", "list", "--json").stdout)}
+        found = {scene: part_of("run", scene) for scene in sorted(examples.rglob("*.toml"))}
+        self.assertGreater(len(found), 40)
+        for scene, part in found.items():
+            self.assertTrue(part in listed or part in ("bodies", "spheres", "whole"), f"{scene}: {part}")
+        self.assertEqual({"pendulum", "bodies", "spheres", "whole"} - set(found.values()), set())
+
+    def test_they_give_what_the_whole_gives(self):
+        for scene in sorted(examples.glob("*.toml")):
+            part = part_of("run", scene)
+            if part not in built:
+                continue
+            words = ("run", scene, "--json", "--set", "time.steps=20")
+            whole, alone = run(bin_folder / "lagroid", *words), run(of_part(part), *words)
+            self.assertEqual(whole.returncode, alone.returncode, f"{scene}: {alone.stderr}")
+            self.assertEqual(without_times(whole.stdout), without_times(alone.stdout), str(scene))
+
+    def test_a_folder_needs_no_scene(self):
+        self.assertEqual(part_of("view", "out"), "files")
+        self.assertEqual(part_of("list"), "whole")
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            self.assertEqual(run(of_part("pendulum"), "run", examples / "pendulum.toml", "--out", out).returncode, 0)
+            self.assertEqual(part_of("resume", out), "pendulum")
+            self.assertEqual(run(of_part("files"), "view", out).returncode, 0)
+
+    def test_scenes_of_others_are_refused(self):
+        told = run(of_part("pendulum"), "run", examples / "kepler.toml")
+        self.assertEqual(told.returncode, 2)
+        self.assertIn("kepler", told.stderr)
+        self.assertEqual(run(bin_folder / "lagroid-part", "run", pathlib.Path(__file__)).returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
