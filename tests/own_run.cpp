@@ -184,8 +184,9 @@ TEST_F(OwnRun, AStartThatIsNoNumberIsRefused) {
 }
 
 TEST_F(OwnRun, AStepThatFailsEndsItWithWhatWasComputed) {
-  const State<Pair<2>> too_far{{1e200, 0}, {0, 1}};  // its square overflows
-  const RunResult result = run(Spring{}, too_far, {.steps = 10});
+  Spring too_stiff;  // its force overflows
+  too_stiff.stiffness = 1e308;
+  const RunResult result = run(too_stiff, {{1e10, 0}, {0, 1}}, {.steps = 10});
   EXPECT_FALSE(result.converged());
   EXPECT_EQ(result.steps, 0);
   EXPECT_NE(result.message.find("step 1"), std::string::npos) << result.message;

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 

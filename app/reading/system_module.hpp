@@ -55,7 +55,7 @@ class SystemModule {
 template <DiscreteSystem Sys> ListedSystem listed_system(const std::string& name, const std::string& summary) {
   ListedSystem out{name, summary, Sys::GroupoidType::name(), listed_parameters<Sys>(), {}, {}};
   const Sys system;
-  if constexpr (requires { system.symmetries(); })
+  if constexpr (HasSymmetries<Sys>)
     for (const auto& symmetry : system.symmetries()) out.symmetries.push_back(symmetry.name);
   for (const auto& quantity : quantities_of(system))
     if (quantity.promise == Promise::conserved) out.conserved.push_back(quantity.name);
