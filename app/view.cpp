@@ -18,7 +18,9 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace lagroid::app {
@@ -181,11 +183,18 @@ Json data_of_page(const Json& summary, const ViewOptions& options) {
   return run;
 }
 
+/// The folder, refused where it holds something else than a run; none where there is no such folder.
+std::optional<OutputFolder> folder_there(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) return std::nullopt;
+  return folder_of_run(folder);
+}
+
 }  // namespace
 
 fs::path write_view(const ViewOptions& options) {
+  const auto held = folder_there(options.run);
   file_of_run(options.run, "summary.json");
-  const OutputFolder held = folder_of_run(options.run);
   const std::string data =
       from_summary(options.run, [&](const Json& summary) { return in_script(data_of_page(summary, options)); });
   const std::string page =
@@ -199,9 +208,9 @@ fs::path write_view(const ViewOptions& options) {
 }
 
 std::vector<fs::path> draw_plots(const PlotOptions& options) {
+  const auto held = folder_there(options.run);
   const fs::path file = file_of_run(options.run, "plot.gp");
   const fs::path excerpt = file_of_run(options.run, "trajectory.csv").parent_path() / "plot.csv";
-  const OutputFolder held = folder_of_run(options.run);
   const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), !fs::exists(excerpt)); };
   if (!options.own_script && contents(file) != from_summary(options.run, its_own))
     throw RunError(

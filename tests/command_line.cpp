@@ -107,6 +107,8 @@ TEST_F(CommandLine, RunHandsOverWhatIsNoMotion) {
   const Outcome swept = run("run " + sweep + " --out " + (folder_ / "swept").string());
   EXPECT_EQ(swept.code, 0) << swept.err;
   EXPECT_TRUE(fs::exists(folder_ / "swept" / "members.csv"));
+  for (const char* command : {"view ", "plot "})
+    expect_refused(command + (folder_ / "swept").string(), "and not a run");
 }
 TEST_F(CommandLine, CommandsForMotionsNameTheOneForOtherScenes) {
   expect_refused("study " + example("optimisation/membrane"), "lagroid optimize carries it out");
