@@ -40,6 +40,7 @@ refused() { # refused CODE WORDS ARGUMENTS...
 }
 refused 2 "is no name" new system 'Spring; rm -rf'
 refused 2 "is there already" new system spring_bob
+refused 2 "give another name, as in my_state" new system state
 refused 2 "groupoid" new system other --groupoid sl7
 refused 2 "no such file" run nothing.cpp
 refused 2 "unknown" run spring_bob/spring_bob.cpp --set parameters.stifness=2

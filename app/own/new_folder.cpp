@@ -67,6 +67,15 @@ std::string class_name(const std::string& name) {
   return out;
 }
 
+/// Whether the class would be taken for one of the library's, of which the source sees all.
+bool is_taken(const std::string& of_class) {
+  constexpr std::array<std::string_view, 24> taken{"Action",   "Dual",    "Forces", "Lanes",  "Ledger", "Matrix",
+                                                   "Module",   "Motion",  "Pair",   "Panel",  "Path",   "Product",
+                                                   "Quantity", "Scaling", "Shape",  "Stage",  "State",  "Step",
+                                                   "Symmetry", "System",  "Tape",   "Vector", "Walk",   "Integrator"};
+  return std::ranges::find(taken, of_class) != taken.end();
+}
+
 bool is_name(const std::string& name) {
   const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
   return !name.empty() && small(name[0]) &&
@@ -134,6 +143,10 @@ int begin(const NewOptions& options) {
                   fmt::format("\"{}\" is no name: small letters, digits and _, beginning with a letter, as in "
                               "spring_pendulum",
                               options.name));
+  if (is_taken(class_name(options.name)))
+    return refuse(false, exit_bad_input, "invalid_command_line",
+                  fmt::format("{}: the library has a class {}; give another name, as in my_{}", options.name,
+                              class_name(options.name), options.name));
   const fs::path folder = options.folder.empty() ? fs::path(options.name) : fs::path(options.folder);
   std::vector<std::pair<std::string, std::string>> files;
   std::string system = options.name;
