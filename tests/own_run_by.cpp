@@ -80,7 +80,8 @@ TEST(OwnStudy, WhatIsNoStudyIsRefused) {
   EXPECT_THROW(study(Spring{}, start, {.target = no_number}), std::invalid_argument);
   EXPECT_THROW(study(Spring{}, start, {.budget = no_number}), std::invalid_argument);
   EXPECT_THROW(study(Spring{}, start, {.repetitions = 0}), std::invalid_argument);
-  EXPECT_THROW(study(Spring{}, {{no_number, 0}, {0, 1}}, {.budget = 1}), std::invalid_argument);
+  EXPECT_THROW(study(Spring{}, {Vector<double, 1>(no_number), Vector<double, 1>(0.3)}, {.budget = 1}),
+               std::invalid_argument);
   EXPECT_THROW(study(Spring{}, start, {.name = "two\nlines"}), std::invalid_argument);
   EXPECT_THROW(study(Spring{}, start, {.methods = "euler"}), UnknownMethod);
 }
