@@ -74,7 +74,7 @@ if [ -n "$whole" ]; then
   "$lagroid" run hills/on_hills.cpp >run.log 2>&1 || { cat run.log >&2; fail "the groupoid does not run"; }
   "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml >check.log 2>&1 || { cat check.log >&2; fail "the laws of the groupoid do not hold"; }
   sed -i 's/g(2) + h(2)}/g(2) + h(2) * 2.0}/' hills/hills.hpp
-  ! "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml >check.log 2>&1 || fail "a broken groupoid passes"
+  ! "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml --set time.steps=20 >check.log 2>&1 || fail "a broken groupoid passes"
   grep -q associat check.log || { cat check.log >&2; fail "its broken law is not named"; }
 fi
 echo "own_program: holds"
