@@ -1,7 +1,6 @@
 #pragma once
 /// The files of own/templates, in the program.
 
-#include <cstddef>
 #include <string_view>
 
 namespace lagroid::app::templates {
