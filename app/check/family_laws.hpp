@@ -7,7 +7,6 @@
 
 #include <lagroid/run/certificate.hpp>
 
-#include <functional>
 #include <utility>
 #include <vector>
 
