@@ -2,6 +2,7 @@
 /// How the paths of a groupoid can wind.
 
 #include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/member_name.hpp>
 
 #include <concepts>
 
@@ -32,6 +33,7 @@ concept Winding = loops_of<X>()
 
 namespace detail {
 
+LAGROID_MEMBER_NAME(NamesLoop, loop);
 template <class Sys>
 concept HasLoop = requires(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q,
                            const AlgebroidVector<typename Sys::GroupoidType>& axis,
@@ -80,8 +82,7 @@ template <class Sys> constexpr bool loops_and_loop_fit() {
   if constexpr (Winding<Sys>) {
     return detail::HasLoop<Sys>;
   } else {
-    return !requires { &Sys::loop; }
-    || requires(const Sys& system) { system.loop_count(); };
+    return !detail::NamesLoop<Sys> || requires(const Sys& system) { system.loop_count(); };
   }
 }
 template <class Sys> inline constexpr bool loops_fit = loops_and_loop_fit<Sys>();

@@ -63,6 +63,7 @@ template <class Derived, class From, class To> struct Morphism {
 template <class Phi, class Reduced>
 struct PulledBack : System<PulledBack<Phi, Reduced>, typename Phi::Domain, Reduced::arrow_constraints> {
   static_assert(Reduced::object_constraints == 0 && Variational<Reduced>);
+  using MembersVary = void;
   [[no_unique_address]] Phi morphism;
   Reduced reduced;
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Noether symmetries of a discrete constrained Lagrangian system and their constants of the motion. [G] 4.2
 
+#include <lagroid/core/member_name.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/two_sided.hpp>
 
@@ -62,15 +63,13 @@ template <class Sys>
 concept HasSymmetries = requires(const Sys& system) {
   { system.symmetries() } -> std::convertible_to<std::vector<Symmetry<Sys>>>;
 };
+namespace detail {
+LAGROID_MEMBER_NAME(NamesQuantities, quantities);
+LAGROID_MEMBER_NAME(NamesSymmetries, symmetries);
+}  // namespace detail
 /// Whether these, where they are there, are those.
-template <class Sys>
-inline constexpr bool quantities_fit =
-    HasQuantities<Sys> || !(
-                              requires { &Sys::quantities; } || requires(Sys & system) { system.quantities(); });
-template <class Sys>
-inline constexpr bool symmetries_fit =
-    HasSymmetries<Sys> || !(
-                              requires { &Sys::symmetries; } || requires(Sys & system) { system.symmetries(); });
+template <class Sys> inline constexpr bool quantities_fit = HasQuantities<Sys> || !detail::NamesQuantities<Sys>;
+template <class Sys> inline constexpr bool symmetries_fit = HasSymmetries<Sys> || !detail::NamesSymmetries<Sys>;
 
 /// What a ledger watches of a system: its own quantities or, of one that declares symmetries alone, their constants of
 /// the motion.

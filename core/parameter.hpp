@@ -1,7 +1,10 @@
 #pragma once
 /// The parameters of a system, declared once: scenes, listings, Python and tables read them from here.
 
+#include <lagroid/core/member_name.hpp>
+
 #include <array>
+#include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -76,9 +79,31 @@ concept HasParameters = requires {
   Sys::parameters();
 };
 
+namespace detail {
+LAGROID_MEMBER_NAME(NamesParameters, parameters);
+LAGROID_MEMBER_NAME(NamesRefused, refused);
+template <class T> inline constexpr bool is_declaration = false;
+template <class Owner, class Member> inline constexpr bool is_declaration<Parameter<Owner, Member>> = true;
+template <class Owner, class Enum, std::size_t N> inline constexpr bool is_declaration<Choice<Owner, Enum, N>> = true;
+template <class T> inline constexpr bool are_declarations = false;
+template <class... Each> inline constexpr bool are_declarations<std::tuple<Each...>> = (is_declaration<Each> && ...);
+}  // namespace detail
+/// Whether `parameters`, where there are any, are declarations.
+template <class Sys> constexpr bool parameters_fit() {
+  if constexpr (HasParameters<Sys>) {
+    return detail::are_declarations<std::remove_cvref_t<decltype(Sys::parameters())>>;
+  } else {
+    return !detail::NamesParameters<Sys>;
+  }
+}
+
 /// Visits the declarations of a system's parameters in order; none where it has none.
 template <class Sys, class Visit> void for_each_parameter(const Visit& visit) {
-  if constexpr (HasParameters<Sys>) std::apply([&](const auto&... each) { (visit(each), ...); }, Sys::parameters());
+  static_assert(parameters_fit<Sys>(),
+                "parameters() is there but does not fit: a public static function of no arguments that returns a "
+                "std::tuple of parameter(...) and choice(...)");
+  if constexpr (HasParameters<Sys> && parameters_fit<Sys>())
+    std::apply([&](const auto&... each) { (visit(each), ...); }, Sys::parameters());
 }
 
 /// Parameters that are allowed one by one, but not together. A system says so by
@@ -93,7 +118,12 @@ std::optional<Refusal> refuse_lost_digits(std::vector<std::string_view> paramete
                                           double value);
 
 template <class Sys> std::optional<Refusal> refusal_of(const Sys& system) {
-  if constexpr (requires { system.refused(); }) {
+  constexpr bool refuses = requires {
+    { system.refused() } -> std::convertible_to<std::optional<Refusal>>;
+  };
+  static_assert(refuses || !detail::NamesRefused<Sys>,
+                "refused() is there but does not fit: a public const function that returns std::optional<Refusal>");
+  if constexpr (refuses) {
     return system.refused();
   } else {
     return std::nullopt;

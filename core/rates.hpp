@@ -23,14 +23,10 @@ concept HasRates = DiscreteSystem<Sys> && HasTimeStep<Sys> &&
 };
 
 namespace detail {
-template <class Sys>
-concept SpeaksOfRates = requires {
-  &Sys::rates;
-}
-|| requires(Sys& system, const State<typename Sys::GroupoidType>& z) { system.rates(z); };
+LAGROID_MEMBER_NAME(NamesRates, rates);
 }  // namespace detail
 
 /// Whether `rates`, where there is one, is that.
-template <class Sys> inline constexpr bool rates_fit = HasRates<Sys> || !detail::SpeaksOfRates<Sys>;
+template <class Sys> inline constexpr bool rates_fit = HasRates<Sys> || !detail::NamesRates<Sys>;
 
 }  // namespace lagroid

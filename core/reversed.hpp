@@ -11,6 +11,7 @@ namespace lagroid {
 template <class Sys>
 struct Reversed : System<Reversed<Sys>, typename Sys::GroupoidType, Sys::arrow_constraints, Sys::object_constraints> {
   static_assert(Variational<Sys>);
+  using MembersVary = void;
   Sys forward;
 
   explicit Reversed(const Sys& system) : forward(system) { this->groupoid = system.groupoid; }

@@ -76,14 +76,8 @@ concept CountsParts = requires {
   requires std::same_as<decltype(Sys::parts), const int>;
   requires Sys::parts >= 1;
 };
-template <class Sys>
-concept SpeaksOfFlows = requires {
-  Sys::parts;
-}
-|| requires { &Sys::template flow<0, double>; }
-|| requires(Sys& system, const State<typename Sys::GroupoidType>& z) {
-  system.template flow<0>(1.0, z.object, z.momentum);
-};
+LAGROID_MEMBER_NAME(NamesParts, parts);
+LAGROID_MEMBER_NAME(NamesFlow, flow);
 template <class Sys> constexpr bool counted_flows_fit() {
   if constexpr (CountsParts<Sys>) {
     return HasTimeStep<Sys> && has_flows<Sys>();
@@ -96,7 +90,9 @@ template <class Sys> constexpr bool counted_flows_fit() {
 
 /// Whether the flows, where there are any, are those. (A system derived from one that splits, with forces of its own,
 /// has flows and no use for them.)
-template <class Sys> inline constexpr bool flows_fit = !detail::SpeaksOfFlows<Sys> || detail::counted_flows_fit<Sys>();
+template <class Sys>
+inline constexpr bool flows_fit =
+    !(detail::NamesParts<Sys> || detail::NamesFlow<Sys>) || detail::counted_flows_fit<Sys>();
 /// Whether a system that declares itself attractive, and could be, is.
 template <class Sys> inline constexpr bool attraction_fits = AttractiveSystem<Sys> || !Variational<Sys> || !requires {
   requires Sys::attractive;

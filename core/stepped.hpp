@@ -1,6 +1,7 @@
 #pragma once
 /// Systems known for every step size, and systems that depend on time.
 
+#include <lagroid/core/jet.hpp>
 #include <lagroid/core/system.hpp>
 
 namespace lagroid {
@@ -54,11 +55,26 @@ concept SpeaksOfStart = requires(Sys& system, const ArrowOf<typename Sys::Groupo
   system.constraint(g, start, step);
 };
 
+/// Whether these functions bear a step (and a start) that carries derivatives, beside arrows that do.
+using SteppedScalar = Jet<double, 1>;
+template <class Sys, class... Times>
+concept TakesTimes = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType, SteppedScalar>& g,
+                              const Times&... times) {
+  { system.lagrangian(g, times...) } -> std::convertible_to<SteppedScalar>;
+  requires Sys::arrow_constraints == 0 || requires { system.constraint(g, times...); };
+};
+template <class Sys>
+concept BearsStep = TakesTimes<Sys, double> && TakesTimes<Sys, SteppedScalar>;
+template <class Sys>
+concept BearsStart = TakesTimes<Sys, double, double> && TakesTimes<Sys, SteppedScalar, SteppedScalar>;
+
 }  // namespace detail
 
 /// Whether functions that take the step, or start and step, are those of a system of that kind, where there are any.
-template <class Sys> inline constexpr bool step_arguments_fit = StepDependent<Sys> || !detail::SpeaksOfStep<Sys>;
-template <class Sys> inline constexpr bool start_arguments_fit = TimeDependent<Sys> || !detail::SpeaksOfStart<Sys>;
+template <class Sys>
+inline constexpr bool step_arguments_fit = StepDependent<Sys> ? detail::BearsStep<Sys> : !detail::SpeaksOfStep<Sys>;
+template <class Sys>
+inline constexpr bool start_arguments_fit = TimeDependent<Sys> ? detail::BearsStart<Sys> : !detail::SpeaksOfStart<Sys>;
 
 /// The time at which a system's next arrow starts: zero where it depends on none.
 template <class Sys> double start_time(const Sys& system) {

@@ -2,6 +2,7 @@
 /// Discrete constrained Lagrangian systems (G, N, L). [G] Def. 3.2
 
 #include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/member_name.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <concepts>
@@ -220,12 +221,18 @@ template <class Sys>
 concept HasPath = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary) {
   { system.path(boundary, 1L) } -> std::same_as<std::vector<ArrowOf<typename Sys::GroupoidType>>>;
 };
-/// Whether `path`, where there is one, is that.
-template <class Sys> inline constexpr bool path_fits = HasPath<Sys> || !requires { &Sys::path; };
-
 namespace detail {
 
-/// Members that can be called at all, const or not, whatever comes of it.
+LAGROID_MEMBER_NAME(NamesPath, path);
+LAGROID_MEMBER_NAME(NamesForces, forces);
+LAGROID_MEMBER_NAME(NamesTwoSided, two_sided);
+LAGROID_MEMBER_NAME(NamesGradients, gradients);
+LAGROID_MEMBER_NAME(NamesBranch, admissible);
+LAGROID_MEMBER_NAME(NamesFirstGuess, first_guess);
+LAGROID_MEMBER_NAME(NamesTimeStep, h);
+LAGROID_MEMBER_NAME(NamesAnnihilator, annihilator);
+
+/// Constraints that can be called at all, const or not, whatever comes of it.
 template <class Sys>
 concept SpeaksOfConstraint = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
   system.constraint(g);
@@ -233,10 +240,6 @@ concept SpeaksOfConstraint = requires(Sys& system, const ArrowOf<typename Sys::G
 template <class Sys>
 concept SpeaksOfObjectConstraint = requires(Sys& system, const ObjectOf<typename Sys::GroupoidType>& q) {
   system.object_constraint(q);
-};
-template <class Sys>
-concept SpeaksOfForces = requires(Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
-  system.forces(g);
 };
 /// `force` that returns what only `forces` does. (A `force` of another kind is the user's own affair.)
 template <class Sys>
@@ -275,17 +278,23 @@ template <class Sys>
 inline constexpr bool object_constraint_fits =
     Sys::object_constraints == 0 ? !detail::SpeaksOfObjectConstraint<Sys> : detail::HasObjectConstraint<Sys>;
 template <class Sys>
-inline constexpr bool forces_fit = !detail::SpeaksOfForce<Sys> && (Forced<Sys> || !detail::SpeaksOfForces<Sys>);
+inline constexpr bool forces_fit = !detail::SpeaksOfForce<Sys> && (Forced<Sys> || !detail::NamesForces<Sys>);
+/// Whether `path`, where there is one, is that of HasPath.
+template <class Sys> inline constexpr bool path_fits = HasPath<Sys> || !detail::NamesPath<Sys>;
 
 /// Whether every optional member that the system has is one that will be used: a member of the right name that is not
 /// const, or does not take or return what it should, would otherwise be passed over without a word.
 template <class Sys>
-inline constexpr bool optional_members_fit =
-    (HasAnalyticDerivatives<Sys> || !requires { &Sys::two_sided; }) &&
-    (HasAnalyticGradients<Sys> || !requires { &Sys::gradients; }) &&
-    (HasBranch<Sys> || !requires { &Sys::admissible; }) && (HasFirstGuess<Sys> || !requires { &Sys::first_guess; }) &&
-    (HasTimeStep<Sys> || !requires { &Sys::h; }) &&
-    (HasAnnihilator<Sys> || !requires { &Sys::annihilator; }) && forces_fit<Sys>;
+inline constexpr bool optional_members_fit = (HasAnalyticDerivatives<Sys> || !detail::NamesTwoSided<Sys>)&&(
+    HasAnalyticGradients<Sys> ||
+    !detail::NamesGradients<Sys>)&&(HasBranch<Sys> ||
+                                    !detail::NamesBranch<Sys>)&&(HasFirstGuess<Sys> ||
+                                                                 !detail::NamesFirstGuess<
+                                                                     Sys>)&&(HasTimeStep<Sys> ||
+                                                                             !detail::NamesTimeStep<
+                                                                                 Sys>)&&(HasAnnihilator<Sys> ||
+                                                                                         !detail::NamesAnnihilator<
+                                                                                             Sys>)&&forces_fit<Sys>;
 
 template <class Sys> void require_members_to_fit() {
   static_assert(

@@ -16,14 +16,10 @@ concept HasTimeScale = requires(const Sys& system, const State<typename Sys::Gro
 };
 
 namespace detail {
-template <class Sys>
-concept SpeaksOfTimeScale = requires {
-  &Sys::time_scale_rate;
-}
-|| requires(Sys& system, const State<typename Sys::GroupoidType>& state) { system.time_scale_rate(state); };
+LAGROID_MEMBER_NAME(NamesTimeScale, time_scale_rate);
 }  // namespace detail
 
 /// Whether `time_scale_rate`, where there is one, is that.
-template <class Sys> inline constexpr bool time_scale_fits = HasTimeScale<Sys> || !detail::SpeaksOfTimeScale<Sys>;
+template <class Sys> inline constexpr bool time_scale_fits = HasTimeScale<Sys> || !detail::NamesTimeScale<Sys>;
 
 }  // namespace lagroid

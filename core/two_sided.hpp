@@ -28,6 +28,27 @@ S augmented_lagrangian(const Sys& system, const A& g, const typename Sys::Multip
 
 template <class Sys> using MixedOf = Mixed<double, Sys::dimension, Sys::dimension>;
 
+/// Automatic derivatives evaluate a system over the scalar S. Does not compile where its functions do not take it.
+template <class Sys, class S> constexpr void require_scalar() {
+  using A = ArrowOf<typename Sys::GroupoidType, S>;
+  using Q = ObjectOf<typename Sys::GroupoidType, S>;
+  static_assert(
+      requires(const Sys& system, const A& g) {
+        { system.lagrangian(g) } -> std::convertible_to<S>;
+      },
+      "lagrangian(g) is there for doubles alone: its derivatives are automatic, and evaluate it as a const template on "
+      "the scalar, S lagrangian(const Arrow<S>& g), that returns this scalar (see System)");
+  static_assert(
+      Sys::arrow_constraints == 0 || requires(const Sys& system, const A& g) { system.constraint(g); },
+      "constraint(g) is there for doubles alone: it is a const template on the scalar (see System)");
+  static_assert(
+      Sys::object_constraints == 0 || requires(const Sys& system, const Q& q) { system.object_constraint(q); },
+      "object_constraint(q) is there for doubles alone: it is a const template on the scalar (see System)");
+  static_assert(
+      !Forced<Sys> || requires(const Sys& system, const A& g) { system.forces(g); },
+      "forces(g) is there for doubles alone: it is a const template on the scalar (see System)");
+}
+
 /// What acts on the two ends of g beside the Lagrangian: discrete forces, and at the source the reaction
 /// <lambda, omega>.
 template <DiscreteSystem Sys, class S = double>
@@ -59,6 +80,7 @@ LAGROID_FLATTEN GradientsOf<Sys, S> automatic_gradients(const Sys& system,
       return groupoid.template seed<J, End::source, End::target, 0, n>(g);
     }
   }();
+  require_scalar<Sys, J>();
   GradientsOf<Sys, S> out;
   J f = system.lagrangian(gj);
   if constexpr (Nonholonomic<Sys>) {
@@ -101,6 +123,7 @@ LAGROID_FLATTEN TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const Arr
                                                     const typename Sys::Multipliers& lambda) {
   using M = MixedOf<Sys>;
   const auto gm = system.groupoid.template seed<M, End::source, End::target>(g);
+  require_scalar<Sys, M>();
   TwoSidedOf<Sys> out;
   M f = system.lagrangian(gm);
   if constexpr (Sys::arrow_constraints > 0) {

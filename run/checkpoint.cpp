@@ -58,6 +58,11 @@ void Checkpoint::begin(const std::string& scene) {
   scene_ = sum_of(scene);
 }
 
+std::string Checkpoint::how_to_resume(std::string_view scene, const fs::path& run) {
+  if (is_of_a_program(scene)) return "the program with RunOptions::resume";
+  return fmt::format("lagroid resume {}", run.string());
+}
+
 std::string Checkpoint::scene_of(const fs::path& run) {
   std::string text = text_of(run);
   if (is_of_a_program(text))
@@ -71,7 +76,7 @@ std::string Checkpoint::scene_of(const fs::path& run) {
 std::string Checkpoint::text_of(const fs::path& run) {
   if (auto text = contents(run / "checkpoint" / "scene.toml")) return *std::move(text);
   throw RunError(
-      fmt::format("\"{}\" holds no run that can be taken up; lagroid run SCENE --out DIR makes one", run.string()));
+      fmt::format("\"{}\" holds no run that can be taken up; a run that writes into a folder makes one", run.string()));
 }
 
 void Checkpoint::require_this_build(const fs::path& run, bool other_build) {
@@ -98,7 +103,7 @@ Json Checkpoint::restore(Trajectory& trajectory) {
   try {
     scene_ = json.at("scene").get<std::size_t>();
     if (sum_of(contents(folder_ / "scene.toml").value_or("")) != scene_)
-      throw RunError(fmt::format("{}: is not the scene that was run; run it anew, with --out for a folder of its own",
+      throw RunError(fmt::format("{}: is not the scene that was run; run it anew, in a folder of its own",
                                  (folder_ / "scene.toml").string()));
     const long parts = json.at("parts").get<long>();
     for (; parts_ < parts; ++parts_) {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lagroid {
@@ -23,6 +24,8 @@ class Checkpoint {
   void begin(const std::string& scene);
   /// Takes away what an earlier run left: by one that keeps no checkpoints.
   void remove();
+  /// What goes on with a run of this scene: a command or, of a program of one's own, that program.
+  static std::string how_to_resume(std::string_view scene, const std::filesystem::path& run);
   /// The scene of a run. Throws RunError where there is none, or a program of one's own ran its system.
   static std::string scene_of(const std::filesystem::path& run);
   /// What stands there, whoever ran it. Throws RunError where there is nothing.

@@ -107,7 +107,8 @@ void drive(Motion& motion, const Pace& pace, const RunContext& context, RunResul
   if (context.resume) {
     restore(*checkpoint, recorder.trajectory(), run, result, clock, context);
     if (result.steps > pace.steps)
-      throw RunError(fmt::format("--set time.steps={}: the run has {} steps already", pace.steps, result.steps));
+      throw RunError(fmt::format("{} steps are no more than the run has already, which are {}; ask for more to go on",
+                                 pace.steps, result.steps));
   } else {
     if (checkpoint) checkpoint->begin(pace.scene);
     keep();
@@ -136,9 +137,10 @@ void drive(Motion& motion, const Pace& pace, const RunContext& context, RunResul
   if (end.why == Why::whole || interrupted) keep();  // what failed is counted, but not kept: taken up, it fails again
   if (interrupted) {
     result.status = interrupted_status;
-    result.message = fmt::format(
-        "interrupted after step {} of {}; what was computed is kept{}", result.steps, pace.steps,
-        checkpoint ? fmt::format(", and lagroid resume {} goes on", context.folder.string()) : std::string());
+    result.message =
+        fmt::format("interrupted after step {} of {}; what was computed is kept{}", result.steps, pace.steps,
+                    checkpoint ? fmt::format(", and {} goes on", Checkpoint::how_to_resume(pace.scene, context.folder))
+                               : std::string());
   } else if (end.why == Why::failed) {
     count(end.report);
     result.status = std::string(to_string(end.report.status));

@@ -123,7 +123,7 @@ int wait_for_gnuplot(pid_t child, bool before) {
 
 /// A full disk is no mistake on the command line.
 [[noreturn]] void refuse_place(const fs::path& folder, const fs::path& where, std::error_code why) {
-  const auto line = fmt::format("--out {}: nothing can be written in {} ({}); choose another place", folder.string(),
+  const auto line = fmt::format("{}: nothing can be written in {} ({}); choose another place", folder.string(),
                                 where.string(), why.message());
   if (why == std::errc::no_space_on_device || why.value() == EDQUOT) throw OutputError(line);
   throw FolderRefused(line);
@@ -260,14 +260,14 @@ void OutputFolder::lock() {
 
 void OutputFolder::refuse_others(const std::optional<OutputSource>& source) {
   const auto refuse = [&](const KindOfOutput& there, const std::string& more) {
-    throw FolderRefused(fmt::format("--out {}: it holds {}{}; choose another folder, or remove this one",
-                                    folder_.string(), there.told, more));
+    throw FolderRefused(fmt::format("{}: it holds {}{}; choose another folder, or remove this one", folder_.string(),
+                                    there.told, more));
   };
   const Json mark = read_mark(folder_);
   if (std::error_code ignored; kind_ != OutputKind::data && mark.is_null() && fs::exists(folder_ / mark_file, ignored))
-    throw FolderRefused(fmt::format(
-        "--out {}: {}, which says what the folder holds, is damaged; choose another folder, or remove this one",
-        folder_.string(), mark_file));
+    throw FolderRefused(
+        fmt::format("{}: {}, which says what the folder holds, is damaged; choose another folder, or remove this one",
+                    folder_.string(), mark_file));
   const auto there = [&](const KindOfOutput& kind) { return sign_of(folder_, kind) != nullptr; };
   auto held = std::find_if(kinds().begin(), kinds().end(), [&](const KindOfOutput& each) {
     return mark.is_object() && mark["kind"] == each.name && there(each);
@@ -288,16 +288,16 @@ void OutputFolder::refuse_others(const std::optional<OutputSource>& source) {
 }
 
 void require_writable(const fs::path& folder, std::span<const char* const> files) {
-  if (folder.empty()) throw FolderRefused("--out: the folder's name is empty; give one, as in --out out/run");
+  if (folder.empty()) throw FolderRefused("the name of the output folder is empty; give one, as in out/run");
   std::error_code error;
   fs::path existing = fs::absolute(folder);
   while (!fs::exists(existing, error) && existing.has_parent_path() && existing != existing.parent_path())
     existing = existing.parent_path();
   if (fs::is_symlink(folder, error) && !fs::exists(folder, error))
-    throw FolderRefused(fmt::format("--out {}: a link to nothing; choose another place", folder.string()));
+    throw FolderRefused(fmt::format("{}: a link to nothing; choose another place", folder.string()));
   if (!fs::is_directory(existing, error))
     throw FolderRefused(
-        fmt::format("--out {}: {} is not a folder; choose another place", folder.string(), existing.string()));
+        fmt::format("{}: {} is not a folder; choose another place", folder.string(), existing.string()));
   // Permissions do not tell everything (read-only file systems, /proc): a folder is made there, and removed.
   const fs::path probe = existing / fmt::format("{}{}", staging_prefix, getpid());
   fs::create_directory(probe, error);
@@ -306,7 +306,7 @@ void require_writable(const fs::path& folder, std::span<const char* const> files
   for (const char* name : files)
     if (fs::is_directory(folder / name, error))
       throw FolderRefused(
-          fmt::format("--out {}: {} is a folder where a file is to be written; move it away or choose another place",
+          fmt::format("{}: {} is a folder where a file is to be written; move it away or choose another place",
                       folder.string(), (folder / name).string()));
 }
 
@@ -330,7 +330,7 @@ std::vector<fs::path> write_whole(const fs::path& folder, std::span<const char* 
     std::error_code ignored;
     fs::remove_all(staging, ignored);
     const fs::path& file = error.path2().empty() ? error.path1() : error.path2();
-    throw OutputError(fmt::format("--out {}: {} could not be written ({}); choose another place", folder.string(),
+    throw OutputError(fmt::format("{}: {} could not be written ({}); choose another place", folder.string(),
                                   file.string(), error.code().message()));
   } catch (...) {
     std::error_code ignored;

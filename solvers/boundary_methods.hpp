@@ -1,10 +1,14 @@
 #pragma once
 /// Solvers of a boundary-value problem by name, and the search of its solutions, for systems of any sizes.
 
-#include <lagroid/solvers/boundary_ceres.hpp>
 #include <lagroid/solvers/boundary_newton.hpp>
 #include <lagroid/solvers/boundary_shooting.hpp>
 #include <lagroid/solvers/boundary_values.hpp>
+#ifdef LAGROID_WITHOUT_CERES
+#include <lagroid/solvers/missing_library.hpp>
+#else
+#include <lagroid/solvers/boundary_ceres.hpp>
+#endif
 
 namespace lagroid::detail {
 
@@ -14,7 +18,11 @@ template <DiscreteSystem Sized> struct BoundarySolvers {
       case BoundaryMethod::shooting:
         return std::make_unique<BoundaryShooting<Sized>>(options, seek);
       case BoundaryMethod::ceres:
+#ifdef LAGROID_WITHOUT_CERES
+        throw MissingLibrary("the solver \"ceres\" of boundary values", "Ceres", "libceres-dev");
+#else
         return std::make_unique<BoundaryCeres<Sized>>(options, seek);
+#endif
       default:
         return std::make_unique<BoundaryNewton<Sized>>(options, seek);
     }

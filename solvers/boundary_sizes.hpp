@@ -42,5 +42,6 @@ LAGROID_COMPILED_SIZES(3, 1, 0, 16);  // rotations with two controls
 LAGROID_COMPILED_SIZES(3, 2, 0, 16);  // plane poses with one control
 LAGROID_COMPILED_SIZES(5, 3, 0, 16);  // the plate-ball
 LAGROID_COMPILED_SIZES(6, 0, 0, 16);  // bodies in space
+LAGROID_COMPILED_SIZES(6, 0, 0, 32);  // rotations with rotors
 
 }  // namespace lagroid::detail

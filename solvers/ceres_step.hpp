@@ -1,13 +1,11 @@
 #pragma once
 /// One implicit step through Ceres.
 
-#include <lagroid/solvers/ceres_manifold.hpp>
-#include <lagroid/solvers/ceres_solve.hpp>
+#include <lagroid/solvers/ceres_fibre.hpp>
+#include <lagroid/solvers/fibre_coordinates.hpp>
 #include <lagroid/solvers/step_solver.hpp>
 
-#include <ceres/ceres.h>
-
-#include <memory>
+#include <cmath>
 
 namespace lagroid {
 
@@ -20,41 +18,22 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
   using E = StepEquations<Sys>;
 
   explicit CeresStep(int max_iterations = 100, double tolerance = 0, const G& groupoid = {})
-      : manifold_(groupoid), tolerance_(tolerance), options_(detail::to_round_off(max_iterations)) {
-    options_.linear_solver_type = ceres::DENSE_QR;
-    options_.parameter_tolerance = 1e-17;
-    options_.initial_trust_region_radius = 1e16;
-    options_.max_trust_region_radius = 1e32;
-    ceres::Problem::Options ownership;
-    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    problem_ = std::make_unique<ceres::Problem>(ownership);
-    problem_->AddParameterBlock(arrow_.data(), int(arrow_.size()), &manifold_);
-    if constexpr (Sys::constraints > 0) {
-      problem_->AddResidualBlock(&cost_, nullptr, arrow_.data(), multipliers_.data());
-    } else {
-      problem_->AddResidualBlock(&cost_, nullptr, arrow_.data());
-    }
-  }
-  CeresStep(const CeresStep&) = delete;
-  CeresStep& operator=(const CeresStep&) = delete;
+      : tolerance_(tolerance), equations_(groupoid), problem_(equations_, max_iterations) {}
 
   StepReport solve(const Sys& system, const State<G>& state, StepSolution<Sys>& solution) override {
     Step<Sys>& step = solution.step;
     StepReport report;
-    const ScaledResidual<Sys> start(system, state, step, two_sided(system, step.arrow, step.multipliers), cost_.scaling,
-                                    /*rescale=*/true);
+    const ScaledResidual<Sys> start(system, state, step, two_sided(system, step.arrow, step.multipliers),
+                                    equations_.scaling, /*rescale=*/true);
     if (!std::isfinite(start.norm)) return end(report, SolveStatus::not_finite);
-    cost_.system = &system;
-    cost_.state = &state;
-    arrow_ = system.groupoid.coordinates_of_arrow(step.arrow);
-    multipliers_.template head<Sys::constraints>() = step.multipliers;
-    report.iterations = int(detail::solve_by_ceres(options_, *problem_).iterations.size());
-    step.arrow = manifold_.arrow(arrow_.data());
-    step.multipliers = multipliers_.template head<Sys::constraints>();
+    equations_.system = &system;
+    equations_.state = &state;
+    Vector<double, Coordinates::ambient> arrow = system.groupoid.coordinates_of_arrow(step.arrow);
+    report.iterations = problem_.solve(arrow.data(), step.multipliers.data());
+    step.arrow = equations_.coordinates.arrow(arrow.data());
     const auto derivative = two_sided(system, step.arrow, step.multipliers);
     solution.momentum_change = momentum_change(system, step, derivative);
-    const ScaledResidual<Sys> final(system, state, step, derivative, cost_.scaling, /*rescale=*/false);
+    const ScaledResidual<Sys> final(system, state, step, derivative, equations_.scaling, /*rescale=*/false);
     report.residual = final.norm;
     report.excess = final.excess;
     if (!std::isfinite(final.norm)) return end(report, SolveStatus::not_finite);
@@ -66,60 +45,45 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
   }
 
  private:
+  using Coordinates = AlphaFibreCoordinates<G>;
   static constexpr double accept_excess = 1000;
-  static constexpr int multiplier_size = Sys::constraints > 0 ? Sys::constraints : 1;
 
   static StepReport end(StepReport report, SolveStatus status) {
     report.status = status;
     return report;
   }
 
-  struct Cost final : ceres::CostFunction {
-    const AlphaFibreManifold<G>& manifold;
+  struct Equations final : FibreEquations {
+    Coordinates coordinates;
     const Sys* system = nullptr;
     const State<G>* state = nullptr;
     Scaling<E::size> scaling;
 
-    explicit Cost(const AlphaFibreManifold<G>& fibre) : manifold(fibre) {
-      set_num_residuals(E::size);
-      mutable_parameter_block_sizes()->push_back(AlphaFibreManifold<G>::ambient);
-      if constexpr (Sys::constraints > 0) mutable_parameter_block_sizes()->push_back(Sys::constraints);
+    explicit Equations(const G& groupoid) : coordinates(groupoid) {}
+
+    Sizes sizes() const override { return {Coordinates::ambient, Sys::dimension, Sys::constraints}; }
+    bool plus(const double* g, const double* w, double* out) const override { return coordinates.plus(g, w, out); }
+    void frame(const double* g, double* matrix) const override {
+      Eigen::Map<Matrix<double, Coordinates::ambient, Sys::dimension>> out(matrix);
+      out = coordinates.frame(coordinates.arrow(g));
     }
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-      const auto g = manifold.arrow(parameters[0]);
+    bool evaluate(const double* at, const double* multipliers, double* residual, double* jacobian) const override {
+      const auto g = coordinates.arrow(at);
       typename Sys::Multipliers lambda;
-      for (int a = 0; a < Sys::constraints; ++a) lambda(a) = parameters[1][a];
+      for (int a = 0; a < Sys::constraints; ++a) lambda(a) = multipliers[a];
       const auto d = two_sided(*system, g, lambda);
-      Eigen::Map<typename E::Residual> r(residuals);
+      Eigen::Map<typename E::Residual> r(residual);
       r = E::residual(d, state->momentum).cwiseProduct(scaling.row);
-      const typename E::Jacobian j = scaling.row.asDiagonal() * E::jacobian(d);
+      Eigen::Map<typename E::Jacobian> j(jacobian);
+      j = scaling.row.asDiagonal() * E::jacobian(d);
       // A point without derivatives is no point to go on from: Ceres, told so in time, tries a shorter step.
-      if (!r.allFinite() || !j.allFinite()) return false;
-      if (jacobians == nullptr) return true;
-      if (jacobians[0] != nullptr) {
-        using J = Eigen::Matrix<double, E::size, AlphaFibreManifold<G>::ambient, Eigen::RowMajor>;
-        Eigen::Map<J> out(jacobians[0]);
-        out = j.template leftCols<Sys::dimension>() * manifold.coframe(g);
-      }
-      if constexpr (Sys::constraints > 0) {
-        if (jacobians[1] != nullptr) {
-          constexpr int layout = Sys::constraints == 1 ? Eigen::ColMajor : Eigen::RowMajor;
-          using J = Eigen::Matrix<double, E::size, Sys::constraints, layout>;
-          Eigen::Map<J> out(jacobians[1]);
-          out = j.template rightCols<Sys::constraints>();
-        }
-      }
-      return true;
+      return r.allFinite() && j.allFinite();
     }
   };
 
-  AlphaFibreManifold<G> manifold_;
   double tolerance_;
-  Cost cost_{manifold_};
-  Vector<double, AlphaFibreManifold<G>::ambient> arrow_;
-  Vector<double, multiplier_size> multipliers_ = Vector<double, multiplier_size>::Zero();
-  ceres::Solver::Options options_;
-  std::unique_ptr<ceres::Problem> problem_;
+  Equations equations_;
+  FibreProblem problem_;
 };
 
 }  // namespace lagroid

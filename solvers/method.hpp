@@ -1,6 +1,8 @@
 #pragma once
 /// What a one-step method declares of itself; tests hold it to its order (laws::order_laws).
 
+#include <lagroid/core/member_name.hpp>
+
 #include <concepts>
 #include <string>
 
@@ -22,10 +24,10 @@ template <class Sys>
 concept HasTraits = requires(const Sys& system) {
   { system.traits() } -> std::same_as<MethodTraits>;
 };
+namespace detail {
+LAGROID_MEMBER_NAME(NamesTraits, traits);
+}  // namespace detail
 /// Whether `traits`, where there are any, are those.
-template <class Sys>
-inline constexpr bool traits_fit =
-    HasTraits<Sys> || !(
-                          requires { &Sys::traits; } || requires(Sys & system) { system.traits(); });
+template <class Sys> inline constexpr bool traits_fit = HasTraits<Sys> || !detail::NamesTraits<Sys>;
 
 }  // namespace lagroid

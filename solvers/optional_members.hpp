@@ -30,12 +30,13 @@ template <class Sys> constexpr void require_optional_members_to_fit() {
                 "(see HasTimeScale)");
   static_assert(step_arguments_fit<Sys>,
                 "lagrangian or constraint takes the step as its argument but does not fit: const templates "
-                "lagrangian(g, step) and, if there are arrow constraints, constraint(g, step), of a system with a step "
-                "h (see StepDependent)");
+                "lagrangian(g, step) and, if there are arrow constraints, constraint(g, step), for steps that are "
+                "double or of the arrow's scalar, of a system with a step h (see StepDependent)");
   static_assert(start_arguments_fit<Sys>,
                 "lagrangian or constraint takes start and step as its arguments but does not fit: const templates "
-                "lagrangian(g, start, step) and, if there are arrow constraints, constraint(g, start, step), of a "
-                "system with a step h and a member time (see TimeDependent)");
+                "lagrangian(g, start, step) and, if there are arrow constraints, constraint(g, start, step), for times "
+                "that are double or of the arrow's scalar, of a system with a step h and a member time (see "
+                "TimeDependent)");
   static_assert(loops_fit<Sys>,
                 "loops or loop(q, axis, turns) is there but does not fit: `static constexpr int loops` counts the "
                 "numbers of turns, and a const or static loop returns an arrow from q (see Winding)");

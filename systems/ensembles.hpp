@@ -17,4 +17,11 @@ LAGROID_ENSEMBLE(extern template, Pendulum);
 LAGROID_ENSEMBLE(extern template, PlateBall);
 LAGROID_ENSEMBLE(extern template, RigidBody);
 
+/// Calls visit.template operator()<Sys>() for each of them.
+template <class Visit> void for_each_ensemble_system(const Visit& visit) {
+  visit.template operator()<Pendulum>();
+  visit.template operator()<PlateBall>();
+  visit.template operator()<RigidBody>();
+}
+
 }  // namespace lagroid

@@ -28,11 +28,19 @@
                                                 const ArrowOf<Sys::GroupoidType>&, const MarchOptions&); \
   prefix double step_for_accuracy(const Sys&, const State<Sys::GroupoidType>&, double, const MarchOptions&)
 
-#define LAGROID_SOLVERS(prefix, Sys)                                                                                \
-  LAGROID_STEP_SOLVERS(prefix, Sys);                                                                                \
+/// What adaptive steps of a system are made of, in a file of their own: they solve for one unknown more.
+#define LAGROID_ADAPTIVE_STEPS(prefix, Sys)                                                                          \
+  prefix std::unique_ptr<StepSolver<FreeTime<Sys>>> make_step_solver(const FreeTime<Sys>&, StepMethod, StepOptions); \
+  prefix class AdaptiveIntegrator<Sys>
+
+#define LAGROID_BOUNDARY_VALUES(prefix, Sys)                                                                        \
   prefix SecondDerivativesOf<Sys> second_derivatives(const Sys&, const ArrowOf<Sys::GroupoidType>&,                 \
                                                      const Sys::Multipliers&);                                      \
   prefix class AnySystemOf<Sys>;                                                                                    \
   prefix std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod, BoundaryOptions, Seek);          \
   prefix MultistartResult<Sys> solve_boundary(const BoundarySolver<Sys>&, const BoundaryProblem<Sys>&, std::size_t, \
                                               const MultistartOptions&)
+
+#define LAGROID_SOLVERS(prefix, Sys) \
+  LAGROID_STEP_SOLVERS(prefix, Sys); \
+  LAGROID_BOUNDARY_VALUES(prefix, Sys)

@@ -26,6 +26,7 @@ inline constexpr std::array<std::string_view, 2> quadrature_words{"midpoint", "t
 /// speed, `Vector<S, N> gradient(const Vector<S, N>& q) const`, dU/dq.
 template <class Derived, int N, int ObjectConstraints = 0>
 struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
+  using MembersVary = void;
   double h = 0.01;
   Quadrature quadrature = Quadrature::midpoint;
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Chains of spherical pendula: O(k) vector fields on (TS^2)^k and (T*S^2)^k, and the variational step.
 
+#include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/spheres.hpp>
 #include <lagroid/solvers/method.hpp>
 #include <lagroid/solvers/step_solver.hpp>
@@ -9,8 +10,13 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 namespace lagroid {
+
+/// What masses and lengths of a chain must be: neither products of them nor inverses overflow.
+inline constexpr NumberRule chain_number{"positive, from 1e-300 to 1e300",
+                                         [](double x) { return x >= 1e-300 && x <= 1e300; }};
 
 /// k masses on k rods, the first from the origin: x_i = l_1 q_1 + ... + l_i q_i, q_i in S^2, in gravity -g e_3. K is k,
 /// or Eigen::Dynamic.
@@ -30,18 +36,23 @@ template <int K> struct PendulumChain {
   double gravity;   ///< g, m/s^2
   Numbers carried;  ///< mu_i, kg
 
-  /// Throws std::invalid_argument unless masses and lengths are as many, positive and finite.
-  PendulumChain(Numbers masses, Numbers lengths, double g)
+  static auto parameters() {
+    return std::tuple(required(parameter("masses", &PendulumChain::mass, "kg",
+                                         "of the bobs, from the top: one each, or one for all", chain_number)),
+                      required(parameter("lengths", &PendulumChain::length, "m",
+                                         "of the rods: one each, or one for all", chain_number)),
+                      parameter("gravity", &PendulumChain::gravity, "m/s^2", "acceleration"));
+  }
+
+  /// Throws std::invalid_argument unless masses and lengths are as many and as the rule says, and g is finite.
+  PendulumChain(Numbers masses, Numbers lengths, double g = 9.81)
       : mass(std::move(masses)), length(std::move(lengths)), gravity(g), carried(mass) {
     if (mass.size() != length.size() || mass.size() == 0)
       throw std::invalid_argument("a chain has as many masses as lengths, one or more");
-    const auto usable = [](double x) { return x > 0 && std::isfinite(x) && std::isfinite(1 / x); };
     for (Eigen::Index i = 0; i < mass.size(); ++i)
-      if (!usable(mass(i)) || !usable(length(i)))
-        throw std::invalid_argument(
-            "masses and lengths of a chain are positive, and neither they nor their inverses "
-            "overflow; those of link " +
-            std::to_string(i + 1) + " are not");
+      if (!chain_number.holds(mass(i)) || !chain_number.holds(length(i)))
+        throw std::invalid_argument("masses and lengths of a chain are " + std::string(chain_number.words) +
+                                    "; those of link " + std::to_string(i + 1) + " are not");
     if (!std::isfinite(g)) throw std::invalid_argument("the gravity of a chain is not finite");
     for (Eigen::Index i = mass.size() - 1; i-- > 0;) carried(i) += carried(i + 1);
   }

@@ -2,6 +2,7 @@
 #include <lagroid/groupoids/rotated.hpp>
 #include <lagroid/groupoids/se3.hpp>
 #include <lagroid/groupoids/trivial.hpp>
+#include <lagroid/solvers/ceres_manifold.hpp>
 #include <lagroid/solvers/ceres_solve.hpp>
 #include <lagroid/solvers/step_methods.hpp>
 #include <lagroid/solvers/testing/solver_laws.hpp>

@@ -1,3 +1,4 @@
+#include "../reading/kinds.hpp"
 #include "family.hpp"
 
 #include "../bodies/scene_bodies.hpp"
@@ -10,7 +11,8 @@ namespace {
 
 class Bodies final : public SceneFamily {
  public:
-  bool recognises(const Section& scene) const override { return scene.has("body"); }
+  std::string_view sign() const override { return "[[body]]"; }
+  bool recognises(const Section& scene) const override { return scene.has(keys::bodies); }
   MotionScene read(const Section& scene, const RunContext& context) const override {
     return read_bodies(scene, context);
   }

@@ -17,8 +17,9 @@ RunResult SceneFamily::run(const Section& scene, const RunContext& context) cons
 }
 
 void SceneFamily::refuse(const Section& scene) const {
-  scene.fail(
-      "", fmt::format("is no motion: lagroid {} carries it out; give a scene with [initial] or [boundary]", command()));
+  scene.fail("", fmt::format("is no motion: lagroid {0} carries it out (in Python, lagroid.{0}); give a scene with "
+                             "[initial] or [boundary]",
+                             command()));
 }
 
 namespace {
@@ -48,7 +49,8 @@ const SceneFamily& motions_of(const Section& scene) {
 void require_command(const Section& scene, std::string_view command) {
   const SceneFamily& family = family_of(scene);
   if (family.recognises(scene) && family.command() != command)
-    scene.fail("", fmt::format("is no scene of lagroid {}: lagroid {} carries it out", command, family.command()));
+    scene.fail("", fmt::format("is no scene of lagroid {0}: lagroid {1} carries it out (in Python, lagroid.{1})",
+                               command, family.command()));
 }
 
 }  // namespace lagroid::app

@@ -19,6 +19,8 @@ class SceneFamily {
  public:
   virtual ~SceneFamily() = default;
 
+  /// What in a scene says that it is one of them, in words; empty where it is said as for systems.
+  virtual std::string_view sign() const { return ""; }
   /// Whether the scene is one of them.
   virtual bool recognises(const Section& scene) const = 0;
   /// The command that is made for its scenes; `lagroid run` hands them over to it.

@@ -1,4 +1,5 @@
 #include "../reading/its_scene.hpp"
+#include "../reading/kinds.hpp"
 #include "family.hpp"
 
 namespace lagroid::app {
@@ -7,7 +8,8 @@ namespace {
 
 class Sweeps final : public SceneFamily {
  public:
-  bool recognises(const Section& scene) const override { return scene.has("scene"); }
+  std::string_view sign() const override { return "scene, for lagroid sweep"; }
+  bool recognises(const Section& scene) const override { return scene.has(keys::sweep); }
   std::string_view command() const override { return "sweep"; }
   /// What each of its members rests on.
   std::vector<Use> uses(const Section& sweep) const override {

@@ -1,8 +1,11 @@
+#include "../reading/kinds.hpp"
 #include "family.hpp"
 
 #include "../reading/system_module.hpp"
 
 #include <lagroid/solvers/boundary_words.hpp>
+
+#include <fmt/format.h>
 
 #include <utility>
 
@@ -12,7 +15,7 @@ namespace {
 
 class Systems final : public SceneFamily {
  public:
-  bool recognises(const Section& scene) const override { return scene.has("system"); }
+  bool recognises(const Section& scene) const override { return scene.has(keys::system); }
   /// A boundary value too, and a first step that is found for an accuracy.
   RunResult run(const Section& scene, const RunContext& context) const override {
     return module_of_scene(scene).run(scene, context);
@@ -56,10 +59,16 @@ const SceneFamily& systems_family() {
 }
 
 const SystemModule& module_of_scene(const Section& scene) {
+  if (!scene.has(keys::system)) {
+    std::string others;
+    for (const SceneFamily* family : families())
+      if (!family->sign().empty()) others += fmt::format("{}{}", others.empty() ? "; or " : "; ", family->sign());
+    scene.text(keys::system, "the name of one, as lagroid list tells them" + others);  // it is not there
+  }
   std::vector<std::string> names;
   for (const SceneFamily* family : families())
     for (std::string& each : family->names()) names.push_back(std::move(each));
-  const std::string name = scene.choice("system", names);
+  const std::string name = scene.choice(keys::system, names);
   for (const SystemModule* module : system_modules())
     if (module->name() == name) return *module;
   scene.fail("system", "is of another kind than those whose groupoid is a type");

@@ -1,4 +1,5 @@
 #include "../families/family.hpp"
+#include "../reading/kinds.hpp"
 #include "methods.hpp"
 
 #include <algorithm>
@@ -10,7 +11,8 @@ namespace {
 
 class Optimisation final : public SceneFamily {
  public:
-  bool recognises(const Section& scene) const override { return scene.has("problem"); }
+  std::string_view sign() const override { return "problem, for lagroid optimize"; }
+  bool recognises(const Section& scene) const override { return scene.has(keys::optimisation); }
   std::string_view command() const override { return "optimize"; }
   std::vector<Use> uses(const Section& scene) const override {
     std::vector<std::string> names;

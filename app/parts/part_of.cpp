@@ -2,6 +2,7 @@
 /// its name: a system, bodies, spheres, files where no scene is run, or whole.
 
 #include "../command/command.hpp"
+#include "../reading/kinds.hpp"
 #include "../reading/scene_reader.hpp"
 #include "part_names.hpp"
 
@@ -20,12 +21,12 @@ constexpr const char* least = "files";
 
 /// The part for a scene: by the key that its family is recognised by.
 std::string part_of(const Section& scene) {
-  if (scene.has("body")) return "bodies";
-  if (!scene.has("system") || scene.has("scene") || scene.has("problem")) return whole;
+  if (scene.has(keys::bodies)) return "bodies";
+  if (!scene.has(keys::system) || scene.has(keys::sweep) || scene.has(keys::optimisation)) return whole;
   std::vector<std::string> names(systems_with_parts.begin(), systems_with_parts.end());
   const std::size_t of_types = names.size();
-  names.insert(names.end(), systems_on_spheres.begin(), systems_on_spheres.end());
-  const std::string name = scene.choice("system", names);
+  names.insert(names.end(), keys::on_spheres.begin(), keys::on_spheres.end());
+  const std::string name = scene.choice(keys::system, names);
   const auto found = std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
   return found < of_types ? name : "spheres";
 }

@@ -1,5 +1,7 @@
 #include "its_scene.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -15,7 +17,10 @@ fs::path scene_file(const Section& at, const char* key, const std::string& from)
   const std::string name = at.text(key, "the path of a scene");
   const fs::path beside = fs::path(from).parent_path() / name;
   std::error_code ignored;
-  return fs::exists(beside, ignored) ? beside : fs::path(name);
+  if (fs::is_regular_file(beside, ignored)) return beside;
+  if (!fs::is_regular_file(name, ignored))
+    at.fail(key, fmt::format("no such scene file: there is no \"{}\" beside {} or here", name, from));
+  return name;
 }
 
 }  // namespace

@@ -93,8 +93,8 @@ template <class Sys> Sys read_parameters(const Section& scene) {
   return system;
 }
 
-template <class Sys> std::vector<ListedParameter> listed_parameters() {
-  const Sys system;
+/// `system` is as its constructor makes it.
+template <class Sys> std::vector<ListedParameter> listed_parameters(const Sys& system = {}) {
   std::vector<ListedParameter> all;
   for_each_parameter<Sys>([&](const auto& p) { all.push_back(reading::listed(p, system)); });
   return all;

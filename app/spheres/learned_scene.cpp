@@ -1,5 +1,6 @@
 #include "learned_scene.hpp"
 
+#include "../reading/kinds.hpp"
 #include "model_file.hpp"
 
 #include <lagroid/solvers/learning/measures.hpp>
@@ -20,7 +21,7 @@ class LearnedSystem final : public SphereSystem {
   LearnedSystem(LearnedHamiltonian learned, std::filesystem::path file)
       : learned_(std::move(learned)), file_(std::move(file)) {}
 
-  std::string_view name() const override { return "learned_hamiltonian"; }
+  std::string_view name() const override { return keys::learned_hamiltonian; }
   std::vector<SphereForm> forms() const override { return {SphereForm::momenta}; }
   Points in_form(const Points& z, SphereForm, SphereForm) const override { return z; }
   std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const override {

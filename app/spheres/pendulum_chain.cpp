@@ -1,11 +1,14 @@
 #include "pendulum_chain.hpp"
 
+#include "../reading/kinds.hpp"
+
 #include <lagroid/systems/pendulum_chain.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace lagroid::app {
@@ -18,7 +21,7 @@ class ChainSystem final : public SphereSystem {
  public:
   explicit ChainSystem(Chain chain) : chain_(std::move(chain)) {}
 
-  std::string_view name() const override { return "pendulum_chain"; }
+  std::string_view name() const override { return keys::pendulum_chain; }
   std::vector<SphereForm> forms() const override { return {SphereForm::velocities, SphereForm::momenta}; }
   Points in_form(const Points& z, SphereForm from, SphereForm to) const override {
     if (from == to) return z;
@@ -49,44 +52,62 @@ class ChainSystem final : public SphereSystem {
   Chain chain_;
 };
 
-constexpr NumberRule usable{"positive, from 1e-300 to 1e300", [](double x) { return x >= 1e-300 && x <= 1e300; }};
+using Numbers = Chain::Numbers;
 
 /// One number for each link, or one for all; empty in the latter case.
-std::vector<double> read_each(const Section& parameters, const char* key) {
-  if (parameters.is_number(key)) {
-    parameters.number(key, usable);
+std::vector<double> read_each(const Section& parameters, const Parameter<Chain, Numbers>& p) {
+  if (parameters.is_number(p.name)) {
+    parameters.number(p.name, p.rule);
     return {};
   }
-  auto each = parameters.list(key, fmt::format("{}, one for each link, or one number for all", key));
+  auto each = parameters.list(p.name, fmt::format("{}, one for each link, or one number for all", p.name));
   for (const double x : each)
-    if (!usable.holds(x)) parameters.fail(key, fmt::format("must be {}, got {}", usable.words, x));
+    if (!p.rule.holds(x)) parameters.fail(p.name, fmt::format("must be {}, got {}", p.rule.words, x));
   return each;
 }
 
+/// Visits the declarations of numbers for each link.
+template <class Visit> void for_each_list(const Visit& visit) {
+  for_each_parameter<Chain>([&](const auto& p) {
+    if constexpr (std::is_same_v<decltype(p), const Parameter<Chain, Numbers>&>) visit(p);
+  });
+}
+
+Chain one_link() { return {Numbers::Ones(1), Numbers::Ones(1)}; }
+
 }  // namespace
+
+std::vector<ListedParameter> pendulum_chain_parameters() {
+  auto all = listed_parameters(one_link());
+  all.push_back({"links", "1", "", "how many, where neither masses nor lengths says it"});
+  return all;
+}
 
 std::unique_ptr<SphereSystem> read_pendulum_chain(const Section& scene) {
   const Section parameters = scene.section("parameters", "masses and lengths of the chain");
   constexpr long most = 100'000;
   long links = parameters.integer_or("links", 0, 1, most);
-  const auto read = [&](const char* key) {
-    auto each = read_each(parameters, key);
-    if (links > 0 && !each.empty() && long(each.size()) != links)
-      parameters.fail(key, fmt::format("are {}, and the chain has {} links; give one for each, or one number for all",
-                                       each.size(), links));
-    links = std::max(links, long(each.size()));
-    return each;
-  };
-  auto masses = read("masses");
-  auto lengths = read("lengths");
+  for_each_list([&](const auto& p) {
+    const auto count = long(read_each(parameters, p).size());
+    if (links > 0 && count > 0 && count != links)
+      parameters.fail(
+          p.name,
+          fmt::format("are {}, and the chain has {} links; give one for each, or one number for all", count, links));
+    links = std::max(links, count);
+  });
   if (links == 0) links = parameters.integer("links", 1, most);
   if (links > most) parameters.fail("masses", fmt::format("are of {} links; a chain has {} at most", links, most));
-  const auto numbers = [&](const std::vector<double>& each, const char* key) -> Chain::Numbers {
-    if (each.empty()) return Chain::Numbers::Constant(links, parameters.number(key, usable));
-    return Eigen::Map<const Chain::Numbers>(each.data(), Eigen::Index(each.size()));
-  };
-  return std::make_unique<ChainSystem>(
-      Chain(numbers(masses, "masses"), numbers(lengths, "lengths"), parameters.number_or("gravity", 9.81)));
+  Chain given = one_link();
+  for_each_parameter<Chain>([&](const auto& p) {
+    if constexpr (std::is_same_v<decltype(p), const Parameter<Chain, Numbers>&>) {
+      const std::vector<double> each = read_each(parameters, p);
+      given.*p.member = each.empty() ? Numbers(Numbers::Constant(links, parameters.number(p.name, p.rule)))
+                                     : Numbers(Eigen::Map<const Numbers>(each.data(), Eigen::Index(each.size())));
+    } else {
+      reading::read(parameters, p, given);
+    }
+  });
+  return std::make_unique<ChainSystem>(Chain(given.mass, given.length, given.gravity));
 }
 
 }  // namespace lagroid::app

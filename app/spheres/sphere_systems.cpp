@@ -1,3 +1,4 @@
+#include "../reading/kinds.hpp"
 #include "learned_scene.hpp"
 #include "pendulum_chain.hpp"
 #include "sphere_system.hpp"
@@ -8,19 +9,16 @@ namespace lagroid::app {
 
 const std::vector<SphereEntry>& sphere_systems() {
   static const std::vector<SphereEntry> all{
-      {"pendulum_chain",
+      {keys::pendulum_chain,
        "chain of spherical pendula",
        "SE(3)^k acting on (T*S^2)^k",
-       {{"masses", "kg", "", "of the bobs, from the top: one each, or one for all"},
-        {"lengths", "m", "", "of the rods: one each, or one for all"},
-        {"links", "1", "", "how many, where neither masses nor lengths says it"},
-        {"gravity", "m/s^2", "9.81", "acceleration"}},
+       pendulum_chain_parameters(),
        {"turning about the vertical"},
        {"vertical angular momentum"},
        {rattle_method},
        {},
        read_pendulum_chain},
-      {"learned_hamiltonian",
+      {keys::learned_hamiltonian,
        "a Hamiltonian that lagroid learn found",
        "SE(3)^k acting on (T*S^2)^k",
        {{"model", "", "", "path of the model.json that lagroid learn --out left"}},

@@ -20,12 +20,9 @@ namespace {
 
 /// Visits the module where its system has compiled ensembles.
 template <class Visit> void visit_ensemble(const SystemModule& module, const Visit& visit) {
-  const auto ask = [&](const auto* of) {
-    if (of) visit(*of);
-  };
-  ask(module_of<RigidBody>(module));
-  ask(module_of<Pendulum>(module));
-  ask(module_of<PlateBall>(module));
+  for_each_ensemble_system([&]<class Sys>() {
+    if (const auto* of = module_of<Sys>(module)) visit(*of);
+  });
 }
 
 template <class Sys> class LaneRunner final : public MemberRunner {

@@ -96,7 +96,7 @@ class Extrapolated final : public Reference {
     if (best_.empty())
       throw std::domain_error(
           "no reference: the method of highest order did not reach the end with two steps within the time it has; give "
-          "more (--budget), or a shorter scene");
+          "a larger budget, or a shorter scene");
     // The least of several changes is small by chance; one that no later row confirms is doubled.
     uncertainty = std::max(since_least > 0 ? most_after : 2 * least, 1e-15);
     seconds_elsewhere = 2 * last_took;  // the last rows anew

@@ -304,8 +304,8 @@ std::vector<std::string> recommendation(const Findings& findings) {
                       findings.end, cost->method, cost->step, duration(cost->seconds), settings(findings, *cost)));
     else
       out.push_back(
-          fmt::format("no run came below an error of {:.1e} at t = {:g}: give smaller --steps or more time "
-                      "(--longest, --budget)",
+          fmt::format("no run came below an error of {:.1e} at t = {:g}: give smaller steps or more time "
+                      "(longest, budget)",
                       level, findings.end));
   }
   return out;
@@ -322,8 +322,7 @@ std::vector<std::string> not_measured(const Findings& findings) {
   if (const auto count = std::count_if(findings.runs.begin(), findings.runs.end(), is_short); count > 0)
     out.push_back(fmt::format("{} of {} runs were timed less than {} times (the repetitions are in study.json)", count,
                               findings.runs.size(), findings.repetitions));
-  if (!out.empty())
-    out.push_back(fmt::format("all of this for want of time: the budget was {:g} s (--budget)", findings.budget));
+  if (!out.empty()) out.push_back(fmt::format("all of this for want of time: the budget was {:g} s", findings.budget));
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <lagroid/solvers/ceres_solve.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/compressed.hpp>
+#include <lagroid/solvers/learning/squared_error.hpp>
 #include <lagroid/solvers/processor_time.hpp>
 
 #include <ceres/ceres.h>
@@ -22,34 +23,6 @@
 namespace lagroid::learning {
 
 namespace {
-
-/// How many trajectories are predicted at a time: some hundred numbers.
-Eigen::Index block_of(const Trajectories& data) { return std::max<Eigen::Index>(1, 512 / data.ends.rows()); }
-
-/// r <- z - z_data times the square root of the weights, for the columns from `first` on.
-void weigh(const Trajectories& data, Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> z) {
-  z -= data.ends.middleCols(first, z.cols());
-  for (Eigen::Index n = 0; n < z.cols(); ++n)
-    for (Eigen::Index j = 0; j < data.weights.rows(); ++j)
-      z.col(n).segment(j * data.width(), data.width()) *= std::sqrt(data.weights(j, first + n));
-}
-
-/// The squared errors times their weights, summed; infinite where one is not finite, and where `halted` ends it.
-double squared_error(const Model& model, const Eigen::VectorXd& theta, const Schedule& schedule,
-                     const Trajectories& data, const std::function<bool()>& halted) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  const Eigen::Index block = block_of(data);
-  Eigen::MatrixXd z;
-  double sum = 0;
-  for (Eigen::Index first = 0; first < data.count(); first += block) {
-    if (halted && halted()) return none;
-    z.resize(data.ends.rows(), std::min(block, data.count() - first));
-    model.predict(theta, schedule, data.starts.middleCols(first, z.cols()), z);
-    weigh(data, first, z);
-    sum += z.squaredNorm();
-  }
-  return std::isfinite(sum) ? sum : none;
-}
 
 /// The errors of all trajectories as one residual block of Ceres, compressed (Compressed). Where Ceres asks for no
 /// derivatives it wants their norm alone. Where derivatives cannot be had, because the training was halted or they are
@@ -373,33 +346,6 @@ Trajectories for_trials(const Trajectories& training, double share, Eigen::Index
 }
 
 }  // namespace
-
-std::string_view to_string(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::converged:
-      return "converged";
-    case Outcome::reached:
-      return "reached";
-    case Outcome::early_stopped:
-      return "early_stopped";
-    case Outcome::iteration_limit:
-      return "iteration_limit";
-    case Outcome::time_limit:
-      return "time_limit";
-    case Outcome::interrupted:
-      return "interrupted";
-    case Outcome::too_little_data:
-      return "too_little_data";
-    case Outcome::not_finite:
-      return "not_finite";
-  }
-  return "unknown";
-}
-
-double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, const Schedule& schedule,
-                          const Trajectories& data) {
-  return squared_error(model, theta, schedule, data, nullptr) / data.total_weight();
-}
 
 Trained train(const Model& model, const Trajectories& data, const Training& options) {
   require_training(model, data, options);

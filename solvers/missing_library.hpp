@@ -1,0 +1,20 @@
+#pragma once
+/// What this build of the library is without.
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string_view>
+
+namespace lagroid {
+
+/// What was asked for needs a library that this build is without.
+class MissingLibrary : public std::runtime_error {
+ public:
+  MissingLibrary(std::string_view asked, std::string_view library, std::string_view package)
+      : std::runtime_error(
+            fmt::format("{} needs {}, which this build of lagroid is without; install {} and build it again", asked,
+                        library, package)) {}
+};
+
+}  // namespace lagroid
