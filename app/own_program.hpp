@@ -12,10 +12,10 @@
 #if defined(LAGROID_STEPS_ALONE)
 #include "own/steps_module.hpp"
 #else
-#include "reading/any_system.hpp"
+#include "scenes/any_system.hpp"
 
-#include <lagroid/solvers/boundary_methods.hpp>
-#include <lagroid/solvers/march_methods.hpp>
+#include <lagroid/solvers/boundary/boundary_methods.hpp>
+#include <lagroid/solvers/integrators/integrator_methods.hpp>
 #endif
 #if defined(LAGROID_WITH_LAWS)
 #include "check/certify_system.hpp"

@@ -8,10 +8,10 @@
 #include "view.hpp"
 
 #include <lagroid/core/version.hpp>
-#include <lagroid/run/checkpoint.hpp>
+#include <lagroid/run/files/checkpoint.hpp>
+#include <lagroid/run/files/output.hpp>
 #include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/output.hpp>
-#include <lagroid/run/report.hpp>
+#include <lagroid/run/reports/report.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 
 #include "command/program_command.hpp"
 #include "families/family.hpp"
-#include "reading/system_module.hpp"
+#include "scenes/system_module.hpp"
 
 #include <vector>
 

@@ -2,16 +2,16 @@
 
 #include "command/shell.hpp"
 #include "command/written.hpp"
-#include "reproductions/accelerated_report.hpp"
-#include "reproductions/constrained_maps.hpp"
-#include "reproductions/newton_report.hpp"
-#include "reproductions/sweep_scaling.hpp"
-#include "reproductions/time_steps.hpp"
+#include "experiments/constrained_maps.hpp"
+#include "experiments/newton/newton_report.hpp"
+#include "experiments/optimisation/accelerated_report.hpp"
+#include "experiments/sweep_scaling.hpp"
+#include "experiments/time_steps.hpp"
 
-#include <lagroid/run/clock.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/progress.hpp>
+#include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/run/reports/clock.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/progress.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -3,9 +3,9 @@
 
 #include "command/command.hpp"
 
-#include "reproductions/accelerated_optimisation.hpp"
-#include "reproductions/learning_hamiltonians.hpp"
-#include "reproductions/newton_on_lie_groups.hpp"
+#include "experiments/learning/learning_hamiltonians.hpp"
+#include "experiments/newton/newton_on_lie_groups.hpp"
+#include "experiments/optimisation/accelerated_optimisation.hpp"
 
 namespace lagroid::app {
 

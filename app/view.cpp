@@ -2,14 +2,14 @@
 
 #include "viewer/assets.hpp"
 
-#include <lagroid/run/hdf5_file.hpp>
+#include <lagroid/run/files/hdf5_file.hpp>
+#include <lagroid/run/files/kept_file.hpp>
+#include <lagroid/run/files/nesting.hpp>
+#include <lagroid/run/files/output.hpp>
 #include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/kept_file.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/nesting.hpp>
-#include <lagroid/run/output.hpp>
-#include <lagroid/run/report.hpp>
-#include <lagroid/run/text.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/report.hpp>
+#include <lagroid/run/reports/text.hpp>
 
 #include <H5Cpp.h>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 /// The page and the plots of a run, from its folder.
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
 // The plate-ball boundary-value problem: one Newton iteration and the whole solve.
-#include <lagroid/solvers/boundary_values.hpp>
+#include <lagroid/solvers/boundary/boundary_values.hpp>
 
 #include "boundary_case.hpp"
 #include "comparison.hpp"

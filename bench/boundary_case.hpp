@@ -1,8 +1,8 @@
 #pragma once
 /// A plate-ball boundary-value problem for the framework and its peers: same ends, same start.
 
-#include <lagroid/solvers/boundary_newton.hpp>
-#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/solvers/boundary/boundary_newton.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
 
 #include "kernels/plate_ball_boundary.hpp"
 

@@ -1,6 +1,7 @@
-// One step of one member of an ensemble: by Ensemble on one core and on two, by one Integrator after another, by hand.
-#include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
+// One step of one member of an ensemble: by Ensemble on one core and on two, by one FixedStepIntegrator after another,
+// by hand.
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
 
 #include "comparison.hpp"
 #include "kernels/so3_cayley.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr const char* in_batches = "Ensemble, one thread";
 constexpr const char* on_two_threads = "Ensemble, two threads";
-constexpr const char* one_by_one = "one Integrator after another";
+constexpr const char* one_by_one = "one FixedStepIntegrator after another";
 constexpr const char* by_hand = "one kernel by hand after another";
 constexpr const char* cayley_bodies = "ensembles: 100000 rigid bodies, Cayley, h = 0.01";
 constexpr const char* bodies = "ensembles: 100000 rigid bodies, exp, h = 0.01";
@@ -28,7 +29,7 @@ constexpr const char* balls = "ensembles: 10000 plate-balls, trace form, h = 0.0
 constexpr const char* pendulums = "ensembles: 100000 pendulums, midpoint, h = 0.01";
 
 constexpr long at_once = 64;        ///< steps of an advance
-constexpr std::size_t sample = 64;  ///< members that are marched one by one: few, which favours them
+constexpr std::size_t sample = 64;  ///< members that are integrated one by one: few, which favours them
 
 std::mt19937_64& random_bits() {
   static std::mt19937_64 bits(20261123);
@@ -66,7 +67,7 @@ void add(std::vector<Subject>& out, const char* group, const Sys& system,
       }
       return ensemble->ensemble->advance_to(ensemble->index += at_once, options) && ensemble->ensemble->failures() == 0;
     }));
-  const auto alone = std::make_shared<std::vector<Integrator<Sys>>>();
+  const auto alone = std::make_shared<std::vector<FixedStepIntegrator<Sys>>>();
   out.push_back(per_step(
       group, one_by_one, long(sample),
       [=] {

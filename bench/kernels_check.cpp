@@ -1,12 +1,12 @@
 // The hand-written kernels compute what the framework computes.
-#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
 #include <lagroid/solvers/lie_group/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
-#include <lagroid/systems/chain_rattle.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
 #include <lagroid/systems/kepler.hpp>
-#include <lagroid/systems/spherical_pendulum.hpp>
+#include <lagroid/systems/pendulums/chain_rattle.hpp>
+#include <lagroid/systems/pendulums/spherical_pendulum.hpp>
 
-#include "../tests/allocation_counter.hpp"
+#include "../tests/support/allocation_counter.hpp"
 #include "boundary_case.hpp"
 #include "chain_case.hpp"
 #include "kernels/kepler.hpp"
@@ -42,17 +42,17 @@ constexpr int steps = 200;
 constexpr double close = 1e-12;
 
 template <class Sys>
-Integrator<Sys> framework(const Sys& system, const State<typename Sys::GroupoidType>& start,
-                          const ArrowOf<typename Sys::GroupoidType>& configuration) {
+FixedStepIntegrator<Sys> framework(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                                   const ArrowOf<typename Sys::GroupoidType>& configuration) {
   return {system, start, configuration, std::make_unique<NewtonStep<Sys>>()};
 }
 
 /// How far the step equations are from solved, as a multiple of their round-off.
 template <class Sys>
-double excess(const Sys& system, const State<typename Sys::GroupoidType>& state, const Step<Sys>& step) {
+double roundoff_ratio(const Sys& system, const State<typename Sys::GroupoidType>& state, const Step<Sys>& step) {
   Scaling<StepEquations<Sys>::size> scaling;
   return ScaledResidual<Sys>(system, state, step, two_sided(system, step.arrow, step.multipliers), scaling, true)
-      .excess;
+      .roundoff_ratio;
 }
 
 template <int N, int M> double largest(const TwoSided<N, M>& derivative) {
@@ -94,7 +94,7 @@ TYPED_TEST(RigidBodyKernel, IsTheFramework) {
     kernel.step();
     ASSERT_LT((kernel.momentum() - peer.point().state.momentum).norm(), close) << k;
     ASSERT_LT((kernel.attitude() - peer.point().configuration).norm(), close) << k;
-    ASSERT_LT(excess(system, before, Step<RigidBody>{SO3::cayley(kernel.solution()), {}}), 4) << k;
+    ASSERT_LT(roundoff_ratio(system, before, Step<RigidBody>{SO3::cayley(kernel.solution()), {}}), 4) << k;
     ASSERT_LT((kernel.attitude() * kernel.momentum() - spatial).norm(), 1e-13) << k;
   }
 }
@@ -149,7 +149,7 @@ TYPED_TEST(PlateBallKernel, IsTheFramework) {
       const Step<PlateBall> step{{PairArrow<double, 2>{std::get<0>(before.object), kernel.position()},
                                   attitude.transpose() * kernel.attitude()},
                                  kernel.multipliers()};
-      ASSERT_LT(excess(system, before, step), 4) << k;
+      ASSERT_LT(roundoff_ratio(system, before, step), 4) << k;
       ASSERT_LT((kernel.attitude() * kernel.body_momentum() - body).norm(), 1e-13) << k;
       const Vector2d q = kernel.position();
       const Vector2d p = kernel.linear_momentum();
@@ -195,7 +195,7 @@ TYPED_TEST(KeplerKernel, IsTheFramework) {
     kernel.step();
     ASSERT_LT((kernel.position() - peer.point().state.object).norm(), close) << k;
     ASSERT_LT((kernel.momentum() - peer.point().state.momentum).norm(), close) << k;
-    ASSERT_LT(excess(system, before, Step<Kepler>{{before.object, kernel.position()}, {}}), 4) << k;
+    ASSERT_LT(roundoff_ratio(system, before, Step<Kepler>{{before.object, kernel.position()}, {}}), 4) << k;
     ASSERT_NEAR(Kepler().symmetries()[0].momentum({kernel.position(), kernel.momentum()}),
                 Kepler().symmetries()[0].momentum(start), 1e-13);
   }
@@ -218,7 +218,7 @@ TEST(SphericalPendulumKernel, IsTheFramework) {
     ASSERT_LT((kernel.position() - peer.point().state.object).norm(), close) << k;
     ASSERT_LT((kernel.momentum() - peer.point().state.momentum).norm(), close) << k;
     const Step<SphericalPendulum> step{{before.object, kernel.position()}, Vector<double, 1>(kernel.multiplier())};
-    ASSERT_LT(excess(system, before, step), 4) << k;
+    ASSERT_LT(roundoff_ratio(system, before, step), 4) << k;
     ASSERT_NEAR(SphericalPendulum().symmetries()[0].momentum({kernel.position(), kernel.momentum()}),
                 SphericalPendulum().symmetries()[0].momentum(start), 1e-13);
   }

@@ -1,8 +1,8 @@
 // The Newton iterations on Lie groups: against Rodrigues' formula by hand on SO(3), and their differentials on SO(15).
 #include "lie_newton_case.hpp"
 
-#include <lagroid/groupoids/rotation_fibre.hpp>
-#include <lagroid/solvers/lie_differentials.hpp>
+#include <lagroid/groupoids/groups/rotation_fibre.hpp>
+#include <lagroid/solvers/newton/lie_differentials.hpp>
 #include <lagroid/systems/newton_examples.hpp>
 
 #include "comparison.hpp"

@@ -1,9 +1,9 @@
 #pragma once
 /// The implicit Euler step on SO(3) that framework and kernel solve.
 
-#include <lagroid/core/alpha_fibre.hpp>
-#include <lagroid/groupoids/so3.hpp>
-#include <lagroid/solvers/lie_newton.hpp>
+#include <lagroid/core/source_fibre.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/solvers/newton/lie_newton.hpp>
 
 #include "kernels/rodrigues_newton.hpp"
 

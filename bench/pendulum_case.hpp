@@ -1,7 +1,7 @@
 #pragma once
 /// The chain of pendula that its kernels compute too: of length and mass 1, fanned out, turning.
 
-#include <lagroid/systems/pendulum_chain.hpp>
+#include <lagroid/systems/pendulums/pendulum_chain.hpp>
 
 #include "kernels/pendulum_chain.hpp"
 

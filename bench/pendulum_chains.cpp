@@ -1,8 +1,8 @@
 // Chains of spherical pendula: by hand, by the framework with the number of links known to the compiler and not, and
 // how the time of a step grows with it.
 #include <lagroid/solvers/lie_group/integrator.hpp>
-#include <lagroid/systems/chain_rattle.hpp>
-#include <lagroid/systems/sphere_march.hpp>
+#include <lagroid/systems/pendulums/chain_rattle.hpp>
+#include <lagroid/systems/spheres/sphere_integrator.hpp>
 
 #include "comparison.hpp"
 #include "pendulum_case.hpp"
@@ -39,11 +39,11 @@ template <class Kernel> Subject kernel(std::string group, Kernel start) {
           /*reference=*/true};
 }
 
-template <class March> Subject steps(std::string group, std::string name, std::shared_ptr<March> march) {
-  return {std::move(group), std::move(name), [march](benchmark::State& state) {
+template <class Integrator> Subject steps(std::string group, std::string name, std::shared_ptr<Integrator> integrator) {
+  return {std::move(group), std::move(name), [integrator](benchmark::State& state) {
             bool good = true;
             timed(state, [&](long count) {
-              for (long k = 0; k < count && good; ++k) good = march->advance().converged();
+              for (long k = 0; k < count && good; ++k) good = integrator->advance().converged();
             });
             if (!good) state.SkipWithError("a step failed");
           }};
@@ -58,24 +58,24 @@ template <int K> auto cf4() {
 template <int K> auto rattle() {
   return std::make_shared<ChainRattle<K>>(pendulum_chain<K>(K), pendulum_start<K>(K), pendulum_step(K));
 }
-std::shared_ptr<SphereMarch> march(const std::string& method, int links) {
+std::shared_ptr<SphereIntegrator> integrator(const std::string& method, int links) {
   const auto chain = pendulum_chain<any>(links);
   const bool variational = method == "rattle";
   const auto start = pendulum_start<any>(links);
-  return make_chain_march(chain, variational ? start : chain.to_momenta(start),
-                          {.method = method,
-                           .form = variational ? SphereForm::velocities : SphereForm::momenta,
-                           .step = pendulum_step(links)});
+  return make_chain_integrator(chain, variational ? start : chain.to_momenta(start),
+                               {.method = method,
+                                .form = variational ? SphereForm::velocities : SphereForm::momenta,
+                                .step = pendulum_step(links)});
 }
 const std::string cf4_name{lie_group_methods::commutator_free_4.name};
 
 template <int K> void compare(std::vector<Subject>& out) {
   out.push_back(kernel(cf4_group(K), pendulum_cf4<K>()));
   out.push_back(steps(cf4_group(K), fixed, cf4<K>()));
-  out.push_back(steps(cf4_group(K), at_run_time, march(cf4_name, K)));
+  out.push_back(steps(cf4_group(K), at_run_time, integrator(cf4_name, K)));
   out.push_back(kernel(rattle_group(K), pendulum_rattle<K>()));
   out.push_back(steps(rattle_group(K), fixed, rattle<K>()));
-  out.push_back(steps(rattle_group(K), at_run_time, march("rattle", K)));
+  out.push_back(steps(rattle_group(K), at_run_time, integrator("rattle", K)));
 }
 
 }  // namespace
@@ -85,12 +85,12 @@ std::vector<Subject> pendulum_chain_subjects() {
   compare<1>(out);
   compare<10>(out);
   for (const int links : {10, 100, 1000}) {
-    Subject subject = steps(growing, of(links), march(cf4_name, links));
+    Subject subject = steps(growing, of(links), integrator(cf4_name, links));
     subject.reference = links == 10;
     out.push_back(subject);
   }
   for (const int links : {10, 100, 1000}) {
-    Subject subject = steps(growing_rattle, of(links), march("rattle", links));
+    Subject subject = steps(growing_rattle, of(links), integrator("rattle", links));
     subject.reference = links == 10;
     out.push_back(subject);
   }

@@ -5,7 +5,7 @@
 #include <reading/scene_reader.hpp>
 #include <systems/library_systems.hpp>
 
-#include <lagroid/run/drive.hpp>
+#include <lagroid/run/motion/drive.hpp>
 
 #include <memory>
 #include <string>

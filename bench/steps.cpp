@@ -1,7 +1,7 @@
 // One step of each system: by hand, by the framework, by Ceres; and the derivatives alone.
-#include <lagroid/solvers/ceres_step.hpp>
-#include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/step/ceres_step.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
 
 #include "comparison.hpp"
 #include "kernels/kepler.hpp"
@@ -13,7 +13,7 @@
 #include "kernels/spherical_pendulum.hpp"
 
 #include <lagroid/systems/kepler.hpp>
-#include <lagroid/systems/spherical_pendulum.hpp>
+#include <lagroid/systems/pendulums/spherical_pendulum.hpp>
 
 #include <memory>
 #include <utility>
@@ -49,7 +49,8 @@ template <class Kernel> Subject kernel(std::string group, std::string name, Kern
 template <class Solver, class Sys>
 Subject steps(std::string group, std::string name, const Sys& system, const State<typename Sys::GroupoidType>& start,
               const ArrowOf<typename Sys::GroupoidType>& configuration) {
-  auto integrator = std::make_shared<Integrator<Sys>>(system, start, configuration, std::make_unique<Solver>());
+  auto integrator =
+      std::make_shared<FixedStepIntegrator<Sys>>(system, start, configuration, std::make_unique<Solver>());
   return {std::move(group), std::move(name), [integrator](benchmark::State& state) {
             bool good = true;
             timed(state, [&](long steps) {

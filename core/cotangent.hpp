@@ -7,7 +7,7 @@
 
 namespace lagroid {
 
-/// The dimension of G: of the alpha-fibres and of the objects together.
+/// The dimension of G: of the source fibres and of the objects together.
 template <class G> constexpr int total_dimension_of() { return G::dimension + object_dimension_of<G>(); }
 
 /// Tangent vectors of G, given as arrows over dual numbers, and their components in a basis of T_gG: first the

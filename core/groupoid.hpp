@@ -7,9 +7,9 @@
 /// tau_q : A_qG -> alpha^{-1}(q), tau_q(0) = unit(q), parametrises the arrows near the unit by `dimension` numbers, and
 /// its derivative at 0 fixes the basis in which vectors of AG and momenta of A*G are written throughout.
 
-#include <lagroid/core/dual.hpp>
-#include <lagroid/core/jet.hpp>
-#include <lagroid/core/mixed.hpp>
+#include <lagroid/core/scalars/dual.hpp>
+#include <lagroid/core/scalars/hyper_dual.hpp>
+#include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <algorithm>
@@ -59,12 +59,12 @@ concept EigenValued = std::derived_from<X, Eigen::MatrixBase<X>>;
 /// and, only when arrows (objects) are not Eigen matrices, `arrow_size`, `coordinates(g)`, `arrow<S>(coordinates)`
 /// (`object_size`, `object_coordinates(q)`, `object<S>(coordinates)`).
 /// It **may** supply `project(g)` (an arrow moved back onto G after round-off, identity by default) and, for speed,
-/// `seed` (the translations in closed form), a frame of the whole arrow (arrow_frame.hpp), `extend`, `nudge`, `chart`,
-/// `arrow_in_chart` and `bracket` (algebroid.hpp); and `loop`, where paths can wind (loops.hpp). For its geometry it
-/// supplies `displace_object` and `object_displacement` where its objects are not an open set of their coordinates, and
-/// `bisection` where tau does not reach every arrow (see below). Everything else is deduced.
+/// `seed` (the translations in closed form), a frame of the whole arrow (arrow_frame.hpp), `extend`, `correct`,
+/// `chart`, `arrow_in_chart` and `bracket` (algebroid.hpp); and `loop`, where paths can wind (loops.hpp). For its
+/// geometry it supplies `displace_object` and `object_displacement` where its objects are not an open set of their
+/// coordinates, and `bisection` where tau does not reach every arrow (see below). Everything else is deduced.
 ///
-/// `Dimension` is the rank of AG: the dimension of the alpha-fibres.
+/// `Dimension` is the rank of AG: the dimension of the source fibres.
 template <class Derived, int Dimension> class LieGroupoid {
  public:
   static constexpr int dimension = Dimension;
@@ -91,10 +91,10 @@ template <class Derived, int Dimension> class LieGroupoid {
     return object_at<S>(coordinates_of_object(q).template cast<S>().eval());
   }
 
-  /// The arrow tau(a)^{-1} g tau(b) with infinitesimals a, b: the `left` infinitesimals of the scalar M (Mixed or Jet),
-  /// from number LeftOffset on, displace the end First; its `right` ones, from RightOffset on, the end Second. Derived
-  /// by composition; a groupoid that knows its translations in closed form supplies its own `seed` with this signature
-  /// (the law suites compare the two).
+  /// The arrow tau(a)^{-1} g tau(b) with infinitesimals a, b: the `left` infinitesimals of the scalar M (HyperDual or
+  /// Jet), from number LeftOffset on, displace the end First; its `right` ones, from RightOffset on, the end Second.
+  /// Derived by composition; a groupoid that knows its translations in closed form supplies its own `seed` with this
+  /// signature (the law suites compare the two).
   template <class M, End First, End Second, int LeftOffset, int RightOffset, class A>
   auto seed_by_composition(const A& g) const {
     Vector<M, Dimension> a = Vector<M, Dimension>::Constant(M(0));
@@ -118,7 +118,7 @@ template <class Derived, int Dimension> class LieGroupoid {
   /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that the numbers in which g is
   /// stored were too coarse to take, so that the caller can add it to the next w; zero where g's entries are rounded
   /// as often up as down, as a turning matrix's are (the law "nudging an arrow" asks what thousands of them add up to).
-  template <class A, class V> V nudge(A& g, const V& w) const {
+  template <class A, class V> V correct(A& g, const V& w) const {
     const A by = self().tau(self().target(g), w);
     g = self().project(compose(g, by));
     return w - self().tau_inverse(by);
@@ -131,7 +131,7 @@ template <class Derived, int Dimension> class LieGroupoid {
   }
 
   /// Coordinates of the arrows near the unit in which a trajectory is extrapolated, and their inverse: tau unless the
-  /// groupoid knows a cheaper smooth chart of its alpha-fibres.
+  /// groupoid knows a cheaper smooth chart of its source fibres.
   template <class A> auto chart(const A& g) const { return self().tau_inverse(g); }
   template <class Q, class V> auto arrow_in_chart(const Q& q, const V& v) const { return self().tau(q, v); }
 
@@ -213,7 +213,7 @@ template <class Derived, int Dimension> class LieGroupoid {
     }
   }
 
-  /// For each direction of the alpha-fibre, the size of the coordinates that move along it: round-off in the arrow is
+  /// For each direction of the source fibre, the size of the coordinates that move along it: round-off in the arrow is
   /// this times the unit round-off. The largest coordinate by default; products answer factor by factor.
   template <class A> auto coordinate_scale(const A& g) const {
     const auto x = coordinates_of_arrow(g);

@@ -1,9 +1,9 @@
 #pragma once
 /// Noether symmetries of a discrete constrained Lagrangian system and their constants of the motion. [G] 4.2
 
+#include <lagroid/core/derivatives/two_sided.hpp>
 #include <lagroid/core/member_name.hpp>
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/core/two_sided.hpp>
 
 #include <algorithm>
 #include <cmath>

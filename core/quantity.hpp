@@ -1,8 +1,8 @@
 #pragma once
 /// Quantities a system promises to keep, and the trajectory points they are evaluated on.
 
+#include <lagroid/core/number_archive.hpp>
 #include <lagroid/core/system.hpp>
-#include <lagroid/core/tape.hpp>
 
 #include <functional>
 #include <string>
@@ -32,11 +32,11 @@ template <class Sys> struct TrajectoryPoint {
   Step<Sys> step;
 
   /// Visits its numbers.
-  void persist(const typename Sys::GroupoidType& groupoid, Tape& tape) {
-    tape(index, time, step_size, state.momentum, step.multipliers);
-    tape.object(groupoid, state.object);
-    tape.arrow(groupoid, configuration);
-    tape.arrow(groupoid, step.arrow);
+  void serialize(const typename Sys::GroupoidType& groupoid, NumberArchive& archive) {
+    archive(index, time, step_size, state.momentum, step.multipliers);
+    archive.object(groupoid, state.object);
+    archive.arrow(groupoid, configuration);
+    archive.arrow(groupoid, step.arrow);
   }
 };
 
@@ -60,8 +60,8 @@ template <class Sys> struct Quantity {
   bool needs_step;  ///< evaluated on the arrow that led to the point, hence from k = 1 on
   Evaluate evaluate;
   Size size;  ///< size of the terms it is made of, to which its round-off is relative; its own size where null
-  std::function<void(Tape&)>
-      persist;  ///< visits what `evaluate` keeps from point to point; null where it keeps nothing
+  std::function<void(NumberArchive&)>
+      serialize;  ///< visits what `evaluate` keeps from point to point; null where it keeps nothing
 };
 
 }  // namespace lagroid

@@ -113,7 +113,7 @@ template <int N, int M, class S = double> struct Gradients {
   Vector<S, M> constraint;       ///< (phi(g), C(beta(g)))
 };
 
-/// The gradients with the mixed second derivative: the derivative of F- along the alpha-fibre is -mixed.
+/// The gradients with the mixed second derivative: the derivative of F- along the source fibre is -mixed.
 template <int N, int M> struct TwoSided : Gradients<N, M> {
   Matrix<double, N, N> mixed;              ///< d2f / dv dw
   Matrix<double, N, M> constraint_source;  ///< d(phi, C o alpha)/dv, column by column; omega for nonholonomic phi

@@ -35,7 +35,7 @@ constexpr float value_of(float x) { return x; }
 constexpr long double value_of(long double x) { return x; }
 
 /// a where the condition holds, b elsewhere: what formulas write in place of a branch, so that they serve scalars with
-/// lanes (core/batch.hpp) too, lane by lane. Both are evaluated.
+/// lanes (core/scalars/batch.hpp) too, lane by lane. Both are evaluated.
 template <class S> LAGROID_INLINE constexpr S select(bool condition, const S& a, const std::type_identity_t<S>& b) {
   return condition ? a : b;
 }

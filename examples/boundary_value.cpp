@@ -1,7 +1,7 @@
 // A boundary value from C++: Lambert's problem, the orbit of least action from one point to another in a given time.
 //
 // Run it: build/release/bin/boundary_value
-#include <lagroid/solvers/boundary_values.hpp>
+#include <lagroid/solvers/boundary/boundary_values.hpp>
 #include <lagroid/systems/kepler.hpp>
 
 #include <fmt/format.h>

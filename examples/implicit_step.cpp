@@ -1,7 +1,7 @@
 // Implicit steps y = z exp(h g(y)) on a Lie group: Newton's iteration, steps of any size, integrators of order 1 to 3.
-#include <lagroid/groupoids/so3.hpp>
-#include <lagroid/solvers/crouch_grossman.hpp>
-#include <lagroid/solvers/lie_differentials.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/solvers/newton/crouch_grossman.hpp>
+#include <lagroid/solvers/newton/lie_differentials.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // A Hamiltonian of one's own on (T*S^2)^2: two compass needles that feel each other. See docs/lie_group_integrators.md.
 
 #include <lagroid/solvers/lie_group/integrator.hpp>
-#include <lagroid/systems/sphere_hamiltonian.hpp>
+#include <lagroid/systems/spheres/sphere_hamiltonian.hpp>
 
 #include <cmath>
 #include <iostream>
@@ -30,15 +30,15 @@ int main() {
   start.col(1) << 0, 0, 1, 0.5, 0.2, 0;
   const double energy = Needles{}.energy(start);
 
-  LieGroupIntegrator march(space, field, lie_group_methods::commutator_free_4, start, 0.01);
+  LieGroupIntegrator integrator(space, field, lie_group_methods::commutator_free_4, start, 0.01);
   for (int n = 0; n < 2000; ++n)
-    if (!march.advance().converged()) return 1;
+    if (!integrator.advance().converged()) return 1;
   ControlledLieGroupIntegrator controlled(space, field, lie_group_methods::munthe_kaas_54, start, {.tolerance = 1e-12});
   if (!controlled.advance_to(20).converged()) return 1;
 
-  const double apart = (march.point() - controlled.point()).norm();
-  const double drift = std::abs(Needles{}.energy(march.point()) - energy);
+  const double apart = (integrator.point() - controlled.point()).norm();
+  const double drift = std::abs(Needles{}.energy(integrator.point()) - energy);
   std::cout << "after t = 20 the methods are " << apart << " apart; the energy moved by " << drift << ", |q_1| - 1 is "
-            << march.point().col(0).head<3>().norm() - 1 << "\n";
+            << integrator.point().col(0).head<3>().norm() - 1 << "\n";
   return apart < 1e-5 && drift < 1e-6 ? 0 : 1;
 }

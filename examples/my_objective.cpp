@@ -1,9 +1,9 @@
 // A function of one's own, minimised on a manifold: the unit vectors that lie farthest from each other on a sphere
 // (Thomson's problem), k of them as one point of a product of spheres. See docs/optimisation.md.
 
-#include <lagroid/solvers/optimisation/conjugate_gradient.hpp>
-#include <lagroid/solvers/optimisation/product.hpp>
-#include <lagroid/solvers/optimisation/sphere.hpp>
+#include <lagroid/solvers/optimisation/manifolds/product.hpp>
+#include <lagroid/solvers/optimisation/manifolds/sphere.hpp>
+#include <lagroid/solvers/optimisation/methods/conjugate_gradient.hpp>
 #include <lagroid/solvers/optimisation/testing/manifold_laws.hpp>
 #include <lagroid/systems/optimisation/instances.hpp>
 

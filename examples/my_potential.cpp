@@ -3,7 +3,7 @@
 
 #include <lagroid/solvers/learning/parametric_model.hpp>
 #include <lagroid/solvers/learning/train.hpp>
-#include <lagroid/systems/chain_trajectories.hpp>
+#include <lagroid/systems/pendulums/chain_trajectories.hpp>
 
 #include <cmath>
 #include <iostream>

@@ -1,7 +1,7 @@
 // A groupoid and a constrained system of your own, in one file; docs/tutorial.md goes through it.
 //
 // Dido's problem: the shortest shore that encloses a given area. Run it: build/release/bin/my_system [FOLDER]
-#include <lagroid/run/check_of.hpp>
+#include <lagroid/run/ledger/check_of.hpp>
 #include <lagroid/run/run.hpp>
 
 #include <fmt/format.h>
@@ -74,8 +74,8 @@ int main(int argc, char** argv) {
   const laws::LawReport momenta = laws::momentum_laws(system, draw);
   std::cout << momenta;
 
-  Integrator<Dido> walk(system, {{0, 0}, {1, 0, 1}}, Shores::unit(Vector<double, 2>(0, 0)),
-                        std::make_unique<NewtonStep<Dido>>());
+  FixedStepIntegrator<Dido> walk(system, {{0, 0}, {1, 0, 1}}, Shores::unit(Vector<double, 2>(0, 0)),
+                                 std::make_unique<NewtonStep<Dido>>());
   while (walk.point().time < 2 * std::numbers::pi) {
     const StepReport report = walk.advance();
     if (!report.converged()) {

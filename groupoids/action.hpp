@@ -2,7 +2,7 @@
 /// The action groupoid of a group that acts on a space from the right.
 
 #include <lagroid/core/algebroid.hpp>
-#include <lagroid/core/loops.hpp>
+#include <lagroid/core/capabilities/loops.hpp>
 
 #include <string>
 
@@ -104,8 +104,8 @@ template <class Group, class Space> struct Action : LieGroupoid<Action<Group, Sp
   template <class E, class P, class V> ActionArrow<E, P> extend(const ActionArrow<E, P>& g, const V& w) const {
     return {group.extend(g.element, w), g.point};
   }
-  template <class E, class P, class V> V nudge(ActionArrow<E, P>& g, const V& w) const {
-    return group.nudge(g.element, w);
+  template <class E, class P, class V> V correct(ActionArrow<E, P>& g, const V& w) const {
+    return group.correct(g.element, w);
   }
   template <class E, class P> auto chart(const ActionArrow<E, P>& g) const { return group.chart(g.element); }
   template <class S, class V> Arrow<S> arrow_in_chart(const Vector<S, object_size>& m, const V& v) const {

@@ -3,9 +3,9 @@
 
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/groupoids/action.hpp>
+#include <lagroid/groupoids/groups/vector_group.hpp>
 #include <lagroid/groupoids/pair_of.hpp>
 #include <lagroid/groupoids/product.hpp>
-#include <lagroid/groupoids/vector_group.hpp>
 
 #include <cstddef>
 #include <tuple>

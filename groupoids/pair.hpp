@@ -61,7 +61,7 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
   template <class T> static PairArrow<T, N> extend(const PairArrow<T, N>& g, const Vector<T, N>& w) {
     return {g.source, g.target + w};
   }
-  template <class T> static Vector<T, N> nudge(PairArrow<T, N>& g, const Vector<T, N>& w) {
+  template <class T> static Vector<T, N> correct(PairArrow<T, N>& g, const Vector<T, N>& w) {
     const Vector<T, N> target = g.target + w;
     const Vector<T, N> taken = target - g.target;
     g.target = target;

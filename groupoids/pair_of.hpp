@@ -2,7 +2,7 @@
 /// The pair groupoid G x G => G of a matrix group.
 
 #include <lagroid/core/algebroid.hpp>
-#include <lagroid/core/loops.hpp>
+#include <lagroid/core/capabilities/loops.hpp>
 #include <lagroid/groupoids/pair.hpp>
 
 #include <string>
@@ -63,7 +63,7 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
   template <class E, class V> ElementPair<E> extend(const ElementPair<E>& g, const V& w) const {
     return {g.source, group.extend(g.target, w)};
   }
-  template <class E, class V> V nudge(ElementPair<E>& g, const V& w) const { return group.nudge(g.target, w); }
+  template <class E, class V> V correct(ElementPair<E>& g, const V& w) const { return group.correct(g.target, w); }
   template <class E> auto chart(const ElementPair<E>& g) const { return group.chart(quotient(g)); }
 
   /// a^{-1} b, the morphism to the group.

@@ -2,8 +2,8 @@
 /// The product of two or more groupoids.
 
 #include <lagroid/core/algebroid.hpp>
-#include <lagroid/core/arrow_frame.hpp>
-#include <lagroid/core/loops.hpp>
+#include <lagroid/core/capabilities/loops.hpp>
+#include <lagroid/core/derivatives/arrow_frame.hpp>
 
 #include <array>
 #include <string>
@@ -53,9 +53,9 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
     return indexed(
         [&]<std::size_t I>() { return std::get<I>(factor).extend(std::get<I>(g), segment<dimensions, I>(w)); });
   }
-  template <class... As, class V> V nudge(std::tuple<As...>& g, const V& w) const {
-    return concatenate<rank>(
-        indexed([&]<std::size_t I>() { return std::get<I>(factor).nudge(std::get<I>(g), segment<dimensions, I>(w)); }));
+  template <class... As, class V> V correct(std::tuple<As...>& g, const V& w) const {
+    return concatenate<rank>(indexed(
+        [&]<std::size_t I>() { return std::get<I>(factor).correct(std::get<I>(g), segment<dimensions, I>(w)); }));
   }
   template <class... As, class V>
   V momentum_change(const std::tuple<As...>& g, const V& source_gradient, const V& target_gradient) const {

@@ -2,7 +2,7 @@
 /// SO(3) on vectors and on directions: the action groupoids of heavy tops.
 
 #include <lagroid/groupoids/action.hpp>
-#include <lagroid/groupoids/so3.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
 
 #include <cmath>
 #include <string>

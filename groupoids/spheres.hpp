@@ -1,8 +1,8 @@
 #pragma once
 /// Products of spheres and of their cotangent bundles, with the groups that act on them.
 
-#include <lagroid/core/elementary.hpp>
-#include <lagroid/core/special_functions.hpp>
+#include <lagroid/core/scalars/elementary.hpp>
+#include <lagroid/core/scalars/special_functions.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <cmath>

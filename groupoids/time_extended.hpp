@@ -1,7 +1,7 @@
 #pragma once
 /// The time-extended groupoid R x R x G => R x Q, and mechanics on it. [G] 6.3
 
-#include <lagroid/core/stepped.hpp>
+#include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 

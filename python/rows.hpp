@@ -1,7 +1,7 @@
 #pragma once
 /// Numbers with shapes, as Python sees them.
 
-#include <lagroid/run/observables.hpp>
+#include <lagroid/run/motion/observables.hpp>
 
 #include <cstddef>
 #include <functional>

@@ -5,18 +5,18 @@
 ///       lagroid::python::bind_system<MySystem>(module, "MySystem", "What it is.");
 ///     }
 ///
-/// Its march is the class Integrator of the package lagroid.
+/// What it makes is the class Integrator of the package lagroid.
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/python/numbers.hpp>
 #include <lagroid/python/rows.hpp>
-#include <lagroid/run/system_motion.hpp>
-#include <lagroid/solvers/boundary_values.hpp>
-#include <lagroid/solvers/boundary_words.hpp>
-#include <lagroid/solvers/constrained_momentum.hpp>
-#include <lagroid/solvers/declared_methods.hpp>
-#include <lagroid/solvers/march.hpp>
+#include <lagroid/run/motion/system_motion.hpp>
+#include <lagroid/solvers/boundary/boundary_values.hpp>
+#include <lagroid/solvers/boundary/boundary_words.hpp>
+#include <lagroid/solvers/generating/constrained_momentum.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
 
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
@@ -225,7 +225,7 @@ void bind_parameter(py::class_<Sys>& made, const Choice<Owner, Enum, N>& p) {
 }
 
 /// `order` and `composition` of a method.
-inline Composition composition_of(const MarchMethod& method, std::optional<int> order,
+inline Composition composition_of(const IntegrationMethod& method, std::optional<int> order,
                                   const std::optional<std::string>& name) {
   if (!method.composed()) {
     if (name || order.value_or(method.order) != method.order)
@@ -247,13 +247,13 @@ inline Composition composition_of(const MarchMethod& method, std::optional<int> 
 }
 
 /// The keys of [time] and [solver] of a scene.
-inline MarchOptions march_options(const std::string& mode, const std::string& method, std::optional<int> order,
-                                  const std::optional<std::string>& composition, const std::string& without_root,
-                                  int max_iterations, double tolerance) {
+inline IntegratorOptions integrator_options(const std::string& mode, const std::string& method,
+                                            std::optional<int> order, const std::optional<std::string>& composition,
+                                            const std::string& without_root, int max_iterations, double tolerance) {
   choice("mode", mode, mode_words());
   choice("method", method, method_words());
-  const MarchMethod& declared = march_method(mode, method);
-  MarchOptions options = options_of(declared);
+  const IntegrationMethod& declared = integration_method(mode, method);
+  IntegratorOptions options = options_of(declared);
   options.without_root = choice("without_root", without_root, without_root_words);
   options.composition = composition_of(declared, order, composition);
   if (max_iterations < 0 || max_iterations > most_iterations)
@@ -288,11 +288,11 @@ std::vector<FieldOf<Sys>> fields_of(const Sys& system, const std::vector<Quantit
   return all;
 }
 
-/// A march of the system from a momentum and an object or, where more than the object is to be followed, the arrow that
-/// ends there.
+/// A motion of the system from a momentum and an object or, where more than the object is to be followed, the arrow
+/// that ends there.
 template <DiscreteSystem Sys>
-std::shared_ptr<Motion> begin_march(const Sys& system, const Array& momentum, const std::optional<Array>& object,
-                                    const std::optional<Array>& configuration, const MarchOptions& options) {
+std::shared_ptr<Motion> begin_integrator(const Sys& system, const Array& momentum, const std::optional<Array>& object,
+                                         const std::optional<Array>& configuration, const IntegratorOptions& options) {
   using G = typename Sys::GroupoidType;
   const G& groupoid = system.groupoid;
   detail::require_step(system);
@@ -324,7 +324,7 @@ std::shared_ptr<Motion> begin_march(const Sys& system, const Array& momentum, co
   auto quantities = quantities_of(system);
   auto fields = fields_of(system, quantities);
   return std::make_shared<SystemMotion<Sys>>(system, "system", std::move(fields), std::move(quantities),
-                                             make_march(system, state, arrow, options), options);
+                                             make_integrator(system, state, arrow, options), options);
 }
 
 /// The stationary paths between the ends of `boundary`, an arrow in coordinates, cheapest first.
@@ -381,7 +381,8 @@ std::vector<BoundaryPath> stationary_paths(const Sys& system, const Array& bound
 
 /// The class of the system in `module`: parameters as keywords of the constructor (those that it declares, and all that
 /// the caller adds with def_readwrite or def_property), which copies and pickles hold; the step `h`, `integrator(...)`.
-/// A system of one's own that is not among those of the library includes lagroid/solvers/march_methods.hpp too.
+/// A system of one's own that is not among those of the library includes
+/// lagroid/solvers/integrators/integrator_methods.hpp too.
 template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, const char* name, const char* doc) {
   py::class_<Sys> made(module, name, doc);
   made.def(py::init([](const py::kwargs& parameters) { return detail::with_parameters<Sys>(parameters); }));
@@ -408,9 +409,9 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
         if (!by_place.empty() || !momentum)
           throw py::type_error(
               "integrator: give momentum, and object or configuration, by name, as in momentum=[0, 1]");
-        const MarchOptions options =
-            detail::march_options(mode, method, order, composition, without_root, max_iterations, tolerance);
-        const auto march = begin_march(self, *momentum, object, configuration, options);
+        const IntegratorOptions options =
+            detail::integrator_options(mode, method, order, composition, without_root, max_iterations, tolerance);
+        const auto motion = begin_integrator(self, *momentum, object, configuration, options);
         // A pickle begins it anew, with the same system and arguments.
         using namespace py::literals;
         const py::dict arguments("momentum"_a = detail::kept(momentum), "object"_a = detail::kept(object),
@@ -418,7 +419,7 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
                                  "order"_a = order, "composition"_a = composition, "without_root"_a = without_root,
                                  "max_iterations"_a = max_iterations, "tolerance"_a = tolerance, "ledger"_a = ledger);
         const py::object integrator = detail::class_of_lagroid("Integrator");
-        return integrator(py::cast(march), ledger, py::make_tuple(py::cast(Sys(self)), arguments));
+        return integrator(py::cast(motion), ledger, py::make_tuple(py::cast(Sys(self)), arguments));
       },
       py::arg("momentum") = py::none(), py::arg("object") = py::none(), py::arg("configuration") = py::none(),
       py::arg("mode") = mode_words().front(), py::arg("method") = method_words().front(), py::arg("order") = py::none(),
@@ -431,7 +432,7 @@ template <DiscreteSystem Sys> py::class_<Sys> bind_system(py::module_& module, c
 }
 
 /// Adds `boundary(arrow, steps, ...)` to a class of `bind_system`: a system of one's own includes
-/// lagroid/solvers/boundary_methods.hpp too.
+/// lagroid/solvers/boundary/boundary_methods.hpp too.
 template <DiscreteSystem Sys> void bind_boundary(py::class_<Sys>& made) {
   made.def(
       "boundary",

@@ -1,25 +1,19 @@
 # lagroid_machine: what a program is, so that it can tell its own work from another's. The hash of what enters numbers
 # is made when one of these files changes, and stands in a file of its own, so that nothing else is compiled for it.
-file(GLOB sources_of_numbers CONFIGURE_DEPENDS
+file(GLOB_RECURSE sources_of_numbers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/groupoids/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/solvers/*.[ch]pp
-  ${PROJECT_SOURCE_DIR}/solvers/*/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/systems/*.[ch]pp
-  ${PROJECT_SOURCE_DIR}/systems/*/*.[ch]pp
   # How scenes become systems, and what is recorded of them.
-  ${PROJECT_SOURCE_DIR}/run/archive.hpp
-  ${PROJECT_SOURCE_DIR}/run/drive.[ch]pp
-  ${PROJECT_SOURCE_DIR}/run/judge.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/motion/*.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/ledger/judge.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/ledger/ledger.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/files/archive.hpp
   ${PROJECT_SOURCE_DIR}/app/bodies/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/families/*_family.cpp
   ${PROJECT_SOURCE_DIR}/app/reading/*.[ch]pp
-  ${PROJECT_SOURCE_DIR}/run/ledger.[ch]pp
-  ${PROJECT_SOURCE_DIR}/run/march_nodes.[ch]pp
-  ${PROJECT_SOURCE_DIR}/run/motion.hpp
-  ${PROJECT_SOURCE_DIR}/run/observables.hpp
-  ${PROJECT_SOURCE_DIR}/run/recorder.[ch]pp
-  ${PROJECT_SOURCE_DIR}/run/system_[mn]o*.hpp
+  ${PROJECT_SOURCE_DIR}/app/scenes/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/spheres/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/sweep/*.[ch]pp
   ${PROJECT_SOURCE_DIR}/app/systems/*.[ch]pp)

@@ -1,4 +1,4 @@
-#include <lagroid/run/checkpoint.hpp>
+#include <lagroid/run/files/checkpoint.hpp>
 #include <lagroid/run/run.hpp>
 
 #include <fmt/format.h>

@@ -1,15 +1,15 @@
 #pragma once
 /// From a system and a state to a trajectory, its ledger and its files.
 
-#include <lagroid/run/drive.hpp>
-#include <lagroid/run/output.hpp>
-#include <lagroid/run/program_scene.hpp>
-#include <lagroid/run/report.hpp>
-#include <lagroid/run/system_marks.hpp>
-#include <lagroid/run/system_motion.hpp>
-#include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/march_of.hpp>
-#include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/run/files/output.hpp>
+#include <lagroid/run/files/program_scene.hpp>
+#include <lagroid/run/motion/drive.hpp>
+#include <lagroid/run/motion/system_marks.hpp>
+#include <lagroid/run/motion/system_motion.hpp>
+#include <lagroid/run/reports/report.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/integrators/integrator_of.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -59,9 +59,9 @@ void run_with_files(RunResult& result, const std::filesystem::path& folder, bool
 
 }  // namespace detail
 
-/// Runs a march of the system that was made with the options `how` (`make_march`), to be recorded from its present
-/// point on. The ledger holds the constraints, the system's quantities or, of one that declares symmetries alone, their
-/// momenta; and the discrete energy where the Lagrangian has the step as its argument.
+/// Runs an integrator of the system that was made with the options `how` (`make_integrator`), to be recorded from its
+/// present point on. The ledger holds the constraints, the system's quantities or, of one that declares symmetries
+/// alone, their momenta; and the discrete energy where the Lagrangian has the step as its argument.
 ///
 /// A step that fails, Ctrl-C or SIGTERM ends the run with what was computed so far, and RunResult::status tells which.
 /// Throws std::invalid_argument for a name that is not one line of text, a start that is not finite, or steps and every
@@ -69,15 +69,15 @@ void run_with_files(RunResult& result, const std::filesystem::path& folder, bool
 /// FolderRefused where the folder holds something else or is not to be written in; RunError where it holds no run, or
 /// one of another system, with other parameters, from another start or by another method, to go on with.
 template <DiscreteSystem Sys>
-RunResult run(const Sys& system, std::unique_ptr<March<Sys>> march, const MarchOptions& how,
+RunResult run(const Sys& system, std::unique_ptr<Integrator<Sys>> integrator, const IntegratorOptions& how,
               const RunOptions<Sys>& options) {
   using G = typename Sys::GroupoidType;
   detail::require_counts(options.steps, options.every);
   auto quantities = watched(system, how);
   Presentation<Sys> presentation =
       with_step_sizes(options.presentation.value_or(plain_presentation<Sys>(system, options.name, quantities)), how);
-  const TrajectoryPoint<Sys> start = march->point();
-  const MethodTraits method = march->traits();
+  const TrajectoryPoint<Sys> start = integrator->point();
+  const MethodTraits method = integrator->traits();
   double step = 0;
   if constexpr (HasTimeStep<Sys>) step = system.h;
   const G& groupoid = system.groupoid;
@@ -87,7 +87,7 @@ RunResult run(const Sys& system, std::unique_ptr<March<Sys>> march, const MarchO
   const auto marks = marks_of(system, start.state.object);
   const std::string scene = scene_of_program({presentation.name, description(method), step, options.every, flat(marks),
                                               flat(object), flat(start.state.momentum), flat(configuration)});
-  SystemMotion<Sys> motion(system, std::move(presentation), std::move(quantities), std::move(march), how);
+  SystemMotion<Sys> motion(system, std::move(presentation), std::move(quantities), std::move(integrator), how);
   RunResult result;
   detail::run_with_files(result, options.folder, options.resume, scene, [&](RunContext context) {
     context.progress = options.progress;
@@ -105,9 +105,9 @@ template <DiscreteSystem Sys>
 RunResult run(const Sys& system, const State<typename Sys::GroupoidType>& start, const RunOptions<Sys>& options = {}) {
   const auto configuration = options.configuration.value_or(system.groupoid.unit(start.object));
   return run<Sys>(system,
-                  std::make_unique<detail::MarchOf<Sys, Integrator<Sys>>>(system, start, configuration,
-                                                                          std::make_unique<NewtonStep<Sys>>()),
-                  MarchOptions{}, options);
+                  std::make_unique<detail::IntegratorOf<Sys, FixedStepIntegrator<Sys>>>(
+                      system, start, configuration, std::make_unique<NewtonStep<Sys>>()),
+                  IntegratorOptions{}, options);
 }
 
 template <DiscreteSystem Sys>

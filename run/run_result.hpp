@@ -1,7 +1,7 @@
 #pragma once
 /// What a run produces, whatever the system: the common currency of reports, files and plots.
 
-#include <lagroid/run/shape.hpp>
+#include <lagroid/run/motion/shape.hpp>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/run/reports/text.hpp>
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
-#include <lagroid/run/text.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

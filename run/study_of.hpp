@@ -1,12 +1,12 @@
 #pragma once
 /// `study`: what accuracy costs a system of one's own. It compiles all methods that the system has: a minute.
 
+#include <lagroid/run/motion/system_marks.hpp>
+#include <lagroid/run/motion/system_motion.hpp>
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
-#include <lagroid/run/system_marks.hpp>
-#include <lagroid/run/system_motion.hpp>
-#include <lagroid/solvers/march_methods.hpp>
-#include <lagroid/solvers/methods.hpp>
+#include <lagroid/solvers/integrators/integrator_methods.hpp>
+#include <lagroid/solvers/methods/methods.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -41,7 +41,7 @@ template <DiscreteSystem Sys> struct StudyOptions {
 template <DiscreteSystem Sys>
 requires HasTimeStep<Sys> Experiment experiment_of(const Sys& system, const State<typename Sys::GroupoidType>& start,
                                                    const StudyOptions<Sys>& options) {
-  const std::vector<NamedMethod> named = named_methods(abilities_of(system));
+  const std::vector<NamedMethod> named = named_methods(capabilities_of(system));
   const auto configuration = options.configuration.value_or(system.groupoid.unit(start.object));
   Experiment out;
   out.name = options.name;
@@ -56,7 +56,7 @@ requires HasTimeStep<Sys> Experiment experiment_of(const Sys& system, const Stat
     try {
       return std::make_unique<SystemMotion<Sys>>(
           stepped, options.name, std::vector<FieldOf<Sys>>{}, quantities_of(stepped),
-          make_march(stepped, start, configuration, found->options), found->options);
+          make_integrator(stepped, start, configuration, found->options), found->options);
     } catch (const std::exception& error) {
       throw MethodRefused(error.what());
     }

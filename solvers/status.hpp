@@ -5,7 +5,7 @@
 
 namespace lagroid {
 
-/// Only `converged` lets a caller go on; whoever marches a trajectory keeps its last state on every other outcome.
+/// Only `converged` lets a caller go on; whoever integrates a trajectory keeps its last state on every other outcome.
 enum class SolveStatus {
   converged,        ///< residual as small as the solver promises (its options say how small)
   stagnated,        ///< the residual stopped falling above that floor

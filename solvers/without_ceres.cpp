@@ -1,8 +1,8 @@
 // In the place of what goes through Ceres, in a build without it.
-#include <lagroid/solvers/ceres_fibre.hpp>
-#include <lagroid/solvers/ceres_lie.hpp>
 #include <lagroid/solvers/learning/train.hpp>
 #include <lagroid/solvers/missing_library.hpp>
+#include <lagroid/solvers/newton/ceres_lie.hpp>
+#include <lagroid/solvers/step/ceres_fibre.hpp>
 
 namespace lagroid {
 

@@ -2,13 +2,13 @@
 /// Ensembles of the library's systems, compiled.
 
 #include <lagroid/solvers/ensemble/ensemble.hpp>
-#include <lagroid/systems/pendulum.hpp>
-#include <lagroid/systems/plate_ball.hpp>
-#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
+#include <lagroid/systems/pendulums/pendulum.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
-#define LAGROID_ENSEMBLE(prefix, Sys)          \
-  prefix class BatchNewton<Sys, widest_batch>; \
-  prefix class BatchMarch<Sys, widest_batch>;  \
+#define LAGROID_ENSEMBLE(prefix, Sys)              \
+  prefix class BatchNewton<Sys, widest_batch>;     \
+  prefix class BatchIntegrator<Sys, widest_batch>; \
   prefix class Ensemble<Sys, widest_batch>
 
 namespace lagroid {

@@ -2,10 +2,10 @@
 /// Discrete Lagrangians of high order: curves with inner nodes.
 
 #include <lagroid/core/system.hpp>
+#include <lagroid/groupoids/groups/vector_group.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
-#include <lagroid/groupoids/vector_group.hpp>
-#include <lagroid/solvers/method.hpp>
+#include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 #include <array>

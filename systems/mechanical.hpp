@@ -1,11 +1,11 @@
 #pragma once
 /// Point-mass mechanics on R^n: what pendulum, Kepler and spherical pendulum have in common.
 
-#include <lagroid/core/directional.hpp>
+#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/split_system.hpp>
+#include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/core/rates.hpp>
-#include <lagroid/core/split_system.hpp>
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/systems/reference.hpp>

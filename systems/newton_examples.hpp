@@ -1,7 +1,7 @@
 #pragma once
 /// The fields and starting points of [N] section 5. Compiled for S = double and long double.
 
-#include <lagroid/groupoids/rotations.hpp>
+#include <lagroid/groupoids/groups/rotations.hpp>
 
 #include <cstdint>
 

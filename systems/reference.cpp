@@ -1,4 +1,4 @@
-#include <lagroid/groupoids/so3.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
 #include <lagroid/systems/reference.hpp>
 
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>

@@ -1,15 +1,20 @@
 # The systems that scenes, checks and Python know, in the order in which they are listed to users: systems/NAME.hpp with
-# the class, app/systems/NAME.cpp with how its scenes are read and shown. What the solvers make of each is compiled once,
+# the class, app/systems/NAME.cpp with how its scenes are read and shown, both in the folder of their kind that is named after IN. What the solvers make of each is compiled once,
 # from files that are made here (systems/instances.hpp). INITIAL_VALUES: it is forced, nonholonomic or depends on time,
 # and has no boundary values; others name their sizes (solvers/boundary_sizes). Further sources of its own stand after
 # SOURCES.
 set(system_names)
 set(system_classes)
+set(system_headers)  # as <lagroid/...>
 set(certificate_sources)  # of lagroid_certificates
 function(lagroid_system name class)
-  cmake_parse_arguments(ARG "INITIAL_VALUES" "SIZES" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "INITIAL_VALUES" "IN;SIZES" "SOURCES" ${ARGN})
+  set(header systems/${name}.hpp)
+  if(ARG_IN)
+    set(header systems/${ARG_IN}/${name}.hpp)
+  endif()
   set(made ${PROJECT_BINARY_DIR}/systems/${name})
-  set(parts steps marches)
+  set(parts steps integrators)
   set(adaptive "")
   if(NOT ARG_INITIAL_VALUES)
     list(APPEND parts adaptive_steps boundary_values)
@@ -20,35 +25,39 @@ function(lagroid_system name class)
   endforeach()
   list(TRANSFORM parts REPLACE "(.+)" "${made}_\\1.cpp" OUTPUT_VARIABLE sources)
   set(system_names ${system_names} ${name} PARENT_SCOPE)
+  set(system_headers ${system_headers} ${header} PARENT_SCOPE)
+  set(header_of_${name} ${header} PARENT_SCOPE)
   set(system_classes ${system_classes} ${class} PARENT_SCOPE)
   lagroid_part(${name} ${sources} ${ARG_SOURCES})
   set(lagroid_parts ${lagroid_parts} PARENT_SCOPE)
   set(sizes_of_${name} ${ARG_SIZES} PARENT_SCOPE)
   set(certificate_sources ${certificate_sources} ${made}_certificate.cpp PARENT_SCOPE)
 endfunction()
-lagroid_system(plate_ball PlateBall SIZES 5_3_0
-               SOURCES systems/plate_ball.cpp systems/plate_ball_boundary.cpp)
-lagroid_system(unicycle Unicycle SIZES 3_2_0)
-lagroid_system(attitude_control AttitudeControl SIZES 3_1_0 SOURCES systems/attitude_control.cpp)
-lagroid_system(rigid_body RigidBody SIZES 3_0_0
-               SOURCES systems/rigid_body.cpp systems/moser_veselov.cpp systems/moser_veselov_solvers.cpp)
-lagroid_system(heavy_top HeavyTop SIZES 3_0_0 SOURCES systems/heavy_top.cpp)
-lagroid_system(pendulum Pendulum SIZES 1_0_0)
+lagroid_system(plate_ball PlateBall IN control SIZES 5_3_0
+               SOURCES systems/control/plate_ball.cpp systems/control/plate_ball_boundary.cpp)
+lagroid_system(unicycle Unicycle IN control SIZES 3_2_0)
+lagroid_system(attitude_control AttitudeControl IN control SIZES 3_1_0 SOURCES systems/control/attitude_control.cpp)
+lagroid_system(rigid_body RigidBody IN rotations SIZES 3_0_0
+               SOURCES systems/rotations/rigid_body.cpp systems/rotations/moser_veselov.cpp
+                       systems/rotations/moser_veselov_solvers.cpp)
+lagroid_system(heavy_top HeavyTop IN rotations SIZES 3_0_0 SOURCES systems/rotations/heavy_top.cpp)
+lagroid_system(pendulum Pendulum IN pendulums SIZES 1_0_0)
 lagroid_system(kepler Kepler SIZES 2_0_0)
-lagroid_system(spherical_pendulum SphericalPendulum SIZES 3_0_1 SOURCES systems/spherical_pendulum.cpp)
-lagroid_system(gyrostat Gyrostat SIZES 6_0_0_32)
-lagroid_system(rolling_ball RollingBall INITIAL_VALUES SOURCES systems/rolling_ball.cpp)
-lagroid_system(rolling_disk RollingDisk INITIAL_VALUES SOURCES systems/rolling_disk.cpp)
-lagroid_system(chaplygin_sleigh ChaplyginSleigh INITIAL_VALUES SOURCES systems/chaplygin_sleigh.cpp)
-lagroid_system(damped_pendulum DampedPendulum INITIAL_VALUES SOURCES systems/damped_pendulum.cpp)
-lagroid_system(driven_pendulum DrivenPendulum INITIAL_VALUES SOURCES systems/driven_pendulum.cpp)
-lagroid_system(driven_body DrivenBody INITIAL_VALUES SOURCES systems/driven_body.cpp)
+lagroid_system(spherical_pendulum SphericalPendulum IN pendulums SIZES 3_0_1 SOURCES systems/pendulums/spherical_pendulum.cpp)
+lagroid_system(gyrostat Gyrostat IN rotations SIZES 6_0_0_32)
+lagroid_system(rolling_ball RollingBall IN rolling INITIAL_VALUES SOURCES systems/rolling/rolling_ball.cpp)
+lagroid_system(rolling_disk RollingDisk IN rolling INITIAL_VALUES SOURCES systems/rolling/rolling_disk.cpp)
+lagroid_system(chaplygin_sleigh ChaplyginSleigh IN rolling INITIAL_VALUES SOURCES systems/rolling/chaplygin_sleigh.cpp)
+lagroid_system(damped_pendulum DampedPendulum IN pendulums INITIAL_VALUES SOURCES systems/pendulums/damped_pendulum.cpp)
+lagroid_system(driven_pendulum DrivenPendulum IN pendulums INITIAL_VALUES SOURCES systems/pendulums/driven_pendulum.cpp)
+lagroid_system(driven_body DrivenBody IN rotations INITIAL_VALUES SOURCES systems/rotations/driven_body.cpp)
 
-# lagroid_for_each_system(variable template): the template once for each system, with NAME and CLASS replaced.
+# lagroid_for_each_system(variable template): the template once for each system, with NAME, CLASS and HEADER replaced.
 function(lagroid_for_each_system variable template)
   set(out)
-  foreach(name class IN ZIP_LISTS system_names system_classes)
-    string(REPLACE NAME ${name} one "${template}")
+  foreach(name class header IN ZIP_LISTS system_names system_classes system_headers)
+    string(REPLACE HEADER ${header} one "${template}")
+    string(REPLACE NAME ${name} one "${one}")
     string(REPLACE CLASS ${class} one "${one}")
     string(APPEND out "${one}")
   endforeach()

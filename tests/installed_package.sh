@@ -57,6 +57,7 @@ grep -q "^lagroid_DIR:PATH=$prefix" "$work/cmake/CMakeCache.txt" || fail "anothe
 cmake --build "$work/cmake" >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "the consumer is not built"; }
 "$work/cmake/compose"
 "$work/cmake/spring"
+"$work/cmake/old_names" || fail "names of version 0.2 do not make a step"
 if [ -e "$prefix/include/lagroid/run/run.hpp" ] && find "$prefix" -name lagroid-run-targets.cmake | grep -q .; then
   "$work/cmake/gyrostat" "$work/gyrostat" >"$work/gyrostat.log" || { cat "$work/gyrostat.log" >&2; fail "the gyrostat breaks a promise"; }
   grep -q "rotor momenta" "$work/gyrostat.log" || fail "the gyrostat has no ledger"

@@ -3,7 +3,7 @@
 
 #include "../reading/scene_reader.hpp"
 
-#include <lagroid/run/shape.hpp>
+#include <lagroid/run/motion/shape.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <array>

@@ -191,7 +191,7 @@ void read_rotating_frame(SceneBodies& bodies, const Section& table) {
   const bool centrifugal = table.flag_or("centrifugal", true);
   for (const NamedBody* chosen : bodies.chosen(table, "bodies")) {
     const NamedBody& body = require_point(table, chosen, "a rotating frame");
-    bodies.scene.deflect(body.body, 2 * body.mass * rate);
+    bodies.scene.gyroscopic_force(body.body, 2 * body.mass * rate);
     if (centrifugal) bodies.scene.add(multibody::Centrifugal{{body.body.centre}, body.mass, rate});
   }
   bodies.deflected = true;
@@ -203,7 +203,7 @@ void read_magnetic(SceneBodies& bodies, const Section& table) {
   const auto charged = bodies.chosen(table, "bodies");
   const auto charges = table.numbers("charges", charged.size(), "of the bodies, in their order, C");
   for (std::size_t i = 0; i < charged.size(); ++i)
-    bodies.scene.deflect(require_point(table, charged[i], "a magnetic field").body, charges[i] * field);
+    bodies.scene.gyroscopic_force(require_point(table, charged[i], "a magnetic field").body, charges[i] * field);
   bodies.deflected = true;
   bodies.isolated = false;
 }

@@ -3,7 +3,7 @@
 
 #include "scene_bodies.hpp"
 
-#include <lagroid/run/observables.hpp>
+#include <lagroid/run/motion/observables.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
 
 #include <functional>

@@ -1,6 +1,6 @@
 #include "scene_picture.hpp"
 
-#include "../reading/attitude.hpp"
+#include "../scenes/attitude.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 #include "scene_run.hpp"
 
-#include "../reading/simulation.hpp"
+#include "../scenes/simulation.hpp"
 #include "scene_bodies.hpp"
 #include "scene_node.hpp"
 #include "scene_picture.hpp"
 
-#include <lagroid/solvers/step_messages.hpp>
+#include <lagroid/solvers/step/step_messages.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
 
 #include <fmt/format.h>
@@ -165,9 +165,9 @@ class BodiesMotion final : public Motion {
     if (bodies_.counts_cost) result.panels.push_back({"cost of the controls", "t", "cost", "t", {"cost"}});
     result.shapes = shapes_of(bodies_, chosen_);
   }
-  void persist(Tape& tape) override {
-    motion_->persist(tape);
-    tape(cost_);
+  void serialize(NumberArchive& archive) override {
+    motion_->serialize(archive);
+    archive(cost_);
   }
 
  private:
@@ -184,9 +184,9 @@ class BodiesMotion final : public Motion {
 
 }  // namespace
 
-const MarchMethod& read_bodies_method(const Section& time) {
-  const MarchMethod& equal = march_method(MarchOptions{});
-  const MarchMethod& controlled = march_method({.mode = TimeMode::controlled});
+const IntegrationMethod& read_bodies_method(const Section& time) {
+  const IntegrationMethod& equal = integration_method(IntegratorOptions{});
+  const IntegrationMethod& controlled = integration_method({.mode = TimeMode::controlled});
   const std::string fixed(mode_of_equal_steps);
   const std::string mode = time.choice_or("mode", fixed, {fixed, std::string(controlled.name)});
   time.choice_or("method", std::string(equal.name), {std::string(equal.name)});
@@ -201,17 +201,17 @@ BodiesScene read_bodies(const Section& scene, const RunContext& context) {
   const multibody::Options options = read_options(scene, bodies);
   const Section output = scene.section_or_empty("output");
   BodiesScene out;
-  out.pace = read_pace(scene, context);
+  out.pace = read_extent(scene, context);
   std::set<std::string> chosen;
   for (const NamedBody* body : bodies.chosen(output, "bodies"))
     if (output.has("bodies")) chosen.insert(body->name);
   scene.finish();
-  out.methods = composed_methods(march_method(MarchOptions{}).name, steps_composed(is_composable(bodies)));
+  out.methods = composed_methods(integration_method(IntegratorOptions{}).name, steps_composed(is_composable(bodies)));
   out.to_check = {name, [scene] { return std::move(read_scene_bodies(scene).scene); }, step, is_symplectic(bodies),
                   is_reversible(bodies)};
   auto motion = std::make_unique<BodiesMotion>(scene, name, std::move(bodies), step, options, std::move(chosen));
   if (motion->has_time_scale()) {
-    const MarchMethod& controlled = march_method({.mode = TimeMode::controlled});
+    const IntegrationMethod& controlled = integration_method({.mode = TimeMode::controlled});
     out.methods.push_back({std::string(controlled.name),
                            controlled.order,
                            controlled.stages,

@@ -1,9 +1,9 @@
 #pragma once
 /// Scenes of bodies as motions.
 
-#include "../reading/motion_scene.hpp"
+#include "../scenes/motion_scene.hpp"
 
-#include <lagroid/solvers/declared_methods.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <functional>
@@ -27,7 +27,7 @@ struct BodiesScene : MotionScene {
   BodiesToCheck to_check;
 };
 /// The method that [time] names: equal steps of a variational method, or controlled ones.
-const MarchMethod& read_bodies_method(const Section& time);
+const IntegrationMethod& read_bodies_method(const Section& time);
 BodiesScene read_bodies(const Section& scene, const RunContext& context);
 
 }  // namespace lagroid::app

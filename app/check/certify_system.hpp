@@ -1,12 +1,12 @@
 #pragma once
 /// The laws of a system along the run of its scene.
 
-#include "../reading/system_module.hpp"
+#include "../scenes/system_module.hpp"
 #include "check_options.hpp"
 
 #include <lagroid/core/testing/property.hpp>
-#include <lagroid/run/certificate.hpp>
-#include <lagroid/solvers/constrained_momentum.hpp>
+#include <lagroid/run/ledger/certificate.hpp>
+#include <lagroid/solvers/generating/constrained_momentum.hpp>
 #include <lagroid/systems/certificates.hpp>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vecto
 
 }  // namespace checking
 
-template <DiscreteSystem Sys> Certificate certify(const Task<Sys>& task, const CheckOptions& options) {
+template <DiscreteSystem Sys> Certificate certify(const PreparedScene<Sys>& task, const CheckOptions& options) {
   checking::Thinned<Sys> run;
   const RunResult result = task.run([&](const TrajectoryPoint<Sys>& point) { run.add(point); });
   auto points = run.points();

@@ -5,7 +5,7 @@
 #include "../families/family.hpp"
 #include "own_check.hpp"
 
-#include <lagroid/run/certificate.hpp>
+#include <lagroid/run/ledger/certificate.hpp>
 
 #include <utility>
 #include <vector>

@@ -1,10 +1,10 @@
 #pragma once
 /// `check` of a program of one's own (own_program.hpp).
 
-#include "../reading/system_module.hpp"
+#include "../scenes/system_module.hpp"
 #include "check_options.hpp"
 
-#include <lagroid/run/certificate.hpp>
+#include <lagroid/run/ledger/certificate.hpp>
 
 #include <functional>
 #include <vector>

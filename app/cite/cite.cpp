@@ -4,8 +4,8 @@
 #include "../families/family.hpp"
 
 #include <lagroid/core/version.hpp>
-#include <lagroid/run/checkpoint.hpp>
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/checkpoint.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,9 +2,9 @@
 
 #include "../reading/scene_reader.hpp"
 
-#include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/report.hpp>
-#include <lagroid/run/text.hpp>
+#include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/run/reports/report.hpp>
+#include <lagroid/run/reports/text.hpp>
 
 #include <fmt/format.h>
 

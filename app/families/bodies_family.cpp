@@ -3,7 +3,7 @@
 
 #include "../bodies/scene_bodies.hpp"
 #include "../bodies/scene_run.hpp"
-#include "../reading/simulation.hpp"
+#include "../scenes/simulation.hpp"
 
 namespace lagroid::app {
 
@@ -19,7 +19,7 @@ class Bodies final : public SceneFamily {
   std::vector<Use> uses(const Section& scene) const override {
     std::vector<Use> uses{{&reference("marrero2015"), "discrete constrained mechanics on Lie groupoids"}};
     const Section time = scene.section_or_empty("time");
-    const MarchMethod& method = read_bodies_method(time);
+    const IntegrationMethod& method = read_bodies_method(time);
     add_use(method.source, uses);
     if (method.composed()) add_use(source_of(read_composition(time, compositions::all)), uses);
     if (read_scene_bodies(scene).nonholonomic)

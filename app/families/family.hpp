@@ -1,9 +1,9 @@
 #pragma once
 /// The kinds of scenes: which one a scene is, and what can be asked of any.
 
-#include "../reading/motion_scene.hpp"
 #include "../reading/scene_reader.hpp"
-#include "../reading/system_module.hpp"
+#include "../scenes/motion_scene.hpp"
+#include "../scenes/system_module.hpp"
 #include "references.hpp"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 /// The papers behind the program: the one place where they stand. CITATION.cff is written from here.
 
-#include <lagroid/solvers/sources.hpp>
+#include <lagroid/solvers/methods/sources.hpp>
 
 #include <span>
 #include <string>

@@ -1,8 +1,8 @@
 #include "family.hpp"
 
-#include "../reading/simulation.hpp"
-#include "../spheres/learned_scene.hpp"
-#include "../spheres/model_file.hpp"
+#include "../scenes/simulation.hpp"
+#include "../spheres/learned/learned_scene.hpp"
+#include "../spheres/learned/model_file.hpp"
 #include "../spheres/sphere_run.hpp"
 #include "../spheres/sphere_system.hpp"
 #include "../spheres/sphere_time.hpp"

@@ -1,9 +1,9 @@
 #include "../reading/kinds.hpp"
 #include "family.hpp"
 
-#include "../reading/system_module.hpp"
+#include "../scenes/system_module.hpp"
 
-#include <lagroid/solvers/boundary_words.hpp>
+#include <lagroid/solvers/boundary/boundary_words.hpp>
 
 #include <fmt/format.h>
 

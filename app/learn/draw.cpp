@@ -3,10 +3,10 @@
 #include "../spheres/numbers.hpp"
 #include "trajectory_files.hpp"
 
+#include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/output_folder.hpp>
-#include <lagroid/systems/chain_trajectories.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/systems/pendulums/chain_trajectories.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -6,8 +6,8 @@
 #include "trajectory_files.hpp"
 
 #include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/progress.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/progress.hpp>
 
 #include <fmt/format.h>
 
@@ -44,8 +44,8 @@ int exit_code(Outcome outcome) {
 }
 
 /// Reads what the options name. Throws DataError and ModelError.
-Lesson prepare(const LearnOptions& options) {
-  Lesson lesson;
+TrainingOutcome prepare(const LearnOptions& options) {
+  TrainingOutcome lesson;
   lesson.options = options;
   lesson.data = read_trajectories(options.data, options.noise);
   if (options.model.ends_with(".json")) {
@@ -65,7 +65,7 @@ Lesson prepare(const LearnOptions& options) {
   return lesson;
 }
 
-learning::Trained train(const Lesson& lesson) {
+learning::Trained train(const TrainingOutcome& lesson) {
   const LearnOptions& options = lesson.options;
   learning::Training training;
   training.method = *lie_group_methods::named(options.integrator);
@@ -89,7 +89,7 @@ learning::Trained train(const Lesson& lesson) {
 }
 
 /// On held-out data, unless Ctrl-C comes, or came.
-void measure(Lesson& lesson) {
+void measure(TrainingOutcome& lesson) {
   const auto& [model, parameters] = lesson.learned;
   lesson.measures = learning::measure(*model, parameters, *lesson.test, 1e-12, InterruptGuard::interrupted);
   if (lesson.measures->complete) return;
@@ -98,7 +98,7 @@ void measure(Lesson& lesson) {
 }
 
 /// Ends a training that left no model.
-int refuse_untrained(const Lesson& lesson) {
+int refuse_untrained(const TrainingOutcome& lesson) {
   const auto& trained = lesson.trained;
   const int code = exit_code(trained.outcome);
   const bool goes_on = lesson.learned.parameters.size() > 0 && trained.outcome == Outcome::not_finite;
@@ -111,11 +111,11 @@ int serve(const LearnOptions& options) {
     return refuse(
         options.json, exit_bad_input, "invalid_command_line",
         fmt::format("--integrator {}: there is none; take one of {}", options.integrator, integrator_names()));
-  Lesson lesson;
+  TrainingOutcome lesson;
   std::optional<OutputFolder> folder;
   try {
     lesson = prepare(options);
-    if (options.out) folder.emplace(folder_for_lesson(*options.out, lesson));
+    if (options.out) folder.emplace(folder_for_training(*options.out, lesson));
   } catch (const DataError& error) {
     return refuse(options.json, exit_bad_input, "invalid_data", error.what());
   } catch (const ModelError& error) {
@@ -131,11 +131,11 @@ int serve(const LearnOptions& options) {
   if (lesson.test) measure(lesson);
   const bool unmeasured = lesson.test && !lesson.measures;
   const int code = unmeasured ? exit_interrupted : exit_code(lesson.trained.outcome);
-  std::string text = lesson_text(lesson);
-  auto json = lesson_json(lesson);
+  std::string text = training_text(lesson);
+  auto json = training_json(lesson);
   if (options.out) {
     std::string note;
-    const auto files = write_lesson(lesson, *options.out, note);
+    const auto files = write_training(lesson, *options.out, note);
     tell_written(files, note, text, json);
   } else {
     text += "  (no files written; --out DIR writes model, history, plot and summary)\n";

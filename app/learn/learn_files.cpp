@@ -1,9 +1,9 @@
 #include "learn_files.hpp"
 
-#include <lagroid/run/clock.hpp>
-#include <lagroid/run/kept_file.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/text.hpp>
+#include <lagroid/run/files/kept_file.hpp>
+#include <lagroid/run/reports/clock.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/text.hpp>
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ using learning::Stage;
 constexpr std::array<const char*, 8> files{model_file_name, "history.csv", "errors.csv", "summary.json",
                                            "summary.txt",   "plot.gp",     "plot.svg",   "plot.png"};
 
-std::string history_csv(const Lesson& lesson) {
+std::string history_csv(const TrainingOutcome& lesson) {
   std::string out = "line,start,iteration,training,validation,damping,seconds\n";
   long line = 0;
   for (const Stage& now : lesson.trained.history)
@@ -33,14 +33,14 @@ std::string history_csv(const Lesson& lesson) {
   return out;
 }
 
-std::string errors_csv(const Lesson& lesson) {
+std::string errors_csv(const TrainingOutcome& lesson) {
   std::string out = "t,rms\n";
   for (std::size_t i = 0; i < lesson.measures->times.size(); ++i)
     fmt::format_to(std::back_inserter(out), "{},{:.6g}\n", lesson.measures->times[i], lesson.measures->rms[i]);
   return out;
 }
 
-std::string gnuplot_script(const Lesson& lesson) {
+std::string gnuplot_script(const TrainingOutcome& lesson) {
   std::string out =
       "# Draws history.csv and errors.csv; run by lagroid, or by hand: gnuplot plot.gp\n"
       "set datafile separator ','\nset datafile missing 'nan'\nset grid\nset logscale y\nset format y '%.0e'\n";
@@ -64,7 +64,7 @@ std::string gnuplot_script(const Lesson& lesson) {
 
 /// How much of the motion from first points to later ones the model accounts for: one less its mean squared error over
 /// that of a system at rest. NaN where nothing moves.
-double share_explained(const Lesson& lesson) {
+double share_explained(const TrainingOutcome& lesson) {
   const learning::Trajectories& data = lesson.data;
   double motion = 0;
   for (Eigen::Index j = 0; j < data.count(); ++j)
@@ -76,7 +76,7 @@ double share_explained(const Lesson& lesson) {
 }
 
 /// What is said where that is little: a training converges on noise too.
-std::string little_explained(const Lesson& lesson) {
+std::string little_explained(const TrainingOutcome& lesson) {
   constexpr double enough = 0.9;
   const double share = share_explained(lesson);
   if (!(share < enough)) return "";
@@ -86,7 +86,7 @@ std::string little_explained(const Lesson& lesson) {
       100 * std::max(share, 0.0));
 }
 
-std::vector<std::string> notes_of(const Lesson& lesson) {
+std::vector<std::string> notes_of(const TrainingOutcome& lesson) {
   std::vector<std::string> out = lesson.notes;
   if (const std::string note = little_explained(lesson); !note.empty()) out.push_back(note);
   return out;
@@ -105,7 +105,7 @@ std::string as_text(const LearnOptions& o) {
 
 }  // namespace
 
-nlohmann::ordered_json lesson_json(const Lesson& lesson) {
+nlohmann::ordered_json training_json(const TrainingOutcome& lesson) {
   const auto& trained = lesson.trained;
   nlohmann::ordered_json out;
   out["status"] = to_string(trained.outcome);
@@ -149,7 +149,7 @@ nlohmann::ordered_json lesson_json(const Lesson& lesson) {
   return out;
 }
 
-std::string lesson_text(const Lesson& lesson) {
+std::string training_text(const TrainingOutcome& lesson) {
   const auto& trained = lesson.trained;
   const auto& options = lesson.options;
   std::string out = fmt::format("{} on (T*S^2)^{}, through {} with {} substeps of {:g}: {}\n",
@@ -188,14 +188,14 @@ std::string lesson_text(const Lesson& lesson) {
   return out;
 }
 
-OutputFolder folder_for_lesson(const fs::path& folder, const Lesson& lesson) {
+OutputFolder folder_for_training(const fs::path& folder, const TrainingOutcome& lesson) {
   const OutputSource source{{"data", contents(lesson.options.data).value_or("")},
                             {"model", lesson.learned.model->name()},
                             {"options", as_text(lesson.options)}};
   return {folder, OutputKind::model, source, files};
 }
 
-std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder, std::string& note) {
+std::vector<fs::path> write_training(const TrainingOutcome& lesson, const fs::path& folder, std::string& note) {
   const auto make = [&](const fs::path& staging) {
     std::vector<std::string> names{model_file_name, "history.csv", "summary.json", "summary.txt", "plot.gp"};
     write_text(model_text(lesson.learned), staging / model_file_name);
@@ -204,8 +204,8 @@ std::vector<fs::path> write_lesson(const Lesson& lesson, const fs::path& folder,
       write_text(errors_csv(lesson), staging / "errors.csv");
       names.emplace_back("errors.csv");
     }
-    write_text(json_text(lesson_json(lesson)) + "\n", staging / "summary.json");
-    write_text(visible(lesson_text(lesson), "\n"), staging / "summary.txt");
+    write_text(json_text(training_json(lesson)) + "\n", staging / "summary.json");
+    write_text(visible(training_text(lesson), "\n"), staging / "summary.txt");
     write_text(gnuplot_script(lesson), staging / "plot.gp");
     return names;
   };

@@ -1,10 +1,10 @@
 #pragma once
 /// What a training says and leaves.
 
-#include "../spheres/model_file.hpp"
+#include "../spheres/learned/model_file.hpp"
 #include "learn.hpp"
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/solvers/learning/measures.hpp>
 #include <lagroid/solvers/learning/train.hpp>
 
@@ -18,7 +18,7 @@
 namespace lagroid::app {
 
 /// All that is known after a training.
-struct Lesson {
+struct TrainingOutcome {
   LearnOptions options;
   LearnedHamiltonian learned;
   learning::Trained trained;
@@ -28,15 +28,15 @@ struct Lesson {
   std::vector<std::string> notes;
 };
 
-std::string lesson_text(const Lesson& lesson);
-nlohmann::ordered_json lesson_json(const Lesson& lesson);
+std::string training_text(const TrainingOutcome& lesson);
+nlohmann::ordered_json training_json(const TrainingOutcome& lesson);
 
 /// The folder for the files, for this process alone; of the same data and model it is written anew. Throws as
 /// OutputFolder does.
-OutputFolder folder_for_lesson(const std::filesystem::path& folder, const Lesson& lesson);
+OutputFolder folder_for_training(const std::filesystem::path& folder, const TrainingOutcome& lesson);
 /// model.json, history.csv, errors.csv (with held-out data), summaries, plots; each whole or not at all. `note` says
 /// why there are no pictures.
-std::vector<std::filesystem::path> write_lesson(const Lesson& lesson, const std::filesystem::path& folder,
-                                                std::string& note);
+std::vector<std::filesystem::path> write_training(const TrainingOutcome& lesson, const std::filesystem::path& folder,
+                                                  std::string& note);
 
 }  // namespace lagroid::app

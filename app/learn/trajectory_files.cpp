@@ -1,7 +1,7 @@
 #include "trajectory_files.hpp"
 
-#include <lagroid/run/hdf5_file.hpp>
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/hdf5_file.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
 

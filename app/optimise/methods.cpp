@@ -1,10 +1,10 @@
 #include "methods.hpp"
 
-#include <lagroid/solvers/optimisation/accelerated.hpp>
-#include <lagroid/solvers/optimisation/conjugate_gradient.hpp>
-#include <lagroid/solvers/optimisation/euler_lagrange.hpp>
-#include <lagroid/solvers/optimisation/gradient_descent.hpp>
-#include <lagroid/solvers/optimisation/trust_region.hpp>
+#include <lagroid/solvers/optimisation/methods/accelerated.hpp>
+#include <lagroid/solvers/optimisation/methods/conjugate_gradient.hpp>
+#include <lagroid/solvers/optimisation/methods/euler_lagrange.hpp>
+#include <lagroid/solvers/optimisation/methods/gradient_descent.hpp>
+#include <lagroid/solvers/optimisation/methods/trust_region.hpp>
 
 #include <algorithm>
 #include <limits>

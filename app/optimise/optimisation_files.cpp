@@ -1,9 +1,9 @@
 #include "optimisation_files.hpp"
 
-#include <lagroid/run/clock.hpp>
-#include <lagroid/run/hdf5_file.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/text.hpp>
+#include <lagroid/run/files/hdf5_file.hpp>
+#include <lagroid/run/reports/clock.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/text.hpp>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include "optimisation_scene.hpp"
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -4,7 +4,7 @@
 #include "methods.hpp"
 #include "problems.hpp"
 
-#include <lagroid/solvers/optimisation/stiefel.hpp>
+#include <lagroid/solvers/optimisation/manifolds/stiefel.hpp>
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 #include "problems.hpp"
 
 #include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/progress.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/progress.hpp>
 #include <lagroid/solvers/optimisation/penalised.hpp>
 
 #include <fmt/format.h>

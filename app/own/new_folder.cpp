@@ -3,7 +3,7 @@
 #include "templates.hpp"
 
 #include <lagroid/core/version.hpp>
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,12 +42,13 @@ struct Offered {
 constexpr std::array offered{
     Offered{"pair", "<lagroid/groupoids/pair.hpp>", "Pair<2>", "the pair groupoid of the plane", 2,
             "position = [1.0, 0.0]\nmomentum = [0.0, 0.5]", true},
-    Offered{"so3", "<lagroid/groupoids/so3.hpp>", "SO3", "the rotations SO(3)", 3,
+    Offered{"so3", "<lagroid/groupoids/groups/so3.hpp>", "SO3", "the rotations SO(3)", 3,
             "attitude = [1.0, 0.0, 0.0, 0.0]\nmomentum = [0.1, 1.0, 0.1]", false},
-    Offered{"so2", "<lagroid/groupoids/so2.hpp>", "SO2", "the rotations of the plane", 1, "momentum = [1.0]", false},
-    Offered{"se2", "<lagroid/groupoids/se2.hpp>", "SE2", "the motions SE(2) of the plane", 3,
+    Offered{"so2", "<lagroid/groupoids/groups/so2.hpp>", "SO2", "the rotations of the plane", 1, "momentum = [1.0]",
+            false},
+    Offered{"se2", "<lagroid/groupoids/groups/se2.hpp>", "SE2", "the motions SE(2) of the plane", 3,
             "position = [0.0, 0.0, 0.0]    # x, y, heading\nmomentum = [0.5, 1.0, 0.1]", false},
-    Offered{"vector", "<lagroid/groupoids/vector_group.hpp>", "VectorGroup<2>", "the plane as a group", 2,
+    Offered{"vector", "<lagroid/groupoids/groups/vector_group.hpp>", "VectorGroup<2>", "the plane as a group", 2,
             "position = [0.0, 0.0]\nmomentum = [1.0, 0.5]", false}};
 
 std::string filled(std::string_view text, const Words& words) {
@@ -69,10 +70,30 @@ std::string class_name(const std::string& name) {
 
 /// Whether the class would be taken for one of the library's, of which the source sees all.
 bool is_taken(const std::string& of_class) {
-  constexpr std::array<std::string_view, 24> taken{"Action",   "Dual",    "Forces", "Lanes",  "Ledger", "Matrix",
-                                                   "Module",   "Motion",  "Pair",   "Panel",  "Path",   "Product",
-                                                   "Quantity", "Scaling", "Shape",  "Stage",  "State",  "Step",
-                                                   "Symmetry", "System",  "Tape",   "Vector", "Walk",   "Integrator"};
+  constexpr std::array<std::string_view, 24> taken{"Action",
+                                                   "Dual",
+                                                   "Forces",
+                                                   "Pack",
+                                                   "Ledger",
+                                                   "Matrix",
+                                                   "Module",
+                                                   "Motion",
+                                                   "Pair",
+                                                   "Panel",
+                                                   "Path",
+                                                   "Product",
+                                                   "Quantity",
+                                                   "Scaling",
+                                                   "Shape",
+                                                   "Stage",
+                                                   "State",
+                                                   "Step",
+                                                   "Symmetry",
+                                                   "System",
+                                                   "NumberArchive",
+                                                   "Vector",
+                                                   "CompensatedTrajectory",
+                                                   "FixedStepIntegrator"};
   return std::ranges::find(taken, of_class) != taken.end();
 }
 

@@ -2,7 +2,7 @@
 
 #include "process.hpp"
 
-#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/files/kept_file.hpp>
 #include <lagroid/run/machine.hpp>
 
 #include <fmt/format.h>

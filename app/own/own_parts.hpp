@@ -1,7 +1,7 @@
 #pragma once
 /// What programs of one's own are made of, beside their systems.
 
-#include "../reading/system_module.hpp"
+#include "../scenes/system_module.hpp"
 
 #include <string>
 #include <typeinfo>

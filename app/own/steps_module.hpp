@@ -1,8 +1,8 @@
 #pragma once
 /// Systems of a program that is compiled in seconds: equal steps of the discrete Lagrangian, by Newton's iteration.
 
-#include "../reading/system_module.hpp"
-#include "../reading/system_scene.hpp"
+#include "../scenes/system_module.hpp"
+#include "../scenes/system_scene.hpp"
 #include "own_parts.hpp"
 
 #include <lagroid/run/run.hpp>
@@ -28,13 +28,14 @@ template <DiscreteSystem Sys> class StepsModule final : public SystemModule {
     const Sys system = read_system<Sys>(scene);
     const Presentation<Sys> presentation = dressed(system, name(), dress_);
     const InitialValue<Sys> initial = read_initial(system, scene, presentation.momentum);
-    const MarchChoice choice = read_march(scene, abilities_of(system));
-    const Pace pace = read_pace(scene, context);
+    const IntegratorChoice choice = read_integrator(scene, capabilities_of(system));
+    const RunExtent pace = read_extent(scene, context);
     if (!is_plain(choice)) throw NeedsAllMethods{};
     scene.finish();
-    auto march = std::make_unique<lagroid::detail::MarchOf<Sys, Integrator<Sys>>>(
+    auto integrator = std::make_unique<lagroid::detail::IntegratorOf<Sys, FixedStepIntegrator<Sys>>>(
         system, initial.state, initial.configuration, std::make_unique<NewtonStep<Sys>>());
-    SystemMotion<Sys> motion(system, presentation, watched(system, choice.options), std::move(march), choice.options);
+    SystemMotion<Sys> motion(system, presentation, watched(system, choice.options), std::move(integrator),
+                             choice.options);
     RunResult result;
     drive(motion, pace, context, result);
     return result;

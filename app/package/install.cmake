@@ -2,7 +2,7 @@
 # program (programs, examples, documentation) and, where it is built, python. docs/install.md is the page on it.
 include(CMakePackageConfigHelpers)
 
-# An installation says which registers it was compiled for; core/lanes.hpp has the rule and obeys.
+# An installation says which registers it was compiled for; core/scalars/pack.hpp has the rule and obeys.
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_FLAGS -std=c++20)
 if(LAGROID_ARCH)
@@ -12,7 +12,7 @@ set(CMAKE_REQUIRED_INCLUDES ${PROJECT_BINARY_DIR}/include)
 set(CMAKE_REQUIRED_LIBRARIES Eigen3::Eigen)
 string(MAKE_C_IDENTIFIER "${LAGROID_ARCH}" instructions)
 foreach(bytes 16 32 64)
-  check_cxx_source_compiles("#include <lagroid/core/lanes.hpp>
+  check_cxx_source_compiles("#include <lagroid/core/scalars/pack.hpp>
 static_assert(lagroid::detail::register_lanes<double>() * sizeof(double) == ${bytes});
 int main() {}" LAGROID_REGISTERS_${instructions}_${bytes})
   if(LAGROID_REGISTERS_${instructions}_${bytes})
@@ -24,7 +24,7 @@ unset(CMAKE_REQUIRED_FLAGS)
 unset(CMAKE_REQUIRED_INCLUDES)
 unset(CMAKE_REQUIRED_LIBRARIES)
 if(NOT register_bytes)
-  message(FATAL_ERROR "core/lanes.hpp does not compile, or its registers have a size that app/package/install.cmake does not "
+  message(FATAL_ERROR "core/scalars/pack.hpp does not compile, or its registers have a size that app/package/install.cmake does not "
                       "know; see CMakeFiles/CMakeError.log in ${PROJECT_BINARY_DIR}")
 endif()
 get_target_property(definitions lagroid_core INTERFACE_COMPILE_DEFINITIONS)
@@ -36,6 +36,8 @@ foreach(folder core groupoids systems solvers run)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid COMPONENT development
           FILES_MATCHING PATTERN "*.hpp" PATTERN "hdf5_file.hpp" EXCLUDE)  # it needs HDF5's headers: the library's own
 endforeach()
+# Paths and names of the minor version before.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/compat/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid COMPONENT development)
 set(cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lagroid)
 foreach(part core lagroid laws)
   set(target lagroid_${part})
@@ -53,7 +55,7 @@ if(LAGROID_APP)
   install(EXPORT lagroid-commands-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
   install(FILES ${PROJECT_SOURCE_DIR}/app/own_program.hpp ${PROJECT_SOURCE_DIR}/app/program.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app COMPONENT development)
-  foreach(folder own reading families command check)
+  foreach(folder own reading scenes families command check)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/app/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app
             COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "templates" EXCLUDE)
   endforeach()

@@ -1,8 +1,8 @@
 #include "scene_reader.hpp"
 
-#include <lagroid/run/kept_file.hpp>
-#include <lagroid/run/nesting.hpp>
-#include <lagroid/run/text.hpp>
+#include <lagroid/run/files/kept_file.hpp>
+#include <lagroid/run/files/nesting.hpp>
+#include <lagroid/run/reports/text.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 
 #include "../reading/kinds.hpp"
 
-#include <lagroid/systems/pendulum_chain.hpp>
+#include <lagroid/systems/pendulums/pendulum_chain.hpp>
 
 #include <fmt/format.h>
 
@@ -27,8 +27,8 @@ class ChainSystem final : public SphereSystem {
     if (from == to) return z;
     return to == SphereForm::momenta ? chain_.to_momenta(z) : chain_.to_velocities(z);
   }
-  std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const override {
-    return make_chain_march(chain_, start, options);
+  std::unique_ptr<SphereIntegrator> begin(const Points& start, const SphereIntegratorOptions& options) const override {
+    return make_chain_integrator(chain_, start, options);
   }
 
   std::vector<SphereQuantity> quantities() const override {

@@ -60,7 +60,7 @@ SphereNode::SphereNode(const SphereSystem& system, SphereForm form, const Method
   add({"constraint_residual", {"residual"}, "1", "largest distance from the spheres", false, {}});
 }
 
-void SphereNode::see(long index, double time, SphereMarch::Points points) {
+void SphereNode::see(long index, double time, SphereIntegrator::Points points) {
   index_ = index;
   time_ = time;
   z_ = std::move(points);

@@ -3,7 +3,7 @@
 
 #include "sphere_system.hpp"
 
-#include <lagroid/run/observables.hpp>
+#include <lagroid/run/motion/observables.hpp>
 
 #include <vector>
 
@@ -16,7 +16,7 @@ class SphereNode final : public Observables {
   /// Of every n-th node something is seen: over those between rounding walks on. The system must outlive this.
   SphereNode(const SphereSystem& system, SphereForm form, const MethodTraits& method, bool keeps_spheres, long every);
 
-  void see(long index, double time, SphereMarch::Points points);
+  void see(long index, double time, SphereIntegrator::Points points);
 
   long index() const override { return index_; }
   double time() const override { return time_; }
@@ -45,7 +45,7 @@ class SphereNode final : public Observables {
   std::vector<Watched> watched_;
   long index_ = 0;
   double time_ = 0;
-  SphereMarch::Points z_;
+  SphereIntegrator::Points z_;
   std::vector<Measured> measured_;
   double residual_ = 0;
 };

@@ -1,11 +1,11 @@
 #include "sphere_run.hpp"
 
-#include "../reading/simulation.hpp"
+#include "../scenes/simulation.hpp"
 #include "sphere_node.hpp"
 #include "sphere_start.hpp"
 #include "sphere_time.hpp"
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace lagroid::app {
 namespace {
 
 /// Why a step failed, and what to do.
-std::string sphere_failure(const StepReport& report, long step, double time, const SphereMarchOptions& options) {
+std::string sphere_failure(const StepReport& report, long step, double time, const SphereIntegratorOptions& options) {
   const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
   switch (report.status) {
     case SolveStatus::not_finite:
@@ -44,15 +44,15 @@ class SphereMotion final : public Motion {
   SphereMotion(const SpheresToCheck& asked, long every)
       : system_(asked.system),
         options_(asked.options),
-        march_(system_->begin(asked.start, options_)),
-        stages_(march_->traits().stages),
-        node_(*system_, options_.form, march_->traits(), keeps_spheres(options_), every) {}
+        integrator_(system_->begin(asked.start, options_)),
+        stages_(integrator_->traits().stages),
+        node_(*system_, options_.form, integrator_->traits(), keeps_spheres(options_), every) {}
 
   std::string name() const override { return std::string(system_->name()); }
-  MethodTraits traits() const override { return march_->traits(); }
+  MethodTraits traits() const override { return integrator_->traits(); }
 
   StepReport advance() override {
-    const StepReport report = march_->advance();
+    const StepReport report = integrator_->advance();
     if (report.converged()) ++index_;
     return report;
   }
@@ -65,14 +65,14 @@ class SphereMotion final : public Motion {
   }
 
   long index() const override { return index_; }
-  double time() const override { return march_->time(); }
+  double time() const override { return integrator_->time(); }
   double step_size() const override { return options_.step; }
   const Observables& look() override {
-    node_.see(index_, time(), march_->point());
+    node_.see(index_, time(), integrator_->point());
     return node_;
   }
   std::vector<NamedVector> state() const override {
-    const auto z = system_->in_form(march_->point(), options_.form, SphereForm::momenta);
+    const auto z = system_->in_form(integrator_->point(), options_.form, SphereForm::momenta);
     NamedVector directions{"directions", {}}, momenta{"momenta", {}};
     for (Eigen::Index i = 0; i < z.cols(); ++i) {
       directions.values.insert(directions.values.end(), z.col(i).data(), z.col(i).data() + 3);
@@ -80,27 +80,27 @@ class SphereMotion final : public Motion {
     }
     return {std::move(directions), std::move(momenta)};
   }
-  std::optional<double> defect() const override { return off_spheres(march_->point()); }
+  std::optional<double> defect() const override { return off_spheres(integrator_->point()); }
   bool is_judged_at_every_node() const override { return false; }
 
   void describe(RunResult& result) const override {
     if (options_.tolerance > 0) result.method += fmt::format(", tolerance {:g}", options_.tolerance);
     describe_spheres(*system_, options_.form, result);
   }
-  void persist(Tape& tape) override {
+  void serialize(NumberArchive& archive) override {
     for (const double now : system_->from_files()) {
       double then = now;
-      tape(then);
+      archive(then);
       if (then != now) throw RunError("the file that the scene's system is read from has changed; run the scene anew");
     }
-    march_->persist(tape);
-    tape(index_);
+    integrator_->serialize(archive);
+    archive(index_);
   }
 
  private:
   std::shared_ptr<const SphereSystem> system_;
-  SphereMarchOptions options_;
-  std::unique_ptr<SphereMarch> march_;
+  SphereIntegratorOptions options_;
+  std::unique_ptr<SphereIntegrator> integrator_;
   int stages_;
   SphereNode node_;
   long index_ = 0;
@@ -114,7 +114,7 @@ SphereScene read_spheres(const SphereEntry& entry, const Section& scene, const R
   read.system = entry.read(scene);
   read.options = read_sphere_time(scene, entry, *read.system);
   read.start = read_start(scene, *read.system, read.options.form);
-  out.pace = read_pace(scene, context);
+  out.pace = read_extent(scene, context);
   if (!out.pace.scene.empty())
     out.pace.scene = parse_scene(out.pace.scene, scene.file(), read.system->pinned()).whole();
   scene.choice("system", {std::string(entry.name)});

@@ -1,7 +1,7 @@
 #pragma once
 /// Scenes on (T*S^2)^k as motions.
 
-#include "../reading/motion_scene.hpp"
+#include "../scenes/motion_scene.hpp"
 #include "sphere_system.hpp"
 
 #include <memory>
@@ -11,8 +11,8 @@ namespace lagroid::app {
 /// A scene whose steps are to be asked their laws.
 struct SpheresToCheck {
   std::shared_ptr<const SphereSystem> system;
-  SphereMarchOptions options;
-  SphereMarch::Points start;  ///< in the form of the options
+  SphereIntegratorOptions options;
+  SphereIntegrator::Points start;  ///< in the form of the options
 };
 
 /// A scene that has been read.

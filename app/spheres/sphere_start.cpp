@@ -10,7 +10,7 @@ namespace lagroid::app {
 namespace {
 
 using Spheres = CotangentSpheres<Eigen::Dynamic>;
-using Points = SphereMarch::Points;
+using Points = SphereIntegrator::Points;
 using V = Vector<double, 3>;
 
 constexpr double slack = 1e-6;  // of what is typed in with a few digits

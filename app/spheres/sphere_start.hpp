@@ -7,6 +7,6 @@ namespace lagroid::app {
 
 /// [initial] of a scene, in that form: `directions`, or `theta` and `phi`; `angular_velocities` or `momenta`, by
 /// default zero, which are tangent, or made so where `project_velocities` says it.
-SphereMarch::Points read_start(const Section& scene, const SphereSystem& system, SphereForm form);
+SphereIntegrator::Points read_start(const Section& scene, const SphereSystem& system, SphereForm form);
 
 }  // namespace lagroid::app

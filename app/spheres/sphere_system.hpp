@@ -5,8 +5,8 @@
 #include "../reading/scene_reader.hpp"
 
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/solvers/declared_methods.hpp>
-#include <lagroid/systems/sphere_march.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
+#include <lagroid/systems/spheres/sphere_integrator.hpp>
 
 #include <memory>
 #include <string>
@@ -31,7 +31,7 @@ struct Measured {
 
 class SphereSystem {
  public:
-  using Points = SphereMarch::Points;
+  using Points = SphereIntegrator::Points;
 
   virtual ~SphereSystem() = default;
   virtual std::string_view name() const = 0;
@@ -39,7 +39,8 @@ class SphereSystem {
   virtual std::vector<SphereForm> forms() const = 0;
   /// Points in another form; only for forms that it has.
   virtual Points in_form(const Points& z, SphereForm from, SphereForm to) const = 0;
-  virtual std::unique_ptr<SphereMarch> begin(const Points& start, const SphereMarchOptions& options) const = 0;
+  virtual std::unique_ptr<SphereIntegrator> begin(const Points& start,
+                                                  const SphereIntegratorOptions& options) const = 0;
 
   /// Numbers from files that it is made of: a run is taken up with the same ones only.
   virtual std::vector<double> from_files() const { return {}; }

@@ -1,9 +1,9 @@
 #include "../reading/kinds.hpp"
-#include "learned_scene.hpp"
+#include "learned/learned_scene.hpp"
 #include "pendulum_chain.hpp"
 #include "sphere_system.hpp"
 
-#include <lagroid/systems/chain_rattle.hpp>
+#include <lagroid/systems/pendulums/chain_rattle.hpp>
 
 namespace lagroid::app {
 

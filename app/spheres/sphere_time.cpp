@@ -1,6 +1,6 @@
 #include "sphere_time.hpp"
 
-#include "../reading/simulation.hpp"
+#include "../scenes/simulation.hpp"
 
 #include <lagroid/run/interrupt.hpp>
 
@@ -35,9 +35,9 @@ std::string read_sphere_method(const Section& time, const SphereEntry& entry) {
   return time.choice_or("method", usual_method(entry), names);
 }
 
-SphereMarchOptions read_sphere_time(const Section& scene, const SphereEntry& entry, const SphereSystem& system) {
+SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry& entry, const SphereSystem& system) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
-  SphereMarchOptions options;
+  SphereIntegratorOptions options;
   options.step = read_time(scene).step;
   refuse_accuracy(scene);
   options.method = read_sphere_method(time, entry);
@@ -95,7 +95,7 @@ std::vector<Method> sphere_methods(const SphereEntry& entry, const SphereSystem&
   return all;
 }
 
-bool keeps_spheres(const SphereMarchOptions& options) {
+bool keeps_spheres(const SphereIntegratorOptions& options) {
   const LieGroupMethod* method = lie_group_methods::named(options.method);
   return method == nullptr || method->scheme != LieGroupScheme::classical;
 }

@@ -16,13 +16,13 @@ std::string read_sphere_method(const Section& time, const SphereEntry& entry);
 /// The system's own method of that name; null where it is one for Lie groups.
 const DeclaredMethod* own_method(const SphereEntry& entry, std::string_view name);
 /// [time] of a scene, its step apart: method, form, tolerance.
-SphereMarchOptions read_sphere_time(const Section& scene, const SphereEntry& entry, const SphereSystem& system);
+SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry& entry, const SphereSystem& system);
 
 /// All that it would accept: the system's own, and every Lie group method in every form; those with an error estimate
 /// also with controlled steps.
 std::vector<Method> sphere_methods(const SphereEntry& entry, const SphereSystem& system);
 
 /// Whether the method keeps to the spheres.
-bool keeps_spheres(const SphereMarchOptions& options);
+bool keeps_spheres(const SphereIntegratorOptions& options);
 
 }  // namespace lagroid::app

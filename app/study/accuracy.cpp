@@ -4,7 +4,7 @@
 #include <lagroid/run/study/methods.hpp>
 #include "scene_experiment.hpp"
 
-#include <lagroid/run/clock.hpp>
+#include <lagroid/run/reports/clock.hpp>
 
 #include <fmt/format.h>
 
@@ -171,7 +171,7 @@ AccuracyChoice choose_by_accuracy(const Section& scene) {
   AccuracyChoice choice;
   choice.scene = with_method(without_method(timed), best.method, h, experiment.end);
   choice.notes.push_back(
-      fmt::format("accuracy: for an error of {:.2g} at t = {:g}, {} with {} steps of {:.4g}; to march "
+      fmt::format("accuracy: for an error of {:.2g} at t = {:g}, {} with {} steps of {:.4g}; to integrate "
                   "costs about {}",
                   goal.target, experiment.end, best.method.name, steps, h, duration(cost)));
   choice.notes.push_back(fmt::format("accuracy: ten times better would cost about {}, by {} with steps of {:.4g}",

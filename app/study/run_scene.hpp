@@ -3,7 +3,7 @@
 
 #include "../reading/scene_reader.hpp"
 
-#include <lagroid/run/drive.hpp>
+#include <lagroid/run/motion/drive.hpp>
 
 namespace lagroid::app {
 

@@ -1,7 +1,7 @@
 #include "scene_experiment.hpp"
 
 #include "../families/family.hpp"
-#include "../reading/simulation.hpp"
+#include "../scenes/simulation.hpp"
 
 #include <fmt/format.h>
 

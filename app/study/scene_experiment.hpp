@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes to be marched by many methods with many steps.
+/// Scenes to be integrated by many methods with many steps.
 
 #include "../reading/scene_reader.hpp"
 

@@ -1,11 +1,11 @@
 #include "study.hpp"
 
-#include <lagroid/run/kept_file.hpp>
-#include <lagroid/run/nesting.hpp>
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/kept_file.hpp>
+#include <lagroid/run/files/nesting.hpp>
+#include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/run/reports/text.hpp>
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
-#include <lagroid/run/text.hpp>
 #include "../command/shell.hpp"
 #include "../command/written.hpp"
 #include "../reading/scene_reader.hpp"

@@ -1,6 +1,6 @@
 #include "design.hpp"
 
-#include "member_list.hpp"
+#include "work/member_list.hpp"
 
 #include <fmt/format.h>
 #include <boost/math/distributions/normal.hpp>

@@ -1,10 +1,10 @@
 #include "lanes.hpp"
 
-#include "../reading/system_module.hpp"
+#include "../scenes/system_module.hpp"
 
 #include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/recorder.hpp>
-#include <lagroid/run/system_node.hpp>
+#include <lagroid/run/motion/recorder.hpp>
+#include <lagroid/run/motion/system_node.hpp>
 #include <lagroid/systems/ensembles.hpp>
 
 #include <fmt/format.h>
@@ -29,13 +29,13 @@ template <class Sys> class LaneRunner final : public MemberRunner {
  public:
   using G = typename Sys::GroupoidType;
 
-  LaneRunner(const ModuleOf<Sys>& module, const Section& scene, const Design& design, const Keep& keep)
+  LaneRunner(const ModuleOf<Sys>& module, const Section& scene, const Design& design, const KeptColumns& keep)
       : module_(module), scene_(recording(scene, keep)), design_(design), keep_(keep) {}
 
   std::string_view name() const override { return "lanes"; }
 
-  std::optional<Part> run(long first, long count) const override {
-    Part part(first, count);
+  std::optional<SweepPart> run(long first, long count) const override {
+    SweepPart part(first, count);
     std::vector<Member> members;
     for (long at = 0; at < count; ++at) {
       if (InterruptGuard::interrupted()) return std::nullopt;
@@ -54,7 +54,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
       states.push_back(member.task.plain->initial);
       configurations.push_back(member.task.plain->configuration);
     }
-    const Pace& pace = members.front().task.plain->pace;
+    const RunExtent& pace = members.front().task.plain->pace;
     Ensemble<Sys> ensemble(members.front().task.system, states, configurations);
     for (std::size_t i = 0; i < members.size(); ++i) members[i].see(ensemble.point(long(i)));
     EnsembleOptions<Sys> options;
@@ -70,7 +70,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
 
  private:
   struct Member {
-    Member(long place, Task<Sys> its)
+    Member(long place, PreparedScene<Sys> its)
         : at(place),
           task(std::move(its)),
           node(std::make_unique<SystemNode<Sys>>(task.system, task.plain->presentation, std::vector<Quantity<Sys>>())),
@@ -96,7 +96,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     }
 
     long at;
-    Task<Sys> task;
+    PreparedScene<Sys> task;
     std::unique_ptr<SystemNode<Sys>> node;
     Recorder recorder;
   };
@@ -104,7 +104,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
   const ModuleOf<Sys>& module_;
   Section scene_;
   const Design& design_;
-  const Keep& keep_;
+  const KeptColumns& keep_;
 };
 
 bool names_drifts(const std::vector<std::string>& names) {
@@ -113,7 +113,7 @@ bool names_drifts(const std::vector<std::string>& names) {
 
 /// The runner, or why there is none.
 std::pair<std::unique_ptr<MemberRunner>, std::string> make_lanes(const Section& scene, const Design& design,
-                                                                 const Keep& keep) {
+                                                                 const KeptColumns& keep) {
   if (keep.ledger) return {nullptr, "the ledger looks at every step of every member; set keep.ledger = false"};
   if (names_drifts(keep.initial) || names_drifts(keep.series) || (keep.final && names_drifts(*keep.final)))
     return {nullptr, "drifts are the ledger's"};
@@ -139,11 +139,11 @@ std::pair<std::unique_ptr<MemberRunner>, std::string> make_lanes(const Section& 
 
 }  // namespace
 
-std::string why_no_lanes(const Section& scene, const Design& design, const Keep& keep) {
+std::string why_no_lanes(const Section& scene, const Design& design, const KeptColumns& keep) {
   return make_lanes(scene, design, keep).second;
 }
 
-std::unique_ptr<MemberRunner> lane_runner(const Section& scene, const Design& design, const Keep& keep) {
+std::unique_ptr<MemberRunner> lane_runner(const Section& scene, const Design& design, const KeptColumns& keep) {
   return make_lanes(scene, design, keep).first;
 }
 

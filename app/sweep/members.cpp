@@ -36,7 +36,7 @@ const double* row_of(const Columns& series, std::size_t node) {
 }
 
 void keep_node(const Trajectory& t, std::size_t node, const std::string& group, const std::vector<std::string>* names,
-               long at, Part& part) {
+               long at, SweepPart& part) {
   for (const Columns& s : t.series) {
     const double* row = row_of(s, node);
     for (std::size_t i = 0; row != nullptr && i < s.width(); ++i)
@@ -45,7 +45,7 @@ void keep_node(const Trajectory& t, std::size_t node, const std::string& group, 
   }
 }
 
-void keep_series(const Trajectory& t, const std::vector<std::string>& names, long at, Part& part) {
+void keep_series(const Trajectory& t, const std::vector<std::string>& names, long at, SweepPart& part) {
   part.set_series(at, "series/t", "s", "time", t.time);
   for (const Columns& s : t.series)
     for (std::size_t i = 0; i < s.width(); ++i) {
@@ -59,13 +59,13 @@ void keep_series(const Trajectory& t, const std::vector<std::string>& names, lon
 
 class SceneRunner final : public MemberRunner {
  public:
-  SceneRunner(const Section& scene, const Design& design, const Keep& keep)
+  SceneRunner(const Section& scene, const Design& design, const KeptColumns& keep)
       : scene_(recording(scene, keep)), design_(design), keep_(keep) {}
 
   std::string_view name() const override { return "scenes"; }
 
-  std::optional<Part> run(long first, long count) const override {
-    Part part(first, count);
+  std::optional<SweepPart> run(long first, long count) const override {
+    SweepPart part(first, count);
     for (long at = 0; at < count; ++at) {
       if (InterruptGuard::interrupted()) return std::nullopt;
       try {
@@ -87,15 +87,15 @@ class SceneRunner final : public MemberRunner {
  private:
   Section scene_;
   const Design& design_;
-  const Keep& keep_;
+  const KeptColumns& keep_;
 };
 
 }  // namespace
 
-Keep read_keep(const Section& sweep) {
+KeptColumns read_keep(const Section& sweep) {
   const Section section = sweep.section_or_empty("keep");
   constexpr std::string_view what = "names of recorded quantities or columns";
-  Keep keep;
+  KeptColumns keep;
   if (section.has("final")) keep.final = section.texts_or_none("final", what);
   keep.initial = section.texts_or_none("initial", what);
   keep.series = section.texts_or_none("series", what);
@@ -105,11 +105,11 @@ Keep read_keep(const Section& sweep) {
   return keep;
 }
 
-Section recording(const Section& scene, const Keep& keep) {
+Section recording(const Section& scene, const KeptColumns& keep) {
   return scene.with({{"output.every", {double(keep.series.empty() ? most_apart : keep.every)}}});
 }
 
-void keep_result(const RunResult& r, const Keep& keep, long at, Part& part) {
+void keep_result(const RunResult& r, const KeptColumns& keep, long at, SweepPart& part) {
   part.end(at, r.status, r.converged() ? std::string() : r.message);
   part.set(at, "run/steps", "1", "arrows computed", double(r.steps));
   if (r.cost) part.set(at, "run/cost", "action", "of the path", *r.cost);
@@ -130,11 +130,11 @@ void keep_result(const RunResult& r, const Keep& keep, long at, Part& part) {
   if (!keep.series.empty()) keep_series(t, keep.series, at, part);
 }
 
-std::unique_ptr<MemberRunner> scene_runner(const Section& scene, const Design& design, const Keep& keep) {
+std::unique_ptr<MemberRunner> scene_runner(const Section& scene, const Design& design, const KeptColumns& keep) {
   return std::make_unique<SceneRunner>(scene, design, keep);
 }
 
-Part try_scene(const Section& sweep, const Section& scene, const Keep& keep) {
+SweepPart try_scene(const Section& sweep, const Section& scene, const KeptColumns& keep) {
   Section few = recording(scene, keep);
   if (few.has("boundary"))
     few = few.with({{"solver.starts", {1}}});
@@ -142,7 +142,7 @@ Part try_scene(const Section& sweep, const Section& scene, const Keep& keep) {
     few = few.with({{"time.steps", {1}}});
   const RunResult result = run_scene(few, {.record = true});
   const std::vector<Columns>& recorded = result.trajectory.series;
-  Part part(0, 1);
+  SweepPart part(0, 1);
   keep_result(result, keep, 0, part);
   if (recorded.empty()) return part;
   std::vector<std::string> known;

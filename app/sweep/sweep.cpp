@@ -4,18 +4,18 @@
 #include "../reading/scene_reader.hpp"
 #include "../study/accuracy.hpp"
 #include "lanes.hpp"
-#include "ranks.hpp"
-#include "schedule.hpp"
 #include "sweep_files.hpp"
 #include "sweep_folder.hpp"
+#include "work/ranks.hpp"
+#include "work/schedule.hpp"
 
-#include <lagroid/run/clock.hpp>
+#include <lagroid/run/files/kept_file.hpp>
+#include <lagroid/run/files/nesting.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/run/interrupt.hpp>
-#include <lagroid/run/kept_file.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/nesting.hpp>
-#include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/progress.hpp>
+#include <lagroid/run/reports/clock.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/progress.hpp>
 #include <lagroid/run/run_result.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 
@@ -48,7 +48,7 @@ struct Plan {
 /// Runs a little of the scene as it is written: what is wrong with it, and names that it does not know, are told now.
 void try_out(const SweepScene& sweep, const SweepOptions& options) {
   const Section file = read_scene(options.scene, options.overrides);
-  const Part tried = try_scene(file, sweep.scene, sweep.keep);
+  const SweepPart tried = try_scene(file, sweep.scene, sweep.keep);
   if (sweep.engine == "lanes")
     if (const std::string why = why_no_lanes(sweep.scene, sweep.design, sweep.keep); !why.empty())
       file.section("run", "").fail("engine", fmt::format("no lanes here: {}; leave it out", why));

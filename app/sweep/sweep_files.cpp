@@ -1,11 +1,11 @@
 #include "sweep_files.hpp"
 
-#include <lagroid/run/gnuplot.hpp>
-#include <lagroid/run/hdf5_file.hpp>
+#include <lagroid/run/files/hdf5_file.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/run/machine.hpp>
-#include <lagroid/run/markup.hpp>
-#include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/text.hpp>
+#include <lagroid/run/reports/gnuplot.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/text.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,7 +55,7 @@ Range range_of(const std::vector<double>& values) {
   return out;
 }
 
-std::map<std::string, long> statuses(const Part& members) {
+std::map<std::string, long> statuses(const SweepPart& members) {
   std::map<std::string, long> out;
   for (const std::string& status : members.status()) ++out[status];
   return out;
@@ -97,7 +97,7 @@ void write_data(const SweepScene& sweep, const SweepResult& result, const fs::pa
     const std::vector<std::string> texts{sweep.text, sweep.scene.whole()};
     add_texts(groups["input"], "sweep.toml", {texts[0]});
     add_texts(groups["input"], "scene.toml", {texts[1]});
-    const Part& members = result.members;
+    const SweepPart& members = result.members;
     add_texts(groups["run"], "status", members.status());
     std::vector<double> failed;
     std::vector<std::string> messages;
@@ -134,7 +134,7 @@ void write_data(const SweepScene& sweep, const SweepResult& result, const fs::pa
   });
 }
 
-void write_csv(const SweepScene& sweep, const Part& members, const fs::path& file) {
+void write_csv(const SweepScene& sweep, const SweepPart& members, const fs::path& file) {
   std::ofstream out(file);
   out << "member,status";
   for (const std::string& key : sweep.design.columns()) out << ',' << in_csv(key);
@@ -157,7 +157,7 @@ void write_csv(const SweepScene& sweep, const Part& members, const fs::path& fil
 }
 
 /// [plot], with what is not said there; without a quantity where there is nothing to draw.
-SweepPlot plot_of(const SweepScene& sweep, const Part& members) {
+SweepPlot plot_of(const SweepScene& sweep, const SweepPart& members) {
   SweepPlot plot = sweep.plot;
   const std::vector<std::string> keys = sweep.design.columns();
   if (plot.x.empty() && keys.size() <= 2) {
@@ -212,7 +212,7 @@ long SweepResult::failed() const {
 }
 
 std::string sweep_text(const SweepScene& sweep, const SweepResult& result) {
-  const Part& members = result.members;
+  const SweepPart& members = result.members;
   std::string counted;
   for (const auto& [status, count] : statuses(members))
     counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", count, status);
@@ -236,7 +236,7 @@ std::string sweep_text(const SweepScene& sweep, const SweepResult& result) {
 }
 
 Json sweep_json(const SweepScene& sweep, const SweepResult& result) {
-  const Part& members = result.members;
+  const SweepPart& members = result.members;
   Json out;
   out["status"] = result.failed() == 0 ? "converged" : "members_failed";
   if (result.failed() > 0) out["message"] = fmt::format("{} of {} members failed", result.failed(), members.count());
@@ -264,7 +264,7 @@ std::vector<fs::path> write_sweep(const SweepScene& sweep, const SweepResult& re
                                   std::string& note) {
   Drawing drawing;
   const auto make = [&](const fs::path& staging) {
-    const Part& members = result.members;
+    const SweepPart& members = result.members;
     std::vector<std::string> names{"sweep.h5", "summary.json", "summary.txt"};
     write_data(sweep, result, staging / "sweep.h5");
     write_text(json_text(sweep_json(sweep, result)) + "\n", staging / "summary.json");

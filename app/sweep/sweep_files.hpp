@@ -15,7 +15,7 @@ namespace lagroid::app {
 /// All members of a sweep.
 struct SweepResult {
   std::string engine;  ///< by which they were run
-  Part members;
+  SweepPart members;
 
   long failed() const;
 };

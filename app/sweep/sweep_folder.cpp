@@ -2,7 +2,7 @@
 
 #include "sweep_files.hpp"
 
-#include <lagroid/run/kept_file.hpp>
+#include <lagroid/run/files/kept_file.hpp>
 #include <lagroid/run/machine.hpp>
 
 #include <fmt/format.h>
@@ -54,12 +54,12 @@ constexpr std::array results{"sweep.h5", "members.csv", "summary.json", "summary
 
 fs::path PartFiles::file(long part) const { return folder_ / fmt::format("{:08}.cbor", part); }
 
-void PartFiles::keep(long part, const Part& members) const { replace_by_cbor(file(part), members.json()); }
+void PartFiles::keep(long part, const SweepPart& members) const { replace_by_cbor(file(part), members.json()); }
 
-std::optional<Part> PartFiles::read(long part) const {
+std::optional<SweepPart> PartFiles::read(long part) const {
   const auto json = read_cbor(file(part));
   if (!json) return std::nullopt;
-  return Part::from(*json);
+  return SweepPart::from(*json);
 }
 
 bool PartFiles::has(long part) const {
@@ -143,8 +143,8 @@ std::vector<long> SweepFolder::missing(const SweepScene& sweep) const {
   return out;
 }
 
-Part SweepFolder::joined(const SweepScene& sweep) const {
-  Part out;
+SweepPart SweepFolder::joined(const SweepScene& sweep) const {
+  SweepPart out;
   long damaged = 0;
   for (long p = 0; p < sweep.parts(); ++p) {
     const auto part = parts_.read(p);

@@ -1,10 +1,10 @@
 #pragma once
 /// The folder of a sweep while it goes on: what is finished is there, and stays when all else is lost.
 
-#include "part.hpp"
 #include "sweep_scene.hpp"
+#include "work/part.hpp"
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -20,9 +20,9 @@ class PartFiles {
   explicit PartFiles(const std::filesystem::path& folder) : folder_(folder / "parts") {}
 
   /// Throws OutputError.
-  void keep(long part, const Part& members) const;
+  void keep(long part, const SweepPart& members) const;
   /// None where there is none, or a damaged one.
-  std::optional<Part> read(long part) const;
+  std::optional<SweepPart> read(long part) const;
   bool has(long part) const;
   void remove(long part) const;
   /// Whether there is a file of parts.
@@ -53,7 +53,7 @@ class SweepFolder {
   /// Which parts are still to be run.
   std::vector<long> missing(const SweepScene& sweep) const;
   /// All parts, one after the other; takes damaged ones away and throws RunError.
-  Part joined(const SweepScene& sweep) const;
+  SweepPart joined(const SweepScene& sweep) const;
   /// To be called when the results are written.
   void finish();
 

@@ -4,7 +4,7 @@
 #include "design.hpp"
 #include "members.hpp"
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -28,7 +28,7 @@ struct SweepScene {
   Section scene;      ///< what every member is but for its own numbers
   std::string given;  ///< the scene as it was written, before its accuracy was
   Design design;
-  Keep keep;
+  KeptColumns keep;
   SweepPlot plot;
   std::vector<std::string> notes;  ///< on how the scene came to be
   std::string engine;              ///< asked for: auto, scenes or lanes

@@ -1,4 +1,4 @@
-#include "../reading/system_module.hpp"
+#include "../scenes/system_module.hpp"
 #include "mechanical.hpp"
 
 #include <lagroid/systems/kepler.hpp>
@@ -7,7 +7,7 @@ namespace lagroid::app {
 
 namespace {
 
-Task<Kepler> read(const Section& scene, const RunContext& context) {
+PreparedScene<Kepler> read(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<Kepler, 2>("kepler", {"x", "y"}, "m", {"px", "py"}, "m/s");
   p.panels = {{"orbit", "x", "y", "x", {"y"}, true},
               {"energy error", "t", "|H - H_0|", "t", {"drift energy"}},

@@ -1,7 +1,7 @@
 #pragma once
 /// The systems of the library (systems/systems.cmake).
 
-#include "../reading/system_module.hpp"
+#include "../scenes/system_module.hpp"
 
 #include <vector>
 

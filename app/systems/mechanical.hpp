@@ -1,7 +1,7 @@
 #pragma once
 /// What the scenes of point masses on R^n have in common.
 
-#include "../reading/boundary_value.hpp"
+#include "../scenes/boundary_value.hpp"
 
 #include <lagroid/systems/mechanical.hpp>
 
@@ -56,9 +56,9 @@ BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::s
 /// Reads [initial] or [boundary]. `check(system, section, q)` refuses a position or returns it; `shapes(system)` draws
 /// it.
 template <class Sys, int N, class Check, class CheckState, class Shapes>
-Task<Sys> read_mechanical(const Section& scene, const RunContext& context, Presentation<Sys> p,
-                          std::string_view position, std::string_view momentum, const Check& check,
-                          const CheckState& check_state, const Shapes& shapes) {
+PreparedScene<Sys> read_mechanical(const Section& scene, const RunContext& context, Presentation<Sys> p,
+                                   std::string_view position, std::string_view momentum, const Check& check,
+                                   const CheckState& check_state, const Shapes& shapes) {
   Sys system = read_parameters<Sys>(scene);
   p.shapes = shapes(system);
   if (is_boundary_value(scene, "position and momentum"))

@@ -4,5 +4,5 @@
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   effects::Base base;
-  return effects::march(std::move(base.scene), std::atol(argv[1]));
+  return effects::integrate(std::move(base.scene), std::atol(argv[1]));
 }

@@ -28,8 +28,8 @@ struct Base {
   }
 };
 
-/// Marches the scene, and prints what memory it takes.
-inline int march(Scene scene, long steps) {
+/// Integrates the scene, and prints what memory it takes.
+inline int integrate(Scene scene, long steps) {
   Multibody motion(std::move(scene), 0.001);
   std::printf("memory %zu\n", motion.memory());
   for (long k = 0; k < steps; ++k)

@@ -90,5 +90,5 @@ int main(int argc, char** argv) {
   if (argc != 3 || !kinds().contains(argv[2])) return 2;
   Base base;
   kinds().at(argv[2])(base);
-  return march(std::move(base.scene), std::atol(argv[1]));
+  return integrate(std::move(base.scene), std::atol(argv[1]));
 }

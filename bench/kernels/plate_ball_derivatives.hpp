@@ -1,7 +1,7 @@
 #pragma once
 /// The plate-ball system in the trace form, its derivatives written by hand.
 
-#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
 
 namespace kernels {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The free rigid body with the Cayley map, its derivatives written by hand.
 
-#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 namespace kernels {
 

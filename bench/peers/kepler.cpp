@@ -11,7 +11,7 @@ namespace peers {
 Problem kepler() {
   const KeplerProblem problem;
   Problem out = posed(problem, "kepler", "Kepler, e = 0.6", {100, 1e4});
-  out.methods = mechanical_marches(problem, lagroid::Kepler{});
+  out.methods = mechanical_integrators(problem, lagroid::Kepler{});
   add(out.methods, peer_methods(problem));
   out.remarks =
       "Unit mass and strength, from the pericentre, period 2 pi. Error: |(q, p) - (q\\*, p\\*)|. Invariants: energy, "

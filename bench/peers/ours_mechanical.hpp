@@ -1,5 +1,5 @@
 #pragma once
-/// The marches of point masses: of (q, p).
+/// The integrators of point masses: of (q, p).
 
 #include "ours.hpp"
 
@@ -7,7 +7,7 @@
 
 namespace peers {
 
-template <class Sys, class P> std::vector<Method> mechanical_marches(const P& problem, const Sys& system) {
+template <class Sys, class P> std::vector<Method> mechanical_integrators(const P& problem, const Sys& system) {
   constexpr int n = Sys::dimension;
   const auto y = problem.start();
   lagroid::State<lagroid::Pair<n>> start;
@@ -24,7 +24,7 @@ template <class Sys, class P> std::vector<Method> mechanical_marches(const P& pr
     }
     return out;
   };
-  return marches(problem, system, start, system.groupoid.unit(start.object), coordinates);
+  return integrators(problem, system, start, system.groupoid.unit(start.object), coordinates);
 }
 
 }  // namespace peers

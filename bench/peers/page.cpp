@@ -4,8 +4,8 @@
 
 #include "../pages.hpp"
 
-#include <lagroid/run/clock.hpp>
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/run/reports/clock.hpp>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include "problem.hpp"
 
-#include "../../core/compensation.hpp"
+#include "../../core/scalars/compensation.hpp"
 
 namespace peers {
 

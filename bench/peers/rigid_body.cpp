@@ -5,8 +5,8 @@
 #include "ours_rotation.hpp"
 #include "reference.hpp"
 
-#include <lagroid/systems/moser_veselov.hpp>
-#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rotations/moser_veselov.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 namespace peers {
 
@@ -18,14 +18,15 @@ Problem rigid_body() {
   const State<SO3> start{{}, {m[0], m[1], m[2]}};
   const Matrix<double, 3, 3> attitude = Matrix<double, 3, 3>::Identity();
   const RigidBody body;
-  out.methods = marches(problem, body, start, attitude, [](const TrajectoryPoint<RigidBody>& point) {
+  out.methods = integrators(problem, body, start, attitude, [](const TrajectoryPoint<RigidBody>& point) {
     return rotation_coordinates(point.configuration, point.state.momentum);
   });
   for (int order = 2; order <= 10; order += 2)
-    out.methods.push_back(marched<MoserVeselov>(
+    out.methods.push_back(integrated<MoserVeselov>(
         problem, fmt::format("Moser-Veselov, order {}", order), order, problem.unit(),
         [=](double h) {
-          return make_march(MoserVeselov::preprocessed(body.inertia, start.momentum, h, order), start, attitude, {});
+          return make_integrator(MoserVeselov::preprocessed(body.inertia, start.momentum, h, order), start, attitude,
+                                 {});
         },
         [](const TrajectoryPoint<MoserVeselov>& point) {
           return rotation_coordinates(point.configuration, point.state.momentum);

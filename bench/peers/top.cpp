@@ -5,7 +5,7 @@
 #include "ours_rotation.hpp"
 #include "reference.hpp"
 
-#include <lagroid/systems/heavy_top.hpp>
+#include <lagroid/systems/rotations/heavy_top.hpp>
 
 namespace peers {
 
@@ -19,7 +19,7 @@ Problem top() {
   const Vector<double, 3> up(0, 0, 1);
   const ArrowOf<HeavyTop::GroupoidType> configuration{attitude, up};
   const State<HeavyTop::GroupoidType> start{system.groupoid.target(configuration), {m[0], m[1], m[2]}};
-  out.methods = marches(problem, system, start, configuration, [](const TrajectoryPoint<HeavyTop>& point) {
+  out.methods = integrators(problem, system, start, configuration, [](const TrajectoryPoint<HeavyTop>& point) {
     return rotation_coordinates(point.configuration.element, point.state.momentum);
   });
   add(out.methods, peer_methods(problem));

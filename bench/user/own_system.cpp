@@ -1,7 +1,7 @@
 // As a user writes it: a system of one's own, and steps of it. `lagroid bench` times the compilation of this file.
 #include <lagroid/groupoids/pair.hpp>
-#include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
 
 #include <memory>
 
@@ -28,8 +28,8 @@ double oscillator_momentum_after(int steps);
 double oscillator_momentum_after(int steps) {
   Oscillator system;
   State<Pair<2>> start{{0.1, 0}, {0, 0.4}};
-  Integrator<Oscillator> integrator(system, start, system.groupoid.unit(start.object),
-                                    std::make_unique<NewtonStep<Oscillator>>());
+  FixedStepIntegrator<Oscillator> integrator(system, start, system.groupoid.unit(start.object),
+                                             std::make_unique<NewtonStep<Oscillator>>());
   for (int k = 0; k < steps && integrator.advance().converged(); ++k) {
   }
   return integrator.point().state.momentum(0);

@@ -1,7 +1,7 @@
 // As a user writes it: includes a system and steps it. `lagroid bench` times the compilation of this file.
-#include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
-#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 #include <memory>
 
@@ -12,8 +12,8 @@ double rigid_body_momentum_after(int steps) {
   RigidBody system;
   State<SO3> start;
   start.momentum << 0.4, 1.9, -1.1;
-  Integrator<RigidBody> integrator(system, start, system.groupoid.unit(start.object),
-                                   std::make_unique<NewtonStep<RigidBody>>());
+  FixedStepIntegrator<RigidBody> integrator(system, start, system.groupoid.unit(start.object),
+                                            std::make_unique<NewtonStep<RigidBody>>());
   for (int k = 0; k < steps && integrator.advance().converged(); ++k) {
   }
   return integrator.point().state.momentum(0);

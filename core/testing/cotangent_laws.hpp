@@ -3,7 +3,7 @@
 /// is asked by groupoid_laws<CotangentGroupoid<MyGroupoid>>.)
 
 #include <lagroid/core/bisection.hpp>
-#include <lagroid/core/symplectic.hpp>
+#include <lagroid/core/hamiltonian/symplectic.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 
 #include <Eigen/LU>

@@ -1,13 +1,13 @@
 #pragma once
 /// The two-sided derivative against two independent ways of computing it.
 
-#include <lagroid/core/second_derivatives.hpp>
+#include <lagroid/core/derivatives/second_derivatives.hpp>
 #include <lagroid/core/testing/property.hpp>
 
 namespace lagroid::laws {
 
 /// The two-sided derivative from nested first-order dual numbers and the groupoid's own product and retraction,
-/// direction by direction: slow, and sharing neither `Mixed` nor closed-form translations with the fast one.
+/// direction by direction: slow, and sharing neither `HyperDual` nor closed-form translations with the fast one.
 template <DiscreteSystem Sys>
 TwoSidedOf<Sys> nested_two_sided(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g,
                                  const typename Sys::Multipliers& lambda) {

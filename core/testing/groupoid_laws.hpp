@@ -6,9 +6,9 @@
 /// Arrows are drawn as products of retractions of random algebroid vectors (zero, tiny, moderate, large) over random
 /// objects. A groupoid whose objects are not vectors of R^n passes `draw_object`.
 
-#include <lagroid/core/arrow_frame.hpp>
+#include <lagroid/core/derivatives/arrow_frame.hpp>
 #include <lagroid/core/groupoid.hpp>
-#include <lagroid/core/second_jet.hpp>
+#include <lagroid/core/scalars/second_jet.hpp>
 #include <lagroid/core/testing/property.hpp>
 
 #include <algorithm>
@@ -150,7 +150,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
   law("closed-form translations", options.derivative, [&] {
     const A g = arrow();
     const auto defect = [&]<End First, End Second>() {
-      using M = Mixed<double, n, n>;
+      using M = HyperDual<double, n, n>;
       using J = Jet<double, 2 * n>;
       const auto slow = groupoid.coordinates_of_arrow(groupoid.template seed_by_composition<M, First, Second, 0, 0>(g));
       const auto fast = groupoid.coordinates_of_arrow(groupoid.template seed<M, First, Second>(g));
@@ -197,7 +197,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
       // ends as arrow_frame.hpp says, against those by composition.
       constexpr int d = arrow_dimension_of<G>();
       using Hessian = Matrix<double, d, d>;
-      using M = Mixed<double, n, n>;
+      using M = HyperDual<double, n, n>;
       const A g = arrow();
       const auto framed = groupoid.coordinates_of_arrow(groupoid.template frame_jet<SecondJet<double, d>>(g));
       Vector<double, Eigen::Dynamic> weights(framed.size());
@@ -254,7 +254,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
     w *= 1e-13;
     A moved = g;
     V rest = V::Zero();
-    for (int k = 0; k < count; ++k) rest = groupoid.nudge(moved, V(rest + w));
+    for (int k = 0; k < count; ++k) rest = groupoid.correct(moved, V(rest + w));
     return arrows(moved, groupoid.compose(g, groupoid.tau(groupoid.target(g), V(count * w)))) / 10;
   });
   law("chart", options.tolerance, [&] {

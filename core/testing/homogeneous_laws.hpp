@@ -3,7 +3,7 @@
 ///
 ///     EXPECT_TRUE(lagroid::laws::homogeneous_laws(MySpace{}, draw_point).holds());
 
-#include <lagroid/core/homogeneous_space.hpp>
+#include <lagroid/core/hamiltonian/homogeneous_space.hpp>
 #include <lagroid/core/testing/property.hpp>
 
 #include <string>

@@ -1,9 +1,9 @@
 #pragma once
 /// Morphisms of groupoids and of systems as properties that a user's own run by naming themselves.
 
+#include <lagroid/core/derivatives/two_sided.hpp>
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
-#include <lagroid/core/two_sided.hpp>
 
 namespace lagroid::laws {
 

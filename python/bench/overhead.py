@@ -1,6 +1,6 @@
 """What Python adds to a run: ratios, printed, held to a bound (--most), or written into a page (--page).
 
-A run's seconds are those of the C++ loop (Run.seconds, March.seconds); the wall clock in Python holds reading the
+A run's seconds are those of the C++ loop (Run.seconds, Trajectory.seconds); the wall clock in Python holds reading the
 scene, the arrays and the call besides. Repetitions are interleaved, medians compared."""
 
 import argparse
@@ -39,16 +39,16 @@ def scenes() -> dict[str, dict[str, object]]:
     }
 
 
-def timed(call: Callable[[], lagroid.Run | lagroid.March]) -> tuple[float, float]:
+def timed(call: Callable[[], lagroid.Run | lagroid.Trajectory]) -> tuple[float, float]:
     """Seconds by the wall, and those that the result says of itself. It is let go when the clock has stopped."""
     start = time.perf_counter()
     result = call()
-    assert len(result.momentum if isinstance(result, lagroid.March) else result["momentum"]) == STEPS + 1
+    assert len(result.momentum if isinstance(result, lagroid.Trajectory) else result["momentum"]) == STEPS + 1
     return time.perf_counter() - start, lagroid.require(result).seconds
 
 
-def marched() -> lagroid.March:
-    return lagroid.Kepler(h=0.01).integrator(momentum=[0, 1.2], object=[1, 0]).march(STEPS)
+def integrated() -> lagroid.Trajectory:
+    return lagroid.Kepler(h=0.01).integrator(momentum=[0, 1.2], object=[1, 0]).integrate(STEPS)
 
 
 def looped(count: int) -> float:
@@ -127,11 +127,11 @@ def prototypes() -> dict[str, tuple[Any, Any, dict[str, Any]]]:
     }
 
 
-def marching(system: Any, begin: dict[str, Any], count: int) -> float:
+def integrating(system: Any, begin: dict[str, Any], count: int) -> float:
     """Seconds of the processor for a step of many, recorded: the two differ by thousands, whatever else runs."""
     integrator = system.integrator(**begin)
     start = time.process_time()
-    lagroid.require(integrator.march(count))
+    lagroid.require(integrator.integrate(count))
     return (time.process_time() - start) / count
 
 
@@ -140,10 +140,10 @@ def main() -> int:
     parser.add_argument("--most", type=float, help="fail where a run takes longer than this share beyond its C++ loop")
     parser.add_argument("--page", type=Path, help="write the numbers between the marks of this page")
     options = parser.parse_args()
-    subjects: dict[str, Callable[[], lagroid.Run | lagroid.March]] = {
+    subjects: dict[str, Callable[[], lagroid.Run | lagroid.Trajectory]] = {
         f"`lagroid.run` of {name}": partial(lagroid.run, scene) for name, scene in scenes().items()
     }
-    subjects["`Integrator.march` of Kepler"] = marched
+    subjects["`Integrator.integrate` of Kepler"] = integrated
     found: dict[str, list[tuple[float, float]]] = {name: [] for name in subjects}
     for _ in range(REPETITIONS):
         for name, call in subjects.items():
@@ -156,7 +156,7 @@ def main() -> int:
         wall, own = (statistics.median(column) for column in zip(*pairs))
         lines.append(f"| {name} | {1e3 * own:.1f} | {1e3 * wall:.1f} | {100 * overhead:.1f} % |")
     steps: dict[str, Callable[[], float]] = {
-        "`march`, a step, ledger and record included": lambda: marched().seconds / STEPS,
+        "`integrate`, a step, ledger and record included": lambda: integrated().seconds / STEPS,
         "`advance()` in a loop": lambda: advanced(20_000),
         "`advance()` and a look at `.object`": lambda: looped(20_000),
     }
@@ -168,7 +168,7 @@ def main() -> int:
     lines += [f"| {name} | {1e6 * statistics.median(values):.3g} |" for name, values in costs.items()]
     lines += ["", "| a step of | as a prototype, us | compiled, us | times as slow |", "|---|---|---|---|"]
     for name, (prototype, compiled, begin) in prototypes().items():
-        both = [(marching(prototype, begin, 100), marching(compiled, begin, 20_000)) for _ in range(5)]
+        both = [(integrating(prototype, begin, 100), integrating(compiled, begin, 20_000)) for _ in range(5)]
         slow, fast = (1e6 * statistics.median(column) for column in zip(*both))
         lines.append(f"| {name} | {slow:.0f} | {fast:.3g} | {float(f'{slow / fast:.2g}'):.0f} |")
     table = "\n".join(lines)

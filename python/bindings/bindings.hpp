@@ -6,7 +6,7 @@
 namespace lagroid::python {
 
 void bind_scenes(pybind11::module_& module);
-void bind_marches(pybind11::module_& module);
+void bind_integrators(pybind11::module_& module);
 void bind_systems(pybind11::module_& module);
 void bind_studies(pybind11::module_& module);
 void bind_optimisation(pybind11::module_& module);

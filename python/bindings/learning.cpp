@@ -6,12 +6,12 @@
 
 #include <learn/learn_files.hpp>
 #include <learn/trajectory_files.hpp>
-#include <spheres/model_file.hpp>
+#include <spheres/learned/model_file.hpp>
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/solvers/learning/measures.hpp>
 #include <lagroid/solvers/learning/train.hpp>
-#include <lagroid/systems/chain_trajectories.hpp>
+#include <lagroid/systems/pendulums/chain_trajectories.hpp>
 
 #include <fmt/format.h>
 

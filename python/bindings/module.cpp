@@ -7,12 +7,12 @@
 #include <listing.hpp>
 #include <optimise/matrices.hpp>
 #include <reading/scene_reader.hpp>
-#include <spheres/model_file.hpp>
+#include <spheres/learned/model_file.hpp>
 #include <whole_program.hpp>
 
 #include <lagroid/core/version.hpp>
-#include <lagroid/run/output_folder.hpp>
-#include <lagroid/run/text.hpp>
+#include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/run/reports/text.hpp>
 
 #include <pybind11/stl/filesystem.h>
 
@@ -66,7 +66,7 @@ PYBIND11_MODULE(_lagroid, module) {
       },
       py::arg("file"), py::arg("dataset"), "A data set of one or two dimensions, (rows, columns). Raises DataError.");
   bind_scenes(module);
-  bind_marches(module);
+  bind_integrators(module);
   bind_systems(module);
   bind_studies(module);
   bind_optimisation(module);

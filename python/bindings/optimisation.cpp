@@ -10,10 +10,10 @@
 #include <optimise/optimisation_scene.hpp>
 
 #include <lagroid/python/numbers.hpp>
+#include <lagroid/solvers/optimisation/manifolds/product.hpp>
+#include <lagroid/solvers/optimisation/manifolds/sphere.hpp>
+#include <lagroid/solvers/optimisation/manifolds/stiefel.hpp>
 #include <lagroid/solvers/optimisation/penalised.hpp>
-#include <lagroid/solvers/optimisation/product.hpp>
-#include <lagroid/solvers/optimisation/sphere.hpp>
-#include <lagroid/solvers/optimisation/stiefel.hpp>
 #include <lagroid/systems/optimisation/instances.hpp>
 
 #include <fmt/format.h>

@@ -5,9 +5,9 @@
 #include "computing.hpp"
 #include "scene.hpp"
 
-#include <lagroid/run/checkpoint.hpp>
-#include <lagroid/run/output.hpp>
-#include <lagroid/run/report.hpp>
+#include <lagroid/run/files/checkpoint.hpp>
+#include <lagroid/run/files/output.hpp>
+#include <lagroid/run/reports/report.hpp>
 
 #include <study/run_scene.hpp>
 

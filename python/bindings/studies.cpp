@@ -4,7 +4,7 @@
 #include "computing.hpp"
 #include "scene.hpp"
 
-#include <lagroid/run/output_folder.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>

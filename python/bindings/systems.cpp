@@ -4,8 +4,8 @@
 #include "library_systems.hpp"
 
 #include <lagroid/python/system.hpp>
-#include <lagroid/systems/heavy_top.hpp>
-#include <lagroid/systems/plate_ball.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
+#include <lagroid/systems/rotations/heavy_top.hpp>
 
 namespace lagroid::python {
 

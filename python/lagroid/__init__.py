@@ -5,6 +5,8 @@
     run["x"], run["drift energy"], run.ledger
 """
 
+import warnings
+
 from . import _lagroid, plot
 from ._lagroid import (
     AttitudeControl,
@@ -20,7 +22,6 @@ from ._lagroid import (
     Integrator,
     Kepler,
     LedgerEntry,
-    March,
     Minimum,
     Panel,
     Pendulum,
@@ -30,6 +31,7 @@ from ._lagroid import (
     RollingDisk,
     Run,
     SphericalPendulum,
+    Trajectory,
     Unicycle,
     __version__,
 )
@@ -37,7 +39,7 @@ from .errors import DataError, Error, Interrupted, OutputError, ProgramError, Sc
 from .groupoids import SE2, SE3, SO3, Groupoid, MatrixGroup, Pairs
 from .learning import LearnedHamiltonian, Measures, Trajectories, learn, trajectories
 from .optimisation import Manifold, Optimum, Product, Sphere, Stiefel, minimise, optimize
-from .prototype import DiscreteLagrangian, PrototypeIntegrator, PrototypeMarch
+from .prototype import DiscreteLagrangian, PrototypeIntegrator, PrototypeTrajectory
 from .scenes import require, resume, run, scene_text, systems
 from .studies import Method, check, methods, study
 from .sweeps import Sweep, sweep
@@ -63,7 +65,6 @@ __all__ = [
     "LearnedHamiltonian",
     "LedgerEntry",
     "Manifold",
-    "March",
     "MatrixGroup",
     "Measures",
     "Method",
@@ -77,7 +78,7 @@ __all__ = [
     "Product",
     "ProgramError",
     "PrototypeIntegrator",
-    "PrototypeMarch",
+    "PrototypeTrajectory",
     "RigidBody",
     "RollingBall",
     "RollingDisk",
@@ -92,6 +93,7 @@ __all__ = [
     "Stiefel",
     "Sweep",
     "Trajectories",
+    "Trajectory",
     "Unicycle",
     "__version__",
     "check",
@@ -115,3 +117,13 @@ for _name in _lagroid.system_classes:
     globals()[_name] = getattr(_lagroid, _name)
     if _name not in __all__:
         __all__.append(_name)
+
+# Names of version 0.2, which go with 0.4.
+_renamed = {"March": "Trajectory", "PrototypeMarch": "PrototypeTrajectory"}
+
+
+def __getattr__(name: str) -> object:
+    if name in _renamed:
+        warnings.warn(f"lagroid.{name} is lagroid.{_renamed[name]}", DeprecationWarning, stacklevel=2)
+        return globals()[_renamed[name]]
+    raise AttributeError(f"module 'lagroid' has no attribute '{name}'")

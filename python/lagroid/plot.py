@@ -1,4 +1,4 @@
-"""Pictures of runs, marches and studies by matplotlib. Each returns the figure; none opens a window or needs one."""
+"""Pictures of runs, trajectories and studies by matplotlib. Each returns the figure; none opens a window or needs one."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from ._lagroid import Integrator, LedgerEntry, March, Run
-from .prototype import PrototypeMarch
+from ._lagroid import Integrator, LedgerEntry, Trajectory, Run
+from .prototype import PrototypeTrajectory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,13 +26,13 @@ def _figure(width: float, height: float) -> Figure:
     return figure
 
 
-def trajectory(run: Union[Run, March, PrototypeMarch], columns: Optional[Sequence[str]] = None) -> Figure:
-    """Of a run its panels, as in its plot.svg, or the given columns against time; of a march its objects, momenta and
+def trajectory(run: Union[Run, Trajectory, PrototypeTrajectory], columns: Optional[Sequence[str]] = None) -> Figure:
+    """Of a run its panels, as in its plot.svg, or the given columns against time; of a trajectory its objects, momenta and
     quantities, or those of the given names. Raises ValueError where nothing was recorded."""
-    if isinstance(run, (March, PrototypeMarch)):
-        return _marched(run, columns)
+    if isinstance(run, (Trajectory, PrototypeTrajectory)):
+        return _integrated(run, columns)
     if not isinstance(run, Run):
-        raise TypeError(f"trajectory: draws a Run, March or PrototypeMarch, not {type(run).__name__}")
+        raise TypeError(f"trajectory: draws a Run, Trajectory or PrototypeTrajectory, not {type(run).__name__}")
     if len(run.time) < 2:
         raise ValueError("nothing was recorded; run the scene with record=True")
     if columns is not None:
@@ -63,22 +63,22 @@ def trajectory(run: Union[Run, March, PrototypeMarch], columns: Optional[Sequenc
     return figure
 
 
-def _marched(march: Union[March, PrototypeMarch], names: Optional[Sequence[str]]) -> Figure:
+def _integrated(trajectory: Union[Trajectory, PrototypeTrajectory], names: Optional[Sequence[str]]) -> Figure:
     """A panel for each series, a curve for each of its numbers."""
-    series: dict[str, Any] = dict(march.quantities) if isinstance(march, March) else {}
-    offered = {name: getattr(march, name) for name in ("object", "momentum", "multipliers")} | series
+    series: dict[str, Any] = dict(trajectory.quantities) if isinstance(trajectory, Trajectory) else {}
+    offered = {name: getattr(trajectory, name) for name in ("object", "momentum", "multipliers")} | series
     for name in names or ():
         if name not in offered:
             raise ValueError(f"trajectory: {name} is none of {', '.join(offered)}")
-    if len(march.time) < 2:
-        raise ValueError("nothing was recorded: the march has no step")
+    if len(trajectory.time) < 2:
+        raise ValueError("nothing was recorded: the trajectory has no step")
     chosen = names or [name for name in ("object", "momentum", *series) if offered[name].size]
     figure = _figure(7, 2.6 * len(chosen))
     for i, name in enumerate(chosen):
         axes = figure.add_subplot(len(chosen), 1, i + 1)
         rows = offered[name].reshape(len(offered[name]), -1)
         for k, values in enumerate(rows.T):
-            axes.plot(march.time[-len(rows) :], values, linewidth=1, label=f"{k + 1}")
+            axes.plot(trajectory.time[-len(rows) :], values, linewidth=1, label=f"{k + 1}")
         axes.set_ylabel(name)
         if rows.shape[1] > 1:
             axes.legend()

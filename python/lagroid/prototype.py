@@ -19,7 +19,7 @@ from .errors import SolveError
 from .groupoids import Array, Arrow, Groupoid, MatrixGroup, Pairs
 from .members import Members, principles, refuse_unread
 
-__all__ = ["DiscreteLagrangian", "PrototypeIntegrator", "PrototypeMarch"]
+__all__ = ["DiscreteLagrangian", "PrototypeIntegrator", "PrototypeTrajectory"]
 
 
 class DiscreteLagrangian:
@@ -79,7 +79,7 @@ class DiscreteLagrangian:
         return PrototypeIntegrator(self, momentum=momentum, object=object, configuration=configuration)
 
     def boundary(self, *_: Any, **__: Any) -> NoReturn:
-        """Refused: prototypes only march."""
+        """Refused: prototypes only make steps."""
         raise NotImplementedError(
             f"{type(self).__name__}: prototypes have no boundary values; compile the system and bind_boundary "
             "(docs/python.md)"
@@ -87,7 +87,7 @@ class DiscreteLagrangian:
 
 
 @dataclass
-class PrototypeMarch:
+class PrototypeTrajectory:
     """The nodes of many steps."""
 
     status: str = "converged"
@@ -402,7 +402,12 @@ class PrototypeIntegrator:
         own = 4 * eps * (float(np.abs(matrix).max()) * coordinates + float(np.abs(self._momentum).max(initial=0.0)))
         return own if self._derivatives.complex else own + 10 * float(eps**0.8) * self._derivatives.size
 
-    def march(self, steps: int, every: int = 1) -> PrototypeMarch:
+    def march(self, steps: int, every: int = 1) -> PrototypeTrajectory:
+        """What `integrate` was called in version 0.2."""
+        warnings.warn("PrototypeIntegrator.march is integrate", DeprecationWarning, stacklevel=2)
+        return self.integrate(steps, every)
+
+    def integrate(self, steps: int, every: int = 1) -> PrototypeTrajectory:
         """So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status."""
         if steps < 0:
             raise ValueError("steps: must not be negative")
@@ -413,7 +418,7 @@ class PrototypeIntegrator:
         def record() -> None:
             rows.append((self.time, self.object, self.momentum, self.configuration, self.multipliers))
 
-        out = PrototypeMarch()
+        out = PrototypeTrajectory()
         record()
         for k in range(1, steps + 1):
             try:

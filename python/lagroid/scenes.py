@@ -10,11 +10,11 @@ from typing import Any, Optional, TypeVar, Union
 import numpy as np
 
 from . import _lagroid
-from ._lagroid import March, Run
+from ._lagroid import Trajectory, Run
 from .errors import Interrupted, SceneError, SolveError
 
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
-_Result = TypeVar("_Result", bound=Union[Run, March])
+_Result = TypeVar("_Result", bound=Union[Run, Trajectory])
 
 __all__ = ["SceneLike", "require", "resume", "run", "scene_text", "systems"]
 
@@ -102,7 +102,7 @@ def _finished(result: Run) -> Run:
 
 
 def require(result: _Result) -> _Result:
-    """The result of a run or a march, if it was solved. Raises SolveError where it was not."""
+    """The result of a run or a trajectory, if it was solved. Raises SolveError where it was not."""
     if not result.converged:
         raise SolveError(result.message, result.status, result)
     return result

@@ -16,7 +16,7 @@ __all__ = ["Method", "check", "methods", "study"]
 
 
 class Method(NamedTuple):
-    """A way to march a scene: its name, its order, and what [time] holds for it."""
+    """A way to integrate a scene: its name, its order, and what [time] holds for it."""
 
     name: str
     order: int

@@ -1,6 +1,6 @@
 # %% [markdown]
 # # A system of your own
-# A discrete Lagrangian L(q0, q1), written in Python and marched by a numeric Newton iteration: a bead on a wire bent to
+# A discrete Lagrangian L(q0, q1), written in Python and integrated by a numeric Newton iteration: a bead on a wire bent to
 # the parabola y = x^2 / 2. Compiled, in python/template/my_system.cpp, it is a thousand times as fast and more.
 
 # %%
@@ -19,8 +19,8 @@ class Bead(lagroid.DiscreteLagrangian):
         return (((q1 - q0) ** 2 + (y1 - y0) ** 2) / (2 * self.h) - self.h * (y0 + y1) / 2)[0]
 
 
-march = Bead().integrator(momentum=[1.0], object=[0.0]).march(400)
-assert march.converged, march.message
+trajectory = Bead().integrator(momentum=[1.0], object=[0.0]).integrate(400)
+assert trajectory.converged, trajectory.message
 
 
 # %% [markdown]
@@ -34,7 +34,7 @@ def energy(x: Any, p: Any) -> Any:
 
 bands = []
 for h in (0.1, 0.05):
-    found = Bead(h=h).integrator(momentum=[1.0], object=[0.0]).march(round(20 / h))
+    found = Bead(h=h).integrator(momentum=[1.0], object=[0.0]).integrate(round(20 / h))
     bands.append(float(np.ptp(energy(found.object[:, 0], found.momentum[:, 0]))))
 print("energy bands:", bands)
 assert 3 < bands[0] / bands[1] < 5
@@ -55,7 +55,7 @@ class MoserVeselov(lagroid.DiscreteLagrangian):
 
 
 body = MoserVeselov().integrator(momentum=[1.0, 0.1, 0.5])
-turning = body.march(100)
+turning = body.integrate(100)
 assert turning.converged, turning.message
 (attitudes,) = turning.configuration
 spatial = np.einsum("kij,kj->ki", attitudes, turning.momentum)

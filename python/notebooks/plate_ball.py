@@ -28,12 +28,12 @@ print("largest control", np.abs(run["controls"]).max())
 assert max(entry.relative_drift for entry in run.ledger if entry.promise == "conserved") < 1e-8
 
 # %% [markdown]
-# The same from the system as an object, and marched onwards from the momentum that the boundary value found.
+# The same from the system as an object, and integrated onwards from the momentum that the boundary value found.
 
 # %%
 ball = lagroid.PlateBall(h=float(run.time[1]), rotation="exp")
 path = ball.boundary(ball.arrow([0, 0], [1, 0.5], np.eye(3)), 20, starts=5)[0]
 print(path)
-march = lagroid.require(ball.integrator(momentum=path.momentum[0], object=path.object[0]).march(20))
-print("the march ends", np.abs(march.object[-1] - path.object[-1]).max(), "from the path's end")
-assert np.allclose(march.object[-1], path.object[-1], atol=1e-6)
+trajectory = lagroid.require(ball.integrator(momentum=path.momentum[0], object=path.object[0]).integrate(20))
+print("the trajectory ends", np.abs(trajectory.object[-1] - path.object[-1]).max(), "from the path's end")
+assert np.allclose(trajectory.object[-1], path.object[-1], atol=1e-6)

@@ -3,7 +3,7 @@
 
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/python/system.hpp>
-#include <lagroid/solvers/march_methods.hpp>
+#include <lagroid/solvers/integrators/integrator_methods.hpp>
 
 using namespace lagroid;
 

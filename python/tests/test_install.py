@@ -50,7 +50,7 @@ class Install(unittest.TestCase):
                 sys.executable,
                 "-c",
                 f"import sys; sys.path.append('{build}'); import my_system;"
-                "print(my_system.Bead(h=0.05).integrator(momentum=[1.0], object=[0.0]).march(100).status)",
+                "print(my_system.Bead(h=0.05).integrator(momentum=[1.0], object=[0.0]).integrate(100).status)",
                 path=packages,
             )
             self.assertEqual(out.strip(), "converged")

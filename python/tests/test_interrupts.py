@@ -45,7 +45,7 @@ class Interrupts(unittest.TestCase):
         integrator = lagroid.Pendulum(h=0.01).integrator(momentum=[1], object=[0])
         interrupt(0.2)
         with self.assertRaises(KeyboardInterrupt):
-            integrator.march(10**9, every=10**9)
+            integrator.integrate(10**9, every=10**9)
         reached = integrator.index
         self.assertGreater(reached, 0)
         integrator.advance()

@@ -32,13 +32,13 @@ class Plots(unittest.TestCase):
             lagroid.plot.trajectory(lagroid.run(EXAMPLES / "kepler.toml", record=False))
 
     def test_marches(self) -> None:
-        march = lagroid.SphericalPendulum(h=0.02).integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0]).march(20)
-        figure = lagroid.plot.trajectory(march)
-        self.assertEqual([axes.get_ylabel() for axes in figure.axes], ["object", "momentum", *march.quantities])
-        np.testing.assert_array_equal(figure.axes[0].lines[2].get_ydata(), march.object[:, 2])
-        figure = lagroid.plot.trajectory(march, ["multipliers"])
+        trajectory = lagroid.SphericalPendulum(h=0.02).integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0]).integrate(20)
+        figure = lagroid.plot.trajectory(trajectory)
+        self.assertEqual([axes.get_ylabel() for axes in figure.axes], ["object", "momentum", *trajectory.quantities])
+        np.testing.assert_array_equal(figure.axes[0].lines[2].get_ydata(), trajectory.object[:, 2])
+        figure = lagroid.plot.trajectory(trajectory, ["multipliers"])
         self.assertEqual(len(figure.axes[0].lines[0].get_xdata()), 20)
-        body = lagroid.RigidBody(h=0.1).integrator(momentum=[1, 2, 3]).march(5)
+        body = lagroid.RigidBody(h=0.1).integrator(momentum=[1, 2, 3]).integrate(5)
         self.assertNotIn("object", [axes.get_ylabel() for axes in lagroid.plot.trajectory(body).axes])
 
         class Free(lagroid.DiscreteLagrangian):
@@ -47,18 +47,18 @@ class Plots(unittest.TestCase):
             def lagrangian(self, q0, q1):  # type: ignore[no-untyped-def]
                 return (q1 - q0) @ (q1 - q0) / (2 * self.h)
 
-        prototype = Free().integrator(momentum=[1, 0], object=[0, 0]).march(5)
+        prototype = Free().integrator(momentum=[1, 0], object=[0, 0]).integrate(5)
         self.assertEqual([len(axes.lines) for axes in lagroid.plot.trajectory(prototype).axes], [2, 2])
         with self.assertRaisesRegex(ValueError, "^trajectory: energi is none of object, momentum"):
-            lagroid.plot.trajectory(march, ["energi"])
-        with self.assertRaisesRegex(TypeError, "^trajectory: draws a Run, March or PrototypeMarch, not Kepler$"):
+            lagroid.plot.trajectory(trajectory, ["energi"])
+        with self.assertRaisesRegex(TypeError, "^trajectory: draws a Run, Trajectory or PrototypeTrajectory, not Kepler$"):
             lagroid.plot.trajectory(lagroid.Kepler())  # type: ignore[arg-type]
 
     def test_ledger(self) -> None:
         figure = lagroid.plot.ledger(self.run_)
         self.assertEqual(len(figure.axes[0].patches), len(self.run_.ledger))
         integrator = lagroid.Kepler(h=0.01).integrator(momentum=[0, 1], object=[1, 0])
-        integrator.march(10)
+        integrator.integrate(10)
         for entries in (integrator, integrator.ledger):
             self.assertEqual(len(lagroid.plot.ledger(entries).axes[0].patches), 2)
 

@@ -1,4 +1,4 @@
-"""Discrete Lagrangians written in Python march as those that are compiled."""
+"""Discrete Lagrangians written in Python trajectory as those that are compiled."""
 
 import pickle
 import unittest
@@ -137,32 +137,32 @@ class Sleigh(lagroid.DiscreteLagrangian):
 
 class Prototypes(unittest.TestCase):
     def test_pendulum(self) -> None:
-        mine = lagroid.require(lagroid.Pendulum(h=0.1).integrator(momentum=[1.0], object=[0.5]).march(200))
-        found = Pendulum().integrator(momentum=[1.0], object=[0.5]).march(200)
+        mine = lagroid.require(lagroid.Pendulum(h=0.1).integrator(momentum=[1.0], object=[0.5]).integrate(200))
+        found = Pendulum().integrator(momentum=[1.0], object=[0.5]).integrate(200)
         self.assertEqual(found.status, "converged", found.message)
         np.testing.assert_allclose(found.object, mine.object, atol=1e-12)
         np.testing.assert_allclose(found.momentum, mine.momentum, atol=1e-12)
         np.testing.assert_allclose(found.time, mine.time)
 
     def test_differences_where_complex_numbers_do_not_serve(self) -> None:
-        mine = lagroid.Pendulum(h=0.1).integrator(momentum=[1.0], object=[0.5]).march(200)
+        mine = lagroid.Pendulum(h=0.1).integrator(momentum=[1.0], object=[0.5]).integrate(200)
         for kind in (RealPendulum, SilentPendulum):
-            found = kind().integrator(momentum=[1.0], object=[0.5]).march(200)
+            found = kind().integrator(momentum=[1.0], object=[0.5]).integrate(200)
             self.assertEqual(found.status, "converged", found.message)
             error = np.abs(found.object - mine.object).max()
             self.assertLess(error, 1e-9, kind.__name__)
 
     def test_rigid_body(self) -> None:
         body = lagroid.RigidBody(h=0.05, inertia=[1, 2, 3], rotation="cayley")
-        mine = body.integrator(momentum=[1, 0.1, 2]).march(60)
-        found = Body().integrator(momentum=[1, 0.1, 2]).march(60)
+        mine = body.integrator(momentum=[1, 0.1, 2]).integrate(60)
+        found = Body().integrator(momentum=[1, 0.1, 2]).integrate(60)
         self.assertEqual(found.status, "converged", found.message)
         np.testing.assert_allclose(found.momentum, mine.momentum, atol=1e-12)
         np.testing.assert_allclose(found.configuration[0], mine.configuration, atol=1e-11)
 
     def test_object_constraint(self) -> None:
-        mine = lagroid.SphericalPendulum(h=0.05).integrator(momentum=[0, 0.5, 0], object=[1, 0, 0]).march(60)
-        found = Bob().integrator(momentum=[0, 0.5, 0], object=[1, 0, 0]).march(60)
+        mine = lagroid.SphericalPendulum(h=0.05).integrator(momentum=[0, 0.5, 0], object=[1, 0, 0]).integrate(60)
+        found = Bob().integrator(momentum=[0, 0.5, 0], object=[1, 0, 0]).integrate(60)
         self.assertEqual(found.status, "converged", found.message)
         np.testing.assert_allclose(found.object, mine.object, atol=1e-11)
         np.testing.assert_allclose(found.multipliers, mine.multipliers, atol=1e-11)
@@ -174,12 +174,12 @@ class Prototypes(unittest.TestCase):
         """Against the closed form, of order two in all that is reported; the vakonomic path is another."""
         errors = []
         for h in (0.1, 0.05):
-            found = lagroid.require(Blade(h=h).started().march(round(4 / h)))
+            found = lagroid.require(Blade(h=h).started().integrate(round(4 / h)))
             q, p = Blade.exact(found.time)
             errors.append([np.abs(found.object - q).max(), np.abs(found.momentum - p).max()])
         order = np.log2(np.array(errors[0]) / errors[1])
         np.testing.assert_allclose(order, 2, atol=0.05)
-        vakonomic = lagroid.require(Blade(h=0.05, principle="vakonomic").started().march(80))
+        vakonomic = lagroid.require(Blade(h=0.05, principle="vakonomic").started().integrate(80))
         self.assertGreater(np.abs(vakonomic.object - q).max(), 1)
 
     def test_nonholonomic_constraints_are_those_of_compiled_systems(self) -> None:
@@ -196,7 +196,7 @@ class Prototypes(unittest.TestCase):
                 return np.array([[0.0], [0.0], [1.0]])
 
         for kind in (Sleigh, Written):
-            found = kind().integrator(momentum=[1.25 * 0.3, -1.0, 0.5 * 0.3]).march(60)
+            found = kind().integrator(momentum=[1.25 * 0.3, -1.0, 0.5 * 0.3]).integrate(60)
             self.assertEqual(found.status, "converged", found.message)
             np.testing.assert_allclose(found.momentum, run["momentum"], atol=1e-9)
             np.testing.assert_allclose(found.configuration[0][:, 0, 2], run["x"], atol=1e-10)
@@ -211,17 +211,17 @@ class Prototypes(unittest.TestCase):
                 "time": {"step": 0.1, "steps": 100},
             }
         )
-        found = Damped().integrator(momentum=[1.0], object=[0.5]).march(100)
+        found = Damped().integrator(momentum=[1.0], object=[0.5]).integrate(100)
         self.assertEqual(found.status, "converged", found.message)
         np.testing.assert_allclose(found.object[:, 0], run["q"], atol=1e-11)
         np.testing.assert_allclose(found.momentum[:, 0], run["p"], atol=1e-11)
-        free = Pendulum().integrator(momentum=[1.0], object=[0.5]).march(100)
+        free = Pendulum().integrator(momentum=[1.0], object=[0.5]).integrate(100)
         self.assertGreater(np.abs(free.object - found.object).max(), 0.1)
 
     def test_the_step_and_the_start_are_arguments(self) -> None:
         errors = []
         for h in (0.1, 0.05):
-            found = lagroid.require(Driven(h=h).integrator(momentum=[0.0], object=[0.0]).march(round(6 / h)))
+            found = lagroid.require(Driven(h=h).integrator(momentum=[0.0], object=[0.0]).integrate(round(6 / h)))
             errors.append(np.abs(found.object[:, 0] - (1 - np.cos(found.time))).max())
         self.assertAlmostEqual(np.log2(errors[0] / errors[1]), 2, delta=0.05)
 
@@ -229,9 +229,9 @@ class Prototypes(unittest.TestCase):
             def lagrangian(self, q0: Any, q1: Any, step: float) -> Any:
                 return (q1 - q0) @ (q1 - q0) / (2 * step) + step * np.cos((q0 + q1) / 2)[0]
 
-        mine = Pendulum().integrator(momentum=[1.0], object=[0.5]).march(50)
+        mine = Pendulum().integrator(momentum=[1.0], object=[0.5]).integrate(50)
         np.testing.assert_array_equal(
-            OverAStep().integrator(momentum=[1.0], object=[0.5]).march(50).object, mine.object
+            OverAStep().integrator(momentum=[1.0], object=[0.5]).integrate(50).object, mine.object
         )
 
     def test_what_would_not_be_read_is_refused(self) -> None:
@@ -281,14 +281,14 @@ class Prototypes(unittest.TestCase):
         system = Pendulum()
         integrator = system.integrator(momentum=[1.0], object=[0.5])
         system.h = 0.2
-        mine = Pendulum(h=0.1).integrator(momentum=[1.0], object=[0.5]).march(10)
-        np.testing.assert_array_equal(integrator.march(10).object, mine.object)
+        mine = Pendulum(h=0.1).integrator(momentum=[1.0], object=[0.5]).integrate(10)
+        np.testing.assert_array_equal(integrator.integrate(10).object, mine.object)
 
     def test_integrators_are_pickled(self) -> None:
         integrator = Blade().started()
-        integrator.march(10)
+        integrator.integrate(10)
         again = pickle.loads(pickle.dumps(integrator))
-        rest, same = integrator.march(10), again.march(10)
+        rest, same = integrator.integrate(10), again.integrate(10)
         for name in ("time", "object", "momentum", "multipliers"):
             np.testing.assert_array_equal(getattr(rest, name), getattr(same, name))
 
@@ -301,16 +301,16 @@ class Prototypes(unittest.TestCase):
                 "time": {"step": 0.05, "steps": 60},
             }
         )
-        found = Steering().integrator(momentum=[0.7, -0.3, 0.4]).march(60)
+        found = Steering().integrator(momentum=[0.7, -0.3, 0.4]).integrate(60)
         self.assertEqual(found.status, "converged", found.message)
         np.testing.assert_allclose(found.momentum, run["momentum"], atol=1e-11)
         np.testing.assert_allclose(found.multipliers[:, 0], run["multipliers"].reshape(-1), atol=1e-11)
 
     def test_order_two(self) -> None:
         def end(h: float) -> float:
-            return float(Pendulum(h=h).integrator(momentum=[1.0], object=[0.5]).march(round(2 / h)).object[-1, 0])
+            return float(Pendulum(h=h).integrator(momentum=[1.0], object=[0.5]).integrate(round(2 / h)).object[-1, 0])
 
-        exact = lagroid.Pendulum(h=0.01).integrator(momentum=[1.0], object=[0.5], order=8).march(200).object[-1, 0]
+        exact = lagroid.Pendulum(h=0.01).integrator(momentum=[1.0], object=[0.5], order=8).integrate(200).object[-1, 0]
         order = np.log2((end(0.1) - exact) / (end(0.05) - exact))
         self.assertAlmostEqual(order, 2, delta=0.05)
 
@@ -336,8 +336,8 @@ class Prototypes(unittest.TestCase):
         with self.assertRaises(lagroid.SolveError) as caught:
             Idle().integrator(momentum=[1.0], object=[0.5]).advance()
         self.assertEqual(caught.exception.status, "singular")
-        march = Idle().integrator(momentum=[1.0], object=[0.5]).march(5)
-        self.assertEqual((march.status, march.steps), ("singular", 0))
+        trajectory = Idle().integrator(momentum=[1.0], object=[0.5]).integrate(5)
+        self.assertEqual((trajectory.status, trajectory.steps), ("singular", 0))
         with self.assertRaisesRegex(TypeError, "no parameter length"):
             Pendulum(length=1)
         with self.assertRaisesRegex(ValueError, "momentum: expected 1 numbers"):
@@ -366,7 +366,7 @@ class Prototypes(unittest.TestCase):
             Pendulum(h=0.0).integrator(momentum=[1.0], object=[0.5])
         for steps, every in ((-1, 1), (1, 0)):
             with self.assertRaises(ValueError):
-                Pendulum().integrator(momentum=[1.0], object=[0.5]).march(steps, every)
+                Pendulum().integrator(momentum=[1.0], object=[0.5]).integrate(steps, every)
         with self.assertRaises(NotImplementedError):
             lagroid.DiscreteLagrangian.lagrangian(Pendulum(), 0)
 

@@ -47,17 +47,17 @@ class Systems(unittest.TestCase):
         )
         system = lagroid.Kepler(h=0.05, quadrature="trapezoid")
         integrator = system.integrator(momentum=[0, 2], object=[0.4, 0])
-        march = integrator.march(500)
-        np.testing.assert_array_equal(march.object, run["position"])
-        np.testing.assert_array_equal(march.momentum, run["momentum"])
-        np.testing.assert_array_equal(march.time, run.time)
+        trajectory = integrator.integrate(500)
+        np.testing.assert_array_equal(trajectory.object, run["position"])
+        np.testing.assert_array_equal(trajectory.momentum, run["momentum"])
+        np.testing.assert_array_equal(trajectory.time, run.time)
         for mine, theirs in zip(integrator.ledger, run.ledger):
             self.assertEqual((mine.name, mine.drift, mine.verdict), (theirs.name, theirs.drift, theirs.verdict))
 
     def test_the_ledger_holds_the_constraints(self) -> None:
         ball = lagroid.PlateBall(h=0.05, plate_rate=0.3)
         integrator = ball.integrator(momentum=[0.5, 0.2, 0.1, 0.2, 0.3], object=[0.1, 0])
-        integrator.march(200)
+        integrator.integrate(200)
         run = lagroid.run(
             {
                 "system": "plate_ball",
@@ -81,23 +81,23 @@ class Systems(unittest.TestCase):
         }
         run = lagroid.run(scene)
         top = lagroid.HeavyTop(inertia=[1.0, 1.2, 0.5], weight=[0.1, 0, 1], h=0.02, rotation="exp")
-        march = top.integrator(momentum=[0.1, 0.2, 1.5], configuration=top.arrow(turned(angle))).march(200)
-        np.testing.assert_allclose(march.object, run["position"], atol=1e-13)
-        np.testing.assert_allclose(march.momentum, run["momentum"], atol=1e-13)
-        self.assertEqual(march.configuration.shape, (201, 12))
+        trajectory = top.integrator(momentum=[0.1, 0.2, 1.5], configuration=top.arrow(turned(angle))).integrate(200)
+        np.testing.assert_allclose(trajectory.object, run["position"], atol=1e-13)
+        np.testing.assert_allclose(trajectory.momentum, run["momentum"], atol=1e-13)
+        self.assertEqual(trajectory.configuration.shape, (201, 12))
 
     def test_attitudes_are_matrices(self) -> None:
         start = turned(1.0)
         body = lagroid.RigidBody(inertia=[1, 2, 3], h=0.01)
-        march = body.integrator(momentum=[1, 0.5, 2], configuration=start).march(300)
-        np.testing.assert_allclose(march.configuration[0], start, atol=1e-15)
-        spatial = np.einsum("kij,kj->ki", march.configuration, march.momentum)
+        trajectory = body.integrator(momentum=[1, 0.5, 2], configuration=start).integrate(300)
+        np.testing.assert_allclose(trajectory.configuration[0], start, atol=1e-15)
+        spatial = np.einsum("kij,kj->ki", trajectory.configuration, trajectory.momentum)
         np.testing.assert_allclose(spatial, np.broadcast_to(spatial[0], spatial.shape), atol=1e-13)
-        np.testing.assert_allclose(march.configuration[5] @ march.arrow[5], march.configuration[6], atol=1e-14)
+        np.testing.assert_allclose(trajectory.configuration[5] @ trajectory.arrow[5], trajectory.configuration[6], atol=1e-14)
 
     def test_one_step_at_a_time(self) -> None:
         system = lagroid.SphericalPendulum(h=0.02)
-        together = system.integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0]).march(50)
+        together = system.integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0]).integrate(50)
         one = system.integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0])
         for k in range(1, 51):
             one.advance()
@@ -109,26 +109,26 @@ class Systems(unittest.TestCase):
         self.assertEqual(one.quantity("energy").shape, (1,))
 
     def test_every_nth_node_and_the_last(self) -> None:
-        march = lagroid.Pendulum(h=0.1).integrator(momentum=[1], object=[0]).march(25, every=10)
-        np.testing.assert_allclose(march.time, [0, 1, 2, 2.5])
-        self.assertEqual(march.arrow.shape, (3, 2))
-        self.assertEqual(march.quantities["energy"].shape, (4, 1))
+        trajectory = lagroid.Pendulum(h=0.1).integrator(momentum=[1], object=[0]).integrate(25, every=10)
+        np.testing.assert_allclose(trajectory.time, [0, 1, 2, 2.5])
+        self.assertEqual(trajectory.arrow.shape, (3, 2))
+        self.assertEqual(trajectory.quantities["energy"].shape, (4, 1))
 
     def test_arrays_are_the_marchs_own_numbers(self) -> None:
-        march = lagroid.Pendulum().integrator(momentum=[1], object=[0]).march(10)
-        self.assertTrue(np.shares_memory(march.object, march.object))
-        self.assertFalse(march.object.flags.writeable)
-        kept = march.object
+        trajectory = lagroid.Pendulum().integrator(momentum=[1], object=[0]).integrate(10)
+        self.assertTrue(np.shares_memory(trajectory.object, trajectory.object))
+        self.assertFalse(trajectory.object.flags.writeable)
+        kept = trajectory.object
         expected = kept.copy()
-        del march
+        del trajectory
         np.testing.assert_array_equal(kept, expected)
 
     def test_modes_and_orders(self) -> None:
         system = lagroid.Kepler(h=0.1)
         self.assertIn("order 8", system.integrator(momentum=[0, 1.2], object=[1, 0], order=8).method)
         self.assertIn("explicit", system.integrator(momentum=[0, 1.2], object=[1, 0], method="splitting").method)
-        march = system.integrator(momentum=[0, 1.2], object=[1, 0], mode="controlled").march(20)
-        self.assertGreater(np.ptp(march.step_size), 1e-3)
+        trajectory = system.integrator(momentum=[0, 1.2], object=[1, 0], mode="controlled").integrate(20)
+        self.assertGreater(np.ptp(trajectory.step_size), 1e-3)
         wrongs = ({"mode": "fast"}, {"order": 3}, {"composition": "none"}, {"order": 4, "composition": "kahan-li-8"})
         for wrong in wrongs:
             with self.assertRaises(ValueError):
@@ -163,11 +163,11 @@ class Systems(unittest.TestCase):
         body = lagroid.RigidBody(h=0.1).integrator(momentum=[1, 2, 3])
         q, momentum = body.state
         self.assertEqual((q.shape, body.object.shape, momentum.shape), ((0,), (0,), (3,)))
-        march = body.march(4)
-        self.assertEqual((march.object.shape, march.multipliers.shape), ((5, 0), (4, 0)))
+        trajectory = body.integrate(4)
+        self.assertEqual((trajectory.object.shape, trajectory.multipliers.shape), ((5, 0), (4, 0)))
         self.assertEqual(body.multipliers.shape, (0,))
         kepler = lagroid.Kepler().integrator(momentum=[0, 1], object=[1, 0])
-        self.assertEqual(kepler.march(3, every=2).multipliers.shape, (2, 0))
+        self.assertEqual(kepler.integrate(3, every=2).multipliers.shape, (2, 0))
         path = lagroid.RigidBody(h=0.1).boundary(turned(0.5), 5)[0]
         self.assertEqual((path.object.shape, path.multipliers.shape), ((6, 0), (5, 0)))
 
@@ -270,10 +270,10 @@ class Systems(unittest.TestCase):
         self.assertNotEqual(caught.exception.status, "converged")
         self.assertIn("step 1", str(caught.exception))
         np.testing.assert_array_equal(integrator.state[1], before[1])
-        march = integrator.march(3)
-        self.assertEqual((march.steps, march.converged), (0, False))
+        trajectory = integrator.integrate(3)
+        self.assertEqual((trajectory.steps, trajectory.converged), (0, False))
         with self.assertRaises(lagroid.SolveError):
-            lagroid.require(march)
+            lagroid.require(trajectory)
 
     def test_boundary_values_are_those_of_scenes(self) -> None:
         run = lagroid.run(EXAMPLES / "kepler_boundary.toml")
@@ -322,12 +322,12 @@ class Systems(unittest.TestCase):
             lagroid.PlateBall(h=0.05).integrator(momentum=[0.5, 0.2, 0.1, 0.2, 0.3], object=[0.1, 0]),
             lagroid.Pendulum().integrator(momentum=[1], object=[0], ledger=False),
         ):
-            integrator.march(30)
+            integrator.integrate(30)
             for again in (pickle.loads(pickle.dumps(integrator)), copy.deepcopy(integrator)):
                 self.assertEqual((again.index, again.time, again.method), (30, integrator.time, integrator.method))
                 np.testing.assert_array_equal(again.arrow, integrator.arrow)
                 self.assertEqual(*([entry.drift for entry in each.ledger] for each in (again, integrator)))
-            rest, same = integrator.march(40), again.march(40)
+            rest, same = integrator.integrate(40), again.integrate(40)
             for name in ("time", "object", "momentum", "configuration", "multipliers", "step_size"):
                 np.testing.assert_array_equal(getattr(rest, name), getattr(same, name))
             for one, other in zip(integrator.ledger, again.ledger):
@@ -338,7 +338,7 @@ class Systems(unittest.TestCase):
         integrator = system.integrator(momentum=momentum, object=[0])
         system.length, momentum[0] = 2.0, 5.0
         again = pickle.loads(pickle.dumps(integrator))
-        np.testing.assert_array_equal(again.march(10).object, integrator.march(10).object)
+        np.testing.assert_array_equal(again.integrate(10).object, integrator.integrate(10).object)
 
     def test_a_damaged_pickle_is_refused(self) -> None:
         version, origin, state = lagroid.Kepler().integrator(momentum=[0, 1], object=[1, 0]).__reduce_ex__(2)[2]
@@ -371,7 +371,7 @@ class Systems(unittest.TestCase):
 
         def long() -> None:
             started.set()
-            integrator.march(3_000_000, every=1_000_000)
+            integrator.integrate(3_000_000, every=1_000_000)
 
         thread = threading.Thread(target=long)
         thread.start()

@@ -1,7 +1,7 @@
 #pragma once
-/// A motion to be marched by many methods with many steps.
+/// A motion to be integrated by many methods with many steps.
 
-#include <lagroid/run/motion.hpp>
+#include <lagroid/run/motion/motion.hpp>
 #include <lagroid/run/study/method.hpp>
 
 #include <functional>

@@ -220,7 +220,7 @@ class Watch {
  public:
   Watch(double end, Measurement& out) : end_(end), out_(out) {}
 
-  void see(const Sight& now, double time) {
+  void see(const NodeObservation& now, double time) {
     if (looked_++ == 0) {
       if (now.constraint) out_.constraint = 0;
       if (!now.invariants.empty()) out_.invariants = 0;
@@ -287,11 +287,11 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
       for (std::size_t i = 0; i < state.size(); ++i) sizes[i] = std::max(sizes[i], norm(state[i].values));
     };
     look(motion->state());
-    Work work;
+    IntegrationCost work;
     const long looks = std::min(steps, 64L);
     for (long k = 1; k <= looks; ++k) {
       const double start = processor_time();
-      const StepReport report = march_to(*motion, end * double(k) / double(looks), work);
+      const StepReport report = integrate_to(*motion, end * double(k) / double(looks), work);
       out.seconds += processor_time() - start;
       if (!report.converged() || experiment.stopped()) return std::nullopt;
       out.state = motion->state();
@@ -355,7 +355,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
   try {
     const auto motion = experiment.begin(method, h);
     Watch watch(experiment.end, out);
-    watch.see(sight_of(*motion), 0);
+    watch.see(observation_of(*motion), 0);
     StepReport report;
     report.status = SolveStatus::converged;
     const double start = processor_time();
@@ -367,7 +367,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       report = advance(*motion, out.work);
       if (!report.converged()) break;
       last_step = motion->time() - before;
-      if (looks.at(out.work.steps)) watch.see(sight_of(*motion), motion->time());
+      if (looks.at(out.work.steps)) watch.see(observation_of(*motion), motion->time());
       if (out.work.steps % 64 != 0) continue;
       if (processor_time() - start > 8 * longest || experiment.stopped()) {
         out.status = experiment.stopped() ? "interrupted" : "too slow";
@@ -406,9 +406,9 @@ double time_once(const Experiment& experiment, const Method& method, double h) {
   long runs = 0;
   do {
     const auto motion = experiment.begin(method, h);
-    Work work;
+    IntegrationCost work;
     const double start = processor_time();
-    if (!march_to(*motion, experiment.end, work).converged()) return -1;
+    if (!integrate_to(*motion, experiment.end, work).converged()) return -1;
     total += processor_time() - start;
     ++runs;
   } while (total < long_enough && runs < 20);

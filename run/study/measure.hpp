@@ -2,7 +2,7 @@
 /// What methods cost, and how far their numbers are from the truth.
 
 #include <lagroid/run/study/experiment.hpp>
-#include <lagroid/run/study/march.hpp>
+#include <lagroid/run/study/study_integrator.hpp>
 
 #include <functional>
 #include <limits>
@@ -27,7 +27,7 @@ class Reference {
 };
 
 /// Where a method ends after equal steps: the state, its blocks with the sizes that they had along the run, and the
-/// processor time of the march. None where it fails on the way.
+/// processor time of the integrator. None where it fails on the way.
 struct Reached {
   std::vector<NamedVector> state;
   double seconds = 0;
@@ -59,8 +59,8 @@ struct Measurement {
   std::string status = "converged";
   std::string message;
   double reached = 0;  ///< the time
-  Work work;
-  std::vector<double> seconds;                                   ///< of every repetition: processor time of the march
+  IntegrationCost work;
+  std::vector<double> seconds;  ///< of every repetition: processor time of the integrator
   double trajectory = std::numeric_limits<double>::quiet_NaN();  ///< error at the end
   double invariants = std::numeric_limits<double>::quiet_NaN();  ///< the largest deviation at any node, relative
   double constraint = std::numeric_limits<double>::quiet_NaN();  ///< the largest residual at any node

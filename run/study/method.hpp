@@ -1,12 +1,12 @@
 #pragma once
-/// The ways to march a scene.
+/// The ways to integrate a scene.
 
 #include <string>
 #include <vector>
 
 namespace lagroid {
 
-/// A way to march a scene: what stands in its [time], as "key=value".
+/// A way to integrate a scene: what stands in its [time], as "key=value".
 struct Method {
   std::string name;
   int order = 2;

@@ -1,6 +1,6 @@
 #include <lagroid/run/interrupt.hpp>
 #include <lagroid/run/machine.hpp>
-#include <lagroid/run/progress.hpp>
+#include <lagroid/run/reports/progress.hpp>
 #include <lagroid/run/study/study.hpp>
 
 #include <algorithm>

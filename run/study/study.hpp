@@ -1,7 +1,7 @@
 #pragma once
 /// What accuracy costs a motion, by all methods that apply to it.
 
-#include <lagroid/run/study/study_files.hpp>
+#include <lagroid/run/study/findings/study_files.hpp>
 #include <lagroid/run/study/survey.hpp>
 
 #include <functional>

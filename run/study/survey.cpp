@@ -1,6 +1,6 @@
 #include <lagroid/run/study/survey.hpp>
 
-#include <lagroid/run/clock.hpp>
+#include <lagroid/run/reports/clock.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #pragma once
 /// First guesses for the members of a batch: what `Extrapolation` does for one trajectory.
 
-#include <lagroid/core/batch.hpp>
-#include <lagroid/solvers/extrapolation.hpp>
+#include <lagroid/core/scalars/batch.hpp>
+#include <lagroid/solvers/step/extrapolation.hpp>
 
 #include <array>
 

@@ -1,9 +1,9 @@
 #pragma once
-/// Newton's iteration on the alpha-fibres of several members at once, one in each lane.
+/// Newton's iteration on the source fibres of several members at once, one in each lane.
 
-#include <lagroid/core/batch.hpp>
-#include <lagroid/solvers/small_inverse.hpp>
-#include <lagroid/solvers/step_solver.hpp>
+#include <lagroid/core/scalars/batch.hpp>
+#include <lagroid/solvers/linear_algebra/small_inverse.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
 
 #include <array>
 #include <limits>
@@ -92,7 +92,7 @@ template <DiscreteSystem Sys, int W> class BatchNewton {
   using Residual = typename E::Residual;
   using Jacobian = typename E::Jacobian;
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  static constexpr double leftover = 0.1;  ///< of a round-off level: what the iteration may leave
+  static constexpr double iteration_error = 0.1;  ///< of a round-off level: what the iteration may leave
   static constexpr int longest_chord = 12;
   static constexpr double price = E::size > 4 ? 16 : 8;  ///< of a matrix, in iterations
 
@@ -111,7 +111,7 @@ template <DiscreteSystem Sys, int W> class BatchNewton {
     return out;
   }
   /// The largest residual over its level; NaN where one of them is not finite.
-  LAGROID_INLINE B excess_of(const Residual& r, const Residual& floor) const {
+  LAGROID_INLINE B roundoff_ratio_of(const Residual& r, const Residual& floor) const {
     B largest = 0.0;
     B sum = 0.0;
     for (int i = 0; i < E::size; ++i) {
@@ -144,9 +144,9 @@ LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State
   Residual residual = E::residual(d, state.momentum);
   Residual floor = round_off_level<Sys, B>(system, state, step, jacobian_);
   for (int i = 0; i < E::size; ++i) floor(i) = 1.0 / floor(i);
-  B excess = excess_of(residual, floor);
-  B rate = select(renewed, min(B(0.1), 10 * epsilon * excess), rate_);
-  B remains = excess;
+  B roundoff_ratio = roundoff_ratio_of(residual, floor);
+  B rate = select(renewed, min(B(0.1), 10 * epsilon * roundoff_ratio), rate_);
+  B remains = roundoff_ratio;
   Mask open = wanted && trusted_;
   Mask done(false);
   iterations_ = B(longest_chord);
@@ -160,13 +160,13 @@ LAGROID_FLATTEN auto BatchNewton<Sys, W>::iterate(const Sys& system, const State
       step.multipliers(a) = select(open, step.multipliers(a) + by(Sys::dimension + a), step.multipliers(a));
     d = automatic_gradients<Sys, B>(system, step.arrow, step.multipliers);
     residual = E::residual(d, state.momentum);
-    const B next = excess_of(residual, floor);
-    const Mask contracting = next <= max(B(1.0), 0.3 * excess);
-    const B seen = iteration == 1 ? next / excess : max(next / excess, rate);
+    const B next = roundoff_ratio_of(residual, floor);
+    const Mask contracting = next <= max(B(1.0), 0.3 * roundoff_ratio);
+    const B seen = iteration == 1 ? next / roundoff_ratio : max(next / roundoff_ratio, rate);
     rate = select(open && next > 10.0, seen, rate);
     remains *= rate;
-    excess = next;
-    const Mask finished = open && contracting && excess <= 1.0 && remains <= leftover;
+    roundoff_ratio = next;
+    const Mask finished = open && contracting && roundoff_ratio <= 1.0 && remains <= iteration_error;
     done = done || finished;
     iterations_ = select(finished, B(iteration), iterations_);
     open = open && contracting && !finished;

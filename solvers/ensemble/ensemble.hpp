@@ -2,7 +2,7 @@
 /// Very many members of one system: a member in each lane of a batch, batches on threads.
 
 #include <lagroid/core/quantity.hpp>
-#include <lagroid/solvers/ensemble/batch_march.hpp>
+#include <lagroid/solvers/ensemble/batch_integrator.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 
 #include <algorithm>
@@ -25,13 +25,13 @@ template <DiscreteSystem Sys> struct EnsembleOptions {
   std::function<bool()> interrupted = nullptr;
 };
 
-/// Members of one system that differ in their initial states, marched by `Sys`'s implicit step with momenta by
-/// increments, as `Integrator` marches one.
+/// Members of one system that differ in their initial states, integrated by `Sys`'s implicit step with momenta by
+/// increments, as `FixedStepIntegrator` integrates one.
 ///
 /// **What becomes of a member depends on nothing but its initial state and the system**: to the bit not on the other
 /// members, their order or number, nor on threads, interrupts and how steps are grouped into advances; to round-off not
-/// on `Width`, and of a single `Integrator` it differs by round-off. A member whose step can not be solved fails alone,
-/// with a typed status, and keeps its last state.
+/// on `Width`, and of a single `FixedStepIntegrator` it differs by round-off. A member whose step can not be solved
+/// fails alone, with a typed status, and keeps its last state.
 ///
 /// A batch of members goes through all the steps of an advance, up to `round` of them, before the next is loaded: what
 /// it needs stays in the first cache. Include `systems/ensembles.hpp` for the library's systems, compiled. No
@@ -50,11 +50,11 @@ template <DiscreteSystem Sys, int Width = widest_batch> class Ensemble {
   /// Takes all members that have not failed to step `index`, counted from the start. False if interrupted.
   bool advance_to(long index, const EnsembleOptions<Sys>& options = {});
 
-  State<G> state(long member) const { return march(member).state(system_, lane(member)); }
+  State<G> state(long member) const { return integrator(member).state(system_, lane(member)); }
   /// Step, state, configuration and time that a member has reached.
-  TrajectoryPoint<Sys> point(long member) const { return point(march(member), system_, lane(member)); }
+  TrajectoryPoint<Sys> point(long member) const { return point(integrator(member), system_, lane(member)); }
   /// Converged, or why the step after the member's last one could not be solved.
-  SolveStatus status(long member) const { return march(member).status(lane(member)); }
+  SolveStatus status(long member) const { return integrator(member).status(lane(member)); }
   /// Members that have failed.
   long failures() const {
     long count = 0;
@@ -63,46 +63,46 @@ template <DiscreteSystem Sys, int Width = widest_batch> class Ensemble {
   }
 
  private:
-  using March = BatchMarch<Sys, Width>;
+  using Integrator = BatchIntegrator<Sys, Width>;
   static constexpr long round = 256;
 
   static int lane(long member) { return int(member % Width); }
-  const March& march(long member) const { return marches_[std::size_t(member / Width)]; }
-  static TrajectoryPoint<Sys> point(const March& march, const Sys& system, int lane);
+  const Integrator& integrator(long member) const { return integrators_[std::size_t(member / Width)]; }
+  static TrajectoryPoint<Sys> point(const Integrator& integrator, const Sys& system, int lane);
   void advance(long batch, long index, const EnsembleOptions<Sys>& options);
 
   Sys system_;
   long size_;
-  std::vector<March> marches_;
+  std::vector<Integrator> integrators_;
 };
 
 template <DiscreteSystem Sys, int Width>
 Ensemble<Sys, Width>::Ensemble(Sys system, std::span<const State<G>> initial,
                                std::span<const ArrowOf<G>> configurations)
-    : system_(std::move(system)), size_(long(initial.size())), marches_((initial.size() + Width - 1) / Width) {
+    : system_(std::move(system)), size_(long(initial.size())), integrators_((initial.size() + Width - 1) / Width) {
   if (!configurations.empty() && configurations.size() != initial.size())
     throw std::invalid_argument("an ensemble takes one configuration for every member, or none");
-  for (long i = 0; i < long(marches_.size()) * Width; ++i) {
+  for (long i = 0; i < long(integrators_.size()) * Width; ++i) {
     const auto member = std::size_t(std::min(i, size_ - 1));
     const State<G>& state = initial[member];
-    marches_[std::size_t(i / Width)].start(
+    integrators_[std::size_t(i / Width)].start(
         system_, lane(i), state,
         configurations.empty() ? ArrowOf<G>(system_.groupoid.unit(state.object)) : configurations[member], i < size_);
   }
 }
 
 template <DiscreteSystem Sys, int Width>
-TrajectoryPoint<Sys> Ensemble<Sys, Width>::point(const March& march, const Sys& system, int lane) {
+TrajectoryPoint<Sys> Ensemble<Sys, Width>::point(const Integrator& integrator, const Sys& system, int lane) {
   TrajectoryPoint<Sys> out;
-  out.index = march.index(lane);
+  out.index = integrator.index(lane);
   if constexpr (HasTimeStep<Sys>) {
     out.step_size = system.h;
     out.time = start_time(system) + double(out.index) * system.h;
   }
-  out.state = march.state(system, lane);
-  out.configuration = march.configuration(system, lane);
+  out.state = integrator.state(system, lane);
+  out.configuration = integrator.configuration(system, lane);
   out.step = out.index == 0 ? Step<Sys>{system.groupoid.unit(out.state.object), Sys::Multipliers::Zero()}
-                            : march.step(system, lane);
+                            : integrator.step(system, lane);
   return out;
 }
 
@@ -110,9 +110,9 @@ template <DiscreteSystem Sys, int Width>
 bool Ensemble<Sys, Width>::advance_to(long index, const EnsembleOptions<Sys>& options) {
   if (options.every < 1) throw std::invalid_argument("an ensemble is observed at every step, or at every n-th, n > 0");
   constexpr long batches_per_task = 4;
-  const long count = long(marches_.size());
+  const long count = long(integrators_.size());
   long reached = index;
-  for (const March& march : marches_) reached = std::min(reached, march.index());
+  for (const Integrator& integrator : integrators_) reached = std::min(reached, integrator.index());
   while (reached < index) {
     if (options.interrupted && options.interrupted()) return false;
     reached = std::min(index, reached + round);
@@ -123,20 +123,21 @@ bool Ensemble<Sys, Width>::advance_to(long index, const EnsembleOptions<Sys>& op
                   },
                   options.interrupted);
   }
-  return std::all_of(marches_.begin(), marches_.end(), [&](const March& march) { return march.index() >= index; });
+  return std::all_of(integrators_.begin(), integrators_.end(),
+                     [&](const Integrator& integrator) { return integrator.index() >= index; });
 }
 
 template <DiscreteSystem Sys, int Width>
 void Ensemble<Sys, Width>::advance(long batch, long index, const EnsembleOptions<Sys>& options) {
-  March& march = marches_[std::size_t(batch)];
+  Integrator& integrator = integrators_[std::size_t(batch)];
   Sys system = system_;
-  while (march.index() < index) {
-    if constexpr (TimeDependent<Sys>) system.time = system_.time + double(march.index()) * system_.h;
-    march.advance(system);
-    if (!options.observe || march.index() % options.every != 0) continue;
+  while (integrator.index() < index) {
+    if constexpr (TimeDependent<Sys>) system.time = system_.time + double(integrator.index()) * system_.h;
+    integrator.advance(system);
+    if (!options.observe || integrator.index() % options.every != 0) continue;
     for (int lane = 0; lane < Width; ++lane)
-      if (march.status(lane) == SolveStatus::converged)
-        options.observe(batch * Width + lane, point(march, system_, lane));
+      if (integrator.status(lane) == SolveStatus::converged)
+        options.observe(batch * Width + lane, point(integrator, system_, lane));
   }
 }
 

@@ -22,7 +22,7 @@ struct Schedule {
   int substeps = 1;
 };
 
-/// Hamilton's equations of a model with its parameters, to be marched by any Lie group method.
+/// Hamilton's equations of a model with its parameters, to be integrated by any Lie group method.
 class ModelField {
  public:
   using Points = CotangentSpheres<Eigen::Dynamic>::Point;
@@ -34,9 +34,9 @@ class ModelField {
 };
 
 /// The same as a map to the algebra (AlgebraField).
-class MarchedField {
+class IntegratedField {
  public:
-  explicit MarchedField(std::unique_ptr<ModelField> equations) : equations_(std::move(equations)) {}
+  explicit IntegratedField(std::unique_ptr<ModelField> equations) : equations_(std::move(equations)) {}
   void operator()(double, const ModelField::Points& z, ModelField::Points& f) { equations_->field(z, f); }
 
  private:

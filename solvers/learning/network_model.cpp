@@ -1,5 +1,5 @@
-#include <lagroid/solvers/learning/network_potential.hpp>
 #include <lagroid/solvers/learning/parametric_model.hpp>
+#include <lagroid/solvers/learning/potentials/network_potential.hpp>
 
 #include <fmt/ranges.h>
 

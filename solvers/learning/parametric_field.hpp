@@ -2,7 +2,7 @@
 /// Hamilton's equations on (T*S^2)^k for H = 1/2 p^T M(q)^{-1} p + V(q) with parameters.
 
 #include <lagroid/groupoids/spheres.hpp>
-#include <lagroid/solvers/learning/potential.hpp>
+#include <lagroid/solvers/learning/potentials/potential.hpp>
 
 #include <cmath>
 #include <vector>

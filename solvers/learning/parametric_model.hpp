@@ -1,7 +1,7 @@
 #pragma once
 /// The model of any potential.
 
-#include <lagroid/core/jet.hpp>
+#include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/solvers/learning/model.hpp>
 #include <lagroid/solvers/learning/parametric_field.hpp>
 #include <lagroid/solvers/lie_group/integrator.hpp>
@@ -60,7 +60,7 @@ template <class P, int K> class ParametricModel : public Model {
   void predict(const Eigen::VectorXd& theta, const Schedule& schedule, const Eigen::Ref<const Eigen::MatrixXd>& starts,
                Eigen::Ref<Eigen::MatrixXd> z) const override {
     Field<double> field = at(theta);
-    march(field, schedule, starts, [&](Eigen::Index column, Eigen::Index row, const Z<double>& point) {
+    integrate(field, schedule, starts, [&](Eigen::Index column, Eigen::Index row, const Z<double>& point) {
       z.col(column).segment(row, point.size()) = point.reshaped();
     });
   }
@@ -76,7 +76,7 @@ template <class P, int K> class ParametricModel : public Model {
         seeded[std::size_t(i)] =
             i >= first && i < first + here ? Direction::variable(theta(i), int(i - first)) : Direction(theta(i));
       field.set(seeded.data());
-      march(field, schedule, starts, [&](Eigen::Index column, Eigen::Index row, const Z<Direction>& point) {
+      integrate(field, schedule, starts, [&](Eigen::Index column, Eigen::Index row, const Z<Direction>& point) {
         for (Eigen::Index i = 0; i < point.size(); ++i) {
           const Direction& x = point.data()[i];
           z(row + i, column) = x.value;
@@ -91,11 +91,11 @@ template <class P, int K> class ParametricModel : public Model {
     z.resize(start.size(), Eigen::Index(times.size()));
     Field<double> field = at(theta);
     const auto space = field.space();
-    ControlledLieGroupIntegrator march(space, std::move(field), lie_group_methods::munthe_kaas_54, state(start),
-                                       LieGroupControl{.tolerance = tolerance, .most_steps = 100'000});
+    ControlledLieGroupIntegrator integrator(space, std::move(field), lie_group_methods::munthe_kaas_54, state(start),
+                                            LieGroupControl{.tolerance = tolerance, .most_steps = 100'000});
     for (std::size_t i = 0; i < times.size(); ++i) {
-      if (!march.advance_to(times[i]).converged()) return false;
-      z.col(Eigen::Index(i)) = march.point().reshaped();
+      if (!integrator.advance_to(times[i]).converged()) return false;
+      z.col(Eigen::Index(i)) = integrator.point().reshaped();
     }
     return true;
   }
@@ -128,8 +128,8 @@ template <class P, int K> class ParametricModel : public Model {
   Z<double> state(const Eigen::VectorXd& z) const { return Eigen::Map<const Z<double>>(z.data(), 6, bodies_); }
 
   template <class S, class Use>
-  void march(Field<S>& field, const Schedule& schedule, const Eigen::Ref<const Eigen::MatrixXd>& starts,
-             const Use& use) const {
+  void integrate(Field<S>& field, const Schedule& schedule, const Eigen::Ref<const Eigen::MatrixXd>& starts,
+                 const Use& use) const {
     LieGroupStep step(field.space(), schedule.method);
     Z<S> point = field.space().zero_point();
     const double h = schedule.interval / schedule.substeps;

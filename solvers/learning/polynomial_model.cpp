@@ -1,5 +1,5 @@
 #include <lagroid/solvers/learning/parametric_model.hpp>
-#include <lagroid/solvers/learning/polynomial_potential.hpp>
+#include <lagroid/solvers/learning/potentials/polynomial_potential.hpp>
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #pragma once
-/// Marches by Lie group integrators: with equal steps, and with steps that an error estimate controls.
+/// Integrators by Lie group integrators: with equal steps, and with steps that an error estimate controls.
 
-#include <lagroid/core/tape.hpp>
+#include <lagroid/core/number_archive.hpp>
 #include <lagroid/solvers/lie_group/step.hpp>
-#include <lagroid/solvers/method.hpp>
-#include <lagroid/solvers/step_solver.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ namespace detail {
 template <HomogeneousSpace M> void require_size(const M& space, const typename M::Point& z) {
   const typename M::Point like = space.zero_point();
   if (z.rows() != like.rows() || z.cols() != like.cols())
-    throw std::invalid_argument("the start of a march is a point of " + std::to_string(z.cols()) +
+    throw std::invalid_argument("the start of an integrator is a point of " + std::to_string(z.cols()) +
                                 " columns, those of its space have " + std::to_string(like.cols()));
 }
 
@@ -67,9 +67,9 @@ template <HomogeneousSpace M, AlgebraField<M> F> class LieGroupIntegrator {
   }
 
   /// Visits all that the next step goes on from, to its last bit.
-  void persist(Tape& tape) {
+  void serialize(NumberArchive& archive) {
     auto point = numbers_of(point_);
-    tape(point, index_, step_);
+    archive(point, index_, step_);
   }
 
  private:
@@ -86,7 +86,7 @@ struct LieGroupControl {
   double first_step = 1e-3;
   double largest_step = 1e300;
   long most_steps = 100'000'000;         ///< tried on the way to one end
-  std::function<bool()> stop = nullptr;  ///< asked before each; true ends the march as a limit of steps does
+  std::function<bool()> stop = nullptr;  ///< asked before each; true ends the integrator as a limit of steps does
 };
 
 /// Steps whose size follows the estimate of an embedded method: h <- h 0.9 (tolerance / error)^(1/order), changed by
@@ -109,7 +109,7 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
     detail::require_size(step_.space(), point_);
     if (!method.embedded()) throw std::invalid_argument(std::string(method.name) + " estimates no error");
     if (!(control.tolerance > 0) || !(control.first_step > 0) || !(control.largest_step > 0))
-      throw std::invalid_argument("tolerance and steps of a controlled march are positive");
+      throw std::invalid_argument("tolerance and steps of a controlled integrator are positive");
   }
 
   const Point& point() const { return point_; }
@@ -122,7 +122,7 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
   /// step; `not_finite`: so does a number that is not finite; `not_converged`: the limit of steps is reached. The point
   /// is the last one accepted. Throws std::invalid_argument for an end before the present time.
   StepReport advance_to(double end) {
-    if (!(end >= time_)) throw std::invalid_argument("a controlled march goes on to a later time");
+    if (!(end >= time_)) throw std::invalid_argument("a controlled integrator goes on to a later time");
     StepReport report;
     const long before = steps_ + rejected_;
     while (time_ < end) {
@@ -143,11 +143,11 @@ template <HomogeneousSpace M, AlgebraField<M> F> class ControlledLieGroupIntegra
     return report;
   }
   /// Visits all that the next step goes on from, to its last bit.
-  void persist(Tape& tape) {
+  void serialize(NumberArchive& archive) {
     auto point = numbers_of(point_);
-    tape(point, h_, time_, steps_, rejected_, step_);
+    archive(point, h_, time_, steps_, rejected_, step_);
   }
-  /// The same, to be gone back to. Nothing is allocated where a place of this march is overwritten.
+  /// The same, to be gone back to. Nothing is allocated where a place of this integrator is overwritten.
   struct Place {
     LieGroupStep<M> step;
     Point point;

@@ -1,8 +1,8 @@
 #pragma once
 /// Magnus integrators for linear equations on homogeneous spaces.
 
-#include <lagroid/core/homogeneous_space.hpp>
-#include <lagroid/solvers/method.hpp>
+#include <lagroid/core/hamiltonian/homogeneous_space.hpp>
+#include <lagroid/solvers/methods/method.hpp>
 
 #include <cmath>
 #include <stdexcept>

@@ -1,9 +1,9 @@
 #pragma once
 /// One step of an explicit Lie group integrator.
 
-#include <lagroid/core/homogeneous_space.hpp>
-#include <lagroid/core/numbers_of.hpp>
-#include <lagroid/core/tape.hpp>
+#include <lagroid/core/hamiltonian/homogeneous_space.hpp>
+#include <lagroid/core/number_archive.hpp>
+#include <lagroid/core/scalars/numbers_of.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
 
 #include <array>
@@ -52,10 +52,10 @@ template <HomogeneousSpace M> class LieGroupStep {
   double error() const { return error_; }
 
   /// Visits what the next step goes on from, beside the point.
-  void persist(Tape& tape) {
+  void serialize(NumberArchive& archive) {
     if (!method_.reuses_last) return;
     auto slope = numbers_of(slope_[std::size_t(method_.stages) - 1]);
-    tape(knows_first_, slope);
+    archive(knows_first_, slope);
   }
 
  private:

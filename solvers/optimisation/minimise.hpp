@@ -1,7 +1,7 @@
 #pragma once
 /// The loop that all methods of optimisation share: what stops it, what it tells, and how it ends.
 
-#include <lagroid/solvers/optimisation/manifold.hpp>
+#include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>
 
 #include <cstddef>

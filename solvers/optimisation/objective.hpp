@@ -1,7 +1,7 @@
 #pragma once
 /// Functions that are minimised.
 
-#include <lagroid/solvers/optimisation/manifold.hpp>
+#include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-#include <lagroid/solvers/optimisation/flat.hpp>
+#include <lagroid/solvers/optimisation/manifolds/flat.hpp>
 #include <lagroid/solvers/optimisation/penalised.hpp>
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #pragma once
 /// What [G] says of the dynamics, as properties that any system runs by naming itself.
 
-#include <lagroid/core/lagrangian.hpp>
-#include <lagroid/core/reversed.hpp>
+#include <lagroid/core/capabilities/reversed.hpp>
+#include <lagroid/core/hamiltonian/lagrangian.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 
@@ -39,9 +39,9 @@ SubmanifoldTangent solved_graph(const Sys& system, const State<typename Sys::Gro
   const G& groupoid = system.groupoid;
   const CotangentGroupoid<G> cotangent(groupoid);
   const auto step = [&](const Point& z) {
-    Integrator<Sys> march(system, {z.object, z.momentum}, groupoid.unit(z.object), make());
-    if (const auto report = march.advance(); !report.converged()) throw no_step(report);
-    return march.point();
+    FixedStepIntegrator<Sys> integrator(system, {z.object, z.momentum}, groupoid.unit(z.object), make());
+    if (const auto report = integrator.advance(); !report.converged()) throw no_step(report);
+    return integrator.point();
   };
   const Point from{start.object, start.momentum};
   const auto end = step(from);

@@ -3,7 +3,7 @@
 
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/ensemble/ensemble.hpp>
-#include <lagroid/solvers/integrator.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -42,8 +42,10 @@ double different(const One& one, const Other& other, const std::vector<std::size
 
 /// For ensembles of `members` random initial states, which `draw()` returns, over `steps` steps:
 ///
-/// - "a member is its own trajectory": state and configuration are those of an `Integrator` by `NewtonStep`, to
-///   `tolerance` relative to their size (or to one, if that is more), and an `Integrator` fails where the member does;
+/// - "a member is its own trajectory": state and configuration are those of a `FixedStepIntegrator` by `NewtonStep`,
+/// to
+///   `tolerance` relative to their size (or to one, if that is more), and a `FixedStepIntegrator` fails where the
+///   member does;
 /// - "members do not know their order": in another order they are the same, to the bit;
 /// - "a member fails alone": where every third member starts from an infinite momentum, these fail at their first step,
 ///   and the others are what they were, to the bit;
@@ -72,8 +74,8 @@ LawReport ensemble_laws_of(const Sys& system, const Draw& draw, int members, int
     const auto ensemble = advanced(initial);
     double largest = 0;
     for (std::size_t i = 0; i < initial.size(); ++i) {
-      Integrator<Sys> alone(system, initial[i], system.groupoid.unit(initial[i].object),
-                            std::make_unique<NewtonStep<Sys>>());
+      FixedStepIntegrator<Sys> alone(system, initial[i], system.groupoid.unit(initial[i].object),
+                                     std::make_unique<NewtonStep<Sys>>());
       auto status = SolveStatus::converged;
       for (int k = 0; k < steps && status == SolveStatus::converged; ++k) status = alone.advance().status;
       const auto point = ensemble.point(long(i));

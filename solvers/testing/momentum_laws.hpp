@@ -3,8 +3,8 @@
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/property.hpp>
-#include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
 
 #include <cmath>
 #include <functional>
@@ -24,8 +24,8 @@ template <DiscreteSystem Sys> std::unique_ptr<StepSolver<Sys>> newton_solver() {
 namespace detail {
 
 template <DiscreteSystem Sys>
-Integrator<Sys> newton_integrator(const Sys& system, const State<typename Sys::GroupoidType>& start) {
-  return Integrator<Sys>(system, start, system.groupoid.unit(start.object), newton_solver<Sys>());
+FixedStepIntegrator<Sys> newton_integrator(const Sys& system, const State<typename Sys::GroupoidType>& start) {
+  return FixedStepIntegrator<Sys>(system, start, system.groupoid.unit(start.object), newton_solver<Sys>());
 }
 
 /// The round-off of the momenta of a step, which small arrows divide by h: as the size of terms of which a hundred

@@ -2,7 +2,7 @@
 /// The order that a method shows, held to the order it declares.
 
 #include <lagroid/core/testing/law_report.hpp>
-#include <lagroid/solvers/method.hpp>
+#include <lagroid/solvers/methods/method.hpp>
 
 #include <Eigen/Core>
 

@@ -12,7 +12,7 @@
 
 namespace lagroid::laws {
 
-/// Along trajectories of `steps` steps that a solver from `make()` marches from random states: it solves every step
+/// Along trajectories of `steps` steps that a solver from `make()` integrates from random states: it solves every step
 /// that NewtonStep solves, and to the same arrow, multipliers and momentum within `tolerance`, relative to their size
 /// or to one, if that is more. Both start each step from the continuation of their own steps before. A state from which
 /// NewtonStep does not come to the end is passed over. `draw()` returns a State.
@@ -24,17 +24,17 @@ LawReport solver_laws(const Sys& system, const Draw& draw, const std::type_ident
   LawReport report{"solver of steps", {}};
   report.laws.push_back(check_law("steps are solved as by Newton", tolerance, [&] {
     const State<G> start = draw();
-    Integrator<Sys> march(system, start, groupoid.unit(start.object), make());
-    Stepper<Sys> newton(system, std::make_unique<NewtonStep<Sys>>());
+    FixedStepIntegrator<Sys> integrator(system, start, groupoid.unit(start.object), make());
+    StepPredictor<Sys> newton(system, std::make_unique<NewtonStep<Sys>>());
     double largest = 0;
     for (int k = 0; k < steps; ++k) {
-      const State<G> from = march.point().state;
+      const State<G> from = integrator.point().state;
       StepSolution<Sys> expected;
-      set_time(newton.system(), start_time(march.system()));
+      set_time(newton.system(), start_time(integrator.system()));
       if (const auto found = newton.solve(from, expected); !found.converged()) throw detail::no_step(found);
-      if (const auto found = march.advance(); !found.converged())
+      if (const auto found = integrator.advance(); !found.converged())
         throw std::runtime_error("step " + std::to_string(k + 1) + ": " + std::string(to_string(found.status)));
-      const auto& point = march.point();
+      const auto& point = integrator.point();
       largest = worst({largest,
                        detail::relative_defect(groupoid.coordinates_of_arrow(point.step.arrow),
                                                groupoid.coordinates_of_arrow(expected.step.arrow)),

@@ -1,11 +1,11 @@
 #pragma once
 /// What SplitSystem requires of the flows, as properties that any system runs by naming itself.
 
-#include <lagroid/core/lagrangian.hpp>
-#include <lagroid/core/step_equations.hpp>
+#include <lagroid/core/derivatives/step_equations.hpp>
+#include <lagroid/core/hamiltonian/lagrangian.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/core/testing/property.hpp>
-#include <lagroid/solvers/splitting.hpp>
+#include <lagroid/solvers/integrators/splitting.hpp>
 
 #include <string>
 

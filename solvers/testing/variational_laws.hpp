@@ -1,10 +1,10 @@
 #pragma once
 /// The discrete constrained action principle as a property that any system runs by naming itself. [G] section 5
 
-#include <lagroid/core/lagrangian.hpp>
-#include <lagroid/core/step_equations.hpp>
+#include <lagroid/core/derivatives/step_equations.hpp>
+#include <lagroid/core/hamiltonian/lagrangian.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
-#include <lagroid/solvers/boundary_problem.hpp>
+#include <lagroid/solvers/boundary/boundary_problem.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
 
 #include <Eigen/QR>

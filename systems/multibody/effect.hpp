@@ -1,7 +1,7 @@
 #pragma once
 /// What acts on the bodies of a scene.
 
-#include <lagroid/core/jet.hpp>
+#include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/systems/multibody/configuration.hpp>
 
 #include <array>

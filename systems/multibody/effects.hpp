@@ -152,7 +152,7 @@ struct PlanarTorsionSpring {
 };
 
 /// What a frame that turns about an axis through the origin puts on a mass at rest in it: U = -m |Omega x x|^2 / 2. The
-/// other part, on a mass that moves, is `Scene::deflect` by 2 m Omega.
+/// other part, on a mass that moves, is `Scene::gyroscopic_force` by 2 m Omega.
 struct Centrifugal {
   std::array<Site, 1> sites;
   double mass = 1;

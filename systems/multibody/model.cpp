@@ -1,6 +1,6 @@
 #include <lagroid/systems/multibody/model.hpp>
 
-#include <lagroid/systems/multibody/memory.hpp>
+#include <lagroid/systems/multibody/solver/memory.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +83,7 @@ std::size_t Model::memory() const {
   return bytes_of(places.sites, places.attitudes, linear_places, factors.inertia, factors.planar, factors.dragged,
                   factors.moments, factors.turn_damping, factors.damped_turns, points.arms, points.planar_arms,
                   points.pushed_arms, points.pushed_planar_arms, points.moving, rows.roles, rows.left_out,
-                  rows.softness, rows.batches, rows.linear_entries, rows.rotation_entries, rows.factor_entries,
+                  rows.compliance, rows.batches, rows.linear_entries, rows.rotation_entries, rows.factor_entries,
                   rows.linear_products, rows.rotation_products, rows.levers, rows.planar_levers, rows.moving_entries,
                   islands);
 }

@@ -1,9 +1,9 @@
 #pragma once
 /// What a scene is while it moves.
 
-#include <lagroid/solvers/elimination.hpp>
+#include <lagroid/solvers/linear_algebra/elimination.hpp>
 #include <lagroid/systems/multibody/joint.hpp>
-#include <lagroid/systems/multibody/turn.hpp>
+#include <lagroid/systems/multibody/rotation_increment.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -111,8 +111,8 @@ struct Model {
   /// The equations of the joints, and which gradient of which moves what.
   struct Rows {
     std::vector<Role> roles;
-    std::vector<char> left_out;    ///< rows that depend on others
-    std::vector<double> softness;  ///< of damping rows: 2 / c; empty where there are none
+    std::vector<char> left_out;      ///< rows that depend on others
+    std::vector<double> compliance;  ///< of damping rows: 2 / c; empty where there are none
     std::vector<Batch> batches;
     std::vector<Entry> linear_entries, rotation_entries;
     std::vector<int> factor_entries;  ///< of each linear factor, where its entries begin

@@ -1,8 +1,8 @@
 #include <lagroid/systems/multibody/multibody.hpp>
 
-#include <lagroid/systems/multibody/assembly.hpp>
-#include <lagroid/systems/multibody/island_solver.hpp>
-#include <lagroid/systems/multibody/memory.hpp>
+#include <lagroid/systems/multibody/solver/assembly.hpp>
+#include <lagroid/systems/multibody/solver/island_solver.hpp>
+#include <lagroid/systems/multibody/solver/memory.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ StepReport solve_islands(const Model& model, const SceneState& state, const Step
     worst.status = report.status;
     worst.iterations = std::max(worst.iterations, report.iterations);
     worst.residual = std::max(worst.residual, report.residual);
-    worst.excess = std::max(worst.excess, report.excess);
+    worst.roundoff_ratio = std::max(worst.roundoff_ratio, report.roundoff_ratio);
     return report.converged();
   };
   for (int r = 0; r < model.free.rotations.last; ++r)
@@ -69,7 +69,8 @@ StepReport solve_islands(const Model& model, const SceneState& state, const Step
 
 bool turns_are_in_domain(const Model& model, const Workspace& w) {
   return model.factors.rotation != Retraction::exponential ||
-         std::all_of(w.turned.begin(), w.turned.end(), [](const Vec& xi) { return xi.norm() < Turn::limit; });
+         std::all_of(w.turned.begin(), w.turned.end(),
+                     [](const Vec& xi) { return xi.norm() < RotationIncrement::limit; });
 }
 
 void add_reactions(const Model& model, const SceneState& state, Workspace& w) {
@@ -179,7 +180,7 @@ void end_damping(const Model& model, SceneState& state, Workspace& w) {
   for (const Model::Entry& e : model.rows.rotation_entries) push(e, w.spin_impulse);
   for (std::size_t row = 0; row < multipliers.size(); ++row)
     if (model.rows.roles[row] == Role::damping)
-      state.dissipated += 2 * model.rows.softness[row] * multipliers[row] * multipliers[row] / w.inertia.h;
+      state.dissipated += 2 * model.rows.compliance[row] * multipliers[row] * multipliers[row] / w.inertia.h;
 }
 
 }  // namespace
@@ -248,7 +249,7 @@ StepReport Multibody::advance_by_stages(double end) {
     worst.status = report.status;
     worst.iterations += report.iterations;
     worst.residual = std::max(worst.residual, report.residual);
-    worst.excess = std::max(worst.excess, report.excess);
+    worst.roundoff_ratio = std::max(worst.roundoff_ratio, report.roundoff_ratio);
   }
   if (!worst.converged()) state_ = before_;
   return worst;
@@ -290,7 +291,7 @@ void Multibody::accept() {
   end_factors(model_, state_, w);
   if (model_.rows.vakonomic) end_vakonomic(model_, state_, w);
   arrive(model_, state_, w);
-  if (!model_.rows.softness.empty()) end_damping(model_, state_, w);
+  if (!model_.rows.compliance.empty()) end_damping(model_, state_, w);
   w.add_impulse(model_, state_.loads);
   for (std::size_t f = 0; f < state_.momentum.size(); ++f)
     add(state_.momentum[f], state_.momentum_carry[f], w.impulse[f]);
@@ -304,9 +305,9 @@ void Multibody::restore(const SceneState& state) {
   follow_state();
 }
 
-void Multibody::persist(Tape& tape) {
-  state_.persist(tape);
-  if (tape.reading()) follow_state();
+void Multibody::serialize(NumberArchive& archive) {
+  state_.serialize(archive);
+  if (archive.reading()) follow_state();
 }
 
 void Multibody::follow_state() {

@@ -1,12 +1,12 @@
 #pragma once
 /// The motion of a scene.
 
-#include <lagroid/solvers/compositions.hpp>
-#include <lagroid/solvers/step_solver.hpp>
+#include <lagroid/solvers/integrators/compositions.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
 #include <lagroid/systems/multibody/model.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
+#include <lagroid/systems/multibody/solver/workspace.hpp>
 #include <lagroid/systems/multibody/state.hpp>
-#include <lagroid/systems/multibody/workspace.hpp>
 
 #include <cstddef>
 #include <vector>
@@ -24,7 +24,7 @@ struct Options {
   Composition composition = compositions::single;
 };
 
-/// Marches the discrete Lagrangian of a scene,
+/// Integrates the discrete Lagrangian of a scene,
 ///     L(q, g) = sum_b K_b(g_b) - h (U(q) + U(q g)) / 2,   K = m |dx|^2 / (2 h) or h l(tau^{-1}(g) / h), l(w) = w.I w /
 ///     2,
 /// on the product of its bodies' groupoids, with the object constraints C(q) = 0 of its joints: with multipliers on the
@@ -49,7 +49,7 @@ class Multibody {
   /// Goes on from a state with the same bits. Throws std::invalid_argument where it is none of this scene.
   void restore(const SceneState& state);
   /// Visits the state.
-  void persist(Tape& tape);
+  void serialize(NumberArchive& archive);
   /// Back along the same trajectory: momenta change their signs.
   void reverse();
   /// Takes from the momenta what the joints do not allow; vakonomic ones keep their last multipliers.

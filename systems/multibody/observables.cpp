@@ -158,7 +158,7 @@ double Multibody::velocity_defect() const {
 }
 
 double Multibody::hardest_damper() const {
-  std::vector<double> response(model_.rows.softness.size(), 0.0);
+  std::vector<double> response(model_.rows.compliance.size(), 0.0);
   const auto look = [&](const Model::Entry& e, const std::vector<Vec>& inertia) {
     const Vec& g = state_.gradients[std::size_t(e.gradient)];
     if (e.role == Role::damping)
@@ -168,7 +168,8 @@ double Multibody::hardest_damper() const {
   for (const Model::Entry& e : model_.rows.rotation_entries) look(e, model_.factors.moments);
   double hardest = 0;
   for (std::size_t row = 0; row < response.size(); ++row)
-    if (model_.rows.roles[row] == Role::damping) hardest = std::max(hardest, response[row] / model_.rows.softness[row]);
+    if (model_.rows.roles[row] == Role::damping)
+      hardest = std::max(hardest, response[row] / model_.rows.compliance[row]);
   return hardest;
 }
 

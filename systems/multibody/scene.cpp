@@ -56,7 +56,7 @@ void Scene::damp(const Body& body, double of_motion, double of_turning) {
   if (body.attitude.index >= 0) rotating_[std::size_t(body.attitude.index)].damping += Vec::Constant(of_turning);
 }
 
-void Scene::deflect(const Body& body, const Vec& w) {
+void Scene::gyroscopic_force(const Body& body, const Vec& w) {
   linear_[std::size_t(sites_[std::size_t(body.centre.index)].linear)].drag += SO3::hat(w);
 }
 

@@ -2,7 +2,7 @@
 /// A scene while it is written: bodies, their points, what ties them and what acts on them.
 
 #include <lagroid/systems/multibody/joint.hpp>
-#include <lagroid/systems/multibody/turn.hpp>
+#include <lagroid/systems/multibody/rotation_increment.hpp>
 
 #include <map>
 #include <memory>
@@ -74,7 +74,7 @@ class Scene {
   void damp(const Body& body, double of_motion, double of_turning);
   /// A force -w x v at right angles to the velocity v of a body in space, which does no work: in a magnetic field B
   /// w = q B, in a frame that turns w = 2 m Omega.
-  void deflect(const Body& body, const Vec& w);
+  void gyroscopic_force(const Body& body, const Vec& w);
 
   template <class K> void add(const K& kernel) {
     if constexpr (requires { K::rows; }) {

@@ -1,6 +1,6 @@
 #include <lagroid/systems/multibody/state.hpp>
 
-#include <lagroid/systems/multibody/memory.hpp>
+#include <lagroid/systems/multibody/solver/memory.hpp>
 
 namespace lagroid::multibody {
 
@@ -30,12 +30,12 @@ bool SceneState::fits(const SceneState& other) const {
   return control.has_value() == other.control.has_value() && lengths_of(*this) == lengths_of(other);
 }
 
-void SceneState::persist(Tape& tape) {
-  tape(index, step, time_carry, dissipated, at.time, at.x, at.attitude, attitude);
-  tape(place_carry, momentum, momentum_carry, spin, spin_carry, guess, stages);
-  if (control) tape(*control);
-  tape(loads.on, loads.torque, gradients, precision, arrow_residual);
-  for (RowSize& size : sizes) tape(size.terms, size.slope);
+void SceneState::serialize(NumberArchive& archive) {
+  archive(index, step, time_carry, dissipated, at.time, at.x, at.attitude, attitude);
+  archive(place_carry, momentum, momentum_carry, spin, spin_carry, guess, stages);
+  if (control) archive(*control);
+  archive(loads.on, loads.torque, gradients, precision, arrow_residual);
+  for (RowSize& size : sizes) archive(size.terms, size.slope);
 }
 
 std::size_t SceneState::memory() const {

@@ -1,10 +1,10 @@
 #pragma once
 /// Where the motion of a scene stands.
 
-#include <lagroid/core/tape.hpp>
-#include <lagroid/solvers/step_control.hpp>
+#include <lagroid/core/number_archive.hpp>
+#include <lagroid/solvers/integrators/step_control.hpp>
 #include <lagroid/systems/multibody/joint.hpp>
-#include <lagroid/systems/multibody/turn.hpp>
+#include <lagroid/systems/multibody/rotation_increment.hpp>
 
 #include <array>
 #include <cstddef>
@@ -20,7 +20,7 @@ struct SceneState {
     std::array<std::vector<double>, 3> multipliers;  ///< of the last three steps, the last first
     std::vector<Vec> turns;                          ///< of the last step, xi
 
-    void persist(Tape& tape) { tape(multipliers, turns); }
+    void serialize(NumberArchive& archive) { archive(multipliers, turns); }
     friend void swap(Guess& a, Guess& b) noexcept {
       a.multipliers.swap(b.multipliers);
       a.turns.swap(b.turns);
@@ -49,7 +49,7 @@ struct SceneState {
   /// Whether the other is a state of the same scene, as far as sizes tell.
   bool fits(const SceneState& other) const;
   /// Visits all of it.
-  void persist(Tape& tape);
+  void serialize(NumberArchive& archive);
   /// Of its arrays, B.
   std::size_t memory() const;
 };

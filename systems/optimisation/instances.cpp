@@ -1,7 +1,7 @@
 #include <lagroid/systems/optimisation/instances.hpp>
 
-#include <lagroid/solvers/optimisation/sphere.hpp>
-#include <lagroid/solvers/optimisation/stiefel.hpp>
+#include <lagroid/solvers/optimisation/manifolds/sphere.hpp>
+#include <lagroid/solvers/optimisation/manifolds/stiefel.hpp>
 #include <lagroid/systems/optimisation/procrustes.hpp>
 #include <lagroid/systems/optimisation/random.hpp>
 #include <lagroid/systems/optimisation/rayleigh.hpp>

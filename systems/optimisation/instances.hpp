@@ -1,7 +1,7 @@
 #pragma once
 /// Problems with their manifold and, where linear algebra knows it, their minimum.
 
-#include <lagroid/solvers/optimisation/manifold.hpp>
+#include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>
 #include <lagroid/systems/optimisation/operators.hpp>
 

@@ -1,9 +1,9 @@
 #pragma once
-/// Laws of marches on (TS^2)^k and (T*S^2)^k, for a user's own.
+/// Laws of integrators on (TS^2)^k and (T*S^2)^k, for a user's own.
 
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/testing/order_laws.hpp>
-#include <lagroid/systems/sphere_march.hpp>
+#include <lagroid/systems/spheres/sphere_integrator.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,12 @@ namespace lagroid::laws {
 
 /// A motion that can be begun anywhere by any of its methods.
 struct SphereSubject {
-  using Points = SphereMarch::Points;
+  using Points = SphereIntegrator::Points;
 
   std::string name;
-  SphereMarchOptions options;  ///< the method in question
-  Points start;                ///< of its form
-  std::function<std::unique_ptr<SphereMarch>(const Points& start, const SphereMarchOptions& options)> begin;
+  SphereIntegratorOptions options;  ///< the method in question
+  Points start;                     ///< of its form
+  std::function<std::unique_ptr<SphereIntegrator>(const Points& start, const SphereIntegratorOptions& options)> begin;
   std::function<Points(const Points& z, SphereForm from, SphereForm to)> in_form;
   std::vector<SphereForm> forms;
   /// What a symplectic method keeps of a state of options.form, and the size of its terms; null: nothing is known.
@@ -33,7 +33,7 @@ struct SphereSubject {
 
 namespace detail {
 
-using SpherePoints = SphereMarch::Points;
+using SpherePoints = SphereIntegrator::Points;
 
 /// The start with its directions turned by u_i and its second halves, in the usual form, moved by v_i times their size.
 inline SpherePoints displaced(const SphereSubject& subject, const Eigen::Matrix3Xd& u, const Eigen::Matrix3Xd& v) {
@@ -76,11 +76,11 @@ inline double sphere_distance(const SpherePoints& a, const SpherePoints& b, cons
   return std::hypot((a - b).topRows<3>().norm(), (a - b).bottomRows<3>().norm() / (size > 0 ? size : 1));
 }
 
-inline SpherePoints marched(SphereMarch& march, long steps) {
+inline SpherePoints integrated(SphereIntegrator& integrator, long steps) {
   for (long k = 0; k < steps; ++k)
-    if (const auto report = march.advance(); !report.converged())
+    if (const auto report = integrator.advance(); !report.converged())
       throw NotSampled("a step from here ends " + std::string(to_string(report.status)));
-  return march.point();
+  return integrator.point();
 }
 
 /// The integral of p dq around closed curves of states with periodic parameter, by spectral derivatives, and its
@@ -106,7 +106,7 @@ inline std::pair<double, double> loop_integral(const std::vector<SpherePoints>& 
 /// The order that the method shows from beside the start, which may be at rest, over a time in which a few steps leave
 /// an error to speak of.
 inline double observed_order(const SphereSubject& subject) {
-  SphereMarchOptions exact = subject.options;
+  SphereIntegratorOptions exact = subject.options;
   exact.method = lie_group_methods::munthe_kaas_54.name;
   exact.tolerance = 1e-14;
   constexpr int few = 8;
@@ -114,12 +114,12 @@ inline double observed_order(const SphereSubject& subject) {
   const double h = subject.options.step;
   for (double horizon = 0.125 * h; horizon < 1e6 * h; horizon *= 1.5) {
     exact.step = horizon;
-    const auto end = marched(*subject.begin(start, exact), 1);
+    const auto end = integrated(*subject.begin(start, exact), 1);
     const auto error = [&](int steps) {
-      SphereMarchOptions own = subject.options;
+      SphereIntegratorOptions own = subject.options;
       own.tolerance = 0;
       own.step = horizon / steps;
-      return sphere_distance(marched(*subject.begin(start, own), steps), end, end);
+      return sphere_distance(integrated(*subject.begin(start, own), steps), end, end);
     };
     if (error(few) > 1e-4) return measured_order(error, 2 * few);
   }
@@ -152,7 +152,7 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
 
   if (subject.keeps_spheres)
     report.laws.push_back(check_law("points stay on the spheres", 1e-13, [&] {
-      return off_spheres(detail::marched(*begun(detail::drawn_beside(subject)), steps));
+      return off_spheres(detail::integrated(*begun(detail::drawn_beside(subject)), steps));
     }));
   ask_law("at least the order declared", 0.1, [&] {
     return worst({0.0, traits.order - detail::observed_order(subject)});
@@ -161,12 +161,12 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
     report.laws.push_back(check_law("all forms are one motion", 1e-9, [&] {
       const Points z = detail::drawn_beside(subject);
       const auto end = [&](SphereForm form) {
-        SphereMarchOptions options = subject.options;
+        SphereIntegratorOptions options = subject.options;
         options.method = lie_group_methods::munthe_kaas_54.name;
         options.tolerance = 1e-13;
         options.form = form;
-        const auto march = subject.begin(subject.in_form(z, subject.options.form, form), options);
-        return subject.in_form(detail::marched(*march, 4), form, SphereForm::momenta);
+        const auto integrator = subject.begin(subject.in_form(z, subject.options.form, form), options);
+        return subject.in_form(detail::integrated(*integrator, 4), form, SphereForm::momenta);
       };
       const Points one = end(subject.forms.front());
       return detail::sphere_distance(end(subject.forms.back()), one, one);
@@ -175,32 +175,32 @@ inline LawReport sphere_laws(const SphereSubject& subject) {
 
   report.laws.push_back(check_law("steps go back the way they came", 1e-9, [&] {
     const Points z = detail::drawn_beside(subject);
-    Points turned = detail::marched(*begun(z), steps);
+    Points turned = detail::integrated(*begun(z), steps);
     turned.bottomRows<3>() *= -1;
-    Points back = detail::marched(*begun(turned), steps);
+    Points back = detail::integrated(*begun(turned), steps);
     back.bottomRows<3>() *= -1;
     return detail::sphere_distance(back, z, z);
   }));
   ask_law("symplectic", 1e-8, [&] {
     constexpr int points = 64;
-    std::vector<std::unique_ptr<SphereMarch>> marches;
-    for (int k = 0; k < points; ++k) marches.push_back(begun(detail::on_loop(subject, 2 * M_PI * k / points)));
+    std::vector<std::unique_ptr<SphereIntegrator>> integrators;
+    for (int k = 0; k < points; ++k) integrators.push_back(begun(detail::on_loop(subject, 2 * M_PI * k / points)));
     const auto integral = [&] {
       std::vector<Points> loop;
-      for (const auto& march : marches)
-        loop.push_back(subject.in_form(march->point(), subject.options.form, SphereForm::momenta));
+      for (const auto& integrator : integrators)
+        loop.push_back(subject.in_form(integrator->point(), subject.options.form, SphereForm::momenta));
       return detail::loop_integral(loop);
     };
     const double before = integral().first;
-    for (const auto& march : marches) detail::marched(*march, steps);
+    for (const auto& integrator : integrators) detail::integrated(*integrator, steps);
     const auto [after, variation] = integral();
     return std::abs(after - before) / variation;
   });
   if (subject.conserved)
     report.laws.push_back(check_law("what symmetries give is kept", 1e-12, [&] {
-      const auto march = begun(detail::drawn_beside(subject));
-      const auto [before, size] = subject.conserved(march->point());
-      const auto [after, size_after] = subject.conserved(detail::marched(*march, steps));
+      const auto integrator = begun(detail::drawn_beside(subject));
+      const auto [before, size] = subject.conserved(integrator->point());
+      const auto [after, size_after] = subject.conserved(detail::integrated(*integrator, steps));
       return std::abs(after - before) / std::max({size, size_after, 1e-300});
     }));
   return report;

@@ -1,7 +1,7 @@
 // A gyrostat of a user's own: a rigid body with three rotors, run with its ledger and its files.
+#include <lagroid/groupoids/groups/so2.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
 #include <lagroid/groupoids/product.hpp>
-#include <lagroid/groupoids/so2.hpp>
-#include <lagroid/groupoids/so3.hpp>
 #include <lagroid/run/run.hpp>
 
 #include <cstdio>

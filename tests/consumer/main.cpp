@@ -1,11 +1,12 @@
-// Marches a system of its own, and one that the library has compiled, on threads of the library; checks what both keep.
+// Integrates a system of its own, and one that the library has compiled, on threads of the library; checks what both
+// keep.
 #include "spring.hpp"
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
-#include <lagroid/solvers/integrator.hpp>
-#include <lagroid/solvers/newton_step.hpp>
-#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 #include <array>
 #include <cmath>
@@ -20,12 +21,13 @@ namespace {
 /// The largest change over `steps` steps of what `kept` gives; infinite where a step fails.
 template <class Sys, class Kept>
 double largest_change(const Sys& system, const State<typename Sys::GroupoidType>& start, int steps, const Kept& kept) {
-  Integrator<Sys> march(system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>());
-  const auto first = kept(march.point());
+  FixedStepIntegrator<Sys> integrator(system, start, system.groupoid.unit(start.object),
+                                      std::make_unique<NewtonStep<Sys>>());
+  const auto first = kept(integrator.point());
   double largest = 0;
   for (int k = 0; k < steps; ++k) {
-    if (!march.advance().converged()) return std::numeric_limits<double>::infinity();
-    largest = std::fmax(largest, (kept(march.point()) - first).norm());
+    if (!integrator.advance().converged()) return std::numeric_limits<double>::infinity();
+    largest = std::fmax(largest, (kept(integrator.point()) - first).norm());
   }
   return largest;
 }

@@ -1,18 +1,18 @@
 // Numbers that are none, in states and parameters: no NaN leaves the library.
-#include "hard_case.hpp"
-#include "refusal.hpp"
+#include "support/hard_case.hpp"
+#include "support/refusal.hpp"
 
-#include <lagroid/solvers/boundary_values.hpp>
-#include <lagroid/solvers/march.hpp>
-#include <lagroid/systems/heavy_top.hpp>
+#include <lagroid/solvers/boundary/boundary_values.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
 #include <lagroid/systems/kepler.hpp>
-#include <lagroid/systems/moser_veselov.hpp>
 #include <lagroid/systems/multibody/effects.hpp>
 #include <lagroid/systems/multibody/joints.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
-#include <lagroid/systems/plate_ball.hpp>
-#include <lagroid/systems/rigid_body.hpp>
-#include <lagroid/systems/spherical_pendulum.hpp>
+#include <lagroid/systems/pendulums/spherical_pendulum.hpp>
+#include <lagroid/systems/rotations/heavy_top.hpp>
+#include <lagroid/systems/rotations/moser_veselov.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 #include <cmath>
 #include <stdexcept>
@@ -29,22 +29,22 @@ using multibody::Scene;
 const std::initializer_list<double> none{not_a_number, infinite, -infinite};
 
 template <class Sys>
-double refused(const Sys& system, const State<typename Sys::GroupoidType>& start, const MarchOptions& options) {
-  return refusal(*make_march(system, start, system.groupoid.unit(start.object), options));
+double refused(const Sys& system, const State<typename Sys::GroupoidType>& start, const IntegratorOptions& options) {
+  return refusal(*make_integrator(system, start, system.groupoid.unit(start.object), options));
 }
-MarchOptions by(StepMethod method) {
-  MarchOptions options;
+IntegratorOptions by(StepMethod method) {
+  IntegratorOptions options;
   options.method = method;
   return options;
 }
-MarchOptions by_splitting() {
-  MarchOptions options;
+IntegratorOptions by_splitting() {
+  IntegratorOptions options;
   options.fixed = StepKind::splitting;
   return options;
 }
 
 /// Each momentum, place and parameter in turn.
-double in_states(const MarchOptions& options, bool implicit_only) {
+double in_states(const IntegratorOptions& options, bool implicit_only) {
   double sum = 0;
   for (const double x : none) {
     sum += refused(Kepler{}, {V2(1, 0), V2(0, x)}, options);
@@ -67,7 +67,7 @@ double in_states(const MarchOptions& options, bool implicit_only) {
   }
   return sum;
 }
-double in_parameters(const MarchOptions& options) {
+double in_parameters(const IntegratorOptions& options) {
   double sum = 0;
   for (const double x : {not_a_number, infinite}) {
     Kepler kepler;

@@ -1,5 +1,5 @@
 // Scenes of bodies: light and heavy ones, chains that drop and snap, stiff springs, hard drag.
-#include "rods.hpp"
+#include "support/rods.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // Boundary values whose ends are conjugate, or out of reach.
-#include "hard_case.hpp"
+#include "support/hard_case.hpp"
 
-#include <lagroid/solvers/boundary_values.hpp>
+#include <lagroid/solvers/boundary/boundary_values.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
 #include <lagroid/systems/kepler.hpp>
-#include <lagroid/systems/pendulum.hpp>
-#include <lagroid/systems/plate_ball.hpp>
-#include <lagroid/systems/rigid_body.hpp>
-#include <lagroid/systems/spherical_pendulum.hpp>
+#include <lagroid/systems/pendulums/pendulum.hpp>
+#include <lagroid/systems/pendulums/spherical_pendulum.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 #include <cmath>
 #include <numbers>

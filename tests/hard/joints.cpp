@@ -1,5 +1,5 @@
 // Scenes of bodies: rods that are almost parallel, doubled, or singular; hinges that repeat each other; four-bars.
-#include "rods.hpp"
+#include "support/rods.hpp"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
 // A million steps, and with the nightly label a hundred million: errors that grow no faster than random walks.
-#include "hard_case.hpp"
-#include "naive.hpp"
+#include "support/hard_case.hpp"
+#include "support/naive.hpp"
 
-#include <lagroid/solvers/splitting.hpp>
+#include <lagroid/solvers/integrators/splitting.hpp>
 #include <lagroid/systems/kepler.hpp>
-#include <lagroid/systems/moser_veselov.hpp>
-#include <lagroid/systems/rigid_body.hpp>
+#include <lagroid/systems/rotations/moser_veselov.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 #include <algorithm>
 #include <array>
@@ -53,10 +53,10 @@ double defect_of(Seen seen, const V3& m, const M3& attitude) {
 
 double moser_veselov(long steps, Seen seen) {
   const auto system = MoserVeselov::preprocessed(inertia, momentum, step, 10);
-  const auto march = make_march(system, start(), M3::Identity(), {});
+  const auto integrator = make_integrator(system, start(), M3::Identity(), {});
   return walks(
-      steps, [&] { return march->advance().converged(); },
-      [&] { return defect_of(seen, march->point().state.momentum, march->point().configuration); });
+      steps, [&] { return integrator->advance().converged(); },
+      [&] { return defect_of(seen, integrator->point().state.momentum, integrator->point().configuration); });
 }
 /// The free body by Runge and Kutta in the same steps.
 double by_runge_kutta(long steps, Seen seen) {
@@ -74,10 +74,10 @@ double by_runge_kutta(long steps, Seen seen) {
 double newton(long steps, Seen seen) {
   RigidBody system;
   system.h = step;
-  const auto march = make_march(system, start(), M3::Identity(), {});
+  const auto integrator = make_integrator(system, start(), M3::Identity(), {});
   return walks(
-      steps, [&] { return march->advance().converged(); },
-      [&] { return defect_of(seen, march->point().state.momentum, march->point().configuration); });
+      steps, [&] { return integrator->advance().converged(); },
+      [&] { return defect_of(seen, integrator->point().state.momentum, integrator->point().configuration); });
 }
 /// The arrows of Newton's iteration, but M' = F+ anew at every step, the residual of the solve with it.
 double newton_by_recomputing(long steps, Seen seen) {
@@ -109,13 +109,13 @@ double kepler(long steps) {
   Kepler system;
   system.h = 0.01;
   const State<Pair<2>> begin{V2(0.4, 0), V2(0, 2)};
-  MarchOptions options;
+  IntegratorOptions options;
   options.fixed = StepKind::splitting;
-  const auto march = make_march(system, begin, system.groupoid.unit(begin.object), options);
+  const auto integrator = make_integrator(system, begin, system.groupoid.unit(begin.object), options);
   return walks(
-      steps, [&] { return march->advance().converged(); },
+      steps, [&] { return integrator->advance().converged(); },
       [&] {
-        const auto& s = march->point().state;
+        const auto& s = integrator->point().state;
         return std::abs((s.object(0) * s.momentum(1) - s.object(1) * s.momentum(0)) / 0.8 - 1);
       });
 }
@@ -149,12 +149,12 @@ double kepler_by_runge_kutta(long steps) {
 double splitting(long steps, Seen seen) {
   RigidBody system;
   system.h = step;
-  MarchOptions options;
+  IntegratorOptions options;
   options.fixed = StepKind::splitting;
-  const auto march = make_march(system, start(), M3::Identity(), options);
+  const auto integrator = make_integrator(system, start(), M3::Identity(), options);
   return walks(
-      steps, [&] { return march->advance().converged(); },
-      [&] { return defect_of(seen, march->point().state.momentum, march->point().configuration); });
+      steps, [&] { return integrator->advance().converged(); },
+      [&] { return defect_of(seen, integrator->point().state.momentum, integrator->point().configuration); });
 }
 
 constexpr long million = 1'000'000;

@@ -1,7 +1,7 @@
 // The hard cases as tests, and as the page that states what is supported.
 //     hard [gtest options]        one test a case; compiled with LAGROID_HARD_NIGHTLY, the long cases instead
 //     hard --page FILE            measures all but the long cases and writes docs/supported_envelope.md
-#include "hard_case.hpp"
+#include "support/hard_case.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // Close approach to an attracting centre.
-#include "hard_case.hpp"
-#include "naive.hpp"
-#include "refusal.hpp"
+#include "support/hard_case.hpp"
+#include "support/naive.hpp"
+#include "support/refusal.hpp"
 
-#include <lagroid/core/discrete_energy.hpp>
-#include <lagroid/solvers/march.hpp>
+#include <lagroid/core/capabilities/discrete_energy.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/systems/kepler.hpp>
 
 #include <algorithm>
@@ -21,13 +21,13 @@ constexpr double period = 2 * std::numbers::pi;
 /// From the far end of an ellipse of unit half axis.
 State<Pair<2>> far_end(double e) { return {V2(1 + e, 0), V2(0, std::sqrt((1 - e) / (1 + e)))}; }
 
-std::unique_ptr<March<Kepler>> orbit(const State<Pair<2>>& start, double h, TimeMode mode) {
+std::unique_ptr<Integrator<Kepler>> orbit(const State<Pair<2>>& start, double h, TimeMode mode) {
   Kepler system;
   system.quadrature = Quadrature::midpoint;
   system.h = h;
-  MarchOptions options;
+  IntegratorOptions options;
   options.mode = mode;
-  return make_march(system, start, system.groupoid.unit(start.object), options);
+  return make_integrator(system, start, system.groupoid.unit(start.object), options);
 }
 
 struct Round {
@@ -43,15 +43,15 @@ Round round(double e, double h, TimeMode mode, double duration = period) {
   const auto start = far_end(e);
   Kepler system;
   system.quadrature = Quadrature::midpoint;
-  const auto march = orbit(start, h, mode);
+  const auto integrator = orbit(start, h, mode);
   const double energy = system.energy(start);
   const double momentum = start.object(0) * start.momentum(1);
   double first = not_a_number;
   Round out{0, 0, 0, 0, 0, 0};
-  while (march->point().time < duration) {
-    if (!march->advance().converged() || out.steps > 10'000'000) return {};
+  while (integrator->point().time < duration) {
+    if (!integrator->advance().converged() || out.steps > 10'000'000) return {};
     ++out.steps;
-    const auto& p = march->point();
+    const auto& p = integrator->point();
     const double now = p.state.object(0) * p.state.momentum(1) - p.state.object(1) * p.state.momentum(0);
     out.momentum = worse(out.momentum, std::abs(now / momentum - 1));
     out.far = std::abs(system.energy(p.state) / energy - 1);
@@ -60,8 +60,8 @@ Round round(double e, double h, TimeMode mode, double duration = period) {
     if (out.steps == 1) first = over;
     out.discrete = worse(out.discrete, std::abs(over / first - 1));
   }
-  const auto exact = system.reference(start, march->point().time);
-  out.position = (march->point().state.object - exact.object).norm();
+  const auto exact = system.reference(start, integrator->point().time);
+  out.position = (integrator->point().state.object - exact.object).norm();
   return out;
 }
 
@@ -71,32 +71,32 @@ Round equally(double e, const Round& other) {
   Kepler system;
   system.quadrature = Quadrature::midpoint;
   system.h = period / other.steps;
-  MarchOptions options;
+  IntegratorOptions options;
   options.fixed = StepKind::splitting;
-  const auto march = make_march(system, start, system.groupoid.unit(start.object), options);
+  const auto integrator = make_integrator(system, start, system.groupoid.unit(start.object), options);
   Round out{0, 0, 0, 0, 0, 0};
   double first = not_a_number;
   for (; out.steps < other.steps; ++out.steps) {
-    if (!march->advance().converged()) return {};
-    const auto& p = march->point();
+    if (!integrator->advance().converged()) return {};
+    const auto& p = integrator->point();
     out.far = std::abs(system.energy(p.state) / system.energy(start) - 1);
     out.energy = worse(out.energy, out.far);
     const double over = discrete_energy(system, p.step, 0, p.step_size);
     if (out.steps == 0) first = over;
     out.discrete = worse(out.discrete, std::abs(over / first - 1));
   }
-  out.position = (march->point().state.object - start.object).norm();
+  out.position = (integrator->point().state.object - start.object).norm();
   return out;
 }
 
 /// A fall from rest into the centre: 0 where it ends in a typed status that leaves everything finite, and its last
 /// point as it was.
 double fall(TimeMode mode) {
-  const auto march = orbit({V2(1, 0), V2(0, 0)}, 0.01, mode);
+  const auto integrator = orbit({V2(1, 0), V2(0, 0)}, 0.01, mode);
   for (int k = 0; k < 100'000; ++k) {
-    const auto before = march->point();
-    if (march->advance().converged()) continue;
-    const auto& p = march->point();
+    const auto before = integrator->point();
+    if (integrator->advance().converged()) continue;
+    const auto& p = integrator->point();
     return unmoved(before, p) && p.state.object.allFinite() && p.state.momentum.allFinite() ? 0 : 1;
   }
   return 1;
@@ -104,38 +104,38 @@ double fall(TimeMode mode) {
 /// The error of the energy after a fall by steps of Stormer and Verlet, which pass through the centre.
 double fall_through() {
   Kepler system;
-  MarchOptions options;
+  IntegratorOptions options;
   options.fixed = StepKind::splitting;
   const State<Pair<2>> start{V2(1, 0), V2(0, 0)};
-  const auto march = make_march(system, start, system.groupoid.unit(start.object), options);
-  for (int k = 0; k < 200; ++k) march->advance();
-  return std::abs(system.energy(march->point().state) / system.energy(start) - 1);
+  const auto integrator = make_integrator(system, start, system.groupoid.unit(start.object), options);
+  for (int k = 0; k < 200; ++k) integrator->advance();
+  return std::abs(system.energy(integrator->point().state) / system.energy(start) - 1);
 }
 
 /// A step that would begin at the centre itself.
 double from_the_centre(bool splitting) {
   Kepler system;
-  MarchOptions options;
+  IntegratorOptions options;
   options.fixed = splitting ? StepKind::splitting : StepKind::variational;
   system.quadrature = Quadrature::trapezoid;
   const State<Pair<2>> start{V2(0, 0), V2(1, 0)};
-  return refusal(*make_march(system, start, system.groupoid.unit(start.object), options));
+  return refusal(*make_integrator(system, start, system.groupoid.unit(start.object), options));
 }
 
-/// Adaptive steps along an orbit on which the energy equation has no root: 0 where the march says `no_step` there, and
-/// all its steps before have kept the discrete energy.
+/// Adaptive steps along an orbit on which the energy equation has no root: 0 where the integrator says `no_step` there,
+/// and all its steps before have kept the discrete energy.
 double without_a_root() {
-  const auto march = orbit(far_end(0.99), 0.01, TimeMode::adaptive);
+  const auto integrator = orbit(far_end(0.99), 0.01, TimeMode::adaptive);
   Kepler system;
   system.quadrature = Quadrature::midpoint;
   double first = not_a_number;
   double worst = 0;
   for (int k = 0; k < 100'000; ++k) {
-    const auto before = march->point();
-    const SolveStatus status = march->advance().status;
+    const auto before = integrator->point();
+    const SolveStatus status = integrator->advance().status;
     if (status != SolveStatus::converged)
-      return status == SolveStatus::no_step && unmoved(before, march->point()) ? worst : not_a_number;
-    const double over = discrete_energy(system, march->point().step, 0, march->point().step_size);
+      return status == SolveStatus::no_step && unmoved(before, integrator->point()) ? worst : not_a_number;
+    const double over = discrete_energy(system, integrator->point().step, 0, integrator->point().step_size);
     if (k == 0) first = over;
     worst = worse(worst, std::abs(over / first - 1));
   }

@@ -1,11 +1,11 @@
 // Pendulums that start near the top, and spherical ones that pass the poles.
-#include "hard_case.hpp"
-#include "naive.hpp"
+#include "support/hard_case.hpp"
+#include "support/naive.hpp"
 
-#include <lagroid/solvers/compositions.hpp>
-#include <lagroid/solvers/march.hpp>
-#include <lagroid/systems/pendulum.hpp>
-#include <lagroid/systems/spherical_pendulum.hpp>
+#include <lagroid/solvers/integrators/compositions.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/systems/pendulums/pendulum.hpp>
+#include <lagroid/systems/pendulums/spherical_pendulum.hpp>
 
 #include <array>
 #include <cmath>
@@ -60,15 +60,16 @@ double fall_time(double h, const std::function<std::array<double, 2>()>& advance
   }
   return not_a_number;
 }
-std::function<std::array<double, 2>()> falling(double h, const MarchOptions& options) {
+std::function<std::array<double, 2>()> falling(double h, const IntegratorOptions& options) {
   Pendulum system;
   system.gravity = gravity;
   system.h = h;
   const State<Pair<1>> start{V1(near_top), V1(0.0)};
-  std::shared_ptr<March<Pendulum>> march = make_march(system, start, system.groupoid.unit(start.object), options);
-  return [march]() -> std::array<double, 2> {
-    if (!march->advance().converged()) return {not_a_number, not_a_number};
-    return {march->point().state.object(0), march->point().state.momentum(0)};
+  std::shared_ptr<Integrator<Pendulum>> integrator =
+      make_integrator(system, start, system.groupoid.unit(start.object), options);
+  return [integrator]() -> std::array<double, 2> {
+    if (!integrator->advance().converged()) return {not_a_number, not_a_number};
+    return {integrator->point().state.object(0), integrator->point().state.momentum(0)};
   };
 }
 double fall_error(double h, const std::function<std::array<double, 2>()>& advance) {
@@ -107,12 +108,12 @@ double inverted_bob(const Composition& composition, double h) {
   system.gravity = gravity;
   system.h = h;
   const State<Pair<3>> start{{9.55336489125606e-09, 2.955202066613396e-09, 1.0}, V3(0, 0, 0)};
-  MarchOptions options;
+  IntegratorOptions options;
   options.composition = composition;
-  const auto march = make_march(system, start, system.groupoid.unit(start.object), options);
+  const auto integrator = make_integrator(system, start, system.groupoid.unit(start.object), options);
   for (long k = 0; k < std::lround(5 / h); ++k)
-    if (!march->advance().converged()) return not_a_number;
-  return (march->point().state.object - V3(0.03022011531581563, 0.00934817713456474, 0.9994995528836217)).norm();
+    if (!integrator->advance().converged()) return not_a_number;
+  return (integrator->point().state.object - V3(0.03022011531581563, 0.00934817713456474, 0.9994995528836217)).norm();
 }
 
 /// A bob that passes a pole at about `miss`: the largest errors of the angular momentum about the vertical, relative to
@@ -126,11 +127,11 @@ double passing(double miss, bool upper) {
   const V3 along = V3(0, -1, 0) - V3(0, -1, 0).dot(at) * at;
   const State<Pair<3>> start{at, V3(8 * along.normalized())};
   const double j = at(0) * start.momentum(1) - at(1) * start.momentum(0);
-  const auto march = make_march(system, start, system.groupoid.unit(start.object), {});
+  const auto integrator = make_integrator(system, start, system.groupoid.unit(start.object), {});
   double worst = 0;
   for (int k = 0; k < 20'000; ++k) {
-    if (!march->advance().converged()) return not_a_number;
-    const State<Pair<3>>& state = march->point().state;
+    if (!integrator->advance().converged()) return not_a_number;
+    const State<Pair<3>>& state = integrator->point().state;
     const V3 p = tangent_momentum(system, state);
     worst = worse(worst, std::abs(state.object(0) * p(1) - state.object(1) * p(0) - j) / p.norm());
     worst = worse(worst, std::abs(state.object.norm() - 1));
@@ -166,8 +167,8 @@ double passing_in_angles(double miss, bool upper) {
   return worst;
 }
 
-MarchOptions composed(const Composition& composition, bool splitting) {
-  MarchOptions options;
+IntegratorOptions composed(const Composition& composition, bool splitting) {
+  IntegratorOptions options;
   options.composition = composition;
   options.fixed = splitting ? StepKind::splitting : StepKind::variational;
   return options;

@@ -1,11 +1,11 @@
 // The ball on a plate: turns of nearly a right angle, a very small ball, a very fast plate.
-#include "hard_case.hpp"
-#include "naive.hpp"
-#include "refusal.hpp"
+#include "support/hard_case.hpp"
+#include "support/naive.hpp"
+#include "support/refusal.hpp"
 
-#include <lagroid/solvers/march.hpp>
-#include <lagroid/systems/plate_ball.hpp>
-#include <lagroid/systems/rolling_ball.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
+#include <lagroid/systems/rolling/rolling_ball.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +25,8 @@ State<G> ball(double radius = 1) {
   out.momentum << 0.9, 0.2, 0.6 * radius, -0.4 * radius, 0.8;
   return out;
 }
-std::unique_ptr<March<PlateBall>> march_from(const PlateBall& system, const State<G>& start) {
-  return make_march(system, start, system.groupoid.unit(start.object), {});
+std::unique_ptr<Integrator<PlateBall>> integrator_from(const PlateBall& system, const State<G>& start) {
+  return make_integrator(system, start, system.groupoid.unit(start.object), {});
 }
 
 /// Spin times step just short of one and beyond it: the rolling constraints of each step, or a typed refusal; NaN where
@@ -38,14 +38,14 @@ double near_the_right_angle(double product, int steps) {
   system.spin = product / system.h;
   State<G> start = ball();
   start.momentum.head<2>() << 0.61, -0.39;  // slow: u = px - l2, v = py - l1
-  const auto march = march_from(system, start);
+  const auto integrator = integrator_from(system, start);
   double worst = 0;
   for (int k = 0; k < steps; ++k) {
-    const auto before = march->point();
-    if (!march->advance().converged()) return unmoved(before, march->point()) ? worst : not_a_number;
-    const auto& turn = std::get<1>(march->point().step.arrow);
+    const auto before = integrator->point();
+    if (!integrator->advance().converged()) return unmoved(before, integrator->point()) ? worst : not_a_number;
+    const auto& turn = std::get<1>(integrator->point().step.arrow);
     if (!(turn.trace() > 1)) return not_a_number;
-    worst = worse(worst, system.constraint(march->point().step.arrow).norm());
+    worst = worse(worst, system.constraint(integrator->point().step.arrow).norm());
   }
   return worst;
 }
@@ -62,7 +62,7 @@ struct Kept {
   double rolling = 0;  ///< the constraints
 };
 Kept run(const PlateBall& system, const State<G>& start, int steps) {
-  const auto march = march_from(system, start);
+  const auto integrator = integrator_from(system, start);
   const V3 m = start.momentum.tail<3>();
   const auto about = [](const State<G>& s) {
     const V2& q = std::get<0>(s.object);
@@ -71,8 +71,8 @@ Kept run(const PlateBall& system, const State<G>& start, int steps) {
   Kept out;
   double size = 0;
   for (int k = 0; k < steps; ++k) {
-    if (!march->advance().converged()) return {not_a_number, not_a_number, not_a_number};
-    const auto& p = march->point();
+    if (!integrator->advance().converged()) return {not_a_number, not_a_number, not_a_number};
+    const auto& p = integrator->point();
     const V2& q = std::get<0>(p.state.object);
     size = std::max(size, q.norm() * p.state.momentum.head<2>().norm() + m.norm());
     out.spatial = worse(out.spatial, (std::get<1>(p.configuration) * p.state.momentum.tail<3>() - m).norm() / m.norm());
@@ -130,7 +130,7 @@ double circle(double radius, double plate_rate, double h, bool naive) {
   const V2 centre = q + V2(-v(1), v(0)) / rate;
   const double size = v.norm() / rate;
   const auto start = system.rolling(q, v, 0.7);
-  const auto march = make_march(system, start, system.groupoid.unit(start.object), {});
+  const auto integrator = make_integrator(system, start, system.groupoid.unit(start.object), {});
   V2 at = q;
   V2 moving = v;
   double worst = 0;
@@ -139,8 +139,8 @@ double circle(double radius, double plate_rate, double h, bool naive) {
       at += h * moving;
       moving += h * rate * V2(-moving(1), moving(0));
     } else {
-      if (!march->advance().converged()) return not_a_number;
-      at = std::get<0>(march->point().state.object);
+      if (!integrator->advance().converged()) return not_a_number;
+      at = std::get<0>(integrator->point().state.object);
     }
     worst = worse(worst, std::abs((at - centre).norm() / size - 1));
   }
@@ -167,7 +167,7 @@ std::vector<HardCase> plate_ball() {
          PlateBall system;
          system.h = 0.5;
          system.spin = 1.001 / system.h;
-         return refusal(*march_from(system, ball()));
+         return refusal(*integrator_from(system, ball()));
        },
        [] { return std::asin(1.001); }},
       {"VerySmallBall", "plate-ball, r = 1e-3 m, 1e4 steps of 2e-4 s", "relative errors of A M and of x py - y px - M3",

@@ -1,11 +1,11 @@
 // Rotations and rigid motions: angles that are tiny, near pi and near 2 pi, in three precisions; long products.
-#include "hard_case.hpp"
+#include "support/hard_case.hpp"
 
-#include <lagroid/core/special_functions.hpp>
-#include <lagroid/groupoids/se2.hpp>
-#include <lagroid/groupoids/se3.hpp>
-#include <lagroid/groupoids/so2.hpp>
-#include <lagroid/groupoids/so3.hpp>
+#include <lagroid/core/scalars/special_functions.hpp>
+#include <lagroid/groupoids/groups/se2.hpp>
+#include <lagroid/groupoids/groups/se3.hpp>
+#include <lagroid/groupoids/groups/so2.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,20 +1,20 @@
 // Steps far too large, far too small, and of no size at all.
-#include "hard_case.hpp"
-#include "naive.hpp"
-#include "refusal.hpp"
+#include "support/hard_case.hpp"
+#include "support/naive.hpp"
+#include "support/refusal.hpp"
 
-#include <lagroid/core/compensation.hpp>
-#include <lagroid/core/step_equations.hpp>
-#include <lagroid/solvers/march.hpp>
-#include <lagroid/systems/chaplygin_sleigh.hpp>
-#include <lagroid/systems/heavy_top.hpp>
+#include <lagroid/core/derivatives/step_equations.hpp>
+#include <lagroid/core/scalars/compensation.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
 #include <lagroid/systems/kepler.hpp>
-#include <lagroid/systems/pendulum.hpp>
-#include <lagroid/systems/plate_ball.hpp>
-#include <lagroid/systems/rigid_body.hpp>
-#include <lagroid/systems/rolling_ball.hpp>
-#include <lagroid/systems/rolling_disk.hpp>
-#include <lagroid/systems/spherical_pendulum.hpp>
+#include <lagroid/systems/pendulums/pendulum.hpp>
+#include <lagroid/systems/pendulums/spherical_pendulum.hpp>
+#include <lagroid/systems/rolling/chaplygin_sleigh.hpp>
+#include <lagroid/systems/rolling/rolling_ball.hpp>
+#include <lagroid/systems/rolling/rolling_disk.hpp>
+#include <lagroid/systems/rotations/heavy_top.hpp>
+#include <lagroid/systems/rotations/rigid_body.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,20 +29,20 @@ using V3 = Vector<double, 3>;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 template <class Sys>
-auto march_from(Sys system, double h, const State<typename Sys::GroupoidType>& start,
-                const MarchOptions& options = {}) {
+auto integrator_from(Sys system, double h, const State<typename Sys::GroupoidType>& start,
+                     const IntegratorOptions& options = {}) {
   system.h = h;
-  return make_march(system, start, system.groupoid.unit(start.object), options);
+  return make_integrator(system, start, system.groupoid.unit(start.object), options);
 }
 
 /// After one step: the defect of the step equations, relative to the momentum and the gradients; zero where the step
 /// was refused by a typed status and nothing has moved; NaN where anything else came of it.
 template <class Sys> double solved_or_refused(Sys system, double h, const State<typename Sys::GroupoidType>& start) {
   system.h = h;
-  const auto march = march_from(system, h, start);
-  const auto before = march->point();
-  const bool taken = march->advance().converged();
-  const auto& p = march->point();
+  const auto integrator = integrator_from(system, h, start);
+  const auto before = integrator->point();
+  const bool taken = integrator->advance().converged();
+  const auto& p = integrator->point();
   if (!taken) return unmoved(before, p) ? 0 : not_a_number;
   if (!p.state.momentum.allFinite()) return not_a_number;
   using E = StepEquations<Sys>;
@@ -133,26 +133,26 @@ Tiny tiny_defects(double time, const V2& q, const V2& p) {
           worse((q - exact_end().head<2>()).norm(), (p - exact_end().tail<2>()).norm()) / eps,
           std::abs(system.energy({q, p}) / system.energy(apse) - 1) / eps};
 }
-Tiny by_march(bool splitting) {
-  MarchOptions options;
+Tiny by_integrator(bool splitting) {
+  IntegratorOptions options;
   options.fixed = splitting ? StepKind::splitting : StepKind::variational;
-  const auto march = march_from(Kepler{}, tiny, apse, options);
+  const auto integrator = integrator_from(Kepler{}, tiny, apse, options);
   for (int k = 0; k < tiny_steps; ++k)
-    if (!march->advance().converged()) return {not_a_number, not_a_number, not_a_number};
-  const auto& p = march->point();
+    if (!integrator->advance().converged()) return {not_a_number, not_a_number, not_a_number};
+  const auto& p = integrator->point();
   return tiny_defects(p.time, p.state.object, p.state.momentum);
 }
 Tiny by_controlled() {
-  MarchOptions options;
+  IntegratorOptions options;
   options.mode = TimeMode::controlled;
-  const auto march = march_from(Kepler{}, tiny, apse, options);
+  const auto integrator = integrator_from(Kepler{}, tiny, apse, options);
   double sum = 0;
   Compensation<double> compensation{};
   for (int k = 0; k < tiny_steps; ++k) {
-    if (!march->advance().converged()) return {not_a_number, not_a_number, not_a_number};
-    compensation.add(sum, march->point().step_size);
+    if (!integrator->advance().converged()) return {not_a_number, not_a_number, not_a_number};
+    compensation.add(sum, integrator->point().step_size);
   }
-  return {std::abs(march->point().time / sum - 1) / eps, 0, 0};
+  return {std::abs(integrator->point().time / sum - 1) / eps, 0, 0};
 }
 /// The same steps of Stormer and Verlet in plain sums.
 Tiny by_plain_sums() {
@@ -170,10 +170,10 @@ Tiny by_plain_sums() {
 
 /// There and back by negative steps: distance from the start.
 template <class Sys> double there_and_back(const Sys& system, const State<typename Sys::GroupoidType>& start) {
-  const auto there = march_from(system, 0.05, start);
+  const auto there = integrator_from(system, 0.05, start);
   for (int k = 0; k < 1000; ++k)
     if (!there->advance().converged()) return not_a_number;
-  const auto back = march_from(system, -0.05, there->point().state);
+  const auto back = integrator_from(system, -0.05, there->point().state);
   for (int k = 0; k < 1000; ++k)
     if (!back->advance().converged()) return not_a_number;
   const auto& end = back->point().state;
@@ -198,27 +198,27 @@ double there_and_back_by_runge_kutta() {
 /// 0 where a step of that size either is refused, nothing moving, or (of size zero) stays where it is.
 template <class Sys>
 double refused_or_at_rest(const Sys& system, double h, const State<typename Sys::GroupoidType>& start,
-                          const MarchOptions& options = {}) {
-  const auto march = march_from(system, h, start, options);
-  const auto before = march->point();
-  const bool taken = march->advance().converged();
-  const auto& p = march->point();
+                          const IntegratorOptions& options = {}) {
+  const auto integrator = integrator_from(system, h, start, options);
+  const auto before = integrator->point();
+  const bool taken = integrator->advance().converged();
+  const auto& p = integrator->point();
   if (!taken) return unmoved(before, p) ? 0 : 1;
   return h == 0 && p.time == before.time && same_bits(p.state.momentum, start.momentum) ? 0 : 1;
 }
 double strange(double h) {
-  MarchOptions splitting;
+  IntegratorOptions splitting;
   splitting.fixed = StepKind::splitting;
-  MarchOptions controlled;
+  IntegratorOptions controlled;
   controlled.mode = TimeMode::controlled;
-  MarchOptions adaptive;
+  IntegratorOptions adaptive;
   adaptive.mode = TimeMode::adaptive;
   double sum = 0;
-  for (const auto& options : {MarchOptions{}, splitting, controlled, adaptive})
+  for (const auto& options : {IntegratorOptions{}, splitting, controlled, adaptive})
     sum += refused_or_at_rest(Kepler{}, h, apse, options);
   State<SO3> turning;
   turning.momentum << 0.3, 1.5, 0.4;
-  for (const auto& options : {MarchOptions{}, splitting, controlled, adaptive})
+  for (const auto& options : {IntegratorOptions{}, splitting, controlled, adaptive})
     sum += refused_or_at_rest(RigidBody{}, h, turning, options);
   sum += refused_or_at_rest(PlateBall{}, h, ball());
   sum += refused_or_at_rest(SphericalPendulum{}, h, {V3(0.6, 0, -0.8), V3(0, 0.9, 0)});
@@ -291,27 +291,28 @@ std::vector<HardCase> steps() {
        },
        pendulum_sweeps},
       {"TinyStepsTime", "1e5 steps of 1e-9 s, equal and controlled", "relative error of the time, in units of epsilon",
-       "t += h", 2, [] { return worse(by_march(false).time, by_controlled().time); },
+       "t += h", 2, [] { return worse(by_integrator(false).time, by_controlled().time); },
        [] { return by_plain_sums().time; }},
       {"TinyStepsPlace", "Kepler, 1e5 explicit steps of 1e-9 s (Stormer and Verlet)",
        "error of place and momentum, in units of epsilon", "the same steps in plain sums", 2,
-       [] { return by_march(true).place; }, [] { return by_plain_sums().place; }},
+       [] { return by_integrator(true).place; }, [] { return by_plain_sums().place; }},
       {"TinyStepsEnergy", "the same", "relative error of the energy, in units of epsilon",
-       "the same steps in plain sums", 4, [] { return by_march(true).energy; }, [] { return by_plain_sums().energy; }},
+       "the same steps in plain sums", 4, [] { return by_integrator(true).energy; },
+       [] { return by_plain_sums().energy; }},
       {"TinyImplicitSteps", "Kepler, 1e5 implicit steps of 1e-9 s",
        "error of place and momentum, in units of eps sqrt(n): a random walk",
        "momenta as differences of stored places over h", 2,
-       [] { return by_march(false).place / std::sqrt(double(tiny_steps)); },
+       [] { return by_integrator(false).place / std::sqrt(double(tiny_steps)); },
        [] {
-         MarchOptions options;
+         IntegratorOptions options;
          options.fixed = StepKind::splitting;
-         const auto march = march_from(Kepler{}, tiny, apse, options);
+         const auto integrator = integrator_from(Kepler{}, tiny, apse, options);
          V2 before = apse.object;
          double worst = 0;
          for (int k = 0; k < 1000; ++k) {
-           march->advance();
-           const V2 now = march->point().state.object;
-           worst = worse(worst, ((now - before) / tiny - march->point().state.momentum).norm());
+           integrator->advance();
+           const V2 now = integrator->point().state.object;
+           worst = worse(worst, ((now - before) / tiny - integrator->point().state.momentum).norm());
            before = now;
          }
          return worst / eps / std::sqrt(double(tiny_steps));

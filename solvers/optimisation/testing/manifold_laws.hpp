@@ -2,7 +2,7 @@
 /// Laws of manifolds and of functions on them, for a user's own.
 
 #include <lagroid/core/testing/property.hpp>
-#include <lagroid/solvers/optimisation/manifold.hpp>
+#include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 #include <lagroid/solvers/optimisation/minimise.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>
 

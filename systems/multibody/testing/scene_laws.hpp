@@ -198,7 +198,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
     motion.make_tangent();
     return motion;
   };
-  const auto march = [](Multibody& motion, long steps) {
+  const auto integrate = [](Multibody& motion, long steps) {
     for (long k = 0; k < steps; ++k)
       if (!motion.advance().converged()) throw std::runtime_error("a step failed");
   };
@@ -228,15 +228,15 @@ inline LawReport scene_laws(const SceneSubject& subject) {
     ask_law("steps go back the way they came", 1e-9, [&] {
       Multibody motion = begun(subject.h);
       const auto start = places(motion);
-      march(motion, 20);
+      integrate(motion, 20);
       motion.reverse();
-      march(motion, 20);
+      integrate(motion, 20);
       return (places(motion) - start).norm() / (1 + start.norm());
     });
   ask_law("order two", 0.15, [&] {
     const auto end = [&](int steps) {
       Multibody motion = begun(subject.horizon / steps);
-      march(motion, steps);
+      integrate(motion, steps);
       return places(motion);
     };
     const int steps = std::max(10, int(subject.horizon / subject.h));
@@ -270,9 +270,9 @@ inline LawReport scene_laws(const SceneSubject& subject) {
       for (int k = 0; k < points; ++k) {
         const double phase = 2 * M_PI * k / points;
         Multibody motion = begun(subject.h);
-        march(motion, 5);
+        integrate(motion, 5);
         push(motion, phase);
-        march(motion, 10);
+        integrate(motion, 10);
         push(motion, phase + 0.5 * M_PI);
         loop.push_back(std::move(motion));
       }
@@ -309,7 +309,7 @@ inline LawReport scene_laws(const SceneSubject& subject) {
         return sum * 2 * M_PI / points;
       };
       const double before = integral();
-      for (auto& motion : loop) march(motion, 5);
+      for (auto& motion : loop) integrate(motion, 5);
       return std::abs(integral() - before) / variation;
     });
   return report;

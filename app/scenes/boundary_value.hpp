@@ -1,0 +1,325 @@
+#pragma once
+/// Boundary-value runs of any system.
+
+#include "../reading/scene_reader.hpp"
+#include "simulation.hpp"
+
+#include <lagroid/run/files/checkpoint.hpp>
+#include <lagroid/run/motion/recorder.hpp>
+#include <lagroid/run/motion/system_node.hpp>
+#include <lagroid/run/reports/progress.hpp>
+#include <lagroid/solvers/boundary/boundary_values.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+/// [solver] of a boundary-value run.
+struct BoundaryChoice {
+  BoundaryMethod method = BoundaryMethod::newton;
+  std::optional<StationaryKind> seek;
+  BoundaryOptions options;
+  MultistartOptions multistart;
+};
+BoundaryChoice read_boundary_solver(const Section& solver);
+
+/// [solver] starts and seed. Initial-value runs read them too, so that a scene may switch between the two.
+MultistartOptions read_multistart(const Section& solver);
+
+/// [continuation]: a key of the scene that is carried from other numbers to those that stand there.
+struct ContinuationChoice {
+  std::string parameter;
+  std::vector<double> from;
+  std::vector<double> to;
+  long steps = 10;  ///< of equal size, to begin with
+
+  std::vector<double> at(double s) const;
+  std::string value(double s) const;  ///< in words
+  Section scene_at(const Section& scene, double s) const;
+};
+std::optional<ContinuationChoice> read_continuation(const Section& scene);
+
+/// True for [boundary], false for [initial]; refuses both and neither. `initial` says what [initial] holds.
+bool is_boundary_value(const Section& scene, const std::string& initial);
+
+/// A boundary-value problem as a scene states it: the configuration at the start, and the arrow from there to the end.
+template <DiscreteSystem Sys> struct BoundaryScene {
+  BoundaryStage<Sys> stage;
+  ArrowOf<typename Sys::GroupoidType> start;
+};
+
+/// `read` of the scene at s of its continuation. What is refused there is no mistake of the scene itself, but of where
+/// the continuation begins.
+template <class Read>
+auto read_along(const Section& scene, const ContinuationChoice& along, double s, const Read& read) {
+  try {
+    return read(along.scene_at(scene, s));
+  } catch (const SceneError& error) {
+    scene.section_or_empty("continuation")
+        .fail("from", fmt::format("at {} = {}: {}", along.parameter, along.value(s), error.problem()));
+  }
+}
+
+/// The round-off of F+(g, lambda), relative to its size: the arrow's own, which the step divides by h, included.
+template <DiscreteSystem Sys>
+double evaluation_noise(const Sys& system, const Step<Sys>& step, const State<typename Sys::GroupoidType>& state) {
+  const double size = state.momentum.norm();
+  if (size == 0) return 0;
+  const auto jacobian = StepEquations<Sys>::jacobian(two_sided(system, step.arrow, step.multipliers));
+  return round_off_level(system, state, step, jacobian).template head<Sys::dimension>().maxCoeff() / size;
+}
+
+/// Records and judges a solved path, of whose nodes each `every`-th is recorded, and the last; 0: none.
+template <DiscreteSystem Sys>
+void record_path(const Sys& system, const Presentation<Sys>& presentation, const Path<Sys>& path,
+                 const ArrowOf<typename Sys::GroupoidType>& start, long every, const Observer<Sys>& observer,
+                 RunResult& result) {
+  SystemNode<Sys> node(system, presentation, quantities_of(system));
+  Judge judge(node);
+  Recorder recorder(node);
+  TrajectoryPoint<Sys> point;
+  const auto see = [&](double noise) {
+    node.see(point, noise);
+    if (observer) observer(node.point());
+    judge.observe(node);
+    if (every > 0 && (point.index % every == 0 || point.index == std::ssize(path))) recorder.record(node, &judge);
+  };
+  point.configuration = start;
+  point.state = legendre_minus(system, path.front());
+  see(0);
+  result.initial = node.endpoint();
+  for (const auto& step : path) {
+    ++point.index;
+    if constexpr (HasTimeStep<Sys>) {
+      point.time = double(point.index) * system.h;
+      point.step_size = system.h;
+    }
+    point.step = step;
+    point.configuration = system.groupoid.project(system.groupoid.compose(point.configuration, step.arrow));
+    point.state = legendre_plus(system, step);
+    see(evaluation_noise(system, step, point.state));
+  }
+  judge.report(result.ledger);
+  if (every > 0) result.trajectory = std::move(recorder.trajectory());
+  result.system = presentation.name;
+  result.final = node.endpoint();
+  const auto list = [](const auto& v) { return std::vector<double>(v.begin(), v.end()); };
+  result.first_multipliers = list(path.front().multipliers);
+  result.last_multipliers = list(path.back().multipliers);
+  present(presentation, result);
+}
+
+/// Carries every solution found at the beginning of a continuation to its end. Returns how far the best came: 1 where
+/// one arrived.
+template <DiscreteSystem Sys, class Read>
+double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scene, const ContinuationChoice& along,
+                          const Read& read, const RunContext& context, MultistartResult<Sys>& found,
+                          RunResult& result) {
+  const auto stage = [&](double s) { return read_along(scene, along, s, read).stage; };
+  HomotopyOptions options;
+  options.first_step = 1 / double(along.steps);
+  std::vector<BoundarySolution<Sys>> arrived;
+  std::optional<std::pair<double, SolveStatus>> farthest;
+  Progress progress("solutions", long(found.solutions.size()), context.progress);
+  const std::size_t count = found.solutions.size();
+  std::size_t arrivals = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    auto followed = follow(solver, stage, std::move(found.solutions[i]), options);
+    found.iterations += followed.iterations;
+    if (followed.converged()) {
+      ++arrivals;
+      detail::keep_if_new(arrived, stage(1).problem.system, std::move(followed.solution));
+    } else if (!farthest || followed.reached > farthest->first) {
+      farthest = {followed.reached, followed.status};
+      if (arrived.empty()) found.best_failure = std::move(followed.solution);
+    }
+    progress.update(long(i) + 1);
+  }
+  result.notes.push_back(
+      fmt::format("continuation of {} from {} to {}: {} of {} solution(s) arrived{}", along.parameter, along.value(0),
+                  along.value(1), arrivals, count,
+                  arrived.size() < arrivals ? fmt::format(", {} of them different", arrived.size()) : ""));
+  if (farthest) {
+    result.notes.push_back(fmt::format("continuation: of those lost, the last came to {} = {} ({})", along.parameter,
+                                       along.value(farthest->first), to_string(farthest->second)));
+    if (arrived.empty()) {
+      result.status = std::string(to_string(farthest->second));
+      result.message = fmt::format(
+          "continuation: no solution could be followed beyond {} = {}; a path of solutions may turn back there: use "
+          "more continuation.steps or another parameter",
+          along.parameter, along.value(farthest->first));
+    }
+  }
+  std::sort(arrived.begin(), arrived.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  found.solutions = std::move(arrived);
+  return found.solutions.empty() ? farthest->first : 1;
+}
+
+/// Says which path was chosen, and records it; or why there is none.
+template <DiscreteSystem Sys>
+void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind seek,
+                      const MultistartResult<Sys>& found, long every, const Observer<Sys>& observer,
+                      RunResult& result) {
+  const Sys& system = problem.stage.problem.system;
+  for (const auto& s : found.solutions) {
+    const auto momentum = tangent_momentum(system, legendre_minus(system, s.path.front()));
+    result.minima.push_back({s.cost,
+                             s.starts,
+                             {momentum.data(), momentum.data() + momentum.size()},
+                             s.kind.is_minimum,
+                             s.kind.isolated,
+                             s.kind.normal,
+                             s.kind.negative_directions});
+  }
+  const auto best = std::find_if(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
+    return seek == StationaryKind::stationary || s.kind.is_minimum;
+  });
+  if (best != found.solutions.end()) {
+    record_path(system, presentation, best->path, problem.start, every, observer, result);
+    result.cost = best->cost;
+    result.steps = long(best->path.size());
+    result.notes.push_back(
+        fmt::format("the cheapest of those found: {} of {} starts led to it", best->starts, found.starts));
+    if (best != found.solutions.begin())
+      result.notes.push_back(
+          fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
+                      "beside it and were not reached; try more starts or another number of steps",
+                      found.solutions.front().cost));
+    if (!best->kind.is_minimum)
+      result.notes.push_back(fmt::format(
+          "the path given is stationary but no minimum of the action: {} direction(s) lower it, as for every motion "
+          "past a conjugate point",
+          best->kind.negative_directions));
+    if (!best->kind.normal)
+      result.notes.push_back(
+          "the best path is abnormal: its constraints lose rank there, multipliers and momentum are not "
+          "unique (the smallest are given)");
+    if (!best->kind.isolated)
+      result.notes.push_back("the best path is one of a continuous family of equal cost; its momentum is one of many");
+    return;
+  }
+  const auto& failure = found.best_failure;
+  if (!found.solutions.empty()) {
+    result.status = "no_minimum";
+    result.message =
+        fmt::format("boundary value: {} stationary point(s) found, none of them a minimum; use more starts",
+                    found.solutions.size());
+  } else if (result.message.empty()) {
+    result.status = std::string(to_string(failure.status));
+    result.message = failure.message.empty()
+                         ? fmt::format(
+                               "boundary value: none of {} starts converged (best residual {:.3g}); use more steps, "
+                               "more starts{} or a longer duration",
+                               found.starts, failure.residual,
+                               failure.status == SolveStatus::not_converged ? ", a larger solver.max_iterations" : "")
+                         : fmt::format("boundary value: none of {} starts converged; the best of them: {}",
+                                       found.starts, failure.message);
+  }
+  const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
+  if (!path.empty()) {
+    record_path(system, presentation, path, problem.start, every, observer, result);
+    for (auto& entry : result.ledger.entries) {
+      entry.verdict = "unjudged";
+      entry.reason = "the path is no solution";
+    }
+  }
+}
+
+/// Everything that a boundary-value run takes from its scene.
+template <DiscreteSystem Sys> struct BoundaryRun {
+  Section scene;
+  Presentation<Sys> presentation;
+  BoundaryScene<Sys> problem;
+  BoundaryStage<Sys> first;  ///< where the continuation begins; the problem itself without one
+  BoundaryChoice choice;
+  std::optional<ContinuationChoice> along;
+  long every = 0;
+};
+
+/// Searches, continues, reports. `search(solver, stage, options)` is the multistart.
+template <DiscreteSystem Sys, class Read, class Search>
+RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& context, const Read& read,
+                               const Search& search, const Observer<Sys>& observer) {
+  const auto& [scene, presentation, problem, first, choice, along, every] = run;
+  const auto clock = std::chrono::steady_clock::now();
+  const auto solver = make_boundary_solver<Sys>(choice.method, choice.options, choice.seek.value_or(natural_seek<Sys>));
+  MultistartOptions multistart = choice.multistart;
+  MultistartResult<Sys> found;
+  {
+    Progress progress("starts", multistart.starts, context.progress);
+    multistart.report = [&](int done) { progress.update(done); };
+    found = search(*solver, first, multistart);
+  }
+  RunResult result;
+  result.system = presentation.name;
+  result.steps_asked = long(problem.stage.steps);
+  std::string counted;
+  for (const auto& [status, count] : found.outcomes)
+    counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", count, to_string(status));
+  result.starts = found.starts;
+  result.notes.push_back(fmt::format("{} starts: {}", found.starts, counted));
+  if (found.lost > 0)
+    result.notes.push_back(
+        fmt::format("{} solution(s) of the coarse problem could not be continued to this one", found.lost));
+  double reached = 1;
+  if (along && !found.solutions.empty())
+    reached = continue_solutions(*solver, scene, *along, read, context, found, result);
+  result.iterations = found.iterations;
+  // Where nothing arrived, the farthest path is one of the problem it was solved for.
+  report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation, solver->seek(),
+                   found, every, observer, result);
+  result.ledger.mean_iterations = double(found.start_iterations) / double(found.starts);
+  result.ledger.most_iterations = found.most_iterations;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return result;
+}
+
+/// A boundary-value run. `read(scene)` gives the BoundaryScene of a scene, with every check of its data.
+template <DiscreteSystem Sys, class Read, class Search>
+PreparedScene<Sys> boundary_value(const Section& scene, const RunContext& context,
+                                  const Presentation<Sys>& presentation, const Read& read, const Search& search) {
+  BoundaryRun<Sys> run{scene,
+                       presentation,
+                       read(scene),
+                       {},
+                       read_boundary_solver(scene.section_or_empty("solver")),
+                       read_continuation(scene),
+                       context.record ? read_every(scene) : 0};
+  refuse_accuracy(scene);
+  scene.section_or_empty("time").choice_or("mode", "fixed", {"fixed"});
+  scene.finish();
+  const auto& problem = run.problem.stage;
+  if (const auto why = inadmissible_ends(problem.problem)) scene.section_or_empty("boundary").fail("", *why);
+  if (problem.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
+  run.first = run.along ? read_along(scene, *run.along, 0, read).stage : problem;
+  if (const auto why = inadmissible_ends(run.first.problem)) scene.section("continuation", "").fail("from", *why);
+  return {problem.problem.system,
+          [=](const Observer<Sys>& observer) {
+            std::optional<Checkpoint> folder;
+            if (!context.folder.empty()) folder.emplace(context.folder, 0).remove();
+            return solve_boundary_scene(run, context, read, search, observer);
+          },
+          nullptr};
+}
+
+/// The same with the multistart that serves any system.
+template <DiscreteSystem Sys, class Read>
+PreparedScene<Sys> boundary_value(const Section& scene, const RunContext& context,
+                                  const Presentation<Sys>& presentation, const Read& read) {
+  return boundary_value<Sys>(
+      scene, context, presentation, read,
+      [](const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage, const MultistartOptions& options) {
+        return solve_boundary(solver, stage.problem, stage.steps, options);
+      });
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,20 @@
+#pragma once
+/// Initial-value scenes that have been read.
+
+#include <lagroid/run/motion/drive.hpp>
+#include <lagroid/run/motion/motion.hpp>
+#include <lagroid/run/study/method.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace lagroid::app {
+
+/// A motion, how far it is to go, and the methods by which it could be integrated.
+struct MotionScene {
+  std::unique_ptr<Motion> motion;
+  RunExtent pace;
+  std::vector<Method> methods;
+};
+
+}  // namespace lagroid::app

@@ -1,0 +1,28 @@
+#pragma once
+/// A scene, read and checked, before anything is computed.
+
+#include <lagroid/core/system.hpp>
+#include <lagroid/run/motion/drive.hpp>
+#include <lagroid/run/motion/motion.hpp>
+#include <lagroid/run/motion/system_node.hpp>
+#include <lagroid/run/run_result.hpp>
+#include <lagroid/run/study/method.hpp>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace lagroid::app {
+
+/// An initial value of equal steps of order two by Newton, as ensembles integrate them (simulation.hpp).
+template <DiscreteSystem Sys> struct NewtonInitialValue;
+
+template <DiscreteSystem Sys> struct PreparedScene {
+  Sys system;
+  std::function<RunResult(const Observer<Sys>&)> run;
+  std::function<std::unique_ptr<Motion>()> begin;                  ///< the motion alone; null for boundary values
+  std::vector<Method> methods = {};                                ///< by which the scene could be integrated
+  std::shared_ptr<const NewtonInitialValue<Sys>> plain = nullptr;  ///< null where it is none
+};
+
+}  // namespace lagroid::app

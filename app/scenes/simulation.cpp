@@ -1,0 +1,207 @@
+#include "simulation.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace lagroid::app {
+
+namespace {
+
+constexpr long most_apart = 1'000'000'000;  // rows, checkpoints
+
+}  // namespace
+
+TimeGrid read_time(const Section& scene) {
+  const Section time = scene.section("time", "step and steps, or duration and steps");
+  constexpr long most = 2'000'000'000;
+  TimeGrid grid;
+  const bool has_duration = time.has("duration");
+  const bool has_step = time.has("step");
+  constexpr double first_tried = 0.01;
+  if (has_step && time.has("accuracy")) time.fail("accuracy", "finds the first step: leave out step or accuracy");
+  if (has_duration && has_step) time.fail("duration", "give step or duration, not both (steps goes with either)");
+  grid.steps = time.integer("steps", 1, most);
+  grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
+              : !has_step && time.has("accuracy") ? first_tried
+                                                  : time.number("step", positive);
+  const char* const key = has_duration ? "duration" : "step";
+  if (grid.step < std::numeric_limits<double>::min())
+    time.fail(key, fmt::format("makes steps of {:g} s, too short to keep their digits", grid.step));
+  if (!std::isfinite(grid.step * double(grid.steps)))
+    time.fail(key, fmt::format("{} steps of {:g} s have no finite end", grid.steps, grid.step));
+  return grid;
+}
+
+double read_start(const Section& scene) {
+  const Section time = scene.section_or_empty("time");
+  const double start = time.number_or("start", 0);
+  if (start + 0.5 * read_time(scene).step == start)
+    time.fail("start", "is so late that a step is lost in its rounding; begin earlier");
+  return start;
+}
+
+void refuse_accuracy(const Section& scene) {
+  const Section time = scene.section_or_empty("time");
+  if (time.has("accuracy"))
+    time.fail("accuracy", "finds the first of variational steps from [initial]; give step or duration here");
+}
+
+Composition read_composition(const Section& time, std::span<const Composition> offered) {
+  const long order = time.integer_or("order", 2, 2, usual_compositions.back().order);
+  const Composition* const usual = usual_composition(order);
+  if (usual == nullptr) time.fail("order", fmt::format("must be {}, got {}", usual_orders(), order));
+  std::vector<std::string> names;
+  for (const auto& composition : offered) names.emplace_back(composition.name);
+  const std::string name = time.choice_or("composition", std::string(usual->name), names);
+  const Composition* const named = composition_named(offered, name);
+  if (named == nullptr) return *usual;
+  if (time.has("order") && named->order != order)
+    time.fail("composition",
+              fmt::format("\"{}\" is of order {}, not {}; leave out order or composition", name, named->order, order));
+  return *named;
+}
+
+namespace {
+
+std::string read_mode_word(const Section& time) {
+  const auto words = mode_words();
+  return time.choice_or("mode", words.front(), words);
+}
+
+/// Refuses a key that asks for what the system lacks.
+void need(const Section& time, std::string_view key, std::span<const Requirement> requirements,
+          const Capabilities& able) {
+  if (const Requirement* lacking = unmet(requirements, able))
+    time.fail(key, fmt::format("this system has no {}; see docs/time.md for those that do", lacking->what));
+}
+
+/// The options of the method itself.
+void read_options(const Section& time, const IntegrationMethod& method, const Capabilities& able,
+                  IntegratorOptions& options) {
+  if (method.composed()) {
+    const bool flows = method.other_orders == OtherOrders::composed_flows;
+    options.composition =
+        read_composition(time, flows ? std::span<const Composition>(able.splittings) : compositions::all);
+    if (!flows && options.composition.stages() > 1)
+      need(time, time.has("order") ? "order" : "composition", requirements::of_composed_steps, able);
+  } else {
+    if (time.has("composition"))
+      time.fail("composition",
+                fmt::format("goes with steps that are composed, which \"{}\" ones are not; leave it out", method.name));
+    if (time.integer_or("order", method.order, 2, usual_compositions.back().order) != method.order)
+      time.fail("order", fmt::format("of \"{}\" is {}", method.name, method.order));
+  }
+  if (options.mode == TimeMode::adaptive) {
+    const auto words = words_of(without_root_words);
+    options.without_root = choice_of(without_root_words, time.choice_or("without_root", words.front(), words));
+    if (options.without_root == WithoutRoot::controlled) need(time, "without_root", requirements::of_controlled, able);
+  } else if (time.has("without_root")) {
+    time.fail("without_root",
+              fmt::format("goes with mode = \"{}\"", integration_method({.mode = TimeMode::adaptive}).name));
+  }
+}
+
+void read_stepper(const Section& solver, IntegratorOptions& options) {
+  const auto words = words_of(solver_words);
+  options.method = choice_of(solver_words, solver.choice_or("method", words.front(), words));
+  if (solver.has("max_iterations"))
+    options.step.max_iterations = int(solver.integer("max_iterations", 1, most_iterations));
+  options.step.tolerance = solver.number_or("tolerance", 0, nonnegative);
+}
+
+}  // namespace
+
+std::string read_method_word(const Section& time, std::span<const DeclaredMethod> own) {
+  std::vector<std::string> words = method_words();
+  for (const DeclaredMethod& each : own) words.emplace_back(each.name);
+  const std::string word = time.choice_or("method", words.front(), words);
+  if (time.has("method") && read_mode_word(time) != mode_of_equal_steps)
+    time.fail("method", fmt::format("goes with mode = \"{}\"", mode_of_equal_steps));
+  return word;
+}
+
+const DeclaredMethod& read_declared_method(const Section& time, std::span<const DeclaredMethod> own) {
+  const std::string word = read_method_word(time, own);
+  for (const DeclaredMethod& each : own)
+    if (each.name == word) return each;
+  return integration_method(read_mode_word(time), word);
+}
+
+IntegratorChoice read_integrator(const Section& scene, const Capabilities& able) {
+  const Section time = scene.section("time", "step and steps, or duration and steps");
+  const IntegrationMethod& method = integration_method(read_mode_word(time), read_method_word(time, {}));
+  need(time, method.equal_steps() ? "method" : "mode", method.needs, able);
+  IntegratorChoice choice;
+  IntegratorOptions& options = choice.options;
+  options = options_of(method);
+  read_options(time, method, able, options);
+  if (!method.equal_steps()) refuse_duration(time);
+  if (time.has("accuracy")) {
+    choice.accuracy = time.number("accuracy", positive);
+    if (time.has("duration")) time.fail("accuracy", "chooses the step: leave out duration");
+    if (options.fixed != StepKind::variational || options.composition.stages() > 1)
+      time.fail("accuracy", "chooses steps of order 2; give step, or leave out order, method and composition");
+  }
+  read_stepper(scene.section_or_empty("solver"), options);
+  return choice;
+}
+
+std::vector<Method> composed_methods(std::string_view step, std::span<const Composition> composed_by) {
+  std::vector<Method> all;
+  for (const auto& composition : composed_by)
+    all.push_back({composed_name(step, composition),
+                   composition.order,
+                   composition.stages(),
+                   true,
+                   {fmt::format("time.method={}", step), fmt::format("time.composition={}", composition.name)}});
+  return all;
+}
+
+namespace {
+
+/// What [time] of a scene says for them.
+std::vector<std::string> settings_of(const IntegratorOptions& options) {
+  const IntegrationMethod& method = integration_method(options);
+  std::vector<std::string> settings{
+      fmt::format("time.mode={}", method.equal_steps() ? mode_of_equal_steps : method.name)};
+  if (method.equal_steps()) settings.push_back(fmt::format("time.method={}", method.name));
+  if (method.composed()) settings.push_back(fmt::format("time.composition={}", options.composition.name));
+  return settings;
+}
+
+}  // namespace
+
+std::vector<Method> integration_methods(const Capabilities& able) {
+  std::vector<Method> all;
+  for (const NamedMethod& m : named_methods(able))
+    all.push_back({m.name, m.order, m.stages, m.equal_steps, settings_of(m.options), m.to_compare});
+  return all;
+}
+
+long read_every(const Section& scene) { return scene.section_or_empty("output").integer_or("every", 1, 1, most_apart); }
+
+void refuse_duration(const Section& time) {
+  if (time.has("duration"))
+    time.fail("duration", "is not kept by steps that vary: give step, the first one, and steps");
+}
+
+namespace {
+
+/// The scene to be kept: with the step itself in place of a duration, so that more steps can be asked for later.
+std::string kept_scene(const Section& scene) {
+  if (!scene.section_or_empty("time").has("duration")) return scene.whole();
+  return scene.with("time.step", {read_time(scene).step}).without("time.duration").whole();
+}
+
+}  // namespace
+
+RunExtent read_extent(const Section& scene, const RunContext& context) {
+  RunExtent pace;
+  pace.steps = read_time(scene).steps;
+  pace.every = read_every(scene);
+  pace.checkpoint = scene.section_or_empty("output").integer_or("checkpoint", 0, 1, most_apart);
+  if (!context.folder.empty() && !context.resume) pace.scene = kept_scene(scene);
+  return pace;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,136 @@
+#pragma once
+/// Initial-value runs of any system.
+
+#include "../reading/scene_reader.hpp"
+#include "prepared_scene.hpp"
+
+#include <lagroid/run/motion/drive.hpp>
+#include <lagroid/run/motion/system_motion.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/solvers/methods/methods.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <span>
+
+namespace lagroid::app {
+
+/// [time]: two of step, steps, duration. A step of which only the accuracy is given is the first to be tried.
+struct TimeGrid {
+  double step = 0;
+  long steps = 0;
+};
+TimeGrid read_time(const Section& scene);
+/// `start` of [time]: when the first arrow of a system that depends on time begins, zero where it is not given.
+double read_start(const Section& scene);
+/// Where the step is not searched for.
+void refuse_accuracy(const Section& scene);
+
+/// Refuses [boundary] of a system that has no boundary values.
+template <DiscreteSystem Sys> void refuse_boundary(const Section& scene) {
+  if (!scene.has("boundary")) return;
+  scene.fail("boundary", TimeDependent<Sys> ? "the equal steps of a boundary value have no time of their own, on which "
+                                              "this system depends (from C++ take FixedStep); give [initial]"
+                         : Forced<Sys>
+                             ? "the motions of a forced system make no action stationary; give [initial]"
+                             : "the motions of a nonholonomic system make no action stationary; give [initial]");
+}
+
+/// How time goes on in an initial-value run: the rest of [time], and [solver].
+struct IntegratorChoice {
+  IntegratorOptions options;
+  double accuracy = 0;  ///< of the first step; 0: its size is given
+};
+/// `method` of [time]: a method of equal steps, or one of the system's own.
+std::string read_method_word(const Section& time, std::span<const DeclaredMethod> own);
+/// The method that `mode` and `method` of [time] name; it is one of `own`, or one that is declared for every system.
+const DeclaredMethod& read_declared_method(const Section& time, std::span<const DeclaredMethod> own);
+/// Refuses what the system does not have.
+IntegratorChoice read_integrator(const Section& scene, const Capabilities& able);
+/// `order`, `composition`: of a fixed step.
+Composition read_composition(const Section& time, std::span<const Composition> offered);
+/// The fixed steps of a kind, by each of the compositions.
+std::vector<Method> composed_methods(std::string_view step, std::span<const Composition> composed_by);
+/// All that it would accept.
+std::vector<Method> integration_methods(const Capabilities& able);
+
+/// [output]: every n-th node is recorded (and the last).
+long read_every(const Section& scene);
+/// Where the sizes of steps vary.
+void refuse_duration(const Section& time);
+
+/// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint.
+RunExtent read_extent(const Section& scene, const RunContext& context);
+
+template <DiscreteSystem Sys> struct NewtonInitialValue {
+  State<typename Sys::GroupoidType> initial;
+  ArrowOf<typename Sys::GroupoidType> configuration;
+  Presentation<Sys> presentation;
+  RunExtent pace;
+};
+
+/// Whether it is one: nothing is asked of steps and solver beyond their size and number.
+inline bool is_plain(const IntegratorChoice& choice) {
+  const IntegratorOptions& o = choice.options;
+  return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.composition.stages() == 1 &&
+         o.method == StepMethod::newton && o.step.tolerance == 0 &&
+         o.step.max_iterations == IntegratorOptions().step.max_iterations && choice.accuracy == 0;
+}
+
+/// The system's motion as the scene asks for it.
+template <DiscreteSystem Sys>
+std::unique_ptr<Motion> motion_of(const Sys& system, const Presentation<Sys>& presentation,
+                                  const State<typename Sys::GroupoidType>& initial,
+                                  const ArrowOf<typename Sys::GroupoidType>& configuration,
+                                  const IntegratorOptions& options, const Observer<Sys>& observer = nullptr) {
+  return std::make_unique<SystemMotion<Sys>>(system, with_step_sizes(presentation, options), watched(system, options),
+                                             make_integrator(system, initial, configuration, options), options,
+                                             observer);
+}
+
+/// Runs the system.
+template <DiscreteSystem Sys>
+RunResult simulate(Sys system, const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
+                   const ArrowOf<typename Sys::GroupoidType>& configuration, const IntegratorChoice& choice,
+                   RunExtent pace, const RunContext& context, const Observer<Sys>& observer) {
+  RunResult result;
+  if (choice.accuracy > 0) {
+    const double h = step_for_accuracy(system, initial, choice.accuracy, choice.options);
+    if (h > 0) {
+      system.h = h;
+      result.notes.push_back(fmt::format("first step {:.6g} for time.accuracy = {:.3g}", h, choice.accuracy));
+    } else {
+      result.status = std::string(to_string(SolveStatus::no_step));
+      result.message = "no step from the initial state has the accuracy asked for; give time.step in place of accuracy";
+      pace.steps = 0;
+    }
+  }
+  drive(*motion_of(system, presentation, initial, configuration, choice.options, observer), pace, context, result);
+  return result;
+}
+
+/// The same, to be run later: [time] steps, [solver] and [output] are read from the scene, which must hold no key
+/// besides those read.
+template <DiscreteSystem Sys>
+PreparedScene<Sys> simulation(const Section& scene, const RunContext& context, const Sys& system,
+                              const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
+                              const ArrowOf<typename Sys::GroupoidType>& configuration) {
+  const Capabilities able = capabilities_of(system);
+  const IntegratorChoice choice = read_integrator(scene, able);
+  const RunExtent pace = read_extent(scene, context);
+  scene.finish();
+  std::shared_ptr<const NewtonInitialValue<Sys>> plain;
+  if (is_plain(choice))
+    plain = std::make_shared<const NewtonInitialValue<Sys>>(
+        NewtonInitialValue<Sys>{initial, configuration, presentation, pace});
+  return {system,
+          [=](const Observer<Sys>& observer) {
+            return simulate(system, presentation, initial, configuration, choice, pace, context, observer);
+          },
+          [=] { return motion_of(system, presentation, initial, configuration, choice.options); },
+          integration_methods(able), plain};
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,74 @@
+#include "learned_scene.hpp"
+
+#include "../../reading/kinds.hpp"
+#include "model_file.hpp"
+
+#include <lagroid/solvers/learning/measures.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+class LearnedSystem final : public SphereSystem {
+ public:
+  LearnedSystem(LearnedHamiltonian learned, std::filesystem::path file)
+      : learned_(std::move(learned)), file_(std::move(file)) {}
+
+  std::string_view name() const override { return keys::learned_hamiltonian; }
+  std::vector<SphereForm> forms() const override { return {SphereForm::momenta}; }
+  Points in_form(const Points& z, SphereForm, SphereForm) const override { return z; }
+  std::unique_ptr<SphereIntegrator> begin(const Points& start, const SphereIntegratorOptions& options) const override {
+    return integrator_on_spheres(learning::IntegratedField(learned_.model->equations(learned_.parameters)), start,
+                                 options);
+  }
+
+  std::vector<SphereQuantity> quantities() const override {
+    return {{"learned energy", "energy", "1", Promise::bounded},
+            {"vertical angular momentum", "Jz", "1", Promise::conserved}};
+  }
+  std::vector<Measured> measure(const Points& z, SphereForm) const override {
+    const double energy = learned_.model->energy(learned_.parameters, z.reshaped());
+    double size = 0;
+    for (Eigen::Index i = 0; i < z.cols(); ++i) size += z.col(i).head<3>().norm() * z.col(i).tail<3>().norm();
+    return {{energy, std::max(1.0, std::abs(energy))}, {learning::vertical_momentum(z.reshaped()), size}};
+  }
+
+  std::vector<double> from_files() const override { return {learned_.parameters.begin(), learned_.parameters.end()}; }
+  std::vector<std::string> pinned() const override {
+    return {fmt::format("parameters.model='{}'", std::filesystem::absolute(file_).string())};
+  }
+
+  // Neither is known: points are shown on unit spheres, one below the other.
+  std::vector<double> rods() const override { return ones(); }
+  std::vector<double> bobs() const override { return ones(); }
+
+ private:
+  std::vector<double> ones() const { return std::vector<double>(std::size_t(learned_.model->bodies()), 1.0); }
+
+  LearnedHamiltonian learned_;
+  std::filesystem::path file_;
+};
+
+}  // namespace
+
+std::unique_ptr<SphereSystem> read_learned_hamiltonian(const Section& scene) {
+  const Section parameters = scene.section("parameters", "which model");
+  try {
+    const std::string name = parameters.text("model", "the path of a model.json");
+    std::filesystem::path file = std::filesystem::path(scene.file()).parent_path() / name;
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) file = name;
+    return std::make_unique<LearnedSystem>(read_model(file), file);
+  } catch (const ModelError& error) {
+    parameters.fail("model", error.what());
+  }
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,98 @@
+#include "model_file.hpp"
+
+#include <lagroid/run/files/kept_file.hpp>
+#include <lagroid/run/files/nesting.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kind = "learned_hamiltonian";
+constexpr int most_bodies = 1000;
+constexpr int most_units = 10000;
+
+/// The whole numbers after the colon.
+std::vector<int> sizes(std::string_view text) {
+  std::vector<int> out;
+  while (true) {
+    int n = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+    if (error != std::errc() || n < 1 || n > most_units) return {};
+    out.push_back(n);
+    text.remove_prefix(std::size_t(end - text.data()));
+    if (text.empty()) return out;
+    if (!text.starts_with(',')) return {};
+    text.remove_prefix(1);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<learning::Model> named_model(const std::string& name, int bodies) {
+  const auto colon = name.find(':');
+  const std::string form = name.substr(0, colon);
+  const auto numbers = colon == name.npos ? std::vector<int>() : sizes(std::string_view(name).substr(colon + 1));
+  try {
+    if (form == "polynomial" && numbers.size() == 1) return learning::polynomial_model(bodies, numbers.front());
+    if (form == "network" && !numbers.empty()) return learning::network_model(bodies, numbers);
+  } catch (const std::invalid_argument& error) {
+    throw ModelError(fmt::format("model {}: {}", name, error.what()));
+  }
+  throw ModelError(fmt::format(
+      "model \"{}\" is none; give polynomial:DEGREE or network:UNITS, as in network:8 or network:8,8", name));
+}
+
+std::string model_text(const LearnedHamiltonian& learned) {
+  nlohmann::ordered_json out;
+  out["kind"] = kind;
+  out["bodies"] = learned.model->bodies();
+  out["model"] = learned.model->name();
+  out["parameters"] = std::vector<double>(learned.parameters.begin(), learned.parameters.end());
+  return out.dump(2) + "\n";
+}
+
+LearnedHamiltonian read_model(const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& problem) {
+    throw ModelError(fmt::format("{}: {}; give a model.json that lagroid learn wrote", file.string(), problem));
+  };
+  const auto text = contents(file);
+  if (!text) fail("there is no such file, or it cannot be read");
+  const auto read = read_json(*text);
+  if (!read || !read->is_object()) fail("no JSON object");
+  const Json& json = *read;
+  if (json.value("kind", Json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
+  const auto bodies = json.value("bodies", Json());
+  if (!bodies.is_number_integer() || bodies < 1 || bodies > most_bodies) fail("bodies is no number of bodies");
+  const auto name = json.value("model", Json());
+  if (!name.is_string()) fail("model is no name");
+  LearnedHamiltonian out;
+  try {
+    out.model = named_model(name.get<std::string>(), bodies.get<int>());
+  } catch (const ModelError& error) {
+    throw ModelError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  const auto parameters = json.value("parameters", Json());
+  if (!parameters.is_array() || Eigen::Index(parameters.size()) != out.model->size())
+    fail(fmt::format("parameters are not the {} numbers of {} for {} bodies", out.model->size(), out.model->name(),
+                     out.model->bodies()));
+  out.parameters.resize(out.model->size());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (!parameters[i].is_number()) fail(fmt::format("parameters[{}] is no number", i));
+    out.parameters(Eigen::Index(i)) = parameters[i].get<double>();
+  }
+  const Eigen::MatrixXd mass = out.model->mass(out.parameters);
+  if (!out.parameters.allFinite() || !mass.allFinite() || !(mass.diagonal().minCoeff() > 0))
+    fail("the mass matrix of its parameters is not finite and positive");
+  return out;
+}
+
+}  // namespace lagroid::app

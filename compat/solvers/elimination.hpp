@@ -1,0 +1,4 @@
+#pragma once
+/// Moved to <lagroid/solvers/linear_algebra/elimination.hpp>; this goes with version 0.4.
+
+#include <lagroid/solvers/linear_algebra/elimination.hpp>

@@ -1,0 +1,4 @@
+#pragma once
+/// Moved to <lagroid/solvers/learning/potentials/network_potential.hpp>; this goes with version 0.4.
+
+#include <lagroid/solvers/learning/potentials/network_potential.hpp>

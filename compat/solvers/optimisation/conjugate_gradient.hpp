@@ -1,0 +1,4 @@
+#pragma once
+/// Moved to <lagroid/solvers/optimisation/methods/conjugate_gradient.hpp>; this goes with version 0.4.
+
+#include <lagroid/solvers/optimisation/methods/conjugate_gradient.hpp>

@@ -1,0 +1,4 @@
+#pragma once
+/// Moved to <lagroid/solvers/step/step_solver.hpp>; this goes with version 0.4.
+
+#include <lagroid/solvers/step/step_solver.hpp>

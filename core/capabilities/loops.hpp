@@ -1,0 +1,90 @@
+#pragma once
+/// How the paths of a groupoid can wind.
+
+#include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/member_name.hpp>
+
+#include <concepts>
+
+namespace lagroid {
+
+/// The number of loops that X, a groupoid or a system, says there are; zero where it says nothing.
+template <class X> constexpr int loops_of() {
+  if constexpr (requires { X::loops; }) {
+    return X::loops;
+  } else {
+    return 0;
+  }
+}
+
+/// A groupoid, or a system on one, whose paths from one arrow to another can wind: it writes
+///
+///     static constexpr int loops                                        how many numbers of turns there are
+///     Arrow<double> loop(q, axis, turns) const                          in the source fibre over q
+///         const Object<double>& q, const Vector<double, dimension>& axis, const Vector<double, loops>& turns
+///
+/// unit(q) where all turns are integers, and smooth in them, so that t -> loop(q, axis, t k) is a closed curve for
+/// integers k. `axis` is any vector of A_qG: it tells loops of the same number of turns from one another, as rotations
+/// about different axes. On a group they are one-parameter subgroups through the kernel of exp. A system writes its own
+/// where what is to be gone around is no matter of the groupoid: the centre of attraction in the plane.
+template <class X>
+concept Winding = loops_of<X>()
+> 0;
+
+namespace detail {
+
+LAGROID_MEMBER_NAME(NamesLoop, loop);
+template <class Sys>
+concept HasLoop = requires(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q,
+                           const AlgebroidVector<typename Sys::GroupoidType>& axis,
+                           const Vector<double, loops_of<Sys>()>& turns) {
+  { system.loop(q, axis, turns) } -> std::convertible_to<ArrowOf<typename Sys::GroupoidType>>;
+};
+
+/// Who says how the paths of a system wind: the system itself, or else its groupoid.
+template <class Sys> const auto& winder(const Sys& system) {
+  if constexpr (Winding<Sys>) {
+    return system;
+  } else {
+    return system.groupoid;
+  }
+}
+template <class Sys>
+inline constexpr int windings = Winding<Sys> ? loops_of<Sys>() : loops_of<typename Sys::GroupoidType>();
+
+}  // namespace detail
+
+/// In how many loops the paths of a system can wind. (A SizedSystem knows it when it runs.)
+template <class Sys> int loop_count(const Sys& system) {
+  if constexpr (requires { system.loop_count(); }) {
+    return system.loop_count();
+  } else {
+    return detail::windings<Sys>;
+  }
+}
+
+/// The loop over q about `axis` with so many turns, of a system or its groupoid. Requires `loop_count` turns, and that
+/// there are any.
+template <class Sys>
+auto loop_of(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q,
+             const AlgebroidVector<typename Sys::GroupoidType>& axis, const Eigen::VectorXd& turns) {
+  if constexpr (requires { system.loop_count(); }) {
+    return system.loop(q, axis, turns);
+  } else if constexpr (detail::windings<Sys> > 0) {
+    return detail::winder(system).loop(q, axis, Vector<double, detail::windings<Sys>>(turns));
+  } else {
+    return system.groupoid.unit(q);
+  }
+}
+
+/// Whether a system that says how its paths wind, in part, says all of it.
+template <class Sys> constexpr bool loops_and_loop_fit() {
+  if constexpr (Winding<Sys>) {
+    return detail::HasLoop<Sys>;
+  } else {
+    return !detail::NamesLoop<Sys> || requires(const Sys& system) { system.loop_count(); };
+  }
+}
+template <class Sys> inline constexpr bool loops_fit = loops_and_loop_fit<Sys>();
+
+}  // namespace lagroid

@@ -1,0 +1,110 @@
+#pragma once
+/// Functions that are defined by equations, over any scalar.
+
+#include <lagroid/core/derivatives/directional.hpp>
+#include <lagroid/core/scalars/jet.hpp>
+#include <lagroid/core/scalars/series.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <limits>
+
+namespace lagroid {
+
+/// The largest number of infinitesimals of the scalar S that have a product other than zero.
+template <class S> inline constexpr int nilpotency = 0;
+template <Differentiated S> inline constexpr int nilpotency<S> = S::order;
+template <class T> inline constexpr int nilpotency<Dual<T>> = 1 + nilpotency<T>;
+template <class T, int K> inline constexpr int nilpotency<Series<T, K>> = K - 1 + nilpotency<T>;
+
+namespace detail {
+
+/// A solution x and the inverse of F_x there.
+template <int N> struct Root {
+  Vector<double, N> x;
+  Matrix<double, N, N> inverse;
+};
+
+/// By Newton's method, with steps halved until the residual falls, until each equation is left with the rounding of its
+/// terms: of F's derivatives times what they multiply, unknowns and parameters.
+template <int N, int M, class F>
+Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vector<double, M>& parameters) {
+  using J = Jet<double, N + M>;
+  constexpr int most_iterations = 60;
+  constexpr int most_halvings = 20;
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  constexpr double floor = 100;  // times that is as far as some get
+  struct At {
+    Vector<double, N> value;
+    Matrix<double, N, N> jacobian;
+    double largest;         ///< |F_i|
+    double roundoff_ratio;  ///< |F_i| over its rounding
+  };
+  const auto at = [&](const Vector<double, N>& x) {
+    Vector<J, N> unknown;
+    Vector<J, M> fixed;
+    for (int i = 0; i < N; ++i) unknown(i) = J::variable(x(i), i);
+    for (int i = 0; i < M; ++i) fixed(i) = J::variable(parameters(i), N + i);
+    const Vector<J, N> f = residual(unknown, fixed);
+    At out{{}, {}, 0, 0};
+    for (int i = 0; i < N; ++i) {
+      const Vector<double, N + M> slope = f(i).gradient();
+      out.value(i) = f(i).value;
+      out.jacobian.row(i) = slope.template head<N>().transpose();
+      const double terms = slope.template head<N>().cwiseAbs().dot(x.cwiseAbs()) +
+                           slope.template tail<M>().cwiseAbs().dot(parameters.cwiseAbs());
+      const bool finite = std::isfinite(out.value(i)) && std::isfinite(terms);
+      const double size = finite ? std::abs(out.value(i)) : INFINITY;
+      out.largest = std::max(out.largest, size);
+      if (size > 0) out.roundoff_ratio = std::max(out.roundoff_ratio, finite ? size / (rounding * terms) : INFINITY);
+    }
+    return out;
+  };
+  Root<N> root{guess, {}};
+  At now = at(root.x);
+  double last = INFINITY;
+  for (int iteration = 0; iteration < most_iterations && std::isfinite(now.largest); ++iteration) {
+    root.inverse = now.jacobian.inverse();
+    const Vector<double, N> step = root.inverse * now.value;
+    if (!step.allFinite()) break;
+    if (now.roundoff_ratio <= 1 || (now.roundoff_ratio <= floor && now.roundoff_ratio >= last / 2)) {
+      root.x -= step;
+      return root;
+    }
+    last = now.roundoff_ratio;
+    double part = 1;
+    At next = at(root.x - step);
+    for (int halving = 0; halving < most_halvings && !(next.largest < now.largest) && !(next.roundoff_ratio <= floor);
+         ++halving)
+      next = at(root.x - (part /= 2) * step);
+    root.x -= part * step;
+    now = next;
+  }
+  root.x.setConstant(std::numeric_limits<double>::quiet_NaN());
+  root.inverse.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return root;
+}
+
+}  // namespace detail
+
+/// x(y) with F(x, y) = 0, with its derivatives: the values by Newton's method, the infinitesimals by as many
+/// corrections x -= F_x^{-1} F, F_x^{-1} kept in plain numbers, as there are orders of them, for each is right in one
+/// order more. F(x, y) is a function over any scalar, Vector<U, N> x Vector<U, M> -> Vector<U, N>. Not a number where
+/// Newton's method does not converge from `guess`. No allocation.
+template <class S, int N, int M, class F>
+Vector<S, N> solve_implicit(const F& residual, const Vector<double, N>& guess, const Vector<S, M>& parameters) {
+  Vector<double, M> values;
+  for (int i = 0; i < M; ++i) values(i) = value_of(parameters(i));
+  const detail::Root<N> root = detail::newton_root<N, M>(residual, guess, values);
+  Vector<S, N> x;
+  for (int i = 0; i < N; ++i) x(i) = S(root.x(i));
+  for (int order = 0; order < nilpotency<S>; ++order) {
+    const Vector<S, N> f = residual(x, parameters);
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) x(i) -= f(j) * root.inverse(i, j);
+  }
+  return x;
+}
+
+}  // namespace lagroid

@@ -1,0 +1,75 @@
+#pragma once
+/// The numbers that a computation goes on from.
+
+#include <lagroid/core/groupoid.hpp>
+
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// What a computation must remember to go on with the same bits, as one list of numbers: `object.serialize(archive)`
+/// visits them in a fixed order, and writes them to an archive, or takes them from one that is read. Whole numbers and
+/// flags are kept as numbers, exact up to 2^53.
+class NumberArchive {
+ public:
+  /// To be written.
+  NumberArchive() = default;
+  /// To be read.
+  explicit NumberArchive(std::vector<double> numbers) : numbers_(std::move(numbers)), reading_(true) {}
+
+  bool reading() const { return reading_; }
+  const std::vector<double>& numbers() const { return numbers_; }
+  /// Whether all that was written has been read.
+  bool at_end() const { return at_ == numbers_.size(); }
+
+  /// Visits numbers, flags, matrices and arrays of fixed size, and whatever visits its own fields. Throws
+  /// std::out_of_range where the archive is read beyond its end: it was written by another computation.
+  template <class... Fields> void operator()(Fields&... fields) { (visit(fields), ...); }
+  template <class G> void arrow(const G& groupoid, ArrowOf<G>& g) {
+    auto x = groupoid.coordinates_of_arrow(g);
+    visit(x);
+    if (reading_) g = groupoid.template arrow_at<double>(x);
+  }
+  template <class G> void object(const G& groupoid, ObjectOf<G>& q) {
+    auto x = groupoid.coordinates_of_object(q);
+    visit(x);
+    if (reading_) q = groupoid.template object_at<double>(x);
+  }
+
+ private:
+  void number(double& x) {
+    if (!reading_) {
+      numbers_.push_back(x);
+    } else if (at_ < numbers_.size()) {
+      x = numbers_[at_++];
+    } else {
+      throw std::out_of_range("an archive of another computation");
+    }
+  }
+
+  template <class T> void visit(T& field) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      auto x = double(field);
+      number(x);
+      if (reading_) field = T(x);
+    } else if constexpr (requires { field.serialize(*this); }) {
+      field.serialize(*this);
+    } else if constexpr (requires { T::SizeAtCompileTime; }) {
+      static_assert(T::SizeAtCompileTime != Eigen::Dynamic);
+      for (Eigen::Index i = 0; i < field.size(); ++i) visit(field.data()[i]);
+    } else {
+      for (auto& each : field) visit(each);
+    }
+  }
+
+  std::vector<double> numbers_;
+  std::size_t at_ = 0;
+  bool reading_ = false;
+};
+
+}  // namespace lagroid

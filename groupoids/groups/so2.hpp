@@ -1,0 +1,55 @@
+#pragma once
+/// SO(2), the rotations of the plane.
+
+#include <lagroid/groupoids/groups/matrix_group.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace lagroid {
+
+/// Arrows: 2 x 2 rotation matrices. Algebra: the angle rate xi = (w), hat(w) = [[0, -w], [w, 0]]; Abelian.
+template <Retraction Tau = Retraction::exponential>
+struct SpecialOrthogonal2 : MatrixGroup<SpecialOrthogonal2<Tau>, 2, 1, Tau> {
+  template <class S> static Matrix<S, 2, 2> hat(const Vector<S, 1>& xi) {
+    Matrix<S, 2, 2> x;
+    x << S(0), -xi(0), xi(0), S(0);
+    return x;
+  }
+  static constexpr int basis(int, int r, int c) { return r - c; }
+  template <class S> static Vector<S, 1> vee(const Matrix<S, 2, 2>& x) { return Vector<S, 1>(x(1, 0)); }
+  template <class S> static Matrix<S, 2, 2> inverse(const Matrix<S, 2, 2>& g) { return g.transpose(); }
+  template <class S> static Matrix<S, 2, 2> exp(const Vector<S, 1>& xi) {
+    using std::cos, std::sin;
+    const S c = cos(xi(0));
+    const S s = sin(xi(0));
+    Matrix<S, 2, 2> g;
+    g << c, -s, s, c;
+    return g;
+  }
+  /// The angle in (-pi, pi].
+  template <class S> static Vector<S, 1> log(const Matrix<S, 2, 2>& g) {
+    using std::atan2;
+    return Vector<S, 1>(atan2(g(1, 0), g(0, 0)));
+  }
+  template <class S> static Matrix<S, 1, 1> ad(const Vector<S, 1>&) { return Matrix<S, 1, 1>(S(0)); }
+  template <class S> static Matrix<S, 1, 1> dexp(const Vector<S, 1>&) { return Matrix<S, 1, 1>(S(1)); }
+  template <class S> static Matrix<S, 1, 1> dexp_inverse(const Vector<S, 1>&) { return Matrix<S, 1, 1>(S(1)); }
+  /// The first column renormalised, the second its quarter turn.
+  static Matrix<double, 2, 2> project(const Matrix<double, 2, 2>& g) {
+    const Vector<double, 2> e = g.col(0).normalized();
+    Matrix<double, 2, 2> out;
+    out << e(0), -e(1), e(1), e(0);
+    return out;
+  }
+  /// Of the angle.
+  static constexpr int loops = 1;
+  static Matrix<double, 2, 2> loop(const Vector<double, 0>&, const Vector<double, 1>&, const Vector<double, 1>& turns) {
+    return exp(Vector<double, 1>(2 * std::numbers::pi * turns));
+  }
+  static std::string name() { return "SO(2)"; }
+};
+
+using SO2 = SpecialOrthogonal2<>;
+
+}  // namespace lagroid

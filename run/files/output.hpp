@@ -1,0 +1,34 @@
+#pragma once
+/// The files of a run: trajectory (HDF5, CSV), summaries, plots.
+
+#include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/run/run_result.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// The script that draws the panels, from the columns of trajectory.csv by their names or from what is to be seen of
+/// them, plot.csv: what a run's plot.gp holds. It follows from what the summary says, so that a script by someone else
+/// is told from it.
+std::string plot_script(const std::vector<Panel>& panels, bool by_name);
+
+/// The folder for a run of that scene (what was run, as text), or that of a run which is there, to go on with it or to
+/// show it; for this process alone. Throws as OutputFolder does.
+OutputFolder folder_for_run(const std::filesystem::path& folder, const std::string& scene);
+OutputFolder folder_of_run(const std::filesystem::path& folder);
+/// The same for a result whose scene nobody knows: it may be written again, another one may not.
+OutputFolder folder_for_result(const std::filesystem::path& folder, const RunResult& result);
+
+/// Writes trajectory.h5, trajectory.csv, summary.json, summary.txt, plot.gp, plot.svg and plot.png into `folder`
+/// (`write_and_draw`), which the caller holds. Returns the files written; a missing or failing gnuplot, or a signal
+/// while it draws, costs the pictures only and is added to the result's notes.
+std::vector<std::filesystem::path> write_outputs(RunResult& result, const std::filesystem::path& folder);
+
+/// The same of what must not be lost with its files: where they cannot be written, RunResult::output_error says why,
+/// and a signal that comes meanwhile is noted (InterruptGuard).
+std::vector<std::filesystem::path> write_outputs_if_possible(RunResult& result, const std::filesystem::path& folder);
+
+}  // namespace lagroid

@@ -1,0 +1,34 @@
+#pragma once
+/// The loop: from a motion's first node to its last, with checkpoints, progress and interrupts.
+
+#include <lagroid/run/motion/motion.hpp>
+#include <lagroid/run/run_result.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace lagroid {
+
+/// How far a run goes and what it leaves: [time] steps, [output] every and checkpoint.
+struct RunExtent {
+  long steps = 0;
+  long every = 1;       ///< each n-th node is recorded (and the last)
+  long checkpoint = 0;  ///< steps from one checkpoint to the next; 0: by the clock
+  std::string scene;    ///< to be kept, so that the run can be taken up
+};
+
+/// What is asked of a run.
+struct RunContext {
+  bool record = false;             ///< keep the trajectory
+  bool progress = false;           ///< show a bar
+  std::filesystem::path folder{};  ///< where checkpoints are kept; empty: nowhere
+  bool resume = false;             ///< go on from the one kept there
+};
+
+/// Runs the motion, which is at its first node, from there or from its checkpoint, and keeps checkpoints where
+/// `context` names a folder. The result has its trajectory, its ledger and all else that is told of it. A step that
+/// fails, Ctrl-C or SIGTERM ends it with what was computed so far. Throws RunError where the checkpoint is of another
+/// run, OutputError where the folder cannot be used.
+void drive(Motion& motion, const RunExtent& pace, const RunContext& context, RunResult& result);
+
+}  // namespace lagroid

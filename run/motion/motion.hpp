@@ -1,0 +1,62 @@
+#pragma once
+/// What can be run: one interface for systems on groupoids, scenes of bodies and systems on spheres.
+
+#include <lagroid/core/number_archive.hpp>
+#include <lagroid/run/motion/observables.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// Some numbers at a node that are compared as one vector.
+struct NamedVector {
+  std::string name;
+  std::vector<double> values;
+  double size = 0;  ///< of the terms that they are made of, to which an error is relative; 0: their own
+};
+
+/// A motion: it advances from node to node, and what is to be seen at a node can be looked at. The loop, the recorder
+/// and the ledger (drive.hpp, recorder.hpp, judge.hpp), studies and Python know nothing else of what they run.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+
+  /// Of the system or the scene.
+  virtual std::string name() const = 0;
+  virtual MethodTraits traits() const = 0;
+
+  /// One step. Where it does not converge everything is as it was.
+  virtual StepReport advance() = 0;
+  /// Why a step did not converge, and what to do. `step` is its number, from 1 on.
+  virtual std::string failure(const StepReport& report, long step) const = 0;
+  /// Evaluations of the method (MethodTraits::stages) that a step took, or iterations of its solver.
+  virtual long evaluations(const StepReport& report) const { return std::max(report.iterations, 1); }
+
+  /// Of the node that was reached.
+  virtual long index() const = 0;
+  virtual double time() const = 0;  ///< s
+  /// Of the last step; before the first, of that (s).
+  virtual double step_size() const = 0;
+  /// What is to be seen there, computed once; the same object at every node.
+  virtual const Observables& look() = 0;
+  /// Configuration and momentum there, in coordinates.
+  virtual std::vector<NamedVector> state() const = 0;
+  /// The largest residual there of all equations that states obey: constraints, and the groupoid's own. None where
+  /// there are none.
+  virtual std::optional<double> defect() const = 0;
+  /// False where looking costs so much that only the nodes that are recorded are looked at.
+  virtual bool is_judged_at_every_node() const { return true; }
+
+  /// Adds what is told of the whole run: panels, shapes, conventions, notes, what the ledger counts.
+  virtual void describe(RunResult& result) const = 0;
+  /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
+  /// bits.
+  virtual void serialize(NumberArchive& archive) = 0;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,178 @@
+#pragma once
+/// Systems on groupoids as motions.
+
+#include <lagroid/core/capabilities/discrete_energy.hpp>
+#include <lagroid/run/ledger/ledger.hpp>
+#include <lagroid/run/motion/motion.hpp>
+#include <lagroid/run/motion/system_node.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_messages.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// What the ledger watches: `quantities_of` the system, and E_d where the steps keep it or vary, or where they are
+/// equal and the system names no energy of its own.
+template <DiscreteSystem Sys> std::vector<Quantity<Sys>> watched(const Sys& system, const IntegratorOptions& options) {
+  auto all = quantities_of(system);
+  if constexpr (Timed<Sys> && !TimeDependent<Sys>) {
+    const auto energy = [](const auto& q) { return q.name.find("energy") != std::string::npos; };
+    // The last arrow of a composed step does not last as long as the step.
+    const bool equal =
+        options.mode == TimeMode::fixed && options.fixed == StepKind::variational && options.composition.stages() == 1;
+    if (options.mode == TimeMode::adaptive) {
+      const bool kept = options.without_root == WithoutRoot::stop;
+      all.push_back(discrete_energy_quantity(system, kept ? Promise::conserved : Promise::bounded));
+    } else if (equal && std::none_of(all.begin(), all.end(), energy)) {
+      all.push_back(discrete_energy_quantity(system, Promise::bounded));
+    }
+  }
+  return all;
+}
+
+/// The presentation with the step sizes, where they vary: a series and a panel.
+template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys> p, const IntegratorOptions& options) {
+  if (options.mode == TimeMode::fixed) return p;
+  p.extras.push_back({{"step_size", {"h"}, "s", "step size of the arrow", true, {}},
+                      [](const TrajectoryPoint<Sys>& point, double* out) { *out = point.step_size; }});
+  p.panels.push_back({"step size", "t", "h", "t", {"h"}});
+  if (options.mode == TimeMode::adaptive && !TimeDependent<Sys>)
+    p.panels.push_back({"discrete energy error", "t", "|E_d - first|", "t", {"drift discrete energy E_d"}});
+  return p;
+}
+
+/// An integrator of a system as a motion.
+template <DiscreteSystem Sys> class SystemMotion final : public Motion {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `options` are those that the integrator was made with.
+  SystemMotion(const Sys& system, Presentation<Sys> presentation, std::vector<Quantity<Sys>> quantities,
+               std::unique_ptr<Integrator<Sys>> integrator, const IntegratorOptions& options,
+               Observer<Sys> observer = nullptr)
+      : system_(system),
+        mode_(options.mode),
+        without_root_(options.without_root),
+        presentation_(std::move(presentation)),
+        integrator_(std::move(integrator)),
+        stages_(integrator_->traits().stages),
+        node_(system, presentation_, std::move(quantities)),
+        observer_(std::move(observer)) {}
+  /// With fields of one's own in place of a presentation.
+  SystemMotion(const Sys& system, std::string name, std::vector<FieldOf<Sys>> fields,
+               std::vector<Quantity<Sys>> quantities, std::unique_ptr<Integrator<Sys>> integrator,
+               const IntegratorOptions& options)
+      : system_(system),
+        mode_(options.mode),
+        without_root_(options.without_root),
+        integrator_(std::move(integrator)),
+        stages_(integrator_->traits().stages),
+        node_(system, std::move(fields), std::move(quantities)) {
+    presentation_.name = std::move(name);
+  }
+  SystemMotion(const SystemMotion&) = delete;
+  SystemMotion& operator=(const SystemMotion&) = delete;
+
+  std::string name() const override { return presentation_.name; }
+  MethodTraits traits() const override { return integrator_->traits(); }
+
+  StepReport advance() override { return integrator_->advance(); }
+  std::string failure(const StepReport& report, long step) const override {
+    return step_failure(report, step, integrator_->point().time, mode_);
+  }
+
+  long evaluations(const StepReport& report) const override { return stages_ > 0 ? stages_ : report.iterations; }
+
+  long index() const override { return integrator_->point().index; }
+  double time() const override { return integrator_->point().time; }
+  double step_size() const override {
+    const TrajectoryPoint<Sys>& point = integrator_->point();
+    if constexpr (HasTimeStep<Sys>)
+      if (point.index == 0) return system_.h;
+    return point.step_size;
+  }
+  const Observables& look() override {
+    const TrajectoryPoint<Sys>& point = integrator_->point();
+    node_.see(point);
+    if (point.index > 0) {
+      if constexpr (Sys::constraints > 0)
+        integrator_->for_each_inner_stage(
+            [&](const Step<Sys>& step, double start, double size) { node_.see_inner(step, start, size); });
+      if (point.index == 1) first_multipliers_ = point.step.multipliers;
+    }
+    if (observer_ && point.index > observed_) observer_(node_.point());
+    observed_ = point.index;
+    return node_;
+  }
+  std::vector<NamedVector> state() const override {
+    const TrajectoryPoint<Sys>& point = integrator_->point();
+    return {named("configuration", system_.groupoid.coordinates_of_arrow(point.configuration)),
+            named("momentum", tangent_momentum(system_, point.state))};
+  }
+  std::optional<double> defect() const override;
+
+  void describe(RunResult& result) const override {
+    const TrajectoryPoint<Sys>& point = integrator_->point();
+    if (point.index > 0) {
+      result.first_multipliers.assign(first_multipliers_.begin(), first_multipliers_.end());
+      result.last_multipliers.assign(point.step.multipliers.begin(), point.step.multipliers.end());
+    }
+    present(presentation_, result);
+    if (const long count = integrator_->without_root(); count > 0) {
+      result.notes.push_back(without_root_note(count, result.steps, without_root_));
+      result.ledger.entries.push_back(counted_entry("steps off the energy", count, result.steps));
+    }
+  }
+  void serialize(NumberArchive& archive) override {
+    integrator_->serialize(archive);
+    archive(first_multipliers_, observed_);
+    node_.serialize(archive);
+  }
+
+ private:
+  template <class V> static NamedVector named(const char* name, const V& v) {
+    return {name, std::vector<double>(v.data(), v.data() + v.size())};
+  }
+
+  Sys system_;
+  TimeMode mode_;
+  WithoutRoot without_root_;
+  Presentation<Sys> presentation_;
+  std::unique_ptr<Integrator<Sys>> integrator_;
+  int stages_;
+  SystemNode<Sys> node_;
+  Observer<Sys> observer_;
+  long observed_ = -1;
+  Vector<double, Sys::constraints> first_multipliers_ = Vector<double, Sys::constraints>::Zero();
+};
+
+template <DiscreteSystem Sys> std::optional<double> SystemMotion<Sys>::defect() const {
+  const TrajectoryPoint<Sys>& point = integrator_->point();
+  std::optional<double> largest;
+  const auto see = [&](double residual) { largest = worse(largest.value_or(0), residual); };
+  const G& groupoid = system_.groupoid;
+  if constexpr (G::arrow_coordinate_count() > G::dimension + object_dimension_of<G>())
+    see((groupoid.coordinates_of_arrow(groupoid.project(point.configuration)) -
+         groupoid.coordinates_of_arrow(point.configuration))
+            .cwiseAbs()
+            .maxCoeff());
+  if constexpr (Sys::object_constraints > 0) see(system_.object_constraint(point.state.object).cwiseAbs().maxCoeff());
+  if constexpr (Sys::arrow_constraints > 0) {
+    largest = largest.value_or(0);
+    if (point.index > 0) {
+      Sys system = system_;
+      set_arrow(system, point.time - point.step_size, point.step_size);
+      see(constraint_residual(system, point.step));
+    }
+  }
+  return largest;
+}
+
+}  // namespace lagroid

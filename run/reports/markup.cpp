@@ -1,0 +1,60 @@
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/text.hpp>
+
+#include <boost/algorithm/string/replace.hpp>
+#include <nlohmann/json.hpp>
+
+namespace lagroid {
+
+using Json = nlohmann::ordered_json;
+
+std::string in_html(std::string_view text) {
+  std::string out;
+  for (const char c : visible(text)) switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  return out;
+}
+
+std::string in_markdown(std::string_view text) {
+  constexpr std::string_view means_something = "\\`*_[]<>&|~#$";
+  std::string out;
+  for (const char c : visible(text)) {
+    if (means_something.find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string in_csv(std::string_view text) {
+  std::string out = visible(text);
+  if (out.find_first_of(",\"") == std::string::npos) return out;
+  boost::replace_all(out, "\"", "\"\"");
+  return '"' + out + '"';
+}
+
+std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+std::string in_script(const Json& json) {
+  std::string out = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  boost::replace_all(out, "<", "\\u003c");
+  return out;
+}
+
+}  // namespace lagroid

@@ -1,0 +1,193 @@
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/report.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace lagroid {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json(const Endpoint& e) {
+  Json out;
+  out["time"] = e.time;
+  out["position"] = e.position;
+  if (e.attitude) out["attitude"] = *e.attitude;
+  if (e.body_attitude) out["body_attitude"] = *e.body_attitude;
+  out["momentum"] = e.momentum;
+  return out;
+}
+
+Json json(const LedgerEntry& e) {
+  Json out;
+  out["name"] = e.name;
+  out["promise"] = e.promise;
+  out["verdict"] = e.verdict;
+  if (!e.reason.empty()) out["reason"] = e.reason;
+  out["drift"] = e.drift;
+  out["relative_drift"] = e.relative_drift;
+  if (e.bound > 0) out["bound"] = e.bound;
+  if (!e.initial.empty()) {
+    out["initial"] = e.initial;
+    out["final"] = e.final;
+  }
+  return out;
+}
+
+Json json(const Coordinate& c) {
+  return std::visit([](const auto& value) { return Json(value); }, c);
+}
+
+Json json(const std::vector<Coordinate>& coordinates) {
+  Json out = Json::array();
+  for (const auto& c : coordinates) out.push_back(json(c));
+  return out;
+}
+
+Json json(const Shape& s) {
+  Json turns = Json::array();
+  for (const auto& turn : s.turns)
+    turns.push_back({{"axis", turn.axis}, {"angle", json(turn.angle)}, {"rate", turn.rate}});
+  return {{"kind", s.kind},         {"size", s.size},   {"position", json(s.position)},
+          {"attitude", s.attitude}, {"turns", turns},   {"transposed", s.transposed},
+          {"offset", s.offset},     {"to", json(s.to)}, {"trail", s.trail}};
+}
+
+/// `panels_of` reads it.
+Json json(const Panel& p) {
+  return {{"title", p.title},   {"x_label", p.x_label},       {"y_label", p.y_label},   {"x", p.x},
+          {"curves", p.curves}, {"equal_axes", p.equal_axes}, {"x_offset", p.x_offset}, {"y_offset", p.y_offset}};
+}
+
+template <class T> Json array_of(const std::vector<T>& items) {
+  Json out = Json::array();
+  for (const auto& item : items) out.push_back(json(item));
+  return out;
+}
+
+std::string numbers(const std::vector<double>& v) { return fmt::format("({:.10g})", fmt::join(v, ", ")); }
+
+std::string endpoint(const Endpoint& e) {
+  std::string out = fmt::format("t {:.8g}  ", e.time);
+  if (!e.position.empty()) out += fmt::format("position {}  ", numbers(e.position));
+  if (e.attitude) out += fmt::format("attitude ({:.8g})  ", fmt::join(*e.attitude, ", "));
+  return out + fmt::format("momentum {}", numbers(e.momentum));
+}
+
+/// The run as a whole: the solve and its files.
+std::string run_status(const RunResult& r) { return r.output_error.empty() ? r.status : "output_failed"; }
+
+std::string run_message(const RunResult& r) {
+  return r.message + (r.message.empty() || r.output_error.empty() ? "" : "; ") + r.output_error;
+}
+
+/// The solver's own promise: every step, or the boundary value, solved within its iterations.
+std::string solver_verdict(const RunResult& r) { return r.converged() || r.interrupted() ? "kept" : "BROKEN"; }
+
+std::string solved(const RunResult& r) {
+  if (r.converged() || r.interrupted()) return "every equation solved";
+  return r.status == "no_minimum" ? "no minimum found" : "not every equation solved";
+}
+
+std::string kind(const Minimum& m) {
+  std::string out = m.is_minimum ? "minimum" : fmt::format("saddle ({} descending)", m.negative_directions);
+  if (!m.isolated) out += ", not isolated";
+  if (!m.normal) out += ", abnormal";
+  return out;
+}
+
+}  // namespace
+
+std::string text_report(const RunResult& r) {
+  std::string out;
+  const auto line = [&](const std::string& text) { out += text + "\n"; };
+  line(fmt::format("{}: {}, {} of {} steps in {:.3g} s", r.system, run_status(r), r.steps, r.steps_asked, r.seconds));
+  if (const std::string message = run_message(r); !message.empty()) line("  " + message);
+  if (!r.method.empty()) line("  method    " + r.method);
+  if (r.cost) line(fmt::format("  cost      {:.15g}", *r.cost));
+  constexpr std::size_t readable = 9;  // numbers; of scenes with more the summary tells
+  if (!r.initial.momentum.empty() && r.initial.momentum.size() <= readable) {
+    line("  initial   " + endpoint(r.initial));
+    line("  final     " + endpoint(r.final));
+  }
+  if (r.final.body_attitude)
+    line(fmt::format("            the ball itself, A^T: ({:.8g})", fmt::join(*r.final.body_attitude, ", ")));
+  if (!r.minima.empty()) {
+    line("  stationary paths");
+    for (const auto& m : r.minima)
+      line(fmt::format("    cost {:<18.12g} {}  found by {} of {} starts  initial momentum {}", m.cost, kind(m),
+                       m.starts, r.starts, numbers(m.momentum)));
+  }
+  for (const auto& note : r.notes) line("  note: " + note);
+  line("  ledger");
+  for (const auto& e : r.ledger.entries) {
+    if (e.promise == "counted") {
+      line(fmt::format("    {:<28} {:<9} {:.0f}, share {:.3g}", e.name, e.promise, e.drift, e.relative_drift));
+      continue;
+    }
+    const std::string bound = e.bound > 0 ? fmt::format(" (bound {:.1e})", e.bound) : "";
+    const std::string reason = e.reason.empty() ? "" : fmt::format(" ({})", e.reason);
+    line(fmt::format("    {:<28} {:<9} drift {:.2e}, relative {:.2e}{}: {}{}", e.name, e.promise, e.drift,
+                     e.relative_drift, bound, e.verdict, reason));
+  }
+  line(fmt::format("    {:<28} mean {:.2f}, most {}: {}", "iterations", r.ledger.mean_iterations,
+                   r.ledger.most_iterations, solver_verdict(r)));
+  line(fmt::format("    {:<28} {}, status {}: {}", "solver", solved(r), r.status, solver_verdict(r)));
+  return out;
+}
+
+std::string json_report(const RunResult& r) {
+  Json out;
+  out["system"] = r.system;
+  out["status"] = run_status(r);
+  if (!r.method.empty()) out["method"] = r.method;
+  if (const std::string message = run_message(r); !message.empty()) out["message"] = message;
+  out["steps"] = r.steps;
+  out["steps_asked"] = r.steps_asked;
+  out["seconds"] = r.seconds;
+  out["iterations"] = r.iterations;
+  if (r.cost) out["cost"] = *r.cost;
+  if (r.residual) out["residual"] = *r.residual;
+  out["initial"] = json(r.initial);
+  out["final"] = json(r.final);
+  out["multipliers"] = {{"first", r.first_multipliers}, {"last", r.last_multipliers}};
+  if (r.starts > 0) out["starts"] = r.starts;
+  Json minima = Json::array();
+  for (const auto& m : r.minima)
+    minima.push_back({{"cost", m.cost},
+                      {"starts", m.starts},
+                      {"momentum", m.momentum},
+                      {"is_minimum", m.is_minimum},
+                      {"isolated", m.isolated},
+                      {"normal", m.normal},
+                      {"negative_directions", m.negative_directions}});
+  out["minima"] = minima;
+  Json ledger;
+  ledger["entries"] = array_of(r.ledger.entries);
+  ledger["iterations"] = {
+      {"mean", r.ledger.mean_iterations}, {"max", r.ledger.most_iterations}, {"verdict", solver_verdict(r)}};
+  ledger["solver"] = {{"status", r.status}, {"verdict", solver_verdict(r)}};
+  out["ledger"] = ledger;
+  out["notes"] = r.notes;
+  out["picture"] = {{"shapes", array_of(r.shapes)}, {"panels", array_of(r.panels)}};
+  return json_text(out);
+}
+
+std::vector<Panel> panels_of(const Json& summary) {
+  std::vector<Panel> out;
+  for (const Json& p : summary.at("picture").at("panels"))
+    out.push_back({p.at("title"), p.at("x_label"), p.at("y_label"), p.at("x"), p.at("curves"), p.at("equal_axes"),
+                   p.at("x_offset"), p.at("y_offset")});
+  return out;
+}
+
+std::string json_error(const std::string& status, const std::string& message) {
+  return json_text({{"status", status}, {"message", message}});
+}
+
+}  // namespace lagroid

@@ -1,0 +1,67 @@
+#pragma once
+/// The one-step map on A*G: (q, mu) -> g -> (q', mu').
+
+#include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/solvers/generating/constrained_momentum.hpp>
+#include <lagroid/solvers/integrators/compensated_trajectory.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_predictor.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace lagroid {
+
+/// Integrates a discrete constrained Lagrangian system. A step that does not converge leaves everything as it was.
+template <DiscreteSystem Sys> class FixedStepIntegrator {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint).
+  FixedStepIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
+                      std::unique_ptr<StepSolver<Sys>> solver)
+      : stepper_(std::move(system), std::move(solver)),
+        start_(start_time(stepper_.system())),
+        walk_(stepper_.system().groupoid, initial, configuration, start_) {}
+
+  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  const Sys& system() const { return stepper_.system(); }
+  /// The system's own, else those of a self-adjoint discretisation.
+  MethodTraits traits() const {
+    if constexpr (HasTraits<Sys>) {
+      return system().traits();
+    } else {
+      return {"equal steps", 2, true, Variational<Sys>, false};
+    }
+  }
+
+  StepReport advance();
+  /// Visits all that the next step goes on from.
+  void serialize(NumberArchive& archive) {
+    stepper_.serialize(archive);
+    walk_.serialize(system().groupoid, archive);
+  }
+
+ private:
+  StepPredictor<Sys> stepper_;
+  double start_;
+  CompensatedTrajectory<Sys> walk_;
+};
+
+template <DiscreteSystem Sys> LAGROID_FLATTEN StepReport FixedStepIntegrator<Sys>::advance() {
+  StepSolution<Sys> solution;
+  const StepReport report = stepper_.solve(point().state, solution);
+  if (report.converged()) {
+    walk_.join(system().groupoid, solution);
+    if (has_time_step(system())) {
+      const double h = time_step(system());
+      walk_.arrive_at(start_ + double(point().index + 1) * h, h);
+      set_time(stepper_.system(), point().time);
+    } else {
+      walk_.arrive(0);
+    }
+  }
+  return report;
+}
+
+}  // namespace lagroid

@@ -1,0 +1,101 @@
+#pragma once
+/// Initial-value runs by a method chosen at run time.
+
+#include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/solvers/integrators/compositions.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace lagroid {
+
+/// How time goes on.
+enum class TimeMode {
+  fixed,        ///< by equal steps, each perhaps composed of several (CompositionIntegrator)
+  adaptive,     ///< by steps that keep the discrete energy (AdaptiveIntegrator)
+  controlled,   ///< by steps in proportion to the system's time scale, reversibly (ControlledIntegrator)
+  transformed,  ///< by explicit steps that are equal in another time, composed (TransformedIntegrator)
+};
+
+/// What becomes of an adaptive step whose energy equation has no root.
+enum class WithoutRoot {
+  stop,        ///< the integrator ends there, with a typed status
+  constant,    ///< that step has the size of the first
+  controlled,  ///< that step has the size a StepController gives; for systems with a time scale
+};
+
+/// How a fixed step is made.
+enum class StepKind {
+  variational,  ///< implicitly, from the discrete Lagrangian
+  splitting,    ///< explicitly, of the flows of a SplitSystem
+  runge_kutta,  ///< explicitly, of the rates of a system, by the classical method: to compare with, it keeps nothing
+};
+
+struct IntegratorOptions {
+  TimeMode mode = TimeMode::fixed;
+  StepKind fixed = StepKind::variational;
+  Composition composition = compositions::single;  ///< of fixed steps
+  WithoutRoot without_root = WithoutRoot::stop;    ///< of adaptive ones
+  StepMethod method = StepMethod::newton;
+  StepOptions step = {};
+};
+
+/// A trajectory in the making. A step that does not converge leaves everything as it was.
+template <DiscreteSystem Sys> class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  virtual StepReport advance() = 0;
+  virtual const TrajectoryPoint<Sys>& point() const = 0;
+  /// Of the method for a variational system.
+  virtual MethodTraits traits() const = 0;
+  /// The arrows before the last that make up the last step, where there are any: each with its start and its size.
+  using Visit = std::function<void(const Step<Sys>&, double start, double size)>;
+  virtual void for_each_inner_stage(const Visit&) const {}
+  /// Steps so far whose size was not what the mode asks for.
+  virtual long without_root() const { return 0; }
+  /// Visits all that the next step goes on from: an integrator begun with the same arguments, to which it is restored,
+  /// goes on with the same bits.
+  virtual void serialize(NumberArchive& archive) = 0;
+};
+
+namespace detail {
+
+/// All integrators of a system by their names: complete where `integrator_methods.hpp` is included.
+template <DiscreteSystem Sys> struct Integrators;
+
+}  // namespace detail
+
+/// An integrator from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed,
+/// and one with a time scale for controlled steps, a SplitSystem for splitting, an AttractiveSystem for a transformed
+/// time, one that HasRates for Runge-Kutta steps and a variational one with a step `h` for orders above two (throws
+/// std::invalid_argument).
+/// Include `integrator_methods.hpp` for a system of your own; those of `systems/` are compiled.
+template <DiscreteSystem Sys>
+std::unique_ptr<Integrator<Sys>> make_integrator(const Sys& system, const State<typename Sys::GroupoidType>& initial,
+                                                 const ArrowOf<typename Sys::GroupoidType>& configuration,
+                                                 const IntegratorOptions& options) {
+  constexpr bool included = requires { sizeof(detail::Integrators<Sys>); };
+  static_assert(
+      included,
+      "include <lagroid/solvers/integrators/integrator_methods.hpp> to integrate a system of your own by name");
+  if constexpr (included) return detail::Integrators<Sys>::make(system, initial, configuration, options);
+}
+
+/// The step size at which one step and two of half its size differ, relative to the motion over the step, by
+/// `accuracy`, up to a tenth; searched from system.h, and at most about a thousand times as large. Momenta are taken as
+/// they are reported. Zero where no such step was found.
+template <DiscreteSystem Sys>
+double step_for_accuracy(const Sys& system, const State<typename Sys::GroupoidType>& initial, double accuracy,
+                         const IntegratorOptions& options) {
+  constexpr bool included = requires { sizeof(detail::Integrators<Sys>); };
+  static_assert(
+      included,
+      "include <lagroid/solvers/integrators/integrator_methods.hpp> to find the step of a system of your own");
+  if constexpr (included) return detail::Integrators<Sys>::step_for_accuracy(system, initial, accuracy, options);
+}
+
+}  // namespace lagroid

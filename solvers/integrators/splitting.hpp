@@ -1,0 +1,179 @@
+#pragma once
+/// Explicit steps of high order: compositions of the exact flows that a system's energy splits into.
+
+#include <lagroid/core/capabilities/split_system.hpp>
+#include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/solvers/integrators/compensated_trajectory.hpp>
+#include <lagroid/solvers/integrators/compositions.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lagroid {
+
+/// Whether the energy splits into flow 0 and the last one alone.
+template <SplitSystem Sys> bool is_of_two_flows(const Sys& system) {
+  if constexpr (requires { system.two_flows(); }) {
+    return system.two_flows();
+  } else {
+    return Sys::parts == 2;
+  }
+}
+
+/// Whether the composition has its order for the system: one of two flows where there are two, a Nystrom scheme where
+/// the system says that [H_0, [H_0, [H_0, H_1]]] = 0.
+template <SplitSystem Sys> bool splits_by(const Sys& system, const Composition& composition) {
+  if (composition.kicks.empty()) return true;
+  return is_of_two_flows(system) && (!composition.nystrom || NystromSystem<Sys>);
+}
+
+/// A point of A*G on its way along the flows of a system, over any scalar: the arrow it has gone since its
+/// start, and by how much the momentum has changed.
+template <SplitSystem Sys, class S> class SplitMotion {
+ public:
+  using G = typename Sys::GroupoidType;
+  using Object = typename G::template Object<S>;
+  using Momentum = Vector<S, G::dimension>;
+
+  /// Refers to the system.
+  SplitMotion(const Sys& system, const Object& object, const Momentum& momentum)
+      : system_(system),
+        two_flows_(is_of_two_flows(system)),
+        object_(object),
+        start_(momentum),
+        arrow_(system.groupoid.unit(object)) {}
+
+  /// The composition's step of length h: of two flows, flow 0 and the Strang step of the others, where it has kicks.
+  /// Else for every coefficient gamma of the composition a Strang step of length t = gamma h: half of flow 0, half of
+  /// flow 1, and so on, all of the last one, and the halves in reverse (Strang 1968). Where two steps meet the halves
+  /// of flow 0 join.
+  void step(const Composition& composition, double h) {
+    if (!composition.kicks.empty()) {
+      alternate(composition, h);
+      return;
+    }
+    double begun = 0;
+    for (const double gamma : composition.coefficients) {
+      const double t = gamma * h;
+      follow<0>(begun + 0.5 * t);
+      follow_others(t);
+      begun = 0.5 * t;
+    }
+    follow<0>(begun);
+  }
+
+  template <int I> void follow(double t) {
+    const auto flow = system_.template flow<I>(t, object_, momentum());
+    arrow_ = system_.groupoid.compose(arrow_, flow.arrow);
+    object_ = system_.groupoid.target(flow.arrow);
+    momentum_change_ += flow.momentum_change;
+    remainder_ += flow.remainder;
+  }
+
+  const Object& object() const { return object_; }
+  Momentum momentum() const { return start_ + momentum_change_; }
+  const Momentum& momentum_change() const { return momentum_change_; }
+  const typename G::template Arrow<S>& arrow() const { return arrow_; }
+
+  bool finite() const { return momentum().allFinite() && system_.groupoid.coordinates_of_arrow(arrow_).allFinite(); }
+  /// What a walk joins.
+  StepSolution<Sys> solution() const requires std::same_as<S, double> {
+    StepSolution<Sys> solution;
+    solution.step = {arrow_, Sys::Multipliers::Zero()};
+    solution.momentum_change = momentum_change_;
+    solution.remainder = remainder_;
+    return solution;
+  }
+
+ private:
+  static Momentum zero() { return Momentum::Constant(S(0.0)); }
+
+  void alternate(const Composition& composition, double h) {
+    const auto kick = [&](std::size_t i) {
+      if (composition.kicks[i] != 0) follow<0>(composition.kicks[i] * h);
+    };
+    kick(0);
+    for (std::size_t i = 0; i < composition.coefficients.size(); ++i) {
+      follow_others(composition.coefficients[i] * h);
+      kick(i + 1);
+    }
+  }
+
+  /// All flows but flow 0.
+  void follow_others(double t) {
+    if (Sys::parts > 1 && two_flows_) {
+      follow<Sys::parts - 1>(t);
+    } else {
+      inner<1>(t);
+    }
+  }
+  template <int I> void inner(double t) {
+    if constexpr (I + 1 < Sys::parts) {
+      follow<I>(0.5 * t);
+      inner<I + 1>(t);
+      follow<I>(0.5 * t);
+    } else if constexpr (I < Sys::parts) {
+      follow<I>(t);
+    }
+  }
+
+  const Sys& system_;
+  bool two_flows_;
+  Object object_;
+  Momentum start_;
+  Momentum momentum_change_ = zero();
+  typename G::template Arrow<S> arrow_;
+  Momentum remainder_ = zero();
+};
+
+/// Integrates a split system by Strang steps, composed to the order of `composition`. The step is that of the system,
+/// h. Symmetric, Poisson, explicit; no allocation. Objects and momenta are accumulated with compensation.
+template <SplitSystem Sys> class SplittingIntegrator {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint). Throws
+  /// std::invalid_argument where the composition is not for this system (`splits_by`).
+  SplittingIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
+                      const Composition& composition = compositions::single)
+      : system_(std::move(system)),
+        composition_(composition),
+        start_(start_time(system_)),
+        walk_(system_.groupoid, initial, configuration, start_) {
+    if (!splits_by(system_, composition)) throw std::invalid_argument("the splitting is for other systems");
+  }
+
+  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  const Sys& system() const { return system_; }
+  MethodTraits traits() const {
+    const std::string kind = composition_.kicks.empty() ? "Strang splitting, composition " : "splitting ";
+    return {kind + std::string(composition_.name), composition_.order, true, true, true, composition_.stages()};
+  }
+
+  /// `converged`, or `not_finite` (at a singularity of a flow), which leaves everything as it was.
+  StepReport advance();
+  /// Visits all that the next step goes on from.
+  void serialize(NumberArchive& archive) { walk_.serialize(system_.groupoid, archive); }
+
+ private:
+  Sys system_;
+  Composition composition_;
+  double start_;
+  CompensatedTrajectory<Sys> walk_;
+};
+
+template <SplitSystem Sys> StepReport SplittingIntegrator<Sys>::advance() {
+  SplitMotion<Sys, double> motion(system_, point().state.object, point().state.momentum);
+  motion.step(composition_, system_.h);
+  StepReport report;
+  report.status = motion.finite() ? SolveStatus::converged : SolveStatus::not_finite;
+  if (!report.converged()) return report;
+  walk_.join(system_.groupoid, motion.solution());
+  walk_.arrive_at(start_ + double(point().index + 1) * system_.h, system_.h);
+  return report;
+}
+
+}  // namespace lagroid

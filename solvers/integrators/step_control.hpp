@@ -1,0 +1,89 @@
+#pragma once
+/// Reversible control of the step size.
+
+#include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/core/capabilities/time_scale.hpp>
+#include <lagroid/solvers/generating/constrained_momentum.hpp>
+#include <lagroid/solvers/integrators/compensated_trajectory.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_predictor.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace lagroid {
+
+/// The rate at a state on its way, whose momentum may leave the object constraints.
+template <HasTimeScale Sys> double time_scale_rate(const Sys& system, const State<typename Sys::GroupoidType>& state) {
+  return system.time_scale_rate({state.object, tangent_momentum(system, state)});
+}
+
+/// The integrating controller of Hairer and Soderlind (SIAM J. Sci. Comput. 26, 2005; Hairer, Lubich, Wanner VIII.3.2):
+/// a density rho of steps with
+///
+///     rho_{k+1/2} = rho_{k-1/2} - epsilon (d log sigma / dt)(z_k),    h_{k+1/2} = epsilon / rho_{k+1/2},
+///
+/// so that h follows sigma(z(t)) without evaluating it. The steps are those of a symmetric splitting of (z, rho), hence
+/// reversible when the method is symmetric; they are not symplectic.
+class StepController {
+ public:
+  /// `first_step` is the step at the start, up to the change over its first half; `rate` is that of the first state.
+  StepController(double first_step, double rate) : epsilon_(first_step), density_(1 - 0.5 * first_step * rate) {}
+
+  /// The step from the present state; not positive where the motion changes too fast for this epsilon.
+  double step() const { return epsilon_ / density_; }
+  /// Moves on to a state with this rate, by a step of this size: epsilon / rho, unless another was taken.
+  void pass(double rate, double size) { density_ -= density_ * size * rate; }
+  void serialize(NumberArchive& archive) { archive(epsilon_, density_); }
+
+ private:
+  double epsilon_;
+  double density_;
+};
+
+/// Integrators with steps from a StepController. A step that does not converge leaves everything as it was.
+template <Timed Sys>
+requires HasTimeScale<Sys>
+class ControlledIntegrator {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint); `system.h` the first step.
+  ControlledIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
+                       std::unique_ptr<StepSolver<Sys>> solver)
+      : stepper_(std::move(system), std::move(solver)),
+        walk_(stepper_.system().groupoid, initial, configuration, start_time(stepper_.system())),
+        controller_(stepper_.system().h, time_scale_rate(stepper_.system(), initial)) {}
+
+  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  static MethodTraits traits() { return {"controlled steps", 2, true, false, false}; }
+
+  StepReport advance() {
+    Sys& system = stepper_.system();
+    const double size = controller_.step();
+    if (!(size > 0)) return {SolveStatus::no_step};
+    system.h = size;
+    set_time(system, point().time);
+    StepSolution<Sys> solution;
+    const StepReport report = stepper_.solve(point().state, solution);
+    if (!report.converged()) return report;
+    walk_.join(system.groupoid, solution);
+    walk_.arrive(system.h);
+    controller_.pass(time_scale_rate(system, point().state), system.h);
+    return report;
+  }
+
+  /// Visits all that the next step goes on from.
+  void serialize(NumberArchive& archive) {
+    stepper_.serialize(archive);
+    walk_.serialize(stepper_.system().groupoid, archive);
+    controller_.serialize(archive);
+  }
+
+ private:
+  StepPredictor<Sys> stepper_;
+  CompensatedTrajectory<Sys> walk_;
+  StepController controller_;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,97 @@
+#pragma once
+/// Explicit steps of high order that follow an attraction: equal ones of another time.
+
+#include <lagroid/core/capabilities/split_system.hpp>
+#include <lagroid/solvers/integrators/splitting.hpp>
+
+#include <string>
+#include <utility>
+
+namespace lagroid {
+
+/// Integrators H = T + U, U < 0, by splitting the logarithmic Hamiltonian log(T - E) - log(-U), E the energy at the
+/// start (Mikkola and Tanikawa, Celest. Mech. Dyn. Astron. 74 (1999) 287; Preto and Tremaine, Astron. J. 118 (1999)
+/// 2532). Where H = E its motion is that of H in the time s with dt = ds / (T - E) = ds / (-U), so that equal steps of
+/// s are short where the attraction is strong. Both flows are those of T and of U, over the times ds / (T - E) and ds /
+/// (-U), which do not change along them. A step is half of the flow of T, the flow of U and the other half, composed.
+/// On Kepler's problem its orbit is exact, and only the time on it errs; begun with half of U it is not.
+///
+/// Symmetric; symplectic on the phase space extended by time and E; explicit; no allocation. The first step takes about
+/// the time system.h.
+template <AttractiveSystem Sys> class TransformedIntegrator {
+ public:
+  using G = typename Sys::GroupoidType;
+
+  /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint). Throws
+  /// std::invalid_argument for a composition of two flows.
+  TransformedIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
+                        const Composition& composition = compositions::single)
+      : system_(std::move(system)),
+        composition_(composition),
+        energy_(system_.kinetic_energy(initial.momentum) + system_.potential_energy(initial.object)),
+        step_(-system_.h * system_.potential_energy(initial.object)),
+        walk_(system_.groupoid, initial, configuration) {
+    if (!composition.kicks.empty()) throw std::invalid_argument("transformed time takes compositions of steps");
+  }
+
+  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  MethodTraits traits() const {
+    return {"splitting in transformed time, composition " + std::string(composition_.name),
+            composition_.order,
+            true,
+            false,
+            true,
+            composition_.stages()};
+  }
+
+  /// `converged`; `left_domain` where U is not negative or T - E not positive, `not_finite`: both leave everything as
+  /// it was.
+  StepReport advance();
+  /// Visits all that the next step goes on from.
+  void serialize(NumberArchive& archive) {
+    archive(energy_, step_);
+    walk_.serialize(system_.groupoid, archive);
+  }
+
+ private:
+  Sys system_;
+  Composition composition_;
+  double energy_;
+  double step_;  ///< of s
+  CompensatedTrajectory<Sys> walk_;
+};
+
+template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance() {
+  SplitMotion<Sys, double> motion(system_, point().state.object, point().state.momentum);
+  double time = 0;
+  bool inside = true;
+  const auto kick = [&](double share) {
+    const double depth = -system_.potential_energy(motion.object());
+    inside = inside && depth > 0;
+    motion.template follow<0>(share * step_ / depth);
+  };
+  const auto drift = [&](double share) {
+    const double depth = system_.kinetic_energy(motion.momentum()) - energy_;
+    inside = inside && depth > 0;
+    const double t = share * step_ / depth;
+    motion.template follow<1>(t);
+    time += t;
+  };
+  double begun = 0;
+  for (const double gamma : composition_.coefficients) {
+    drift(begun + 0.5 * gamma);
+    kick(gamma);
+    begun = 0.5 * gamma;
+  }
+  drift(begun);
+  StepReport report;
+  report.status = !std::isfinite(time) || !motion.finite() ? SolveStatus::not_finite
+                  : inside                                 ? SolveStatus::converged
+                                                           : SolveStatus::left_domain;
+  if (!report.converged()) return report;
+  walk_.join(system_.groupoid, motion.solution());
+  walk_.arrive(time);
+  return report;
+}
+
+}  // namespace lagroid

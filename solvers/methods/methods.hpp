@@ -1,0 +1,29 @@
+#pragma once
+/// By which of the declared methods a system can be integrated.
+
+#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/split_system.hpp>
+#include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/solvers/integrators/splitting.hpp>
+#include <lagroid/solvers/integrators/step_control.hpp>
+#include <lagroid/solvers/integrators/transformed.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
+
+namespace lagroid {
+
+/// What `Sys` has for methods to use; `system` says which splittings suit it.
+template <class Sys> Capabilities capabilities_of(const Sys& system) {
+  Capabilities able{.variational = Variational<Sys>,
+                    .has_step = HasTimeStep<Sys>,
+                    .timed = Timed<Sys>,
+                    .time_scale = Timed<Sys> && HasTimeScale<Sys>,
+                    .rates = HasRates<Sys>,
+                    .attractive = AttractiveSystem<Sys>};
+  if constexpr (SplitSystem<Sys>) {
+    for (const Composition& each : compositions_of(OtherOrders::composed_flows))
+      if (splits_by(system, each)) able.splittings.push_back(each);
+  }
+  return able;
+}
+
+}  // namespace lagroid

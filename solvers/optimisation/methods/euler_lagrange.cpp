@@ -1,0 +1,54 @@
+#include <lagroid/solvers/optimisation/methods/euler_lagrange.hpp>
+
+#include <lagroid/solvers/optimisation/lipschitz.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace lagroid::optimisation {
+
+EulerLagrange::EulerLagrange(EulerLagrangeOptions options) : options_(options) {
+  if (!(options.p > 0) || !(options.c > 0) || !(options.h > 0) || !(options.cap > 0) || !(options.lambda >= 1))
+    throw std::invalid_argument("p, C, h and the cap of Algorithm 2 are positive, lambda at least 1");
+  if (options.version != 1 && options.version != 2) throw std::invalid_argument("Algorithm 2 has the versions 1 and 2");
+}
+
+std::string EulerLagrange::name() const { return options_.version == 1 ? "Euler-Lagrange I" : "Euler-Lagrange II"; }
+
+void EulerLagrange::begin(Problem& problem, const State& state) {
+  k_ = 0;
+  largest_ = options_.cap;
+  if (std::isfinite(largest_)) largest_ /= options_.h * options_.h * lipschitz_bound(problem, state);
+  velocity_.setZero(state.x.size());
+  v_ = velocity_;
+  to_ = state.x;
+  ahead_ = state;
+}
+
+Step EulerLagrange::advance(Problem& problem, State& state) {
+  const Manifold& manifold = problem.manifold();
+  const double k = double(++k_);
+  const double h = options_.h;
+  const double b = 1 - (options_.lambda * options_.p + 1) / k;
+  const double c = std::min(options_.c * options_.p * options_.p * std::pow(k * h, options_.p - 2), largest_);
+  velocity_ *= b;
+  if (options_.version == 2) {
+    v_ = h * velocity_;
+    if (!manifold.retract(options_.retraction, state.x, v_, ahead_.x)) return Step::none;
+    problem.evaluate(ahead_);
+    v_ = ahead_.gradient;
+    manifold.transport(state.x, v_);
+    velocity_ -= h * c * v_;
+  } else {
+    velocity_ -= h * c * state.gradient;
+  }
+  v_ = h * velocity_;
+  if (!manifold.retract(options_.retraction, state.x, v_, to_)) return Step::none;
+  state.x = to_;
+  manifold.transport(state.x, velocity_);
+  problem.evaluate(state);
+  return Step::taken;
+}
+
+}  // namespace lagroid::optimisation

@@ -1,0 +1,46 @@
+#include <lagroid/solvers/optimisation/methods/gradient_descent.hpp>
+
+#include <lagroid/solvers/optimisation/line_search.hpp>
+#include <lagroid/solvers/optimisation/lipschitz.hpp>
+
+#include <stdexcept>
+
+namespace lagroid::optimisation {
+
+GradientDescent::GradientDescent(GradientDescentOptions options) : options_(options) {
+  if (!(options.step >= 0) || !(options.c >= 0) || (options.step > 0 && options.c > 0))
+    throw std::invalid_argument("gradient descent takes a positive step, or c of c / L, or neither for a line search");
+  if (!(options.decrease > 0 && options.decrease < 1)) throw std::invalid_argument("0 < decrease < 1");
+}
+
+std::string GradientDescent::name() const {
+  return options_.step > 0 || options_.c > 0 ? "gradient descent" : "gradient descent, line search";
+}
+
+void GradientDescent::begin(Problem& problem, const State& state) {
+  step_ = options_.c > 0 ? options_.c / lipschitz_bound(problem, state) : options_.step;
+  v_.setZero(state.x.size());
+  to_ = state.x;
+  last_ = state.gradient.norm() > 0 ? 1 / state.gradient.norm() : 1;
+}
+
+Step GradientDescent::advance(Problem& problem, State& state) {
+  if (step_ > 0) {
+    v_ = -step_ * state.gradient;
+    if (!problem.manifold().retract(options_.retraction, state.x, v_, to_)) return Step::none;
+  } else {
+    const double slope = state.gradient.squaredNorm();
+    Vector& direction = state.gradient;
+    direction = -direction;
+    last_ = backtrack(problem, options_.retraction, state, direction, -slope, 2 * last_, options_.decrease, to_, v_);
+    if (!(last_ > 0)) {
+      direction = -direction;
+      return Step::none;
+    }
+  }
+  state.x = to_;
+  problem.evaluate(state);
+  return Step::taken;
+}
+
+}  // namespace lagroid::optimisation

@@ -1,0 +1,19 @@
+#pragma once
+/// Methods and failed steps in words.
+
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <string>
+
+namespace lagroid {
+
+/// What to say of a step that failed: its number, the time before it (s), and what to do.
+std::string step_failure(const StepReport& report, long step, double time, TimeMode mode);
+/// What to say of steps whose size was not what the mode asks for.
+std::string without_root_note(long count, long steps, WithoutRoot instead);
+/// What a method declares of itself.
+std::string description(const MethodTraits& method);
+
+}  // namespace lagroid

@@ -1,0 +1,22 @@
+#pragma once
+/// Solvers of a step by name.
+
+#include <lagroid/solvers/step/ceres_step.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
+
+namespace lagroid {
+
+template <DiscreteSystem Sys> struct detail::StepSolvers {
+  static std::unique_ptr<StepSolver<Sys>> make(const Sys& system, StepMethod method, StepOptions options) {
+    if (method == StepMethod::ceres) {
+      const int iterations = options.max_iterations > 0 ? options.max_iterations : 100;
+      return std::make_unique<CeresStep<Sys>>(iterations, options.tolerance, system.groupoid);
+    }
+    NewtonOptions newton;
+    if (options.max_iterations > 0) newton.max_iterations = options.max_iterations;
+    newton.tolerance = options.tolerance;
+    return std::make_unique<NewtonStep<Sys>>(newton);
+  }
+};
+
+}  // namespace lagroid

@@ -1,0 +1,52 @@
+#pragma once
+/// Turning a body with one axis forbidden.
+
+#include <lagroid/core/noether.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/systems/control/group_control.hpp>
+#include <lagroid/systems/instances.hpp>
+
+namespace lagroid {
+
+/// The cheapest way to turn a body that can not turn about the axis n: l(w) = w.W w / 2, n.w = 0 on SO(3), w the
+/// angular velocity in the body. A_k = A_{k-1} g_k carries body to space. With the momentum M = W w + lambda n,
+///
+///     w = W^{-1} (M - lambda n),    lambda = n.W^{-1} M / n.W^{-1} n,    M' = M x w.
+///
+/// |M| and the energy M.w / 2 are constant. Where W is c times the identity across n these are the sub-Riemannian
+/// geodesics A(t) = A(0) exp(t (a + b n)) exp(-t b n), a = w(0), b = M.n / c, at cost c |a|^2 / 2 a second.
+struct AttitudeControl : GroupControl<AttitudeControl, SO3, /*constraints*/ 1> {
+  Vector<double, 3> weights{1, 1, 1};    ///< W = diag(weights), > 0
+  Vector<double, 3> forbidden{0, 0, 1};  ///< n, a unit vector in the body
+
+  static auto parameters() {
+    return std::tuple(
+        parameter("weights", &AttitudeControl::weights, "1", "three weights of the cost w.W w / 2", positive),
+        direction("forbidden", &AttitudeControl::forbidden, "the forbidden axis in the body"),
+        map_parameter("rotation", "how a rotation becomes an angular velocity"));
+  }
+
+  template <class S> S l(const Vector<S, 3>& w) const {
+    return (w(0) * w(0) * weights(0) + w(1) * w(1) * weights(1) + w(2) * w(2) * weights(2)) * 0.5;
+  }
+  template <class S> Vector<S, 1> psi(const Vector<S, 3>& w) const {
+    return Vector<S, 1>(w(0) * forbidden(0) + w(1) * forbidden(1) + w(2) * forbidden(2));
+  }
+  Control<3, 1> control(const Vector<double, 3>& mu) const {
+    const Vector<double, 3> free = mu.cwiseQuotient(weights);
+    const Vector<double, 3> along = forbidden.cwiseQuotient(weights);
+    const double lambda = forbidden.dot(free) / forbidden.dot(along);
+    return {free - lambda * along, Vector<double, 1>(lambda)};
+  }
+
+  /// Whether W is, to round-off, a multiple of the identity across n: turning about n then changes nothing.
+  bool is_axial() const;
+  /// Turning about the forbidden axis, where it is one: M.n is conserved.
+  std::vector<Symmetry<AttitudeControl>> symmetries() const;
+  std::vector<Quantity<AttitudeControl>> quantities() const;
+};
+
+LAGROID_STEPS(extern template, AttitudeControl);
+LAGROID_SOLVERS(extern template, AttitudeControl);
+
+}  // namespace lagroid

@@ -1,0 +1,270 @@
+#pragma once
+/// Chains of spherical pendula: O(k) vector fields on (TS^2)^k and (T*S^2)^k, and the variational step.
+
+#include <lagroid/core/parameter.hpp>
+#include <lagroid/groupoids/spheres.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+namespace lagroid {
+
+/// What masses and lengths of a chain must be: neither products of them nor inverses overflow.
+inline constexpr NumberRule chain_number{"positive, from 1e-300 to 1e300",
+                                         [](double x) { return x >= 1e-300 && x <= 1e300; }};
+
+/// k masses on k rods, the first from the origin: x_i = l_1 q_1 + ... + l_i q_i, q_i in S^2, in gravity -g e_3. K is k,
+/// or Eigen::Dynamic.
+///
+///     L = 1/2 sum_ij M_ij q_i'.q_j' - U,   M_ij = mu_max(i,j) l_i l_j,   mu_i = m_i + ... + m_k,
+///     U = g sum_i mu_i l_i e_3.q_i
+///
+/// States are 6 x k: (q_i, w_i) with q_i' = w_i x q_i in (TS^2)^k, or (q_i, p_i) with p_i = (I - q_i q_i^T) sum_j M_ij
+/// q_j' in (T*S^2)^k.
+template <int K> struct PendulumChain {
+  using Numbers = Vector<double, K>;
+  using Points = typename CotangentSpheres<K>::Point;
+  using V = Vector<double, 3>;
+
+  Numbers mass;     ///< m_i, kg
+  Numbers length;   ///< l_i, m
+  double gravity;   ///< g, m/s^2
+  Numbers carried;  ///< mu_i, kg
+
+  static auto parameters() {
+    return std::tuple(required(parameter("masses", &PendulumChain::mass, "kg",
+                                         "of the bobs, from the top: one each, or one for all", chain_number)),
+                      required(parameter("lengths", &PendulumChain::length, "m",
+                                         "of the rods: one each, or one for all", chain_number)),
+                      parameter("gravity", &PendulumChain::gravity, "m/s^2", "acceleration"));
+  }
+
+  /// Throws std::invalid_argument unless masses and lengths are as many and as the rule says, and g is finite.
+  PendulumChain(Numbers masses, Numbers lengths, double g = 9.81)
+      : mass(std::move(masses)), length(std::move(lengths)), gravity(g), carried(mass) {
+    if (mass.size() != length.size() || mass.size() == 0)
+      throw std::invalid_argument("a chain has as many masses as lengths, one or more");
+    for (Eigen::Index i = 0; i < mass.size(); ++i)
+      if (!chain_number.holds(mass(i)) || !chain_number.holds(length(i)))
+        throw std::invalid_argument("masses and lengths of a chain are " + std::string(chain_number.words) +
+                                    "; those of link " + std::to_string(i + 1) + " are not");
+    if (!std::isfinite(g)) throw std::invalid_argument("the gravity of a chain is not finite");
+    for (Eigen::Index i = mass.size() - 1; i-- > 0;) carried(i) += carried(i + 1);
+  }
+
+  int links() const { return int(mass.size()); }
+  CotangentSpheres<K> space() const { return {links()}; }
+
+  /// Of (q, w).
+  double kinetic_energy(const Points& z) const {
+    double sum = 0;
+    V velocity = V::Zero();
+    for (int i = 0; i < links(); ++i) {
+      velocity += length(i) * link_velocity(z, i);
+      sum += 0.5 * mass(i) * velocity.squaredNorm();
+    }
+    return sum;
+  }
+  double potential_energy(const Points& z) const {
+    double sum = 0;
+    for (int i = 0; i < links(); ++i) sum += gravity * carried(i) * length(i) * z(2, i);
+    return sum;
+  }
+  double energy(const Points& z) const { return kinetic_energy(z) + potential_energy(z); }
+  /// J_z = e_3 . sum_i m_i x_i x x_i', of (q, w).
+  double vertical_momentum(const Points& z) const {
+    V place = V::Zero();
+    V velocity = V::Zero();
+    double sum = 0;
+    for (int i = 0; i < links(); ++i) {
+      place += length(i) * V(z.col(i).template head<3>());
+      velocity += length(i) * link_velocity(z, i);
+      sum += mass(i) * (place(0) * velocity(1) - place(1) * velocity(0));
+    }
+    return sum;
+  }
+  /// sum_i |x_i| (m_i |x_i'| + mu_i (|g| l_i)^(1/2)), the size of its terms and of what tensions exchange between them
+  /// over a step that resolves the swing.
+  double momentum_size(const Points& z) const {
+    V place = V::Zero();
+    V velocity = V::Zero();
+    double sum = 0;
+    for (int i = 0; i < links(); ++i) {
+      place += length(i) * V(z.col(i).template head<3>());
+      velocity += length(i) * link_velocity(z, i);
+      sum += place.stableNorm() *
+             (mass(i) * velocity.stableNorm() + carried(i) * std::sqrt(std::abs(gravity) * length(i)));
+    }
+    return sum;
+  }
+  /// (q, w) -> (q, p), the Legendre transform.
+  Points to_momenta(const Points& z) const {
+    Points out = z;
+    V velocity = V::Zero();
+    Points momentum = z;  // of the masses, below
+    for (int i = 0; i < links(); ++i) {
+      velocity += length(i) * link_velocity(z, i);
+      momentum.col(i).template tail<3>() = mass(i) * velocity;
+    }
+    V below = V::Zero();
+    for (int i = links(); i-- > 0;) {
+      below += momentum.col(i).template tail<3>();
+      const V q = z.col(i).template head<3>();
+      out.col(i).template tail<3>() = length(i) * (below - q * q.dot(below));
+    }
+    return out;
+  }
+  /// (q, p) -> (q, w).
+  Points to_velocities(const Points& z) const;
+
+  static V link_velocity(const Points& z, int i) {
+    return cross(V(z.col(i).template tail<3>()), V(z.col(i).template head<3>()));
+  }
+};
+
+/// The symmetric positive definite tridiagonal equations of the tensions of rods in the directions q_i,
+///
+///     x_i (1/m_i + 1/m_{i-1}) - x_{i+1} q_i.q_{i+1} / m_i - x_{i-1} q_i.q_{i-1} / m_{i-1} = b_i,      1/m_0 = 0,
+///
+/// by elimination from the top. The pivots are d_i = 1/m_i + e_i with
+///
+///     e_i = ( |q_{i-1} x q_i|^2 / m_{i-1} + e_{i-1} ) / (m_{i-1} d_{i-1}),      e_1 = 0:
+///
+/// sums of what is positive, where 1/m_i + 1/m_{i-1} - (q_i.q_{i-1} / m_{i-1})^2 / d_{i-1} would cancel beside a light
+/// bob on rods that are nearly in line.
+template <int K, class S> struct ChainTensions {
+  Vector<double, K> inverse_mass;
+  Vector<S, K> pivot, upper, x;
+
+  explicit ChainTensions(const PendulumChain<K>& chain)
+      : inverse_mass(chain.mass.cwiseInverse()),
+        pivot(Vector<S, K>::Zero(chain.links())),
+        upper(Vector<S, K>::Zero(chain.links())),
+        x(Vector<S, K>::Zero(chain.links())) {}
+
+  /// x <- A^{-1} x, q(i) being unit vectors.
+  template <class Q> LAGROID_INLINE void solve(const Q& q) {
+    using V = Vector<S, 3>;
+    const int n = int(x.size());
+    pivot(0) = S(inverse_mass(0));
+    S extra(0.0);
+    for (int i = 1; i < n; ++i) {
+      const V before = q(i - 1);
+      const V here = q(i);
+      const double r = inverse_mass(i - 1);
+      const S over = r / pivot(i - 1);
+      upper(i - 1) = before.dot(here) * -r;
+      extra = (cross(before, here).squaredNorm() * r + extra) * over;
+      pivot(i) = extra + inverse_mass(i);
+      x(i) += before.dot(here) * over * x(i - 1);
+    }
+    x(n - 1) /= pivot(n - 1);
+    for (int i = n - 1; i-- > 0;) x(i) = (x(i) - upper(i) * x(i + 1)) / pivot(i);
+  }
+};
+
+/// The motion on (TS^2)^k as a map to se(3)^k, in O(k): the tensions T_i of the rods solve their equations
+/// (ChainTensions) with b_i = l_i |w_i|^2 - [i = 1] g e_3.q_1, and
+///
+///     w_i' = q_i x (T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1} - [i = 1] g e_3) / l_i,
+///     F(q, w) = (w, q x w').
+template <int K, class S = double> class ChainVelocityField {
+ public:
+  using Space = CotangentSpheres<K, S>;
+  using Z = typename Space::Point;
+
+  explicit ChainVelocityField(const PendulumChain<K>& chain) : chain_(chain), tension_(chain) {}
+
+  void operator()(double, const Z& z, Z& f) {
+    using V = Vector<S, 3>;
+    const int k = chain_.links();
+    const double g = chain_.gravity;
+    for (int i = 0; i < k; ++i) tension_.x(i) = Space::second(z, i).squaredNorm() * chain_.length(i);
+    tension_.x(0) -= z(2, 0) * g;
+    tension_.solve([&](int i) { return Space::first(z, i); });
+    for (int i = 0; i < k; ++i) {
+      V pull = V::Zero();
+      if (i == 0) pull(2) -= g;
+      if (i > 0) pull += Space::first(z, i - 1) * (tension_.x(i - 1) * tension_.inverse_mass(i - 1));
+      if (i + 1 < k) pull += Space::first(z, i + 1) * (tension_.x(i + 1) * tension_.inverse_mass(i));
+      const V q = Space::first(z, i);
+      Space::set(f, i, Space::second(z, i), cross(q, V(cross(q, pull) * (1 / chain_.length(i)))));
+    }
+  }
+
+ private:
+  PendulumChain<K> chain_;
+  ChainTensions<K, S> tension_;
+};
+
+/// The motion on (T*S^2)^k as a map to se(3)^k, in O(k): with the equations of the tensions (ChainTensions) and b_i =
+/// q_i.p_{i+1} / (l_{i+1} m_i) + q_i.p_{i-1} / (l_{i-1} m_{i-1}), multipliers tau_i such that c_i = p_i / l_i + tau_i
+/// q_i are the momenta of the masses from i on; x_i' = (c_i - c_{i+1}) / m_i, v_i = (x_i' - x_{i-1}') / l_i = q_i',
+///
+///     F(q, p)_i = (q_i x v_i, -g mu_i l_i q_i x e_3 - l_i tau_i q_i x v_i),
+///
+/// which is F[H] of [H] (mapfham) up to what leaves (q_i, p_i) fixed.
+template <int K, class S = double> class ChainMomentumField {
+ public:
+  using Space = CotangentSpheres<K, S>;
+  using Z = typename Space::Point;
+  using V = Vector<S, 3>;
+
+  explicit ChainMomentumField(const PendulumChain<K>& chain) : chain_(chain), multiplier_(chain) {}
+
+  void operator()(double, const Z& z, Z& f) {
+    solve(z);
+    const int k = chain_.links();
+    V momentum = carried(z, 0);
+    V above = V::Zero();  // x_{i-1}'
+    for (int i = 0; i < k; ++i) {
+      const V next = i + 1 < k ? carried(z, i + 1) : V(V::Zero());
+      const V velocity = (momentum - next) * multiplier_.inverse_mass(i);
+      const V q = Space::first(z, i);
+      const V xi = cross(q, V((velocity - above) * (1 / chain_.length(i))));
+      const double weight = chain_.gravity * chain_.carried(i) * chain_.length(i);
+      V eta = xi * (multiplier_.x(i) * -chain_.length(i));
+      eta(0) -= q(1) * weight;
+      eta(1) += q(0) * weight;
+      Space::set(f, i, xi, eta);
+      momentum = next;
+      above = velocity;
+    }
+  }
+
+ private:
+  void solve(const Z& z) {
+    const int k = chain_.links();
+    const auto& inverse_mass = multiplier_.inverse_mass;
+    for (int i = 0; i < k; ++i) {
+      const V q = Space::first(z, i);
+      S right(0.0);
+      if (i + 1 < k) right += q.dot(Space::second(z, i + 1)) * (inverse_mass(i) / chain_.length(i + 1));
+      if (i > 0) right += q.dot(Space::second(z, i - 1)) * (inverse_mass(i - 1) / chain_.length(i - 1));
+      multiplier_.x(i) = right;
+    }
+    multiplier_.solve([&](int i) { return Space::first(z, i); });
+  }
+  /// c_i.
+  V carried(const Z& z, int i) const {
+    return Space::second(z, i) * (1 / chain_.length(i)) + Space::first(z, i) * multiplier_.x(i);
+  }
+
+  PendulumChain<K> chain_;
+  ChainTensions<K, S> multiplier_;
+};
+
+template <int K> auto PendulumChain<K>::to_velocities(const Points& z) const -> Points {
+  Points u = z;
+  ChainMomentumField<K> (*this)(0, z, u);
+  Points out = z;
+  out.template bottomRows<3>() = u.template topRows<3>();
+  return out;
+}
+
+}  // namespace lagroid

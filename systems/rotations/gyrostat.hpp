@@ -1,0 +1,116 @@
+#pragma once
+/// A rigid body with three rotors.
+
+#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/noether.hpp>
+#include <lagroid/groupoids/groups/so2.hpp>
+#include <lagroid/groupoids/product.hpp>
+#include <lagroid/systems/control/rotation_map.hpp>
+#include <lagroid/systems/instances.hpp>
+#include <lagroid/systems/reference.hpp>
+
+#include <vector>
+
+namespace lagroid {
+
+/// Free motion about a fixed point of a body that carries a balanced rotor on each principal axis (a satellite with
+/// reaction wheels; Marsden & Ratiu, Introduction to Mechanics and Symmetry, 15.11): with w the angular velocity of the
+/// body, t_i the rate of rotor i against it, I the principal moments of the body with its rotors held fast to their
+/// axes but free to turn, and J_i those of the rotors about their axes,
+///
+///     l(w, t) = (w.I w + sum_i J_i (w_i + t_i)^2) / 2,    L(g) = h l(tau^{-1}(g) / h)
+///
+/// on SO(3) x SO(2)^3, whose arrows are the turn of the body and those of the rotors against it. Momentum (M, j):
+///
+///     M = I w + j,    j_i = J_i (w_i + t_i);    M' = M x w,    j' = 0.
+///
+/// The rotors' momenta j and the spatial momentum A M are conserved, the energy by the continuous motion.
+struct Gyrostat : System<Gyrostat, Product<SO3, SO2, SO2, SO2>> {
+  using GroupoidType = Product<SO3, SO2, SO2, SO2>;
+
+  double h = 0.01;
+  Vector<double, 3> inertia{3, 2, 1};       ///< I, kg m^2
+  Vector<double, 3> rotors{0.4, 0.3, 0.2};  ///< J, kg m^2
+  RotationMap rotation = RotationMap::exponential;
+
+  static auto parameters() {
+    return std::tuple(inertia_parameter(&Gyrostat::inertia),
+                      required(parameter("rotors", &Gyrostat::rotors, "kg m^2",
+                                         "moments of the three rotors about their axes", positive)),
+                      rotation_parameter(&Gyrostat::rotation));
+  }
+
+  template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
+    const auto& [turn, rotor1, rotor2, rotor3] = g;
+    const Vector<S, 3> w = SO3::retract_inverse(rotation, turn);
+    const Vector<S, 3> t(SO2::log(rotor1)(0), SO2::log(rotor2)(0), SO2::log(rotor3)(0));
+    S twice = w(0) * w(0) * inertia(0);
+    for (int i = 1; i < 3; ++i) twice += w(i) * w(i) * inertia(i);
+    for (int i = 0; i < 3; ++i) twice += (w(i) + t(i)) * (w(i) + t(i)) * rotors(i);
+    return twice * (0.5 / step);
+  }
+  template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
+
+  /// (w, t) of a momentum.
+  Vector<double, 6> velocity(const Vector<double, 6>& mu) const {
+    const Vector<double, 3> w = (mu.head<3>() - mu.tail<3>()).cwiseQuotient(inertia);
+    Vector<double, 6> v;
+    v << w, mu.tail<3>().cwiseQuotient(rotors) - w;
+    return v;
+  }
+
+  /// ((M - j).I^{-1} (M - j) + j.J^{-1} j) / 2 = <(M, j), (w, t)> / 2.
+  double energy(const State<GroupoidType>& s) const { return 0.5 * s.momentum.dot(velocity(s.momentum)); }
+
+  Rates<GroupoidType> rates(const State<GroupoidType>& s) const {
+    const Vector<double, 6> v = velocity(s.momentum);
+    Vector<double, 6> change = Vector<double, 6>::Zero();
+    change.head<3>() = s.momentum.head<3>().cross(v.head<3>());
+    return {v, change};
+  }
+
+  /// The turns at constant velocity.
+  Step<Gyrostat> first_guess(const State<GroupoidType>& s) const {
+    return {groupoid.tau(s.object, Vector<double, 6>(h * velocity(s.momentum))), {}};
+  }
+
+  /// The continuous solution after time t. Returns the momentum and updates the attitude; the rotors' angles follow
+  /// from t' = J^{-1} j - w.
+  State<GroupoidType> reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude, double t) const {
+    const Vector<double, 3> j = start.momentum.tail<3>();
+    // I w turns as a rigid body's momentum does, but for the rotors': (I w)' = (I w + j) x w.
+    const Torque gyroscopic = [&](const auto& w, const auto&) { return Vector<double, 3>(j.cross(w)); };
+    State<GroupoidType> end = start;
+    const Vector<double, 3> body = start.momentum.head<3>() - j;
+    end.momentum.head<3>() = reference_turn(inertia, gyroscopic, body, attitude, t) + j;
+    return end;
+  }
+
+  /// Turning a rotor against the body.
+  std::vector<Symmetry<Gyrostat>> symmetries() const {
+    std::vector<Symmetry<Gyrostat>> all;
+    for (int i = 0; i < 3; ++i)
+      all.push_back({"momentum of rotor " + std::to_string(i + 1),
+                     [i](const ObjectOf<GroupoidType>&) { return Vector<double, 6>(Vector<double, 6>::Unit(3 + i)); }});
+    return all;
+  }
+  std::vector<Quantity<Gyrostat>> quantities() const {
+    using Point = TrajectoryPoint<Gyrostat>;
+    std::vector<Quantity<Gyrostat>> all{
+        {"energy",
+         {"H"},
+         Promise::bounded,
+         false,
+         [system = *this](const Point& p, double* out) { *out = system.energy(p.state); }},
+        {"spatial momentum A M", {"Jx", "Jy", "Jz"}, Promise::conserved, false, [](const Point& p, double* out) {
+           Eigen::Map<Vector<double, 3>>(out).noalias() = std::get<0>(p.configuration) * p.state.momentum.head<3>();
+         }}};
+    for (const auto& symmetry : symmetries()) all.push_back(symmetry.quantity());
+    return all;
+  }
+};
+
+LAGROID_STEPS(extern template, Gyrostat);
+LAGROID_SOLVERS(extern template, Gyrostat);
+
+}  // namespace lagroid

@@ -1,0 +1,84 @@
+#pragma once
+/// The free rigid body.
+
+#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/systems/control/rotation_map.hpp>
+#include <lagroid/systems/instances.hpp>
+#include <lagroid/systems/rotations/rotation_splitting.hpp>
+
+namespace lagroid {
+
+/// Free motion about a fixed point with principal moments of inertia I: L(g) = h l(tau^{-1}(g) / h), l(w) = w.I w / 2,
+/// on SO(3) ([G] 6.1). The momentum mu is the body angular momentum M; A_k = A_{k-1} g_k carries body to space.
+struct RigidBody : System<RigidBody, SO3> {
+  double h = 0.01;
+  Vector<double, 3> inertia{1, 2, 3};  ///< principal moments, kg m^2
+  RotationMap rotation = RotationMap::exponential;
+
+  static auto parameters() {
+    return std::tuple(inertia_parameter(&RigidBody::inertia), rotation_parameter(&RigidBody::rotation));
+  }
+
+  template <class S, class T> S lagrangian(const Matrix<S, 3, 3>& g, const T& step) const {
+    return rotational_action(g, inertia, step, rotation);
+  }
+  template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const { return lagrangian(g, h); }
+
+  /// w.I w / 2.
+  template <class S> S l(const Vector<S, 3>& w) const {
+    return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * 0.5;
+  }
+
+  /// The energy split into that of a symmetric top and a rest (SplitSystem, RotationSplitting).
+  static constexpr int parts = 2;
+  template <int Part, class S> FlowOf<SO3, S> flow(double t, const Vector<S, 0>&, const Vector<S, 3>& mu) const {
+    const RotationSplitting kinetic(inertia);
+    if constexpr (Part == 0) return kinetic.rest(t, mu);
+    if constexpr (Part == 1) return kinetic.symmetric(t, mu);
+  }
+
+  /// M.I^{-1} M / 2.
+  double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
+
+  /// w = I^{-1} M, M' = M x w.
+  Rates<SO3> rates(const State<SO3>& s) const {
+    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
+    return {w, s.momentum.cross(w)};
+  }
+
+  /// The continuous solution after time t: M' = M x I^{-1} M, A' = A hat(I^{-1} M). Returns M and updates `attitude`.
+  State<SO3> reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const;
+
+  /// Of sigma = 1 / |w|, w = I^{-1} M.
+  double time_scale_rate(const State<SO3>& s) const {
+    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
+    const double size = w.squaredNorm();
+    return size > 0 ? -w.dot(s.momentum.cross(w).cwiseQuotient(inertia)) / size : 0;
+  }
+
+  /// The rotation by h I^{-1} M, exact to second order in h.
+  Step<RigidBody> first_guess(const State<SO3>& s) const {
+    return {SO3::exp(Vector<double, 3>(h * s.momentum.cwiseQuotient(inertia))), {}};
+  }
+
+  std::vector<Quantity<RigidBody>> quantities() const {
+    return {{"energy",
+             {"H"},
+             Promise::bounded,
+             false,
+             [system = *this](const TrajectoryPoint<RigidBody>& p, double* out) { *out = system.energy(p.state); }},
+            {"spatial momentum A M",
+             {"Jx", "Jy", "Jz"},
+             Promise::conserved,
+             false,
+             [](const TrajectoryPoint<RigidBody>& p, double* out) {
+               Eigen::Map<Vector<double, 3>>(out).noalias() = p.configuration * p.state.momentum;
+             }}};
+  }
+};
+
+LAGROID_STEPS(extern template, RigidBody);
+LAGROID_SOLVERS(extern template, RigidBody);
+
+}  // namespace lagroid

@@ -1,0 +1,145 @@
+#pragma once
+/// Motions on (TS^2)^k and (T*S^2)^k by a method chosen at run time.
+
+#include <lagroid/core/number_archive.hpp>
+#include <lagroid/groupoids/spheres.hpp>
+#include <lagroid/solvers/integrators/compositions.hpp>
+#include <lagroid/solvers/lie_group/integrator.hpp>
+#include <lagroid/solvers/methods/method.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace lagroid {
+
+/// Of which bundle the points are.
+enum class SphereForm {
+  velocities,  ///< (q_i, w_i) in (TS^2)^k, q_i' = w_i x q_i
+  momenta      ///< (q_i, p_i) in (T*S^2)^k
+};
+
+struct SphereIntegratorOptions {
+  std::string method;  ///< the name of a LieGroupMethod, or one of the system's own
+  SphereForm form = SphereForm::velocities;
+  double step = 0.01;                    ///< from node to node
+  double tolerance = 0;                  ///< of inner steps, which an embedded method then controls; 0: one step a node
+  long most_inner = 1'000'000;           ///< of these, from one node to the next
+  std::function<bool()> stop = nullptr;  ///< asked before each of these; true ends the step, which is then not made
+  Composition composition = compositions::single;  ///< of a symmetric method of the system's own
+};
+
+/// A trajectory in the making, of equally spaced nodes. A step that does not converge leaves everything as it was.
+class SphereIntegrator {
+ public:
+  using Points = CotangentSpheres<Eigen::Dynamic>::Point;
+
+  virtual ~SphereIntegrator() = default;
+  /// To the next node. Of inner steps the report counts those tried.
+  virtual StepReport advance() = 0;
+  /// In the form asked for.
+  virtual Points point() const = 0;
+  virtual double time() const = 0;
+  virtual MethodTraits traits() const = 0;
+  /// Visits all that the next step goes on from: an integrator begun with the same arguments, to which it is restored,
+  /// goes on with the same bits.
+  virtual void serialize(NumberArchive& archive) = 0;
+};
+
+/// How far points are from the bundle: the largest of ||q_i|^2 - 1| / 2 and |q_i.w_i|, the latter over the largest
+/// |w_j|.
+double off_spheres(const SphereIntegrator::Points& z);
+
+namespace detail {
+
+template <class F> class EqualSphereSteps final : public SphereIntegrator {
+ public:
+  EqualSphereSteps(F field, const LieGroupMethod& method, const Points& start, double step)
+      : integrator_({int(start.cols())}, std::move(field), method, start, step) {}
+
+  StepReport advance() override { return integrator_.advance(); }
+  Points point() const override { return integrator_.point(); }
+  double time() const override { return integrator_.time(); }
+  MethodTraits traits() const override { return integrator_.traits(); }
+  void serialize(NumberArchive& archive) override { integrator_.serialize(archive); }
+
+ private:
+  LieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F> integrator_;
+};
+
+template <class F> class ControlledSphereSteps final : public SphereIntegrator {
+ public:
+  ControlledSphereSteps(F field, const LieGroupMethod& method, const Points& start,
+                        const SphereIntegratorOptions& options)
+      : integrator_({int(start.cols())}, std::move(field), method, start,
+                    {.tolerance = options.tolerance,
+                     .first_step = options.step,
+                     .most_steps = options.most_inner,
+                     .stop = options.stop}),
+        node_(integrator_.place()),
+        step_(options.step) {}
+
+  StepReport advance() override {
+    const long before = tried();
+    StepReport report = integrator_.advance_to(double(index_ + 1) * step_);
+    report.iterations = int(tried() - before);
+    if (!report.converged()) {
+      integrator_.go_back_to(node_);
+      return report;
+    }
+    integrator_.keep(node_);
+    ++index_;
+    return report;
+  }
+  Points point() const override { return integrator_.point(); }
+  double time() const override { return double(index_) * step_; }
+  MethodTraits traits() const override {
+    MethodTraits traits = integrator_.traits();
+    traits.name += ", steps controlled";
+    return traits;
+  }
+  void serialize(NumberArchive& archive) override {
+    integrator_.serialize(archive);
+    archive(index_);
+    if (archive.reading()) integrator_.keep(node_);
+  }
+
+ private:
+  long tried() const { return integrator_.steps() + integrator_.rejected(); }
+
+  using FixedStepIntegrator = ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F>;
+  FixedStepIntegrator integrator_;
+  typename FixedStepIntegrator::Place node_;
+  double step_;
+  long index_ = 0;
+};
+
+}  // namespace detail
+
+/// The integrator of z' = F(z)_M(z) by the Lie group method of that name. Throws std::invalid_argument where there is
+/// none, where a tolerance is asked of one that estimates no error or is negative, and for a composition.
+template <class F>
+std::unique_ptr<SphereIntegrator> integrator_on_spheres(F field, const SphereIntegrator::Points& start,
+                                                        const SphereIntegratorOptions& options) {
+  const LieGroupMethod* method = lie_group_methods::named(options.method);
+  if (method == nullptr) throw std::invalid_argument("no Lie group method is called \"" + options.method + "\"");
+  if (!(options.tolerance >= 0) || !std::isfinite(options.step) || options.step == 0)
+    throw std::invalid_argument("an integrator on spheres has a finite step and no negative tolerance");
+  if (options.composition.stages() > 1) throw std::invalid_argument("steps of " + options.method + " are not composed");
+  if (options.tolerance > 0)
+    return std::make_unique<detail::ControlledSphereSteps<F>>(std::move(field), *method, start, options);
+  return std::make_unique<detail::EqualSphereSteps<F>>(std::move(field), *method, start, options.step);
+}
+
+template <int K> struct PendulumChain;
+
+/// A chain of any length. Its own method is "rattle", the variational one (ChainRattle). `start` is of the form asked
+/// for. Throws std::invalid_argument as `integrator_on_spheres`, and where rattle is to have a tolerance. Compiled.
+std::unique_ptr<SphereIntegrator> make_chain_integrator(const PendulumChain<Eigen::Dynamic>& chain,
+                                                        const SphereIntegrator::Points& start,
+                                                        const SphereIntegratorOptions& options);
+
+}  // namespace lagroid

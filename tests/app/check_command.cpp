@@ -1,0 +1,95 @@
+// `lagroid check`: what is certified, what is not, and what is said.
+#include "command_line.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace {
+
+TEST_F(CommandLine, EveryExampleIsCertified) {
+  for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
+    if (entry.path().extension() != ".toml") continue;
+    const Outcome r = run("check " + entry.path().string() + " --samples 10 --json");
+    EXPECT_EQ(r.code, 0) << entry.path() << r.err << r.out;
+    const auto json = nlohmann::json::parse(r.out);
+    EXPECT_EQ(json.at("status"), "certified");
+    // The step of a scene of bodies is asked where it starts.
+    std::ifstream file(entry.path());
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    const int samples = text.find("[[body]]") == std::string::npos ? 10 : 1;
+    // Orders and loops of integrators on spheres are asked once.
+    const bool on_spheres = text.find("\"pendulum_chain\"") != std::string::npos ||
+                            text.find("\"learned_hamiltonian\"") != std::string::npos;
+    for (const auto& suite : json.at("suites"))
+      for (const auto& law : suite.at("laws"))
+        EXPECT_TRUE(law.at("samples") == samples || (on_spheres && law.at("samples") == 1)) << law;
+  }
+}
+
+TEST_F(CommandLine, ACertificateIsWithheldFromALawThatIsBroken) {
+  // A fall into the centre, through positions where derivatives have no digits left.
+  const std::string scene = "check " + example("kepler") + " --samples 20 --set initial.position=[1e-9,0]";
+  const Outcome r = run(scene);
+  EXPECT_EQ(r.code, 3) << r.out;
+  EXPECT_NE(r.out.find("BROKEN"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("NOT certified"), std::string::npos) << r.out;
+  EXPECT_EQ(nlohmann::json::parse(run(scene + " --json").out).at("status"), "broken");
+}
+
+TEST_F(CommandLine, StatesWithoutAStepArePassedOver) {
+  // Half turns in one step: the run goes through, steps from some states beside it do not.
+  const Outcome r = run("check " + example("rigid_body") + " --samples 20 --json --set time.step=3");
+  EXPECT_EQ(r.code, 0) << r.out;
+  bool skipped = false;
+  const auto json = nlohmann::json::parse(r.out);
+  for (const auto& suite : json.at("suites"))
+    for (const auto& law : suite.at("laws")) skipped = skipped || law.at("skipped") > 0;
+  EXPECT_TRUE(skipped);
+}
+
+TEST_F(CommandLine, SystemsAtRestInOtherUnitsAndWithTinyStepsAreCertified) {
+  for (const std::string& scene : std::vector<std::string>{
+           example("pendulum") + " --set initial.position=[0] --set initial.momentum=[0]",
+           example("rigid_body") + " --set initial.momentum=[0,0,0]", example("heavy_top") + " --set time.steps=1",
+           example("pendulum") + " --set time.step=1e-5", example("rigid_body") + " --set time.step=1e-6",
+           example("plate_ball_initial_value") + " --set time.step=1e-3",
+           example("kepler") + " --set parameters.strength=3.986e14 --set initial.position=[7e6,0] --set "
+                               "initial.momentum=[0,7500] --set time.step=10",
+           example("pendulum_chain") +
+               " --set initial.theta=3.141592653589793 --set initial.angular_velocities=[0,0,0]",
+           example("pendulum_chain") + " --set time.step=1e-5",
+           example("pendulum_chain") +
+               " --set time.step=0.01 --set time.form=momenta --set parameters.masses=[1,1,1e-6]"}) {
+    const Outcome r = run("check " + scene + " --samples 20");
+    EXPECT_EQ(r.code, 0) << scene << r.out << r.err;
+  }
+}
+
+TEST_F(CommandLine, WhereTheRunFailsNothingIsAsked) {
+  const Outcome r = run("check " + example("spherical_pendulum") + " --json --set time.step=2");
+  EXPECT_EQ(r.code, 3) << r.out;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json.at("status"), "not_converged") << r.out;
+  EXPECT_NE(json.at("message").get<std::string>().find("step 1"), std::string::npos) << r.out;
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+}
+
+TEST_F(CommandLine, ASceneWithATargetErrorIsCertified) {
+  const Outcome r =
+      run("check " + example("pendulum") + " --json --samples 20 --set accuracy.target=1e-4 --set accuracy.pilot=0.3");
+  EXPECT_EQ(r.code, 0) << r.out << r.err;
+}
+
+TEST_F(CommandLine, CheckRefusesWhatRunRefuses) {
+  const Outcome unknown = run("check " + example("pendulum") + " --set parameters.colour=1 --json");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(nlohmann::json::parse(unknown.out).at("status"), "invalid_scene");
+  const Outcome samples = run("check " + example("pendulum") + " --samples 0");
+  EXPECT_EQ(samples.code, 2);
+  EXPECT_NE(samples.err.find("--samples"), std::string::npos) << samples.err;
+  EXPECT_NE(run("check --help").out.find("--samples"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,23 @@
+// The groupoid laws on shipped groupoids.
+#include <lagroid/core/testing/groupoid_laws.hpp>
+#include <lagroid/groupoids/groups/se2.hpp>
+#include <lagroid/groupoids/groups/so2.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace lagroid;
+
+namespace {
+
+template <class G> class GroupoidLaws : public ::testing::Test {};
+
+using Subjects =
+    ::testing::Types<SO2, SpecialOrthogonal2<Retraction::cayley>, SE2, SpecialEuclidean2<Retraction::cayley>>;
+TYPED_TEST_SUITE(GroupoidLaws, Subjects);
+
+TYPED_TEST(GroupoidLaws, Hold) {
+  const auto report = laws::groupoid_laws<TypeParam>();
+  EXPECT_TRUE(report.holds()) << report;
+}
+
+}  // namespace
