@@ -77,9 +77,9 @@ Run timed_run(const std::function<std::function<Vec()>()>& begin) {
   Run run;
   run.seconds = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3 && !(k > 0 && run.seconds > 0.3); ++k) {
-    const auto march = begin();
+    const auto tip_at_end = begin();
     const auto start = std::chrono::steady_clock::now();
-    run.tip = march();
+    run.tip = tip_at_end();
     run.seconds =
         std::min(run.seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }

@@ -1,4 +1,4 @@
-// One step of one member of an ensemble: by Ensemble on one core and on two, by one FixedStepIntegrator after another,
+// One step of one member of an ensemble: by Ensemble on one core and on two, by one integrator after another,
 // by hand.
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* in_batches = "Ensemble, one thread";
 constexpr const char* on_two_threads = "Ensemble, two threads";
-constexpr const char* one_by_one = "one FixedStepIntegrator after another";
+constexpr const char* one_by_one = "one integrator after another";
 constexpr const char* by_hand = "one kernel by hand after another";
 constexpr const char* cayley_bodies = "ensembles: 100000 rigid bodies, Cayley, h = 0.01";
 constexpr const char* bodies = "ensembles: 100000 rigid bodies, exp, h = 0.01";

@@ -117,7 +117,7 @@ template <class Derived, int Dimension> class LieGroupoid {
   }
   /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that the numbers in which g is
   /// stored were too coarse to take, so that the caller can add it to the next w; zero where g's entries are rounded
-  /// as often up as down, as a turning matrix's are (the law "nudging an arrow" asks what thousands of them add up to).
+  /// as often up as down, as a turning matrix's are (the law "correcting an arrow" asks what thousands add up to).
   template <class A, class V> V correct(A& g, const V& w) const {
     const A by = self().tau(self().target(g), w);
     g = self().project(compose(g, by));

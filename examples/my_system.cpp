@@ -74,16 +74,16 @@ int main(int argc, char** argv) {
   const laws::LawReport momenta = laws::momentum_laws(system, draw);
   std::cout << momenta;
 
-  FixedStepIntegrator<Dido> walk(system, {{0, 0}, {1, 0, 1}}, Shores::unit(Vector<double, 2>(0, 0)),
-                                 std::make_unique<NewtonStep<Dido>>());
-  while (walk.point().time < 2 * std::numbers::pi) {
-    const StepReport report = walk.advance();
+  FixedStepIntegrator<Dido> integrator(system, {{0, 0}, {1, 0, 1}}, Shores::unit(Vector<double, 2>(0, 0)),
+                                       std::make_unique<NewtonStep<Dido>>());
+  while (integrator.point().time < 2 * std::numbers::pi) {
+    const StepReport report = integrator.advance();
     if (!report.converged()) {
-      fmt::print("step {}: {}\n", walk.point().index + 1, to_string(report.status));
+      fmt::print("step {}: {}\n", integrator.point().index + 1, to_string(report.status));
       return 1;
     }
   }
-  const Vector<double, 5> shore = walk.point().configuration;
+  const Vector<double, 5> shore = integrator.point().configuration;
   fmt::print("once round: at ({:.2f}, {:.2f}), area {:.2f}\n", shore(2), shore(3), shore(4));
 
   const Certificate certificate = check(system, draw, {.name = "Dido"});

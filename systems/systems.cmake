@@ -1,8 +1,8 @@
 # The systems that scenes, checks and Python know, in the order in which they are listed to users: systems/NAME.hpp with
-# the class, app/systems/NAME.cpp with how its scenes are read and shown, both in the folder of their kind that is named after IN. What the solvers make of each is compiled once,
-# from files that are made here (systems/instances.hpp). INITIAL_VALUES: it is forced, nonholonomic or depends on time,
-# and has no boundary values; others name their sizes (solvers/boundary_sizes). Further sources of its own stand after
-# SOURCES.
+# the class, app/systems/NAME.cpp with how its scenes are read and shown, both in the folder FOLDER where IN FOLDER says
+# so. What the solvers make of each is compiled once, from files that are made here (systems/instances.hpp).
+# INITIAL_VALUES: it is forced, nonholonomic or depends on time, and has no boundary values; others name their sizes
+# (solvers/boundary/sizes). Further sources of its own stand after SOURCES.
 set(system_names)
 set(system_classes)
 set(system_headers)  # as <lagroid/...>

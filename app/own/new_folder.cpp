@@ -70,30 +70,10 @@ std::string class_name(const std::string& name) {
 
 /// Whether the class would be taken for one of the library's, of which the source sees all.
 bool is_taken(const std::string& of_class) {
-  constexpr std::array<std::string_view, 24> taken{"Action",
-                                                   "Dual",
-                                                   "Forces",
-                                                   "Pack",
-                                                   "Ledger",
-                                                   "Matrix",
-                                                   "Module",
-                                                   "Motion",
-                                                   "Pair",
-                                                   "Panel",
-                                                   "Path",
-                                                   "Product",
-                                                   "Quantity",
-                                                   "Scaling",
-                                                   "Shape",
-                                                   "Stage",
-                                                   "State",
-                                                   "Step",
-                                                   "Symmetry",
-                                                   "System",
-                                                   "NumberArchive",
-                                                   "Vector",
-                                                   "CompensatedTrajectory",
-                                                   "FixedStepIntegrator"};
+  constexpr std::array<std::string_view, 24> taken{
+      "Action", "Capabilities", "Dual",  "Forces", "Integrator", "Ledger",  "Matrix",     "Module",
+      "Motion", "Pack",         "Pair",  "Panel",  "Path",       "Product", "Quantity",   "Scaling",
+      "Shape",  "Stage",        "State", "Step",   "Symmetry",   "System",  "Trajectory", "Vector"};
   return std::ranges::find(taken, of_class) != taken.end();
 }
 

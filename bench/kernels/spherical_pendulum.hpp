@@ -28,9 +28,9 @@ class SphericalPendulum {
   void step() {
     Triple b = position_ + drift_ * momentum_;
     b.z -= fall_;
-    const double roundoff_ratio = dot(b, b) - square_length_;
+    const double excess = dot(b, b) - square_length_;
     const double along = dot(b, position_);
-    const double s = -excess / (along + std::sqrt(along * along - dot(position_, position_) * roundoff_ratio));
+    const double s = -excess / (along + std::sqrt(along * along - dot(position_, position_) * excess));
     momentum_ = momentum_ + (rate_ * s) * position_;
     momentum_.z -= weight_;
     position_ = b + s * position_;

@@ -1,6 +1,6 @@
 // ODE, the Open Dynamics Engine, by dWorldStep, which its manual calls the more accurate of its steps. A free body
 // turns with finite rotations and its gyroscopic torque; the masses of the chain, which have no extent, are tied by
-// distance joints ("DBall"). Error reduction and compliance of joints are the defaults.
+// distance joints ("DBall"). Error reduction and softness of joints are the defaults.
 #include "libraries.hpp"
 
 #include <ode/ode.h>

@@ -1,4 +1,4 @@
-// Boost.odeint. Its documentation (StepPredictors: StepPredictor overview) calls runge_kutta4 the good general scheme
+// Boost.odeint. Its documentation (Steppers: Stepper overview) calls runge_kutta4 the good general scheme
 // without error control, runge_kutta_dopri5 and runge_kutta_fehlberg78 those to put under error control by
 // make_controlled, bulirsch_stoer very good where high precision is required, and the symplectic ones those for
 // separable Hamiltonian systems. States are std::array, for which it has an algebra of its own.
@@ -41,8 +41,8 @@ Method equal_steps(const P& problem, std::string name, double order, double coar
 }
 
 /// Under error control; the tolerance is both absolute and relative.
-template <class P, class MakeStepPredictor>
-Method controlled(const P& problem, std::string name, const MakeStepPredictor& make_stepper) {
+template <class P, class MakeStepper>
+Method controlled(const P& problem, std::string name, const MakeStepper& make_stepper) {
   return {"odeint", std::move(name), true, 1e-2, std::sqrt(10.0), [=](double end, double tolerance) -> Task {
             return [=] {
               auto y = problem.start();

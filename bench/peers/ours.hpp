@@ -53,7 +53,7 @@ template <class Sys> std::vector<Way> ways(const Sys& system) {
   return out;
 }
 
-/// The integrator of one step that ends after the time `span`, of either sign, found by the secant method from a first
+/// The integrator whose one step ends after the time `span`, of either sign, found by the secant method from a first
 /// step of that length.
 template <class Make> auto landed(const Make& make, double span) {
   constexpr int most = 12;

@@ -1,4 +1,5 @@
 #pragma once
-/// Moved to <lagroid/solvers/integrators/fixed_step_integrator.hpp>; this goes with version 0.4.
+/// Moved to <lagroid/solvers/integrators/fixed_step_integrator.hpp>, where Integrator is FixedStepIntegrator
+/// (Integrator is what March was); this goes with version 0.4.
 
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>

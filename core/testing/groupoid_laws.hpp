@@ -245,7 +245,7 @@ LawReport groupoid_laws(const G& groupoid, const DrawObject& draw_object, const 
                                        groupoid.compose(g, groupoid.tau(groupoid.target(g), V(size * w))))});
     return largest;
   });
-  law("nudging an arrow", options.tolerance, [&] {
+  law("correcting an arrow", options.tolerance, [&] {
     // Thousands of displacements, each a few hundred round-offs, add up to what they are together.
     const A g = arrow();
     constexpr int count = 4096;

@@ -11,6 +11,7 @@ import dataclasses
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import xml.etree.ElementTree as xml
 
@@ -175,7 +176,8 @@ def read_api(folder):
 def run_doxygen(app):
     root = pathlib.Path(app.srcdir)
     out = pathlib.Path(app.doctreedir).parent / "api"
-    out.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(out, ignore_errors=True)  # what is there may be of headers that moved
+    out.mkdir(parents=True)
     done = subprocess.run(["doxygen", "docs/site/Doxyfile"], cwd=root, env={**os.environ, "LAGROID_API": str(out)},
                           capture_output=True, text=True)
     for line in done.stderr.splitlines():

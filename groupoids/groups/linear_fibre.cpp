@@ -1,4 +1,4 @@
-#include <lagroid/core/matrix_functions.hpp>
+#include <lagroid/core/matrices/matrix_functions.hpp>
 #include <lagroid/groupoids/groups/linear_fibre.hpp>
 
 #include <Eigen/LU>

@@ -27,7 +27,7 @@ class Reference {
 };
 
 /// Where a method ends after equal steps: the state, its blocks with the sizes that they had along the run, and the
-/// processor time of the integrator. None where it fails on the way.
+/// processor time of the steps. None where it fails on the way.
 struct Reached {
   std::vector<NamedVector> state;
   double seconds = 0;
@@ -60,7 +60,7 @@ struct Measurement {
   std::string message;
   double reached = 0;  ///< the time
   IntegrationCost work;
-  std::vector<double> seconds;  ///< of every repetition: processor time of the integrator
+  std::vector<double> seconds;                                   ///< of every repetition: processor time of the steps
   double trajectory = std::numeric_limits<double>::quiet_NaN();  ///< error at the end
   double invariants = std::numeric_limits<double>::quiet_NaN();  ///< the largest deviation at any node, relative
   double constraint = std::numeric_limits<double>::quiet_NaN();  ///< the largest residual at any node

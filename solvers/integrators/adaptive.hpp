@@ -189,7 +189,7 @@ StepReport AdaptiveIntegrator<Sys>::by_newton(double h, const ArrowOf<G>& arrow,
   found.h = time.target(0);
   found.solution.step = {solved, solution.step.multipliers};
   found.solution.momentum_change = solution.momentum_change.template tail<Sys::dimension>();
-  // Of the next correction, most lies along the motion, where h is ill determined: the arrow is not corrected_by by it.
+  // Of the next correction, most lies along the motion, where h is ill determined: the arrow is not corrected by it.
   found.solution.remainder.setZero();
   found.time_momentum_change = solution.momentum_change(0);
   if (!in_reach(found.h)) report.status = SolveStatus::left_domain;
@@ -204,8 +204,8 @@ std::optional<double> AdaptiveIntegrator<Sys>::excess_energy(double h, StepSolut
   fixed_report_ = fixed_.solve(point().state, solution);
   iterations_ += fixed_report_.iterations;
   if (!fixed_report_.converged()) return std::nullopt;
-  const double roundoff_ratio = time_momentum_ + extended_gradients(h, solution.step).source_gradient(0);
-  return std::isfinite(roundoff_ratio) ? std::optional(roundoff_ratio) : std::nullopt;
+  const double excess = time_momentum_ + extended_gradients(h, solution.step).source_gradient(0);
+  return std::isfinite(excess) ? std::optional(excess) : std::nullopt;
 }
 
 /// The root nearest the last step by the sign of E_d(h) - E_d on a ladder of steps around it, bisection, and Newton. A
@@ -217,11 +217,11 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::by_search(Solved& found
   const auto refine = [&](double from, double excess_from, double to) -> StepReport {
     for (int halving = 0; halving < 50; ++halving) {
       const double middle = 0.5 * (from + to);
-      const auto roundoff_ratio = excess_energy(middle, solution);
-      if (!roundoff_ratio) return fixed_report_;
+      const auto excess = excess_energy(middle, solution);
+      if (!excess) return fixed_report_;
       const StepReport report = by_newton(middle, solution.step.arrow, solution.step.multipliers, found);
       if (report.converged() && std::min(from, to) <= found.h && found.h <= std::max(from, to)) return report;
-      ((*roundoff_ratio > 0) == (excess_from > 0) ? from : to) = middle;
+      ((*excess > 0) == (excess_from > 0) ? from : to) = middle;
     }
     return {SolveStatus::no_step};
   };

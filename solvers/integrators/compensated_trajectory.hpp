@@ -28,7 +28,7 @@ template <DiscreteSystem Sys> class CompensatedTrajectory {
 
   const TrajectoryPoint<Sys>& point() const { return point_; }
 
-  /// Joins an arrow to the walk.
+  /// Joins an arrow to the trajectory.
   void join(const G& groupoid, const StepSolution<Sys>& solution);
 
   /// Ends a step of however many arrows at the next point, `step_size` later.

@@ -23,7 +23,7 @@ enum class TimeMode {
 
 /// What becomes of an adaptive step whose energy equation has no root.
 enum class WithoutRoot {
-  stop,        ///< the integrator ends there, with a typed status
+  stop,        ///< the motion ends there, with a typed status
   constant,    ///< that step has the size of the first
   controlled,  ///< that step has the size a StepController gives; for systems with a time scale
 };

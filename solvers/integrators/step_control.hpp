@@ -41,7 +41,7 @@ class StepController {
   double density_;
 };
 
-/// Integrators with steps from a StepController. A step that does not converge leaves everything as it was.
+/// Integrates with steps from a StepController. A step that does not converge leaves everything as it was.
 template <Timed Sys>
 requires HasTimeScale<Sys>
 class ControlledIntegrator {

@@ -9,7 +9,7 @@
 
 namespace lagroid {
 
-/// Integrators H = T + U, U < 0, by splitting the logarithmic Hamiltonian log(T - E) - log(-U), E the energy at the
+/// Integrates H = T + U, U < 0, by splitting the logarithmic Hamiltonian log(T - E) - log(-U), E the energy at the
 /// start (Mikkola and Tanikawa, Celest. Mech. Dyn. Astron. 74 (1999) 287; Preto and Tremaine, Astron. J. 118 (1999)
 /// 2532). Where H = E its motion is that of H in the time s with dt = ds / (T - E) = ds / (-U), so that equal steps of
 /// s are short where the attraction is strong. Both flows are those of T and of U, over the times ds / (T - E) and ds /

@@ -1,5 +1,5 @@
 #pragma once
-/// Integrators by Lie group integrators: with equal steps, and with steps that an error estimate controls.
+/// Lie group integrators: with equal steps, and with steps that an error estimate controls.
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/solvers/lie_group/step.hpp>
@@ -86,7 +86,7 @@ struct LieGroupControl {
   double first_step = 1e-3;
   double largest_step = 1e300;
   long most_steps = 100'000'000;         ///< tried on the way to one end
-  std::function<bool()> stop = nullptr;  ///< asked before each; true ends the integrator as a limit of steps does
+  std::function<bool()> stop = nullptr;  ///< asked before each; true ends the advance as a limit of steps does
 };
 
 /// Steps whose size follows the estimate of an embedded method: h <- h 0.9 (tolerance / error)^(1/order), changed by

@@ -145,8 +145,8 @@ template <int N> class SymmetricFactor {
     return 2;
   }
 
-  /// Counts an eigenvalue of D; a zero one is corrected_by, so that the caller sees it in `smallest` and nothing
-  /// overflows.
+  /// Counts an eigenvalue of D; a zero one is replaced by a tiny one, so that the caller sees it in `smallest`
+  /// and nothing overflows.
   double note(double eigenvalue) {
     negative_ += eigenvalue < 0;
     smallest_ = std::isnan(eigenvalue) ? 0 : std::min(smallest_, std::abs(eigenvalue));

@@ -45,7 +45,7 @@ struct LieStepReport {
   bool converged() const { return status == SolveStatus::converged; }
 };
 
-/// Integrators y' = y g(y), that is d/dt y = d/ds y tau(s g(y)) at s = 0, on a source fibre. On a Lie group that is the
+/// Integrates y' = y g(y), that is d/dt y = d/ds y tau(s g(y)) at s = 0, on a source fibre. On a Lie group that is the
 /// group; on the fibre of an action groupoid, with g(y) = xi(target(y)), the targets solve m' = rho(xi(m)) on the
 /// homogeneous space. `Field` is that of ImplicitStep.
 template <SourceFibre F, class Field> class LieIntegrator {

@@ -14,8 +14,8 @@ namespace lagroid {
 struct NewtonOptions {
   int max_iterations = 60;
   int max_halvings = 12;  ///< of a Newton step that would increase the residual
-  double accept_roundoff_ratio =
-      100;               ///< a residual that stagnates is accepted up to this many times its round-off level
+  /// A residual that stagnates is accepted up to this many times its round-off level.
+  double accept_roundoff_ratio = 100;
   double tolerance = 0;  ///< a scaled residual this small is accepted too; 0: iterate to round-off
 };
 
@@ -49,7 +49,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
     bool kept = false;              ///< there is an inverse to iterate with
     typename E::Jacobian jacobian;  ///< as evaluated; the inverse is NewtonStep::inverse_
     Residual floor;                 ///< reciprocal round-off level of each equation, at this solve's guess
-    double first = 0;               ///< roundoff_ratio at the guess of the last solve
+    double first = 0;               ///< round-off ratio at the guess of the last solve
     double rate = 0;                ///< contraction of an iteration, as last seen
     int age = 0;                    ///< solves since the matrix was evaluated
     int iterations = 0;             ///< of the last solve

@@ -10,6 +10,10 @@
 
 namespace lagroid {
 
+namespace detail {
+LAGROID_MEMBER_NAME(NamesNudge, nudge);
+}  // namespace detail
+
 /// What a method looks for by its name and does not find in the form that it needs would be passed over without a word,
 /// and the method not offered. Does not compile where there is such a member. Asked where a system meets a method:
 /// wherever implicit steps are made (StepPredictor), and where a solver of boundary values is (make_boundary_solver).
@@ -40,6 +44,9 @@ template <class Sys> constexpr void require_optional_members_to_fit() {
   static_assert(loops_fit<Sys>,
                 "loops or loop(q, axis, turns) is there but does not fit: `static constexpr int loops` counts the "
                 "numbers of turns, and a const or static loop returns an arrow from q (see Winding)");
+  static_assert(
+      !detail::NamesNudge<typename Sys::GroupoidType>,
+      "the groupoid's nudge(arrow, w) is called correct(arrow, w) since version 0.3: it would be passed over");
   static_assert(traits_fit<Sys>,
                 "traits() is there but does not fit: a const or static function that returns MethodTraits");
 }

@@ -43,8 +43,7 @@ double different(const One& one, const Other& other, const std::vector<std::size
 /// For ensembles of `members` random initial states, which `draw()` returns, over `steps` steps:
 ///
 /// - "a member is its own trajectory": state and configuration are those of a `FixedStepIntegrator` by `NewtonStep`,
-/// to
-///   `tolerance` relative to their size (or to one, if that is more), and a `FixedStepIntegrator` fails where the
+///   to `tolerance` relative to their size (or to one, if that is more), and a `FixedStepIntegrator` fails where the
 ///   member does;
 /// - "members do not know their order": in another order they are the same, to the bit;
 /// - "a member fails alone": where every third member starts from an infinite momentum, these fail at their first step,

@@ -157,8 +157,8 @@ template <int K> double ChainRattle<K>::drift(double h) {
     double pulls = std::abs(tension_(i)) * share_(i);
     if (i > 0) pulls += std::abs(tension_(i - 1)) * system_.inverse_mass(i - 1);
     if (i + 1 < k) pulls += std::abs(tension_(i + 1)) * system_.inverse_mass(i);
-    const double roundoff_ratio = std::abs(off_(i)) / (1 + std::abs(h * kick) * pulls);
-    if (!(roundoff_ratio <= worst)) worst = roundoff_ratio;
+    const double relative = std::abs(off_(i)) / (1 + std::abs(h * kick) * pulls);
+    if (!(relative <= worst)) worst = relative;
   }
   return worst;
 }

@@ -110,9 +110,9 @@ template <class F> class ControlledSphereSteps final : public SphereIntegrator {
  private:
   long tried() const { return integrator_.steps() + integrator_.rejected(); }
 
-  using FixedStepIntegrator = ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F>;
-  FixedStepIntegrator integrator_;
-  typename FixedStepIntegrator::Place node_;
+  using Controlled = ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F>;
+  Controlled integrator_;
+  typename Controlled::Place node_;
   double step_;
   long index_ = 0;
 };

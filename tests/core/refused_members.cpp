@@ -22,8 +22,16 @@ constexpr int told = 1;
 constexpr int told = 0;
 #endif
 
-struct Particle : System<Particle, Pair<1>, told> {
-  using G = Pair<1>;
+#if defined(NUDGE)
+struct Line : Pair<1> {
+  template <class A, class W> W nudge(A&, const W& w) const { return w; }
+};
+#else
+using Line = Pair<1>;
+#endif
+
+struct Particle : System<Particle, Line, told> {
+  using G = Line;
   using Arrow1 = PairArrow<double, 1>;
   using Point = Vector<double, 1>;
 #if !defined(STEP_WITHOUT_H)
@@ -151,7 +159,7 @@ struct Wide : System<Wide, Pair<4>> {
 
 int main() {
   const Particle system;
-  const State<Pair<1>> start{Vector<double, 1>(0), Vector<double, 1>(1)};
+  const State<Particle::G> start{Vector<double, 1>(0), Vector<double, 1>(1)};
   const auto unit = system.groupoid.unit(start.object);
 #if defined(NO_MARCH_METHODS)
   make_integrator(system, start, unit, {});

@@ -43,7 +43,7 @@ TEST(BrokenGroupoid, WrongProduct) { expect_broken(Fault::product, {"source and 
 TEST(BrokenGroupoid, WrongRetraction) { expect_broken(Fault::retraction, {"retraction", "chart"}); }
 TEST(BrokenGroupoid, WrongInverseRetraction) { expect_broken(Fault::inverse_retraction, {"retraction"}); }
 TEST(BrokenGroupoid, NotANumberInALaterComponent) {
-  expect_broken(Fault::not_a_number, {"retraction", "nudging an arrow"});
+  expect_broken(Fault::not_a_number, {"retraction", "correcting an arrow"});
 }
 TEST(BrokenGroupoid, RetractionThatLeavesItsFibre) { expect_broken(Fault::moves_its_source, {"retraction"}); }
 TEST(BrokenGroupoid, WrongMomentumChange) { expect_broken(Fault::momentum_change, {"change of momentum"}); }

@@ -69,7 +69,7 @@ TEST(Methods, DeclareThemselves) {
   EXPECT_TRUE(names(read_experiment(example("figure_eight")).methods).contains("controlled"));
 }
 
-/// Whatever a method declares is accepted by the scene that it was declared for, and integrators with its order.
+/// Whatever a method declares is accepted by the scene that it was declared for, and integrates with its order.
 TEST(Methods, AreAcceptedByTheirScenes) {
   for (const char* name : {"kepler", "rigid_body", "heavy_top", "pendulum", "spherical_pendulum", "damped_pendulum",
                            "driven_pendulum", "driven_body", "rolling_ball", "chaplygin_sleigh", "chain_drop",

@@ -224,7 +224,7 @@ std::string html(const Findings& findings, const std::string& picture) {
       "their terms; <i>constraint</i>, the largest residual of constraints and of the groupoid's own equations. "
       "<i>Energy drift</i> is the slope of the energy times the time, with its standard error. Evaluations: gradients "
       "of the discrete Lagrangian (Newton's iterations), flows or vector fields of explicit steps. Times are medians "
-      "of interleaved repetitions, the integrator alone, without records, in processor time of its thread. An error "
+      "of interleaved repetitions, the steps alone, without records, in processor time of their thread. An error "
       "beyond "
       "the motion's own size is a failure (a cross above), no point. Strongly drawn are the methods that are the "
       "cheapest at some error.</p>\n",

@@ -1,4 +1,4 @@
-#include <lagroid/core/matrix_functions.hpp>
+#include <lagroid/core/matrices/matrix_functions.hpp>
 #include <lagroid/solvers/optimisation/manifolds/stiefel.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #pragma once
-/// Functions of square matrices whose size is known when it runs. Eigen's templates for them are the dearest there are to
-/// compile: they are compiled here alone.
+/// Functions of square matrices whose size is known when it runs. Eigen's templates for them are the dearest there are
+/// to compile: they are compiled here alone.
 
 #include <Eigen/Core>
 

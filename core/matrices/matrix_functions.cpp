@@ -1,4 +1,4 @@
-#include <lagroid/core/matrix_functions.hpp>
+#include <lagroid/core/matrices/matrix_functions.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <unsupported/Eigen/MatrixFunctions>
