@@ -239,7 +239,7 @@ TEST(BrokenArchitecture, ACycleIsFoundOut) {
 std::vector<std::string> retired_names(const std::string& text) {
   return matches(text,
                  "\\b(March|MarchOptions|MarchOf|make_march|Walk|Tape|Stepper|Lanes|Mixed|MixedOf|AlphaFibre|EitherWay|"
-                 "Abilities|Seek|Sight|Pace|PlainMarch|Lesson|SphereMarch|BatchMarch|nudge|persist|deflect)"
+                 "Abilities|Seek|Sight|Pace|PlainMarch|Lesson|SphereMarch|BatchMarch|persist|deflect)"
                  "\\b(?! of | that | from )");
 }
 TEST(Names, RetiredOnesDoNotComeBack) {
