@@ -11,8 +11,7 @@ namespace {
 
 class Bodies final : public SceneFamily {
  public:
-  std::string_view sign() const override { return "[[body]]"; }
-  bool recognises(const Section& scene) const override { return scene.has(keys::bodies); }
+  std::string_view key() const override { return keys::bodies; }
   MotionScene read(const Section& scene, const RunContext& context) const override {
     return read_bodies(scene, context);
   }

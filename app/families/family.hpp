@@ -19,10 +19,10 @@ class SceneFamily {
  public:
   virtual ~SceneFamily() = default;
 
-  /// What in a scene says that it is one of them, in words; empty where it is said as for systems.
-  virtual std::string_view sign() const { return ""; }
+  /// The key by which a scene says that it is one of them (reading/kinds.hpp).
+  virtual std::string_view key() const = 0;
   /// Whether the scene is one of them.
-  virtual bool recognises(const Section& scene) const = 0;
+  virtual bool recognises(const Section& scene) const { return scene.has(key()); }
   /// The command that is made for its scenes; `lagroid run` hands them over to it.
   virtual std::string_view command() const { return "run"; }
 

@@ -1,3 +1,4 @@
+#include "../reading/kinds.hpp"
 #include "family.hpp"
 
 #include "../scenes/simulation.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 class Spheres final : public SceneFamily {
  public:
+  std::string_view key() const override { return keys::system; }
   bool recognises(const Section& scene) const override { return sphere_system_of(scene) != nullptr; }
   MotionScene read(const Section& scene, const RunContext& context) const override {
     return read_spheres(*sphere_system_of(scene), scene, context);

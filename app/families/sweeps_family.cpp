@@ -8,8 +8,7 @@ namespace {
 
 class Sweeps final : public SceneFamily {
  public:
-  std::string_view sign() const override { return "scene, for lagroid sweep"; }
-  bool recognises(const Section& scene) const override { return scene.has(keys::sweep); }
+  std::string_view key() const override { return keys::sweep; }
   std::string_view command() const override { return "sweep"; }
   /// What each of its members rests on.
   std::vector<Use> uses(const Section& sweep) const override {

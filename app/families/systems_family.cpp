@@ -15,7 +15,7 @@ namespace {
 
 class Systems final : public SceneFamily {
  public:
-  bool recognises(const Section& scene) const override { return scene.has(keys::system); }
+  std::string_view key() const override { return keys::system; }
   /// A boundary value too, and a first step that is found for an accuracy.
   RunResult run(const Section& scene, const RunContext& context) const override {
     return module_of_scene(scene).run(scene, context);
@@ -60,10 +60,11 @@ const SceneFamily& systems_family() {
 
 const SystemModule& module_of_scene(const Section& scene) {
   if (!scene.has(keys::system)) {
-    std::string others;
+    std::string remedy = "the name of one, as lagroid list tells them";
     for (const SceneFamily* family : families())
-      if (!family->sign().empty()) others += fmt::format("{}{}", others.empty() ? "; or " : "; ", family->sign());
-    scene.text(keys::system, "the name of one, as lagroid list tells them" + others);  // it is not there
+      if (family->key() != keys::system)
+        remedy += fmt::format("; or {}, for lagroid {}", family->key(), family->command());
+    scene.text(keys::system, remedy);  // it is not there
   }
   std::vector<std::string> names;
   for (const SceneFamily* family : families())

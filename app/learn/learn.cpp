@@ -45,33 +45,33 @@ int exit_code(Outcome outcome) {
 
 /// Reads what the options name. Throws DataError and ModelError.
 TrainingOutcome prepare(const LearnOptions& options) {
-  TrainingOutcome lesson;
-  lesson.options = options;
-  lesson.data = read_trajectories(options.data, options.noise);
+  TrainingOutcome outcome;
+  outcome.options = options;
+  outcome.data = read_trajectories(options.data, options.noise);
   if (options.model.ends_with(".json")) {
-    lesson.learned = read_model(options.model);
-    if (lesson.learned.model->bodies() != lesson.data.bodies)
+    outcome.learned = read_model(options.model);
+    if (outcome.learned.model->bodies() != outcome.data.bodies)
       throw DataError(fmt::format("{} is of {} bodies, {} of {}; give data of its system", options.model,
-                                  lesson.learned.model->bodies(), options.data, lesson.data.bodies));
+                                  outcome.learned.model->bodies(), options.data, outcome.data.bodies));
   } else {
-    lesson.learned.model = named_model(options.model, lesson.data.bodies);
+    outcome.learned.model = named_model(options.model, outcome.data.bodies);
   }
   if (options.test) {
-    lesson.test = read_trajectories(*options.test, options.test_noise);
-    if (lesson.test->bodies != lesson.data.bodies)
+    outcome.test = read_trajectories(*options.test, options.test_noise);
+    if (outcome.test->bodies != outcome.data.bodies)
       throw DataError(fmt::format("{} is of {} bodies, {} of {}; give data of one system", *options.test,
-                                  lesson.test->bodies, options.data, lesson.data.bodies));
+                                  outcome.test->bodies, options.data, outcome.data.bodies));
   }
-  return lesson;
+  return outcome;
 }
 
-learning::Trained train(const TrainingOutcome& lesson) {
-  const LearnOptions& options = lesson.options;
+learning::Trained train(const TrainingOutcome& outcome) {
+  const LearnOptions& options = outcome.options;
   learning::Training training;
   training.method = *lie_group_methods::named(options.integrator);
   training.substeps = options.substeps;
   training.seed = options.seed;
-  training.begin = lesson.learned.parameters;
+  training.begin = outcome.learned.parameters;
   training.starts = training.begin.size() > 0 ? 1 : options.starts;
   training.iterations = options.iterations;
   training.validation = options.validation.value_or(options.noise > 0 ? usual_validation : 0);
@@ -85,25 +85,25 @@ learning::Trained train(const TrainingOutcome& lesson) {
     return true;
   };
   training.stop = InterruptGuard::interrupted;
-  return learning::train(*lesson.learned.model, lesson.data, training);
+  return learning::train(*outcome.learned.model, outcome.data, training);
 }
 
 /// On held-out data, unless Ctrl-C comes, or came.
-void measure(TrainingOutcome& lesson) {
-  const auto& [model, parameters] = lesson.learned;
-  lesson.measures = learning::measure(*model, parameters, *lesson.test, 1e-12, InterruptGuard::interrupted);
-  if (lesson.measures->complete) return;
-  lesson.measures.reset();
-  lesson.notes.push_back("interrupted, so that nothing was measured on " + *lesson.options.test);
+void measure(TrainingOutcome& outcome) {
+  const auto& [model, parameters] = outcome.learned;
+  outcome.measures = learning::measure(*model, parameters, *outcome.test, 1e-12, InterruptGuard::interrupted);
+  if (outcome.measures->complete) return;
+  outcome.measures.reset();
+  outcome.notes.push_back("interrupted, so that nothing was measured on " + *outcome.options.test);
 }
 
 /// Ends a training that left no model.
-int refuse_untrained(const TrainingOutcome& lesson) {
-  const auto& trained = lesson.trained;
+int refuse_untrained(const TrainingOutcome& outcome) {
+  const auto& trained = outcome.trained;
   const int code = exit_code(trained.outcome);
-  const bool goes_on = lesson.learned.parameters.size() > 0 && trained.outcome == Outcome::not_finite;
-  return refuse(lesson.options.json, code != 0 ? code : exit_failed, std::string(to_string(trained.outcome)),
-                fmt::format("{}: {}", goes_on ? lesson.options.model : lesson.options.data, trained.message));
+  const bool goes_on = outcome.learned.parameters.size() > 0 && trained.outcome == Outcome::not_finite;
+  return refuse(outcome.options.json, code != 0 ? code : exit_failed, std::string(to_string(trained.outcome)),
+                fmt::format("{}: {}", goes_on ? outcome.options.model : outcome.options.data, trained.message));
 }
 
 int serve(const LearnOptions& options) {
@@ -111,38 +111,38 @@ int serve(const LearnOptions& options) {
     return refuse(
         options.json, exit_bad_input, "invalid_command_line",
         fmt::format("--integrator {}: there is none; take one of {}", options.integrator, integrator_names()));
-  TrainingOutcome lesson;
+  TrainingOutcome outcome;
   std::optional<OutputFolder> folder;
   try {
-    lesson = prepare(options);
-    if (options.out) folder.emplace(folder_for_training(*options.out, lesson));
+    outcome = prepare(options);
+    if (options.out) folder.emplace(folder_for_training(*options.out, outcome));
   } catch (const DataError& error) {
     return refuse(options.json, exit_bad_input, "invalid_data", error.what());
   } catch (const ModelError& error) {
     return refuse(options.json, exit_bad_input, "invalid_command_line", error.what());
   }
   const InterruptGuard guard;
-  lesson.trained = train(lesson);
-  if (!lesson.trained.usable()) return refuse_untrained(lesson);
-  lesson.learned.parameters = lesson.trained.parameters;
-  if (!lesson.trained.mass_determined)
-    lesson.notes.emplace_back(
+  outcome.trained = train(outcome);
+  if (!outcome.trained.usable()) return refuse_untrained(outcome);
+  outcome.learned.parameters = outcome.trained.parameters;
+  if (!outcome.trained.mass_determined)
+    outcome.notes.emplace_back(
         "the data do not determine the mass matrix; give motions that differ more, or go on longer");
-  if (lesson.test) measure(lesson);
-  const bool unmeasured = lesson.test && !lesson.measures;
-  const int code = unmeasured ? exit_interrupted : exit_code(lesson.trained.outcome);
-  std::string text = training_text(lesson);
-  auto json = training_json(lesson);
+  if (outcome.test) measure(outcome);
+  const bool unmeasured = outcome.test && !outcome.measures;
+  const int code = unmeasured ? exit_interrupted : exit_code(outcome.trained.outcome);
+  std::string text = training_text(outcome);
+  auto json = training_json(outcome);
   if (options.out) {
     std::string note;
-    const auto files = write_training(lesson, *options.out, note);
+    const auto files = write_training(outcome, *options.out, note);
     tell_written(files, note, text, json);
   } else {
     text += "  (no files written; --out DIR writes model, history, plot and summary)\n";
   }
   print(options.json ? json_text(json) + "\n" : text);
   if (code != 0)
-    complain(fmt::format("{}: {}", options.data, unmeasured ? lesson.notes.back() : lesson.trained.message));
+    complain(fmt::format("{}: {}", options.data, unmeasured ? outcome.notes.back() : outcome.trained.message));
   return code_after_writing(code, options.data);
 }
 

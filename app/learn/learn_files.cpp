@@ -24,36 +24,36 @@ using learning::Stage;
 constexpr std::array<const char*, 8> files{model_file_name, "history.csv", "errors.csv", "summary.json",
                                            "summary.txt",   "plot.gp",     "plot.svg",   "plot.png"};
 
-std::string history_csv(const TrainingOutcome& lesson) {
+std::string history_csv(const TrainingOutcome& outcome) {
   std::string out = "line,start,iteration,training,validation,damping,seconds\n";
   long line = 0;
-  for (const Stage& now : lesson.trained.history)
+  for (const Stage& now : outcome.trained.history)
     fmt::format_to(std::back_inserter(out), "{},{},{},{:.6g},{:.6g},{:.3g},{:.3f}\n", line++, now.start + 1,
                    now.iteration, now.mse, now.validation, now.damping, now.seconds);
   return out;
 }
 
-std::string errors_csv(const TrainingOutcome& lesson) {
+std::string errors_csv(const TrainingOutcome& outcome) {
   std::string out = "t,rms\n";
-  for (std::size_t i = 0; i < lesson.measures->times.size(); ++i)
-    fmt::format_to(std::back_inserter(out), "{},{:.6g}\n", lesson.measures->times[i], lesson.measures->rms[i]);
+  for (std::size_t i = 0; i < outcome.measures->times.size(); ++i)
+    fmt::format_to(std::back_inserter(out), "{},{:.6g}\n", outcome.measures->times[i], outcome.measures->rms[i]);
   return out;
 }
 
-std::string gnuplot_script(const TrainingOutcome& lesson) {
+std::string gnuplot_script(const TrainingOutcome& outcome) {
   std::string out =
       "# Draws history.csv and errors.csv; run by lagroid, or by hand: gnuplot plot.gp\n"
       "set datafile separator ','\nset datafile missing 'nan'\nset grid\nset logscale y\nset format y '%.0e'\n";
   for (const auto& [file, terminal] : {std::pair("plot.svg", "svg size 1040,400 background 'white' noenhanced"),
                                        std::pair("plot.png", "pngcairo size 1040,400 noenhanced")}) {
     out += fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout 1,{}\n", terminal, file,
-                       lesson.measures ? 2 : 1);
+                       outcome.measures ? 2 : 1);
     out +=
         "set title 'mean squared error'\nset xlabel 'iteration, of all starts'\nset key\n"
         "plot 'history.csv' using 'line':'training' with lines linewidth 1.5 title 'training'";
-    if (std::isfinite(lesson.trained.validation))
+    if (std::isfinite(outcome.trained.validation))
       out += ", '' using 'line':'validation' with lines linewidth 1.5 title 'validation'";
-    if (lesson.measures)
+    if (outcome.measures)
       out +=
           "\nset title 'held-out trajectories, root of the mean squared error'\nset xlabel 't'\nunset key\n"
           "plot 'errors.csv' using 't':'rms' with linespoints linewidth 1.5 pointtype 7";
@@ -64,21 +64,21 @@ std::string gnuplot_script(const TrainingOutcome& lesson) {
 
 /// How much of the motion from first points to later ones the model accounts for: one less its mean squared error over
 /// that of a system at rest. NaN where nothing moves.
-double share_explained(const TrainingOutcome& lesson) {
-  const learning::Trajectories& data = lesson.data;
+double share_explained(const TrainingOutcome& outcome) {
+  const learning::Trajectories& data = outcome.data;
   double motion = 0;
   for (Eigen::Index j = 0; j < data.count(); ++j)
     for (Eigen::Index i = 0; i < data.weights.rows(); ++i)
       motion += data.weights(i, j) *
                 (data.ends.block(i * data.width(), j, data.width(), 1) - data.starts.col(j)).squaredNorm();
   if (motion == 0) return std::numeric_limits<double>::quiet_NaN();
-  return 1 - lesson.trained.mse * data.total_weight() / motion;
+  return 1 - outcome.trained.mse * data.total_weight() / motion;
 }
 
 /// What is said where that is little: a training converges on noise too.
-std::string little_explained(const TrainingOutcome& lesson) {
+std::string little_explained(const TrainingOutcome& outcome) {
   constexpr double enough = 0.9;
-  const double share = share_explained(lesson);
+  const double share = share_explained(outcome);
   if (!(share < enough)) return "";
   return fmt::format(
       "the model explains {:.3g} % of the motion in the data: they are noise for the most part, or of another kind of "
@@ -86,9 +86,9 @@ std::string little_explained(const TrainingOutcome& lesson) {
       100 * std::max(share, 0.0));
 }
 
-std::vector<std::string> notes_of(const TrainingOutcome& lesson) {
-  std::vector<std::string> out = lesson.notes;
-  if (const std::string note = little_explained(lesson); !note.empty()) out.push_back(note);
+std::vector<std::string> notes_of(const TrainingOutcome& outcome) {
+  std::vector<std::string> out = outcome.notes;
+  if (const std::string note = little_explained(outcome); !note.empty()) out.push_back(note);
   return out;
 }
 
@@ -105,37 +105,37 @@ std::string as_text(const LearnOptions& o) {
 
 }  // namespace
 
-nlohmann::ordered_json training_json(const TrainingOutcome& lesson) {
-  const auto& trained = lesson.trained;
+nlohmann::ordered_json training_json(const TrainingOutcome& outcome) {
+  const auto& trained = outcome.trained;
   nlohmann::ordered_json out;
   out["status"] = to_string(trained.outcome);
   if (!trained.message.empty()) out["message"] = trained.message;
-  out["model"] = lesson.learned.model->name();
-  out["bodies"] = lesson.data.bodies;
-  out["integrator"] = lesson.options.integrator;
-  out["substeps"] = lesson.options.substeps;
-  out["data"] = {{"file", lesson.options.data},
-                 {"trajectories", lesson.data.count()},
-                 {"points", lesson.data.points},
-                 {"interval", lesson.data.interval},
-                 {"noise", lesson.options.noise}};
+  out["model"] = outcome.learned.model->name();
+  out["bodies"] = outcome.data.bodies;
+  out["integrator"] = outcome.options.integrator;
+  out["substeps"] = outcome.options.substeps;
+  out["data"] = {{"file", outcome.options.data},
+                 {"trajectories", outcome.data.count()},
+                 {"points", outcome.data.points},
+                 {"interval", outcome.data.interval},
+                 {"noise", outcome.options.noise}};
   out["parameters"] = trained.parameters.size();
   out["training_mse"] = trained.mse;
-  out["explained"] = known(share_explained(lesson));
+  out["explained"] = known(share_explained(outcome));
   out["validation_mse"] = known(trained.validation);
   out["iterations"] = trained.iterations;
   out["best_seed"] = trained.start;
   out["seconds"] = trained.seconds;
-  const Eigen::MatrixXd mass = lesson.learned.model->mass(trained.parameters);
+  const Eigen::MatrixXd mass = outcome.learned.model->mass(trained.parameters);
   for (Eigen::Index i = 0; i < mass.rows(); ++i) {
     const Eigen::VectorXd row = mass.row(i);
     out["mass_matrix"].push_back(std::vector<double>(row.begin(), row.end()));
   }
-  if (lesson.measures) {
-    const auto& found = *lesson.measures;
-    out["held_out"] = {{"file", *lesson.options.test},
-                       {"trajectories", lesson.test->count()},
-                       {"points", lesson.test->points},
+  if (outcome.measures) {
+    const auto& found = *outcome.measures;
+    out["held_out"] = {{"file", *outcome.options.test},
+                       {"trajectories", outcome.test->count()},
+                       {"points", outcome.test->points},
                        {"duration", found.times.back()},
                        {"mse", known(found.mse)},
                        {"rms_at_end", known(found.rms.back())},
@@ -145,33 +145,33 @@ nlohmann::ordered_json training_json(const TrainingOutcome& lesson) {
                        {"momentum_change_data", known(found.momentum_data)},
                        {"lost", found.lost}};
   }
-  for (const std::string& note : notes_of(lesson)) out["notes"].push_back(note);
+  for (const std::string& note : notes_of(outcome)) out["notes"].push_back(note);
   return out;
 }
 
-std::string training_text(const TrainingOutcome& lesson) {
-  const auto& trained = lesson.trained;
-  const auto& options = lesson.options;
+std::string training_text(const TrainingOutcome& outcome) {
+  const auto& trained = outcome.trained;
+  const auto& options = outcome.options;
   std::string out = fmt::format("{} on (T*S^2)^{}, through {} with {} substeps of {:g}: {}\n",
-                                lesson.learned.model->name(), lesson.data.bodies, options.integrator, options.substeps,
-                                lesson.data.interval / options.substeps, to_string(trained.outcome));
-  out += fmt::format("  data         {}: {} trajectories of {} points, {:g} apart\n", options.data, lesson.data.count(),
-                     lesson.data.points, lesson.data.interval);
+                                outcome.learned.model->name(), outcome.data.bodies, options.integrator,
+                                options.substeps, outcome.data.interval / options.substeps, to_string(trained.outcome));
+  out += fmt::format("  data         {}: {} trajectories of {} points, {:g} apart\n", options.data,
+                     outcome.data.count(), outcome.data.points, outcome.data.interval);
   out += fmt::format("  parameters   {}\n", trained.parameters.size());
   out += fmt::format("  training     mean squared error {:.2e}", trained.mse);
-  const double share = share_explained(lesson);
+  const double share = share_explained(outcome);
   out += std::isfinite(share) ? fmt::format(", {:.6g} % of the motion explained\n", 100 * share) : std::string("\n");
   if (std::isfinite(trained.validation)) out += fmt::format("  validation   {:.2e}\n", trained.validation);
-  const Eigen::MatrixXd mass = lesson.learned.model->mass(trained.parameters);
+  const Eigen::MatrixXd mass = outcome.learned.model->mass(trained.parameters);
   for (Eigen::Index i = 0; i < mass.rows(); ++i) {
     out += i == 0 ? "  mass matrix " : "              ";
     for (Eigen::Index j = 0; j < mass.cols(); ++j) out += fmt::format(" {:12.8f}", mass(i, j));
     out += "\n";
   }
-  if (lesson.measures) {
-    const auto& found = *lesson.measures;
+  if (outcome.measures) {
+    const auto& found = *outcome.measures;
     out += fmt::format("  held out     {}: {} trajectories of {} points, until t = {:g}\n", *options.test,
-                       lesson.test->count(), lesson.test->points, found.times.back());
+                       outcome.test->count(), outcome.test->points, found.times.back());
     if (found.lost > 0) out += fmt::format("               {} of them could not be followed\n", found.lost);
     out += fmt::format("               mean squared error {:.2e}, root of it at the end {:.2e}\n", found.mse,
                        found.rms.back());
@@ -184,29 +184,29 @@ std::string training_text(const TrainingOutcome& lesson) {
   out += options.model.ends_with(".json") ? fmt::format("; from {}\n", options.model)
                                           : fmt::format("; the best start was that of seed {}\n", trained.start);
   if (!trained.message.empty()) out += fmt::format("  note: {}\n", trained.message);
-  for (const std::string& note : notes_of(lesson)) out += fmt::format("  note: {}\n", note);
+  for (const std::string& note : notes_of(outcome)) out += fmt::format("  note: {}\n", note);
   return out;
 }
 
-OutputFolder folder_for_training(const fs::path& folder, const TrainingOutcome& lesson) {
-  const OutputSource source{{"data", contents(lesson.options.data).value_or("")},
-                            {"model", lesson.learned.model->name()},
-                            {"options", as_text(lesson.options)}};
+OutputFolder folder_for_training(const fs::path& folder, const TrainingOutcome& outcome) {
+  const OutputSource source{{"data", contents(outcome.options.data).value_or("")},
+                            {"model", outcome.learned.model->name()},
+                            {"options", as_text(outcome.options)}};
   return {folder, OutputKind::model, source, files};
 }
 
-std::vector<fs::path> write_training(const TrainingOutcome& lesson, const fs::path& folder, std::string& note) {
+std::vector<fs::path> write_training(const TrainingOutcome& outcome, const fs::path& folder, std::string& note) {
   const auto make = [&](const fs::path& staging) {
     std::vector<std::string> names{model_file_name, "history.csv", "summary.json", "summary.txt", "plot.gp"};
-    write_text(model_text(lesson.learned), staging / model_file_name);
-    write_text(history_csv(lesson), staging / "history.csv");
-    if (lesson.measures) {
-      write_text(errors_csv(lesson), staging / "errors.csv");
+    write_text(model_text(outcome.learned), staging / model_file_name);
+    write_text(history_csv(outcome), staging / "history.csv");
+    if (outcome.measures) {
+      write_text(errors_csv(outcome), staging / "errors.csv");
       names.emplace_back("errors.csv");
     }
-    write_text(json_text(training_json(lesson)) + "\n", staging / "summary.json");
-    write_text(visible(training_text(lesson), "\n"), staging / "summary.txt");
-    write_text(gnuplot_script(lesson), staging / "plot.gp");
+    write_text(json_text(training_json(outcome)) + "\n", staging / "summary.json");
+    write_text(visible(training_text(outcome), "\n"), staging / "summary.txt");
+    write_text(gnuplot_script(outcome), staging / "plot.gp");
     return names;
   };
   return write_and_draw(folder, files, make, {"plot.gp", {"plot.svg", "plot.png"}}, note);

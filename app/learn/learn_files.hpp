@@ -28,15 +28,15 @@ struct TrainingOutcome {
   std::vector<std::string> notes;
 };
 
-std::string training_text(const TrainingOutcome& lesson);
-nlohmann::ordered_json training_json(const TrainingOutcome& lesson);
+std::string training_text(const TrainingOutcome& outcome);
+nlohmann::ordered_json training_json(const TrainingOutcome& outcome);
 
 /// The folder for the files, for this process alone; of the same data and model it is written anew. Throws as
 /// OutputFolder does.
-OutputFolder folder_for_training(const std::filesystem::path& folder, const TrainingOutcome& lesson);
+OutputFolder folder_for_training(const std::filesystem::path& folder, const TrainingOutcome& outcome);
 /// model.json, history.csv, errors.csv (with held-out data), summaries, plots; each whole or not at all. `note` says
 /// why there are no pictures.
-std::vector<std::filesystem::path> write_training(const TrainingOutcome& lesson, const std::filesystem::path& folder,
+std::vector<std::filesystem::path> write_training(const TrainingOutcome& outcome, const std::filesystem::path& folder,
                                                   std::string& note);
 
 }  // namespace lagroid::app

@@ -11,8 +11,7 @@ namespace {
 
 class Optimisation final : public SceneFamily {
  public:
-  std::string_view sign() const override { return "problem, for lagroid optimize"; }
-  bool recognises(const Section& scene) const override { return scene.has(keys::optimisation); }
+  std::string_view key() const override { return keys::optimisation; }
   std::string_view command() const override { return "optimize"; }
   std::vector<Use> uses(const Section& scene) const override {
     std::vector<std::string> names;

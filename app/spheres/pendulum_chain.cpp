@@ -66,12 +66,7 @@ std::vector<double> read_each(const Section& parameters, const Parameter<Chain, 
   return each;
 }
 
-/// Visits the declarations of numbers for each link.
-template <class Visit> void for_each_list(const Visit& visit) {
-  for_each_parameter<Chain>([&](const auto& p) {
-    if constexpr (std::is_same_v<decltype(p), const Parameter<Chain, Numbers>&>) visit(p);
-  });
-}
+template <class P> inline constexpr bool is_for_each_link = std::is_same_v<P, const Parameter<Chain, Numbers>&>;
 
 Chain one_link() { return {Numbers::Ones(1), Numbers::Ones(1)}; }
 
@@ -87,25 +82,26 @@ std::unique_ptr<SphereSystem> read_pendulum_chain(const Section& scene) {
   const Section parameters = scene.section("parameters", "masses and lengths of the chain");
   constexpr long most = 100'000;
   long links = parameters.integer_or("links", 0, 1, most);
-  for_each_list([&](const auto& p) {
-    const auto count = long(read_each(parameters, p).size());
-    if (links > 0 && count > 0 && count != links)
-      parameters.fail(
-          p.name,
-          fmt::format("are {}, and the chain has {} links; give one for each, or one number for all", count, links));
-    links = std::max(links, count);
-  });
-  if (links == 0) links = parameters.integer("links", 1, most);
-  if (links > most) parameters.fail("masses", fmt::format("are of {} links; a chain has {} at most", links, most));
   Chain given = one_link();
   for_each_parameter<Chain>([&](const auto& p) {
-    if constexpr (std::is_same_v<decltype(p), const Parameter<Chain, Numbers>&>) {
+    if constexpr (is_for_each_link<decltype(p)>) {
       const std::vector<double> each = read_each(parameters, p);
-      given.*p.member = each.empty() ? Numbers(Numbers::Constant(links, parameters.number(p.name, p.rule)))
-                                     : Numbers(Eigen::Map<const Numbers>(each.data(), Eigen::Index(each.size())));
+      const auto count = long(each.size());
+      if (links > 0 && count > 0 && count != links)
+        parameters.fail(
+            p.name,
+            fmt::format("are {}, and the chain has {} links; give one for each, or one number for all", count, links));
+      links = std::max(links, count);
+      given.*p.member = Eigen::Map<const Numbers>(each.data(), count);
     } else {
       reading::read(parameters, p, given);
     }
+  });
+  if (links == 0) links = parameters.integer("links", 1, most);
+  if (links > most) parameters.fail("masses", fmt::format("are of {} links; a chain has {} at most", links, most));
+  for_each_parameter<Chain>([&](const auto& p) {
+    if constexpr (is_for_each_link<decltype(p)>)
+      if ((given.*p.member).size() == 0) given.*p.member = Numbers::Constant(links, parameters.number(p.name, p.rule));
   });
   return std::make_unique<ChainSystem>(Chain(given.mass, given.length, given.gravity));
 }
