@@ -1,8 +1,12 @@
 #pragma once
 /// Morphisms of Lie groupoids and of discrete constrained Lagrangian systems. [G] 4.1
 
+#include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/system.hpp>
 
+#include <Eigen/LU>
+
+#include <concepts>
 #include <vector>
 
 namespace lagroid {
@@ -15,10 +19,24 @@ namespace lagroid {
 ///
 ///     Arrow lift(const Object& q, const Arrow'& g) const        the arrow with source q and image g
 ///
+/// For reduction downward (core/reduction) it says which object of G stands for one of G', or at once which arrow:
+///
+///     Object over(const Object'& m) const                an object with Phi_0(q) = m, smooth near each m; it may jump
+///     auto representative(const Arrow'& g) const         an arrow with image g; lift(over(source(g)), g) by default
+///
+/// It may also say
+///
+///     static constexpr bool keeps_basis = true           A Phi is the identity in the bases of the retractions
+///     AlgebroidVector' reduced_momentum(q, mu) const     (A Phi_q)^{-T} mu in closed form
+///     bool free_at(const Object'& m) const               whether the symmetry acts freely over m; not there:
+///     everywhere
+///
 /// Deduced are the map of the objects and the morphism of the Lie algebroids.
 template <class Derived, class From, class To> struct Morphism {
   using Domain = From;
   using Codomain = To;
+
+  static constexpr bool keeps_basis = false;
 
   [[no_unique_address]] From from;
   [[no_unique_address]] To to;
@@ -44,6 +62,31 @@ template <class Derived, class From, class To> struct Morphism {
     return {q, algebroid(q).transpose() * momentum};
   }
 
+  /// The momentum at Phi_0(q) to which mu at q is related: (A Phi_q)^{-T} mu, where fibres have the same dimension.
+  /// Over any scalar: the inverse is that of plain numbers, and each infinitesimal takes one correction by it.
+  template <class Q, class S>
+  Vector<S, To::dimension> reduced_momentum(const Q& q, const Vector<S, From::dimension>& mu) const {
+    static_assert(From::dimension == To::dimension, "momenta go down where source fibres have the same dimension");
+    if constexpr (Derived::keeps_basis) {
+      return mu;
+    } else {
+      constexpr int n = To::dimension;
+      const Matrix<S, n, n> map = algebroid(q);
+      Matrix<double, n, n> values;
+      for (int i = 0; i < n * n; ++i) values.data()[i] = value_of(map.data()[i]);
+      const Matrix<double, n, n> inverse = values.transpose().partialPivLu().inverse();
+      Vector<S, n> x = Vector<S, n>::Constant(S(0.0));
+      for (int order = 0; order <= nilpotency<S>; ++order) {
+        Vector<S, n> defect = mu;
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < n; ++j) defect(i) -= map(j, i) * x(j);
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < n; ++j) x(i) += defect(j) * inverse(i, j);
+      }
+      return x;
+    }
+  }
+
   /// The trajectory from q whose image is the given one.
   std::vector<ArrowOf<From>> reconstruct(ObjectOf<From> q, const std::vector<ArrowOf<To>>& arrows) const {
     std::vector<ArrowOf<From>> out;
@@ -57,6 +100,47 @@ template <class Derived, class From, class To> struct Morphism {
  private:
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 };
+
+/// A morphism by which an arrow is determined by its source and its image, between source fibres of one dimension.
+template <class Phi>
+concept ActionMorphism = Phi::Domain::dimension ==
+                         Phi::Codomain::dimension&& requires(const Phi& phi, const ObjectOf<typename Phi::Domain>& q,
+                                                             const ArrowOf<typename Phi::Codomain>& g) {
+  { phi.lift(q, g) } -> std::convertible_to<ArrowOf<typename Phi::Domain>>;
+};
+
+/// One that says which object stands for an object below, or which arrow for an arrow.
+template <class Phi>
+concept StandsOverObjects = requires(const Phi& phi, const ObjectOf<typename Phi::Codomain>& m) {
+  { phi.over(m) } -> std::convertible_to<ObjectOf<typename Phi::Domain>>;
+};
+template <class Phi>
+concept RepresentsArrows = StandsOverObjects<Phi> ||
+    requires(const Phi& phi, const ArrowOf<typename Phi::Codomain>& g) {
+  { phi.representative(g) } -> std::convertible_to<ArrowOf<typename Phi::Domain>>;
+};
+/// One of a symmetry that does not act freely everywhere.
+template <class Phi>
+concept FreeInPart = requires(const Phi& phi, const ObjectOf<typename Phi::Codomain>& m) {
+  { phi.free_at(m) } -> std::convertible_to<bool>;
+};
+
+/// The arrow that stands for g, over any scalar.
+template <class Phi, class A> auto representative_of(const Phi& phi, const A& g) {
+  if constexpr (requires { phi.representative(g); }) {
+    return phi.representative(g);
+  } else {
+    return phi.lift(phi.over(phi.to.source(g)), g);
+  }
+}
+/// The object that stands for m.
+template <class Phi, class Q> auto object_over(const Phi& phi, const Q& m) {
+  if constexpr (requires { phi.over(m); }) {
+    return phi.over(m);
+  } else {
+    return phi.from.source(phi.representative(phi.to.unit(m)));
+  }
+}
 
 /// The system on G of which `reduced`, on G', is the reduction by Phi: L = L' o Phi, phi = phi' o Phi, so that Phi is a
 /// morphism of systems ([G] Def. 4.2, Example 4.3). Arrow constraints only.

@@ -1,5 +1,5 @@
 #pragma once
-/// The pair groupoid G x G => G of a matrix group.
+/// The pair groupoid G x G => G of a Lie group: a groupoid of ours over a single object, a user's included.
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/capabilities/loops.hpp>
@@ -15,6 +15,12 @@ template <class Element> struct ElementPair {
   Element target;
 };
 
+/// Such an arrow that knows a^{-1} b: what stands for an element of the group where a system on pairs is reduced
+/// (LeftQuotient). Lagrangians that ask the groupoid for `quotient` then cost no product of elements.
+template <class Element> struct ElementStep : ElementPair<Element> {
+  Element quotient;
+};
+
 /// Arrows: pairs (a, b) of elements of `Group`; (a, b)(b, c) = (a, c). Algebroid: TG, left-trivialised, so that
 /// constant sections are the group's left-invariant fields; anchor x -> a hat(x). Retraction tau_a(v) = (a, a tau(v)).
 /// Memory: source, then target.
@@ -24,6 +30,9 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
   template <class S> using Object = typename Group::template Arrow<S>;
   template <class S> using Arrow = ElementPair<Object<S>>;
   static constexpr int arrow_size = 2 * Group::arrow_coordinate_count();
+  static constexpr int object_size = Group::arrow_coordinate_count();
+  /// The group's single object.
+  template <class S> using Point = typename Group::template Object<S>;
 
   [[no_unique_address]] Group group;
 
@@ -38,21 +47,22 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
     return {a, displace_object(a, v)};
   }
   template <class E> auto tau_inverse(const ElementPair<E>& g) const { return object_displacement(g.source, g.target); }
-  template <class E, class S> auto bracket(const E&, const Vector<S, rank>& x, const Vector<S, rank>& y) const {
-    return group.bracket(Vector<S, 0>(), x, y);
+  template <class E, class S>
+  auto bracket(const E&, const Vector<S, rank>& x, const Vector<S, rank>& y) const requires HasAnalyticBracket<Group> {
+    return group.bracket(Point<S>(), x, y);
   }
   /// Those of the group, from a back to a.
   static constexpr int loops = loops_of<Group>();
   Arrow<double> loop(const Object<double>& a, const Vector<double, rank>& axis,
                      const Vector<double, loops>& turns) const requires(loops > 0) {
-    return {a, group.multiply(a, group.loop(Vector<double, 0>(), axis, turns))};
+    return {a, group.multiply(a, group.loop(Point<double>(), axis, turns))};
   }
   /// Translation from the left.
   template <class E> ElementPair<E> bisection(const ElementPair<E>& g, const E& a) const {
     return {a, group.multiply(a, quotient(g))};
   }
   template <class E, class S> E displace_object(const E& a, const Vector<S, rank>& v) const {
-    return group.multiply(a, group.tau(Vector<S, 0>(), v));
+    return group.multiply(a, group.tau(Point<S>(), v));
   }
   template <class E> auto object_displacement(const E& a, const E& b) const {
     return group.tau_inverse(quotient(ElementPair<E>{a, b}));
@@ -70,8 +80,9 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
   template <class E> E quotient(const ElementPair<E>& g) const {
     return group.multiply(group.inverse(g.source), g.target);
   }
+  template <class E> static E quotient(const ElementStep<E>& g) { return g.quotient; }
   template <class E, class V> ElementPair<E> arrow_in_chart(const E& a, const V& v) const {
-    return {a, group.multiply(a, group.arrow_in_chart(Vector<typename V::Scalar, 0>(), v))};
+    return {a, group.multiply(a, group.arrow_in_chart(Point<typename V::Scalar>(), v))};
   }
 
   template <class E> auto coordinates(const ElementPair<E>& g) const {
@@ -85,6 +96,9 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
     return {group.template arrow_at<S>(x.template head<half>().eval()),
             group.template arrow_at<S>(x.template tail<half>().eval())};
   }
+
+  template <class E> auto object_coordinates(const E& a) const { return group.coordinates_of_arrow(a); }
+  template <class S, class V> Object<S> object(const V& x) const { return group.template arrow_at<S>(x); }
 
   static std::string name() { return "Pair(" + Group::name() + ")"; }
 };

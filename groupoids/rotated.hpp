@@ -37,6 +37,17 @@ struct RotatedDirections {
     using std::sqrt;
     return m / sqrt(m.squaredNorm());
   }
+  /// The rotation R with m R = v that takes the orthonormal frame (B, v) of `tangent_basis` at v to that at m.
+  template <class S> static Matrix<S, 3, 3> carrying(const Vector<double, 3>& m, const Vector<S, 3>& v) {
+    Matrix<S, 3, 3> at_v;
+    at_v << tangent_basis(v), v;
+    Matrix<double, 3, 3> at_m;
+    at_m << tangent_basis(m), m;
+    Matrix<S, 3, 3> out;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) out(i, j) = at_v(j, 0) * at_m(i, 0) + at_v(j, 1) * at_m(i, 1) + at_v(j, 2) * at_m(i, 2);
+    return out;
+  }
   static std::string name() { return "S^2"; }
 
  private:

@@ -26,43 +26,32 @@ template <int N> struct Root {
   Matrix<double, N, N> inverse;
 };
 
+/// Equations at a point: their values, their derivatives, the largest value, and the largest ratio of one to its
+/// rounding.
+template <int N> struct EquationsAt {
+  Vector<double, N> value;
+  Matrix<double, N, N> jacobian;
+  double largest = 0;
+  double roundoff_ratio = 0;
+
+  /// Value i, the sum of terms of that size.
+  void measure(int i, double terms) {
+    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+    const bool finite = std::isfinite(value(i)) && std::isfinite(terms);
+    const double size = finite ? std::abs(value(i)) : INFINITY;
+    largest = std::max(largest, size);
+    if (size > 0) roundoff_ratio = std::max(roundoff_ratio, finite ? size / (rounding * terms) : INFINITY);
+  }
+};
+
 /// By Newton's method, with steps halved until the residual falls, until each equation is left with the rounding of its
-/// terms: of F's derivatives times what they multiply, unknowns and parameters.
-template <int N, int M, class F>
-Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vector<double, M>& parameters) {
-  using J = Jet<double, N + M>;
+/// terms. at(x) returns EquationsAt<N>. Not a number where that does not come about.
+template <int N, class At> Root<N> newton_iteration(const At& at, const Vector<double, N>& guess) {
   constexpr int most_iterations = 60;
   constexpr int most_halvings = 20;
-  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-  constexpr double floor = 100;  // times that is as far as some get
-  struct At {
-    Vector<double, N> value;
-    Matrix<double, N, N> jacobian;
-    double largest;         ///< |F_i|
-    double roundoff_ratio;  ///< |F_i| over its rounding
-  };
-  const auto at = [&](const Vector<double, N>& x) {
-    Vector<J, N> unknown;
-    Vector<J, M> fixed;
-    for (int i = 0; i < N; ++i) unknown(i) = J::variable(x(i), i);
-    for (int i = 0; i < M; ++i) fixed(i) = J::variable(parameters(i), N + i);
-    const Vector<J, N> f = residual(unknown, fixed);
-    At out{{}, {}, 0, 0};
-    for (int i = 0; i < N; ++i) {
-      const Vector<double, N + M> slope = f(i).gradient();
-      out.value(i) = f(i).value;
-      out.jacobian.row(i) = slope.template head<N>().transpose();
-      const double terms = slope.template head<N>().cwiseAbs().dot(x.cwiseAbs()) +
-                           slope.template tail<M>().cwiseAbs().dot(parameters.cwiseAbs());
-      const bool finite = std::isfinite(out.value(i)) && std::isfinite(terms);
-      const double size = finite ? std::abs(out.value(i)) : INFINITY;
-      out.largest = std::max(out.largest, size);
-      if (size > 0) out.roundoff_ratio = std::max(out.roundoff_ratio, finite ? size / (rounding * terms) : INFINITY);
-    }
-    return out;
-  };
+  constexpr double floor = 100;  // times its rounding is as far as some get
   Root<N> root{guess, {}};
-  At now = at(root.x);
+  EquationsAt<N> now = at(root.x);
   double last = INFINITY;
   for (int iteration = 0; iteration < most_iterations && std::isfinite(now.largest); ++iteration) {
     root.inverse = now.jacobian.inverse();
@@ -74,7 +63,7 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
     }
     last = now.roundoff_ratio;
     double part = 1;
-    At next = at(root.x - step);
+    EquationsAt<N> next = at(root.x - step);
     for (int halving = 0; halving < most_halvings && !(next.largest < now.largest) && !(next.roundoff_ratio <= floor);
          ++halving)
       next = at(root.x - (part /= 2) * step);
@@ -86,25 +75,53 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
   return root;
 }
 
-}  // namespace detail
+/// The same for F(x, parameters), whose terms are its derivatives times what they multiply, unknowns and parameters.
+template <int N, int M, class F>
+Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vector<double, M>& parameters) {
+  using J = Jet<double, N + M>;
+  const auto at = [&](const Vector<double, N>& x) {
+    Vector<J, N> unknown;
+    Vector<J, M> fixed;
+    for (int i = 0; i < N; ++i) unknown(i) = J::variable(x(i), i);
+    for (int i = 0; i < M; ++i) fixed(i) = J::variable(parameters(i), N + i);
+    const Vector<J, N> f = residual(unknown, fixed);
+    EquationsAt<N> out;
+    for (int i = 0; i < N; ++i) {
+      const Vector<double, N + M> slope = f(i).gradient();
+      out.value(i) = f(i).value;
+      out.jacobian.row(i) = slope.template head<N>().transpose();
+      out.measure(i, slope.template head<N>().cwiseAbs().dot(x.cwiseAbs()) +
+                         slope.template tail<M>().cwiseAbs().dot(parameters.cwiseAbs()));
+    }
+    return out;
+  };
+  return newton_iteration<N>(at, guess);
+}
 
-/// x(y) with F(x, y) = 0, with its derivatives: the values by Newton's method, the infinitesimals by as many
-/// corrections x -= F_x^{-1} F, F_x^{-1} kept in plain numbers, as there are orders of them, for each is right in one
-/// order more. F(x, y) is a function over any scalar, Vector<U, N> x Vector<U, M> -> Vector<U, N>. Not a number where
-/// Newton's method does not converge from `guess`. No allocation.
-template <class S, int N, int M, class F>
-Vector<S, N> solve_implicit(const F& residual, const Vector<double, N>& guess, const Vector<S, M>& parameters) {
-  Vector<double, M> values;
-  for (int i = 0; i < M; ++i) values(i) = value_of(parameters(i));
-  const detail::Root<N> root = detail::newton_root<N, M>(residual, guess, values);
+/// A root x over the scalar S, its infinitesimals taken in by as many corrections x -= F_x^{-1} F, F_x^{-1} kept in
+/// plain numbers, as there are orders of them, for each is right in one order more.
+template <class S, int N, class F> Vector<S, N> with_infinitesimals(const Root<N>& root, const F& residual) {
   Vector<S, N> x;
   for (int i = 0; i < N; ++i) x(i) = S(root.x(i));
   for (int order = 0; order < nilpotency<S>; ++order) {
-    const Vector<S, N> f = residual(x, parameters);
+    const Vector<S, N> f = residual(x);
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) x(i) -= f(j) * root.inverse(i, j);
   }
   return x;
+}
+
+}  // namespace detail
+
+/// x(y) with F(x, y) = 0, with its derivatives: the values by Newton's method, the infinitesimals by corrections. F(x,
+/// y) is a function over any scalar, Vector<U, N> x Vector<U, M> -> Vector<U, N>. Not a number where Newton's method
+/// does not converge from `guess`. No allocation.
+template <class S, int N, int M, class F>
+Vector<S, N> solve_implicit(const F& residual, const Vector<double, N>& guess, const Vector<S, M>& parameters) {
+  Vector<double, M> values;
+  for (int i = 0; i < M; ++i) values(i) = value_of(parameters(i));
+  return detail::with_infinitesimals<S, N>(detail::newton_root<N, M>(residual, guess, values),
+                                           [&](const Vector<S, N>& x) { return residual(x, parameters); });
 }
 
 }  // namespace lagroid

@@ -8,7 +8,8 @@
 namespace lagroid::laws {
 
 /// [G] Def. 4.1 and what follows from it: Phi keeps products, units, inverses, sources and targets, A Phi commutes with
-/// the anchors and carries left- and right-invariant fields into such; a lift is one.
+/// the anchors and takes left- and right-invariant fields to such; a lift is one. What a morphism says for reduction
+/// downward (`representative`, `over`, `keeps_basis`, `reduced_momentum`) is what it should be.
 template <class Phi, class DrawObject>
 LawReport morphism_laws(const Phi& phi, const DrawObject& draw_object, const GroupoidLawOptions& options = {}) {
   using G = typename Phi::Domain;
@@ -82,6 +83,22 @@ LawReport morphism_laws(const Phi& phi, const DrawObject& draw_object, const Gro
       const auto lifted = phi.lift(from.source(g), phi(g));
       return relative_defect(from.coordinates_of_arrow(lifted), from.coordinates_of_arrow(g));
     });
+  if constexpr (RepresentsArrows<Phi>) {
+    law("representatives", options.tolerance, [&] {
+      const auto image = phi(arrow());
+      const ArrowOf<G> stands = representative_of(phi, image);
+      return worst({arrows(phi(stands), image), objects(phi.object(object_over(phi, to.source(image))), to.source(image))});
+    });
+  }
+  if constexpr (G::dimension == H::dimension) {
+    law("momenta go down and up", options.derivative, [&] {
+      const auto q = draw_object();
+      const V mu = vector();
+      const V below = phi.reduced_momentum(q, mu);
+      return worst({relative_defect(phi.related(q, below).momentum, mu),
+                    Phi::keeps_basis ? relative_defect(phi.algebroid(q), Matrix<double, n, n>::Identity().eval()) : 0.0});
+    });
+  }
   return report;
 }
 

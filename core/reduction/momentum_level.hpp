@@ -1,0 +1,210 @@
+#pragma once
+/// Reduction at a momentum level: the system of the base alone that moves as a full one with fixed momentum of an
+/// Abelian symmetry (Routh).
+///
+///     R(b) = ext over theta of  L(b, theta) - <level, theta>
+///     f-(b) = <level, da/dv>,  f+(b) = <level, da/dw>,    a(v, w) = angle(hor(v)^{-1} hor(b) hor(w))
+///
+/// with (b, theta) the arrow of the gauge groupoid that a discrete connection attaches (groupoids/connections.hpp), hor
+/// = attach(., 0), and v, w displacements of the ends of b. The forces are the magnetic term: a is the connection's
+/// holonomy round the two displaced arrows and vanishes where the connection is flat. (For sums over Pair(Q):
+/// Jalnapurkar, Leok, Marsden & West, Discrete Routh reduction, J. Phys. A 39 (2006).)
+///
+///     const MomentumLevel level(FactorConnection<Factors<1>, Pair<1>, SO2>{}, kepler_in_polar_coordinates,
+///     angular_momentum); auto run = FixedStepIntegrator(level, level.state_below(z), ...);       // of the radius
+///     alone const auto g = level.full_arrow(run.point().step.arrow);               // angle included
+///
+/// Derivatives are those of the full system in bases adapted to the connection, so that a level costs a few of its
+/// evaluations: those of Newton's method for theta.
+///
+/// Required: a variational system without constraints on the gauge groupoid, its step in a member h if it has one,
+/// whose L(b, .) has one critical point with momentum `level` near theta = 0. Errors: where there is none R is not a
+/// number, and the step's status tells it. NotFree where the symmetry leaves a point of the base where it is.
+
+#include <lagroid/core/derivatives/implicit.hpp>
+#include <lagroid/core/derivatives/two_sided.hpp>
+#include <lagroid/core/morphism.hpp>
+#include <lagroid/core/reduction/full_system.hpp>
+#include <lagroid/core/reduction/not_free.hpp>
+
+#include <utility>
+
+namespace lagroid {
+
+template <class Connection, DiscreteSystem Sys>
+struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection, Sys>, typename Connection::Codomain> {
+  static_assert(std::is_same_v<typename Sys::GroupoidType, typename Connection::Domain>,
+                "a connection takes apart arrows of the groupoid that it starts from, its Domain");
+  static_assert(Variational<Sys> && Sys::constraints == 0,
+                "a momentum level is that of a variational system without constraints");
+  using Full = Sys;
+  using MembersVary = void;
+  using G = typename Connection::Domain;
+  using B = typename Connection::Codomain;
+  using ConnectionType = Connection;
+  static constexpr int angles = Connection::angles;
+  static constexpr int n = B::dimension;
+  static_assert(G::dimension == n + angles, "a connection splits arrows in those of the base and angles");
+  template <class A>
+  using ScalarOf = typename decltype(std::declval<B>().coordinates_of_arrow(std::declval<A>()))::Scalar;
+
+  [[no_unique_address]] Connection connection;
+  Vector<double, angles> level;  ///< the fixed momentum, in the units of L over those of the angles
+
+  MomentumLevel(Connection c, Sys system, const Vector<double, angles>& momentum)
+      : detail::FullSystem<Sys>{std::move(system)}, connection(std::move(c)), level(momentum) {
+    connection.from = this->full.groupoid;
+    this->groupoid = connection.to;
+  }
+
+  template <class A> auto lagrangian(const A& b) const {
+    using S = ScalarOf<A>;
+    const Vector<S, angles> theta = angle_of(b, level);
+    S routhian = this->full.lagrangian(connection.attach(b, theta));
+    for (int i = 0; i < angles; ++i) routhian -= theta(i) * level(i);
+    return routhian;
+  }
+  template <class A> auto forces(const A& b) const requires(!Connection::flat) {
+    using S = ScalarOf<A>;
+    using D = Dual<S>;
+    const ArrowOf<B, D> bd = this->groupoid.template cast<D>(b);
+    const ArrowOf<G, D> lifted = horizontal(bd);
+    const auto work = [&](const ArrowOf<G, D>& moved) {
+      const Vector<D, angles> a = connection.angle(moved);
+      S sum(0.0);
+      for (int i = 0; i < angles; ++i) sum += a(i).derivative * level(i);
+      return sum;
+    };
+    Forces<S, n> f;
+    for (int i = 0; i < n; ++i) {
+      const auto displaced = [&](const ObjectOf<B, D>& m) {
+        return horizontal(ArrowOf<B, D>(this->groupoid.tau(m, direction<D, n>(i))));
+      };
+      f.source(i) =
+          work(full_groupoid().multiply(full_groupoid().inverse(displaced(this->groupoid.source(bd))), lifted));
+      f.target(i) = work(full_groupoid().multiply(lifted, displaced(this->groupoid.target(bd))));
+    }
+    return f;
+  }
+  // A base arrow's displacements are those of the full arrow along the horizontal directions, while the angle keeps its
+  // momentum: in adapted bases the full gradients' first part, magnetic term included, and the Schur complement of the
+  // mixed derivative's last block.
+  GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b, const Vector<double, 0>&) const { return two_sided(b, {}); }
+  TwoSidedOf<MomentumLevel> two_sided(const ArrowOf<B>& b, const Vector<double, 0>&) const {
+    const Vector<double, angles> theta = root_of(b, level).x;
+    const auto d = lagroid::two_sided(this->full, ArrowOf<G>(connection.attach(b, theta)), {});
+    const auto source = adapted_basis(this->groupoid.source(b));
+    const auto target = adapted_basis(this->groupoid.target(b));
+    const Matrix<double, G::dimension, G::dimension> mixed = source.transpose() * d.mixed * target;
+    TwoSidedOf<MomentumLevel> out;
+    out.value = d.value - theta.dot(level);
+    out.source_gradient = source.template leftCols<n>().transpose() * d.source_gradient;
+    out.target_gradient = target.template leftCols<n>().transpose() * d.target_gradient;
+    out.mixed =
+        mixed.template topLeftCorner<n, n>() - mixed.template topRightCorner<n, angles>() *
+                                                   mixed.template bottomRightCorner<angles, angles>().inverse() *
+                                                   mixed.template bottomLeftCorner<angles, n>();
+    return out;
+  }
+  bool admissible(const ArrowOf<B>& b) const requires(HasBranch<Sys> || FreeInPart<Connection>) {
+    if constexpr (FreeInPart<Connection>)
+      if (!connection.free_at(this->groupoid.target(b))) return false;
+    if constexpr (HasBranch<Sys>) return this->full.admissible(full_arrow(b));
+    return true;
+  }
+  double energy(const State<B>& s) const requires requires(const Sys& f, const State<G>& z) { f.energy(z); }
+  { return this->full.energy(state_over(s)); }
+
+  /// theta(b): by how much the fibres move over b where the momentum is `momentum`. Over any scalar.
+  template <class A> auto angle_of(const A& b, const Vector<double, angles>& momentum) const {
+    using S = ScalarOf<A>;
+    if constexpr (std::is_same_v<S, double>) {
+      return root_of(b, momentum).x;
+    } else {
+      using D = Dual<S>;
+      const ArrowOf<B, D> bd = this->groupoid.template cast<D>(b);
+      const auto momentum_defect = [&](const Vector<S, angles>& theta) {
+        Vector<S, angles> defect;
+        for (int i = 0; i < angles; ++i) {
+          Vector<D, angles> varied;
+          for (int j = 0; j < angles; ++j) varied(j) = D(theta(j), S(i == j ? 1.0 : 0.0));
+          defect(i) = D(this->full.lagrangian(connection.attach(bd, varied))).derivative - momentum(i);
+        }
+        return defect;
+      };
+      return detail::with_infinitesimals<S, angles>(root_of(value_of_arrow(b), momentum), momentum_defect);
+    }
+  }
+  /// The full arrow over b, with the momentum of the level; and the one that the connection calls horizontal.
+  ArrowOf<G> full_arrow(const ArrowOf<B>& b) const { return connection.attach(b, angle_of(b, level)); }
+  template <class A> auto horizontal(const A& b) const {
+    using S = ScalarOf<A>;
+    return ArrowOf<G, S>(connection.attach(b, Vector<S, angles>(Vector<S, angles>::Constant(S(0.0)))));
+  }
+
+  /// The full state over one of the base: p = <mu, hor>, level = <mu, along the fibre>.
+  State<G> state_over(const State<B>& s) const {
+    Vector<double, G::dimension> components;
+    components << s.momentum, level;
+    return {full_groupoid().source(horizontal(this->groupoid.unit(s.object))),
+            adapted_basis(s.object).transpose().partialPivLu().solve(components)};
+  }
+  /// The state of the base below a full one. Its momentum along the fibres is not looked at: `momentum_of` has it.
+  State<B> state_below(const State<G>& z) const {
+    const ObjectOf<B> m = connection.object(z.object);
+    require_free(connection, m);
+    return {m, (adapted_basis(m).transpose() * z.momentum).template head<n>()};
+  }
+  /// The momentum of the symmetry at a full state.
+  Vector<double, angles> momentum_of(const State<G>& z) const {
+    return (adapted_basis(connection.object(z.object)).transpose() * z.momentum).template tail<angles>();
+  }
+
+ private:
+  const G& full_groupoid() const { return this->full.groupoid; }
+  template <class D, int K> static Vector<D, K> direction(int i) {
+    Vector<D, K> e = Vector<D, K>::Constant(D(0.0));
+    e(i).derivative = 1.0;
+    return e;
+  }
+  template <class A> ArrowOf<B> value_of_arrow(const A& b) const {
+    const auto x = this->groupoid.coordinates_of_arrow(b);
+    Vector<double, B::arrow_coordinate_count()> values;
+    for (int i = 0; i < values.size(); ++i) values(i) = value_of(x(i));
+    return this->groupoid.template arrow_at<double>(values);
+  }
+  /// theta with <F-, along the fibre> = momentum over b, from theta = 0.
+  detail::Root<angles> root_of(const ArrowOf<B>& b, const Vector<double, angles>& momentum) const {
+    const auto at_source = adapted_basis(this->groupoid.source(b)).template rightCols<angles>().eval();
+    const auto at_target = adapted_basis(this->groupoid.target(b)).template rightCols<angles>().eval();
+    const auto equations = [&](const Vector<double, angles>& theta) {
+      const auto d = lagroid::two_sided(this->full, ArrowOf<G>(connection.attach(b, theta)), {});
+      detail::EquationsAt<angles> at;
+      at.value = -(at_source.transpose() * d.source_gradient) - momentum;
+      at.jacobian = -(at_source.transpose() * d.mixed * at_target);
+      for (int i = 0; i < angles; ++i)
+        at.measure(i, at_source.col(i).cwiseAbs().dot(d.source_gradient.cwiseAbs()) +
+                          at.jacobian.row(i).cwiseAbs().dot(theta.cwiseAbs()) + std::abs(momentum(i)));
+      return at;
+    };
+    return detail::newton_iteration<angles>(equations, Vector<double, angles>(Vector<double, angles>::Zero()));
+  }
+  /// The horizontal lifts of the base's basis, then the angles' directions, as columns in A_qG.
+  Matrix<double, G::dimension, G::dimension> adapted_basis(const ObjectOf<B>& m) const {
+    using D = Dual<double>;
+    const ObjectOf<B, D> md = this->groupoid.template cast_object<D>(m);
+    Matrix<double, G::dimension, G::dimension> basis;
+    for (int i = 0; i < n; ++i)
+      basis.col(i) = derivative_of(
+          full_groupoid().tau_inverse(horizontal(ArrowOf<B, D>(this->groupoid.tau(md, direction<D, n>(i))))));
+    for (int i = 0; i < angles; ++i) {
+      Vector<D, angles> theta = Vector<D, angles>::Constant(D(0.0));
+      theta(i).derivative = 1.0;
+      basis.col(n + i) =
+          derivative_of(full_groupoid().tau_inverse(connection.attach(ArrowOf<B, D>(this->groupoid.unit(md)), theta)));
+    }
+    return basis;
+  }
+};
+
+}  // namespace lagroid
