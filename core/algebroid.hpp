@@ -1,5 +1,18 @@
 #pragma once
-/// The Lie algebroid of a Lie groupoid: anchor, brackets of sections, structure functions.
+/// The Lie algebroid AG => Q of a Lie groupoid: the anchor rho : AG -> TQ, the bracket [X, Y] of sections, and the
+/// structure functions of its frame.
+///
+/// They are computed from the groupoid's own operations by differentiation, so that the Poisson structure of A*G needs
+/// no formula of the user's.
+///
+///     const LieAlgebroid<SO3> algebroid(groupoid);  // refers to the groupoid
+///     const auto x = [](const auto&) { return Vector<double, 3>(1, 0, 0); };
+///     const auto z = algebroid.bracket(q, x, [](const auto&) { return Vector<double, 3>(0, 1, 0); });  // (0, 0, 1)
+///
+/// Requires sections that take objects over any scalar, and a frame that is smooth around the objects at which they are
+/// evaluated. Returns vectors over the scalar of q, in the basis of A_qG. Nothing throws.
+///
+/// Source: [G] Def. 2.7, 2.9.
 
 #include <lagroid/core/groupoid.hpp>
 
@@ -15,7 +28,7 @@ using ObjectScalar = typename decltype(std::declval<G>().coordinates_of_object(s
 ///
 ///     Vector<S, dimension> bracket(const Object<S>& q, const Vector<S, dimension>& x, const Vector<S, dimension>& y)
 ///
-/// the value at q of the bracket of the sections whose coefficients are x and y wherever they are asked.
+/// the value at q of the bracket of the sections with constant coefficients x and y.
 template <class G>
 concept HasAnalyticBracket = requires(const G& groupoid, const ObjectOf<G>& q, const AlgebroidVector<G>& x) {
   { groupoid.bracket(q, x, x) } -> std::convertible_to<AlgebroidVector<G>>;
@@ -24,8 +37,8 @@ concept HasAnalyticBracket = requires(const G& groupoid, const ObjectOf<G>& q, c
 /// AG => Q with anchor and bracket ([G] Def. 2.7, 2.9), computed from the groupoid by differentiation.
 ///
 /// Vectors of A_qG are written in the basis that the retraction fixes there. As q varies these bases form the frame
-/// e_1 ... e_n of AG, which must be smooth around the points asked (on the branch that the groupoid's code takes there;
-/// no frame need be smooth everywhere). A section is a callable that takes an object over any scalar S and returns its
+/// e_1 ... e_n of AG, which must be smooth around q (on the branch that the groupoid's code takes there; no frame need
+/// be smooth everywhere). A section is a callable that takes an object over any scalar S and returns its
 /// coefficients, a Vector<S, n> or a constant Vector<double, n>.
 template <Groupoid G> class LieAlgebroid {
  public:
@@ -125,8 +138,8 @@ template <Groupoid G> class LieAlgebroid {
     return v;
   }
 
-  /// With t and s infinitesimal, moved(moved(g, X, t), Y, s) carries d/dt d/ds, which is D Y<- . X<- (and with X and Y
-  /// exchanged, D X<- . Y<-), in its mixed derivative.
+  /// With t and s infinitesimal, the mixed derivative d/dt d/ds of moved(moved(g, X, t), Y, s) is D Y<- . X<- (and with
+  /// X and Y exchanged, D X<- . Y<-).
   template <class A, class X, class Y, class Move>
   auto fields_bracket_at(const A& g, const X& x, const Y& y, const Move& moved) const {
     using S = typename decltype(groupoid_.coordinates_of_arrow(g))::Scalar;

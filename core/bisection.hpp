@@ -1,5 +1,20 @@
 #pragma once
-/// Local bisections of a groupoid. [G] A.1
+/// Local bisections B of a groupoid: sections b of alpha, b(q) an arrow from q, for which q -> B.q = beta(b(q)) is a
+/// local diffeomorphism of the objects.
+///
+/// On a groupoid, arrows alone do not translate arrows, since sources and targets must match; bisections do, and the
+/// product of the cotangent groupoid needs them.
+///
+///     const auto b = bisection_through(groupoid, g);
+///     const auto from_q = b(q);                     // the arrow of B from q; g itself where q = alpha(g)
+///     const auto back = b.inverse()(b.image(q));    // its inverse
+///
+/// Requires q near the centre, where b is defined. Returns arrows over the scalar of q.
+///
+/// Errors: `preimage`, `left` and `inverse` solve B.q = r by Newton's method and throw OutsideBisection where it does
+/// not converge.
+///
+/// Source: [G] A.1.
 
 #include <lagroid/core/algebroid.hpp>
 
@@ -47,7 +62,7 @@ template <Groupoid G, class Section> class Bisection {
 
   /// The object q with B.q = r, by Newton's method from the centre. Throws OutsideBisection.
   ///
-  /// Where r carries derivatives, those of q are found by going on: each step settles another order.
+  /// Where r has derivatives, a few more iterations give those of q: each is right in one order more.
   template <class Q> Q preimage(const Q& r) const {
     using S = ObjectScalar<G, Q>;
     constexpr int iterations = 20;

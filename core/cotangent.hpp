@@ -1,5 +1,18 @@
 #pragma once
-/// The cotangent groupoid T*G => A*G of a Lie groupoid, itself a groupoid of ours.
+/// The cotangent groupoid T*G => A*G of a Lie groupoid G => Q, itself a groupoid of ours: arrows are covectors p in
+/// T*_gG, objects are points (q, mu) of A*G.
+///
+/// It is a symplectic groupoid: steps of a discrete Lagrangian system are points of a Lagrangian submanifold of it, and
+/// what is proved of steps is proved there.
+///
+///     const CotangentGroupoid<Pair<1>> cotangent{};
+///     const DualPoint<Vector<double, 1>, double, 1> z{q, mu};
+///     const auto p = cotangent.tau(z, Vector<double, 2>(0.3, -1));  // a covector with source z
+///
+/// Requires a groupoid with local bisections and a chart of its objects (LieGroupoid supplies both where its objects
+/// are an open set of R^d). Returns covectors by their values on a basis of T_gG (TangentBasis). Errors are those of G.
+///
+/// Source: [G] 2.1 and Theorem A.2.
 
 #include <lagroid/core/groupoid.hpp>
 

@@ -1,11 +1,26 @@
 #pragma once
-/// The Lie groupoid interface.
+/// Lie groupoids G => Q: arrows g in G and objects q in Q, a source alpha and a target beta, a unit at every object, an
+/// inverse of every arrow, and a product g h of two arrows with beta(g) = alpha(h).
 ///
-/// A Lie groupoid G => Q ([G] Def. 2.1, 2.4) has arrows g in G and objects q in Q, a source alpha and a target beta, a
-/// unit at every object, an inverse of every arrow, and a product g h of two arrows with beta(g) = alpha(h).
-/// The fibre of its Lie algebroid AG at q is the tangent space of alpha^{-1}(q) at the unit; a *retraction*
-/// tau_q : A_qG -> alpha^{-1}(q), tau_q(0) = unit(q), parametrises the arrows near the unit by `dimension` numbers, and
-/// its derivative at 0 fixes the basis in which vectors of AG and momenta of A*G are written throughout.
+/// Pairs of points, Lie groups, group actions and products of these are all groupoids, so that a method written once
+/// for arrows serves particles, rigid bodies and rolling bodies alike.
+///
+/// The fibre A_qG of the Lie algebroid AG is the tangent space of alpha^{-1}(q) at the unit. A *retraction* tau_q :
+/// A_qG -> alpha^{-1}(q), tau_q(0) = unit(q), parametrises the arrows near the unit by `dimension` numbers; its
+/// derivative at 0 fixes the basis in which vectors of AG and momenta of A*G are written throughout.
+///
+///     const Pair<2> groupoid;
+///     const auto g = groupoid.tau(Vector<double, 2>(0, 0), Vector<double, 2>(1, 2));  // from (0, 0) to (1, 2)
+///     const auto square = groupoid.compose(g, groupoid.extend(groupoid.unit(groupoid.target(g)), w));
+///
+/// Requires of a groupoid of one's own: seven operations, listed at `LieGroupoid`, that satisfy the axioms;
+/// laws::groupoid_laws tests them. Returns, for arrows over a scalar S, arrows and objects over S.
+///
+/// Errors: `compose` throws NotComposable in checked builds (LAGROID_CHECKED) where beta(g) differs from alpha(h), and
+/// `require_initial_end` std::invalid_argument; nothing else throws. Where tau_inverse has no value, its numbers are
+/// not finite or those of another branch.
+///
+/// Source: [G] Def. 2.1, 2.4, 2.9.
 
 #include <lagroid/core/scalars/dual.hpp>
 #include <lagroid/core/scalars/hyper_dual.hpp>
@@ -82,7 +97,7 @@ template <class Derived, int Dimension> class LieGroupoid {
     return compose(moved, self().tau(self().target(g), b));
   }
 
-  /// The arrow g as an arrow over the scalar S, a constant if S carries derivatives.
+  /// The arrow g as an arrow over the scalar S, a constant if S has derivatives.
   template <class S, class A> auto cast(const A& g) const {
     return arrow_at<S>(coordinates_of_arrow(g).template cast<S>().eval());
   }
@@ -91,10 +106,19 @@ template <class Derived, int Dimension> class LieGroupoid {
     return object_at<S>(coordinates_of_object(q).template cast<S>().eval());
   }
 
-  /// The arrow tau(a)^{-1} g tau(b) with infinitesimals a, b: the `left` infinitesimals of the scalar M (HyperDual or
-  /// Jet), from number LeftOffset on, displace the end First; its `right` ones, from RightOffset on, the end Second.
-  /// Derived by composition; a groupoid that knows its translations in closed form supplies its own `seed` with this
-  /// signature (the law suites compare the two).
+  /// The arrow tau(a)^{-1} g tau(b) over the scalar M, with infinitesimals for a and b: a function evaluated on it
+  /// gives its derivatives with respect to displacements of the ends of g.
+  ///
+  /// M is a HyperDual, which has two sets of infinitesimals, left and right, or a Jet, where they are one set.
+  /// Component i of the displacement of the end First is the left infinitesimal LeftOffset + i, that of the end Second
+  /// the right infinitesimal RightOffset + i (both may be the same end). With n = dimension,
+  ///
+  ///     f(seed<HyperDual<double, n, n>, End::source, End::target>(g)).mixed()        d2f/dv dw at v = w = 0
+  ///     f(seed<Jet<double, 2 * n>, End::source, End::target, 0, n>(g)).gradient()    (df/dv, df/dw)
+  ///
+  /// of (v, w) -> f(tau(v)^{-1} g tau(w)). `seed_by_composition` uses the operations of the groupoid alone. A groupoid
+  /// that has its translations in closed form supplies a `seed` of this signature, which is faster; laws::groupoid_laws
+  /// compares the two.
   template <class M, End First, End Second, int LeftOffset, int RightOffset, class A>
   auto seed_by_composition(const A& g) const {
     Vector<M, Dimension> a = Vector<M, Dimension>::Constant(M(0));
@@ -110,14 +134,14 @@ template <class Derived, int Dimension> class LieGroupoid {
     return seed_by_composition<M, First, Second, LeftOffset, RightOffset>(g);
   }
 
-  /// g tau(w): the arrow with its target displaced by w. Derived by composition; a groupoid that knows a cheaper way
+  /// g tau(w): the arrow with its target displaced by w. Derived by composition; a groupoid that has a cheaper formula
   /// supplies its own, equal to round-off.
   template <class A, class V> A extend(const A& g, const V& w) const {
     return compose(g, self().tau(self().target(g), w));
   }
-  /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that the numbers in which g is
-  /// stored were too coarse to take, so that the caller can add it to the next w; zero where g's entries are rounded
-  /// as often up as down, as a turning matrix's are (the law "correcting an arrow" asks what thousands add up to).
+  /// g <- g tau(w), projected, for a w of the size of round-off. Returns the part of w that was lost when the entries
+  /// of g were rounded, so that the caller can add it to the next w; zero where entries are rounded up as often as
+  /// down, as those of a rotation matrix are (the law "correcting an arrow" tests the sum of thousands of corrections).
   template <class A, class V> V correct(A& g, const V& w) const {
     const A by = self().tau(self().target(g), w);
     g = self().project(compose(g, by));
@@ -131,7 +155,7 @@ template <class Derived, int Dimension> class LieGroupoid {
   }
 
   /// Coordinates of the arrows near the unit in which a trajectory is extrapolated, and their inverse: tau unless the
-  /// groupoid knows a cheaper smooth chart of its source fibres.
+  /// groupoid has a cheaper smooth chart of its source fibres.
   template <class A> auto chart(const A& g) const { return self().tau_inverse(g); }
   template <class Q, class V> auto arrow_in_chart(const Q& q, const V& v) const { return self().tau(q, v); }
 
@@ -214,7 +238,7 @@ template <class Derived, int Dimension> class LieGroupoid {
   }
 
   /// For each direction of the source fibre, the size of the coordinates that move along it: round-off in the arrow is
-  /// this times the unit round-off. The largest coordinate by default; products answer factor by factor.
+  /// this times the unit round-off. The largest coordinate by default; that of products is taken factor by factor.
   template <class A> auto coordinate_scale(const A& g) const {
     const auto x = coordinates_of_arrow(g);
     using V = Vector<typename decltype(x)::Scalar, Dimension>;
@@ -267,7 +291,7 @@ template <class Derived, int Dimension> class LieGroupoid {
     throw NotComposable(message.str());
   }
   /// Throws std::invalid_argument where the initial arrow of a trajectory ends elsewhere than at its initial object.
-  /// What is not finite passes: the first step's status tells of it.
+  /// An arrow or object that is not finite is accepted here: the first step returns a status that reports it.
   template <class A, class Q> void require_initial_end(const A& configuration, const Q& object) const {
     if (const double gap = end_gap(configuration, object); gap > largest_end_gap)
       throw std::invalid_argument("configuration: the initial arrow ends " + std::to_string(gap) +

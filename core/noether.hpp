@@ -1,5 +1,19 @@
 #pragma once
-/// Noether symmetries of a discrete constrained Lagrangian system and their constants of the motion. [G] 4.2
+/// Noether symmetries of a discrete constrained Lagrangian system: sections X of AG, with functions f on Q, for which
+/// <mu, X(q)> + f(q) is a constant of the motion.
+///
+/// A declared symmetry is a quantity of the ledger, conserved up to round-off; `examine` tests by samples whether a
+/// candidate is one.
+///
+///     const Symmetry<Sys> shift("momentum", [](const auto&) { return Vector<double, 2>(1, 0); });
+///     const SymmetryVerdict verdict = examine<Sys>(system, shift, samples);
+///     const bool kept = verdict.kind == SymmetryKind::symmetric;
+///
+/// Requires samples on Sigma_L, steps that satisfy the constraints: many and generic, because a candidate that passes
+/// at all of them is accepted. Returns the kind and the worst defect, relative to the size of the terms; infinite where
+/// a term is not a number. Nothing throws.
+///
+/// Source: [G] 4.2, Def. 4.8, Theorem 4.9.
 
 #include <lagroid/core/derivatives/two_sided.hpp>
 #include <lagroid/core/member_name.hpp>
@@ -67,7 +81,7 @@ namespace detail {
 LAGROID_MEMBER_NAME(NamesQuantities, quantities);
 LAGROID_MEMBER_NAME(NamesSymmetries, symmetries);
 }  // namespace detail
-/// Whether these, where they are there, are those.
+/// Whether members of these names, where there are any, have these forms.
 template <class Sys> inline constexpr bool quantities_fit = HasQuantities<Sys> || !detail::NamesQuantities<Sys>;
 template <class Sys> inline constexpr bool symmetries_fit = HasSymmetries<Sys> || !detail::NamesSymmetries<Sys>;
 
@@ -124,8 +138,8 @@ struct SymmetryVerdict {
   double boundary_defect = 0;
 };
 
-/// Asks points of Sigma_L: `samples` must satisfy the constraints, and should be many and generic, because a candidate
-/// that passes at them is believed. None is no symmetry.
+/// Compares the two sides of Def. 4.8 at `samples`, which must satisfy the constraints. `none` where there are no
+/// samples, or a defect exceeds `tolerance`.
 template <DiscreteSystem Sys>
 SymmetryVerdict examine(const Sys& system, const Symmetry<Sys>& symmetry, std::span<const Step<Sys>> samples,
                         double tolerance = 1e-10) {

@@ -1,5 +1,18 @@
 #pragma once
-/// The numbers that a computation goes on from.
+/// A list of numbers from which a computation goes on with the same bits: `object.serialize(archive)` visits its
+/// numbers in a fixed order, and writes them or reads them.
+///
+/// One function does both, so that what is written and what is read cannot differ.
+///
+///     NumberArchive written;
+///     written(time, velocity);
+///     NumberArchive read(written.numbers());
+///     read(time, velocity);
+///
+/// Requires fields that are numbers, flags, Eigen matrices and arrays of fixed size, or that have a `serialize`; whole
+/// numbers are kept as doubles, exact up to 2^53.
+///
+/// Errors: std::out_of_range where an archive is read beyond its end.
 
 #include <lagroid/core/groupoid.hpp>
 
@@ -12,9 +25,7 @@
 
 namespace lagroid {
 
-/// What a computation must remember to go on with the same bits, as one list of numbers: `object.serialize(archive)`
-/// visits them in a fixed order, and writes them to an archive, or takes them from one that is read. Whole numbers and
-/// flags are kept as numbers, exact up to 2^53.
+/// Written to when it is made empty, read from when it is made of numbers.
 class NumberArchive {
  public:
   /// To be written.

@@ -1,5 +1,19 @@
 #pragma once
 /// The parameters of a system, declared once: scenes, listings, Python and tables read them from here.
+///
+/// A parameter is a member of the system with a name, a unit, a meaning and a rule, so that a wrong value is refused in
+/// words wherever it was given.
+///
+///     static auto parameters() {
+///       return std::tuple(parameter("mass", &Pendulum::bob_mass, "kg", "of the bob", positive),
+///                         choice("quadrature", &Pendulum::quadrature, quadrature_words, "of the potential"));
+///     }
+///
+/// Requires a public static function of no arguments that returns such a tuple; `for_each_parameter` visits it in
+/// order. Default values are those of the system's constructor. Values are checked by whoever reads them; `refusal_of`
+/// returns why a combination of them is refused, or nothing.
+///
+/// Errors: a `parameters` or `refused` of another form does not compile. Nothing throws.
 
 #include <lagroid/core/member_name.hpp>
 
@@ -14,7 +28,7 @@
 
 namespace lagroid {
 
-/// What a number must satisfy, with the words to say so.
+/// A condition on a number, and the words for it in messages.
 struct NumberRule {
   std::string_view words;
   bool (*holds)(double);
@@ -44,14 +58,7 @@ template <class Owner, class Enum, std::size_t N> struct Choice {
   std::string_view meaning;
 };
 
-/// A system declares its parameters by
-///
-///     static auto parameters() {
-///       return std::tuple(parameter("mass", &Pendulum::bob_mass, "kg", "of the bob", positive),
-///                         choice("quadrature", &Pendulum::quadrature, quadrature_words, "of the potential"));
-///     }
-///
-/// in the order in which they are listed to users. What it is without being told is what its constructor says.
+/// One declaration of `parameters()`, which lists them in the order in which users read them.
 template <class Owner, class Member>
 constexpr Parameter<Owner, Member> parameter(std::string_view name, Member Owner::*member, std::string_view unit,
                                              std::string_view meaning, const NumberRule& rule = any_number) {
@@ -106,9 +113,11 @@ template <class Sys, class Visit> void for_each_parameter(const Visit& visit) {
     std::apply([&](const auto&... each) { (visit(each), ...); }, Sys::parameters());
 }
 
-/// Parameters that are allowed one by one, but not together. A system says so by
+/// Why parameters that are allowed one by one are not allowed together. A system that has such parameters writes
 ///
 ///     std::optional<Refusal> refused() const
+///
+/// which returns nothing where they are allowed.
 struct Refusal {
   std::vector<std::string_view> parameters;  ///< the first of them that was given is to blame
   std::string why;

@@ -1,5 +1,15 @@
 #pragma once
-/// Quantities a system promises to keep, and the trajectory points they are evaluated on.
+/// Quantities I(z_k) of a trajectory, each with what the method promises of it: conserved up to round-off, or bounded
+/// in a band that shrinks with the step.
+///
+/// A ledger compares the promise with the run: drift where it promised none is a fault of the method, the system or the
+/// code.
+///
+///     const Quantity<Sys> energy{"energy", {"H"}, Promise::bounded, /*needs_step*/ false,
+///                                [](const auto& p, double* out) { *out = p.state.momentum.squaredNorm() / 2; }};
+///
+/// Requires that `evaluate` writes as many numbers as there are components and, unless `serialize` is set, depends on
+/// the point alone. A quantity that needs the step is evaluated from k = 1 on. Nothing here throws.
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/core/system.hpp>

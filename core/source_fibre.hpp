@@ -1,5 +1,16 @@
 #pragma once
-/// Source fibres as the Newton iterations see them.
+/// The source fibre of an arrow z in the coordinates of the retraction: y = z tau(v), v in R^n. On a Lie group it is
+/// the group.
+///
+/// Newton's method for an equation F(y) = 0 on a group or a groupoid works in these coordinates, and needs nothing else
+/// of it.
+///
+///     const GroupoidFibre<SO3> fibre(SO3::unit(Vector<double, 0>()));
+///     const auto y = fibre.at(Vector<double, 3>(0.1, 0, 0));  // exp of a rotation vector
+///     const auto v = fibre.coordinates(y);                    // (0.1, 0, 0); a std::optional
+///
+/// Requires of a fibre of one's own the functions listed at `SourceFibre`; sizes may be fixed or chosen at run time.
+/// `coordinates` returns nothing where y is out of reach of the retraction. Nothing throws.
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/groupoid.hpp>
@@ -12,8 +23,7 @@
 
 namespace lagroid {
 
-/// The source fibre of an arrow z in the coordinates of the retraction, y = z tau(v); on a Lie group, the group itself.
-/// Sizes may be fixed or chosen at run time.
+/// What Newton's method requires of a source fibre y = z tau(v):
 ///
 ///     fibre.centre()         z
 ///     fibre.at(v)            z tau(v)
@@ -22,7 +32,7 @@ namespace lagroid {
 ///     fibre.around(y)        the fibre again, y its centre
 ///     fibre.dtau(v)          the matrix of dtau_v(u) = d/dt tau(v)^{-1} tau(v + t u)
 ///     fibre.dtau_inverse(v)  its inverse
-///     fibre.norm(u)          by which elements of the algebra are judged
+///     fibre.norm(u)          the norm of elements of the algebra, for tests of convergence
 ///
 /// and, for truncated series and for automatic differentials (solvers/newton/lie_differentials.hpp),
 ///

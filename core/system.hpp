@@ -1,5 +1,24 @@
 #pragma once
-/// Discrete constrained Lagrangian systems (G, N, L). [G] Def. 3.2
+/// Discrete constrained Lagrangian systems (G, N, L): a groupoid G => Q, a discrete Lagrangian L : G -> R, and the
+/// arrows N = { phi(g) = 0, C(alpha(g)) = 0, C(beta(g)) = 0 } that the constraints allow. [G] Def. 3.2
+///
+/// A mechanical system or a control problem is stated by one class; its derivatives are automatic, and steps, boundary
+/// values and ledgers follow from it.
+///
+///     struct Oscillator : System<Oscillator, Pair<1>> {
+///       double h = 0.1;
+///       template <class S> S lagrangian(const Arrow<S>& g) const {
+///         const Vector<S, 1> middle = (g.source + g.target) * 0.5;
+///         return (g.target - g.source).squaredNorm() * (0.5 / h) - middle.squaredNorm() * (0.5 * h);
+///       }
+///     };
+///
+/// Requires functions that are smooth, const, and templates on the scalar; the type of an intermediate vector must be
+/// written out (`Vector<S, 1>`, not `auto`, which would keep an expression of Eigen that refers to numbers no longer
+/// there).
+///
+/// Errors: a member that does not fit what `System` names does not compile, and the message names it. At run time
+/// nothing here throws.
 
 #include <lagroid/core/groupoid.hpp>
 #include <lagroid/core/member_name.hpp>
@@ -34,8 +53,9 @@ template <class S, int N> struct Forces {
   Vector<S, N> target;
 };
 
-/// The members of a system are those that its base is told of, with the arguments and results that `System` names: what
-/// is there but does not fit would otherwise be passed over without a word. Does not compile where that is not so.
+/// Requires that the members of a system have the arguments and results that `System` names, and that there are as many
+/// constraints as its template arguments count. Does not compile otherwise: methods look for optional members by name
+/// and form, and would ignore one that does not fit.
 template <class Sys> void require_members_to_fit();
 
 /// Base of every system: a groupoid G, a discrete Lagrangian L : G -> R and constraints that cut out N.
@@ -50,7 +70,7 @@ template <class Sys> void require_members_to_fit();
 /// Object constraints C restrict to the full subgroupoid over C^{-1}(0) (holonomic constraints); their multipliers live
 /// on the objects between arrows. Multipliers enter as L + <lambda, phi> + <lambda, C> ([G]'s sign).
 ///
-/// A system that is not variational says so (docs/nonholonomic.md):
+/// A system that is not variational declares it (docs/nonholonomic.md):
 ///
 ///     static constexpr auto principle = Principle::nonholonomic      what phi restricts; vakonomic by default
 ///     Forces<S, n> forces(const Arrow<S>& g) const                   a template: discrete forces, see Forces
@@ -79,8 +99,8 @@ template <class Derived, class G, int ArrowConstraints = 0, int ObjectConstraint
 
   using Multipliers = Vector<double, constraints>;
 
-  /// Here the compiler sees a system whole, whatever is then made of it: what does not fit is told in one sentence.
-  /// (Derivatives ask again, for classes derived from systems.)
+  /// Here Derived is complete, so that its members can be checked. (Derivatives check them again, for classes derived
+  /// from systems.)
   System() { require_members_to_fit<Derived>(); }
 
   [[no_unique_address]] G groupoid;
@@ -185,7 +205,7 @@ concept HasTimeStep = requires(Sys& system) {
   system.h = 1.0;
 };
 
-/// Whether there is a time step: a member h, or what a system says of which the sizes alone are known (SizedSystem).
+/// Whether there is a time step: a member h or, for a SizedSystem, that of the system it stands for.
 template <class Sys> bool has_time_step(const Sys& system) {
   if constexpr (requires { system.has_time_step(); }) {
     return system.has_time_step();
@@ -212,11 +232,12 @@ template <class Sys> void set_time_step(Sys& system, double h) {
   }
 }
 
-/// A system that writes paths of its own for guesses to begin with in the place of straight lines, near its
-/// constraints:
+/// A system that writes paths near its constraints, from which solvers of boundary values start in place of straight
+/// lines:
 ///
-///     std::vector<Arrow<double>> path(const Arrow<double>& boundary, long steps) const        of the product
-///     `boundary`; none where it has none after all
+///     std::vector<Arrow<double>> path(const Arrow<double>& boundary, long steps) const
+///
+/// returns `steps` arrows whose product is `boundary`, or an empty vector where it has no such path.
 template <class Sys>
 concept HasPath = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary) {
   { system.path(boundary, 1L) } -> std::same_as<std::vector<ArrowOf<typename Sys::GroupoidType>>>;
@@ -270,7 +291,7 @@ concept CountsAreNumbers = requires {
 
 }  // namespace detail
 
-/// Whether there is a constraint, of either kind, exactly where the base is told of one, with as many components.
+/// Whether there is a constraint, of either kind, exactly where `System` counts one, with as many components.
 template <class Sys>
 inline constexpr bool arrow_constraint_fits =
     Sys::arrow_constraints == 0 ? !detail::SpeaksOfConstraint<Sys> : detail::HasConstraint<Sys>;
@@ -283,7 +304,7 @@ inline constexpr bool forces_fit = !detail::SpeaksOfForce<Sys> && (Forced<Sys> |
 template <class Sys> inline constexpr bool path_fits = HasPath<Sys> || !detail::NamesPath<Sys>;
 
 /// Whether every optional member that the system has is one that will be used: a member of the right name that is not
-/// const, or does not take or return what it should, would otherwise be passed over without a word.
+/// const, or does not take or return what it should, would otherwise be ignored.
 template <class Sys>
 inline constexpr bool optional_members_fit = (HasAnalyticDerivatives<Sys> || !detail::NamesTwoSided<Sys>)&&(
     HasAnalyticGradients<Sys> ||

@@ -1,5 +1,15 @@
 #pragma once
-/// Fixed-size linear algebra in an arbitrary scalar S.
+/// Vectors and matrices of fixed size over a scalar S, and the functions that a formula needs to serve every S.
+///
+/// A formula written once for any S gives numbers (double), their derivatives (Jet, HyperDual, Dual, Series) and the
+/// numbers of several members of an ensemble at once (Batch).
+///
+///     template <class S> S positive_part(const Vector<S, 2>& q) {
+///       return select(value_of(q(0)) > 0, q(0), S(0));
+///     }
+///
+/// `select` takes the place of a branch: it evaluates both values and returns one of them, for a Batch lane by lane.
+/// Nothing here throws.
 
 #include <Eigen/Core>
 

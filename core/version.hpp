@@ -1,5 +1,6 @@
 #pragma once
-/// The version of the library. CMake, packages and programs read it here; docs/stability.md says what it promises.
+/// The version of the library, as three numbers, one number and words. CMake, packages and programs read it here;
+/// docs/stability.md states what it promises.
 
 #define LAGROID_VERSION_MAJOR 0
 #define LAGROID_VERSION_MINOR 3

@@ -1,5 +1,15 @@
 #pragma once
-/// A system whose type is not known when it is asked: arrows, objects and derivatives as flat numbers.
+/// A discrete constrained Lagrangian system (G, N, L) behind virtual functions: arrows, objects and derivatives are
+/// lists of numbers.
+///
+/// What is compiled against it is compiled once, and not again for every system.
+///
+///     const std::unique_ptr<AnySystem> any = std::make_unique<AnySystemOf<Sys>>(system);
+///     std::vector<double> g(std::size_t(any->sizes().arrow_coordinates));
+///     any->tau(q.data(), v.data(), g.data());
+///
+/// Requires lists of the lengths that `sizes()` gives. Results are written to the last arguments, to the bit those of
+/// the typed system. Errors are those of the system and its groupoid.
 
 #include <lagroid/core/groupoid.hpp>
 
@@ -40,16 +50,14 @@ struct SecondDerivativesTo : TwoSidedTo {
   double* target_hessian;  // n x n
 };
 
-/// A discrete constrained Lagrangian system (G, N, L) seen through numbers: what algorithms are compiled against that
-/// are compiled once, and not again for every system. Any system becomes one by `AnySystemOf` (any_system_of.hpp).
+/// The interface. Any system becomes one by `AnySystemOf` (any_system_of.hpp).
 ///
 /// Arrows are lists of `sizes().arrow_coordinates` numbers, objects of `object_coordinates`, vectors of AG and momenta
 /// of `dimension`, multipliers of `constraints()`; each function does what that of the same name does for the typed
 /// system, to the bit. A result may be written over an argument. Nothing here allocates but `clone` and `path`, and
 /// what is const may be called from several threads at once.
 ///
-/// Derivatives are of the arrow alone. What is asked of a system later, its derivatives by parameters, is another
-/// virtual function beside these.
+/// Derivatives are those with respect to the arrow alone.
 class AnySystem {
  public:
   explicit AnySystem(const SystemSizes& sizes) : sizes_(sizes) {}
@@ -59,7 +67,7 @@ class AnySystem {
   /// The same system, with a time step of its own.
   virtual std::unique_ptr<AnySystem> clone() const = 0;
 
-  // ---- the groupoid: core/groupoid.hpp says what each is
+  // ---- the groupoid, as in core/groupoid.hpp
 
   virtual std::string groupoid_name() const = 0;
   virtual void source(const double* g, double* q) const = 0;

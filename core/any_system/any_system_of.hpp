@@ -1,5 +1,11 @@
 #pragma once
-/// Any system, seen through numbers.
+/// Any typed system as an AnySystem.
+///
+///     const AnySystemOf<Sys> any(system);  // holds a copy
+///     const double value = any.lagrangian(g.data());
+///
+/// Every function calls that of the system or its groupoid, so that what they supply in place of a default is used.
+/// Errors are theirs.
 
 #include <lagroid/core/any_system/any_system_sized.hpp>
 #include <lagroid/core/capabilities/loops.hpp>
@@ -10,7 +16,7 @@
 
 namespace lagroid {
 
-/// `Sys` as an AnySystem. Everything that the system or its groupoid writes in place of a default is asked of them.
+/// `Sys` as an AnySystem.
 template <DiscreteSystem Sys>
 class AnySystemOf final : public AnySystemSized<Sys::dimension, Sys::arrow_constraints, Sys::object_constraints> {
  public:

@@ -1,13 +1,19 @@
 #pragma once
-/// An AnySystem of which the compiler knows the sizes.
+/// An AnySystem whose sizes are template arguments: its derivatives are returned as `Gradients`, `TwoSided` and
+/// `SecondDerivatives`, without copies of numbers.
+///
+/// Solvers that are compiled for each size of system, and not for each system, use it.
+///
+///     const std::unique_ptr<AnySystemSized<2, 0, 0>> any = std::make_unique<AnySystemOf<Sys>>(system);
+///     const TwoSided<2, 0> d = any->two_sided_at(g.data(), Vector<double, 0>());
 
 #include <lagroid/core/any_system/any_system.hpp>
 #include <lagroid/core/derivatives/second_derivatives.hpp>
 
 namespace lagroid {
 
-/// An AnySystem with n = `N` and so many constraints: its derivatives are handed out as they are, without copying
-/// numbers (which cost a boundary iteration of the plate-ball 4 %).
+/// An AnySystem with n = `N` and so many constraints: its derivatives are returned without copying numbers
+/// (which cost a boundary iteration of the plate-ball 4 %).
 template <int N, int ArrowConstraints, int ObjectConstraints> class AnySystemSized : public AnySystem {
  public:
   static constexpr int n = N;

@@ -1,5 +1,13 @@
 #pragma once
-/// A system of which the compiler knows the sizes alone.
+/// A DiscreteSystem whose type holds its sizes alone, and which stands for any system of these sizes.
+///
+/// A solver that is a template of systems is then compiled once for all systems of equal sizes.
+///
+///     const auto sized = by_sizes(system);  // a copy, of type SizedSystemOf<Sys>
+///     const double value = sized.lagrangian(g);  // g: the coordinates of an arrow, and zeros up to 16, 32, ...
+///
+/// Requires a variational system. Derivatives, and whatever else the system supplies, are its own to the bit; errors
+/// too.
 
 #include <lagroid/core/any_system/any_system_of.hpp>
 
@@ -13,7 +21,7 @@
 namespace lagroid {
 
 /// The groupoid of a SizedSystem: arrows and objects are the coordinates of those of another groupoid, followed by
-/// zeros up to `Room` of them. It asks an AnySystem, which its owner keeps.
+/// zeros up to `Room` of them. It calls an AnySystem, which its owner keeps.
 template <int N, int Room> class SizedGroupoid : public LieGroupoid<SizedGroupoid<N, Room>, N> {
  public:
   template <class S> using Arrow = Vector<S, Room>;
@@ -77,7 +85,7 @@ template <int N, int Room> class SizedGroupoid : public LieGroupoid<SizedGroupoi
 
 /// Any system with n = `N`, so many constraints and at most `Room` coordinates of an arrow or an object, as a
 /// DiscreteSystem: what a solver makes of it serves all systems of these sizes, whatever they are. Derivatives, and all
-/// else that a system may write itself, are those of the system that is asked, to the bit.
+/// else that a system may write itself, are those of the system it holds, to the bit.
 template <int N, int ArrowConstraints, int ObjectConstraints, int Room>
 class SizedSystem : public System<SizedSystem<N, ArrowConstraints, ObjectConstraints, Room>, SizedGroupoid<N, Room>,
                                   ArrowConstraints, ObjectConstraints> {
@@ -97,7 +105,7 @@ class SizedSystem : public System<SizedSystem<N, ArrowConstraints, ObjectConstra
   SizedSystem& operator=(SizedSystem&&) noexcept = default;
   ~SizedSystem() = default;
 
-  /// What is asked.
+  /// The system it holds.
   const Asked& asked() const { return *system_; }
 
   double lagrangian(const Coordinates& g) const { return system_->lagrangian(g.data()); }
@@ -163,8 +171,8 @@ template <DiscreteSystem Sys>
 using SizedSystemOf = SizedSystem<Sys::dimension, Sys::arrow_constraints, Sys::object_constraints,
                                   coordinate_room<typename Sys::GroupoidType>>;
 
-/// The system, of which the algorithm that it is given to knows the sizes alone. (Impulses beside those of L, of forces
-/// and reactions, are in its derivatives; but SizedSystem does not say what they are.)
+/// A copy of the system, for algorithms that are compiled for its sizes. (It must be variational: forces and reactions
+/// would be in its derivatives, but SizedSystem has no functions that return them.)
 template <DiscreteSystem Sys>
 requires Variational<Sys> SizedSystemOf<Sys> by_sizes(const Sys& system) {
   return SizedSystemOf<Sys>(std::make_unique<AnySystemOf<Sys>>(system));

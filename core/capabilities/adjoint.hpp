@@ -1,5 +1,13 @@
 #pragma once
-/// The adjoint of a discretisation.
+/// The adjoint of a discretisation: Phi*_h = (Phi_{-h})^{-1}, of the Lagrangian L*(g, h) = -L(g^{-1}, -h).
+///
+/// A step followed by its adjoint, Phi_{h/2} o Phi*_{h/2}, is symmetric, and so of even order.
+///
+///     WithAdjoint<Sys> both(system);
+///     both.adjoint = true;
+///     const double value = both.lagrangian(g, both.h);  // -L(g^{-1}, -h)
+///
+/// Requires a system that takes the step size as an argument (StepDependent). Nothing throws.
 
 #include <lagroid/core/capabilities/stepped.hpp>
 

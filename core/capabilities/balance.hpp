@@ -1,5 +1,17 @@
 #pragma once
-/// Quantities that change, less the change that is accounted for: what a dissipative or nonholonomic system promises.
+/// Quantities that change by a known amount at each step: I(z_k) - gain(g_1) - ... - gain(g_k), which is constant.
+///
+/// A dissipative or nonholonomic system keeps no energy or momentum, but a balance, and a ledger can watch that.
+///
+///     std::vector<Quantity<Sys>> quantities() const {
+///       return {energy_balance(*this), momentum_balance(*this, symmetries()[0])};
+///     }
+///
+/// Requires that the quantity is evaluated at every point of a trajectory in order, from index 0 on; it is not a number
+/// after a point was left out. `energy_balance` requires discrete forces, a time step and `energy(state)`. Nothing
+/// throws.
+///
+/// Source: Cortes & Martinez 2001 and Iglesias et al. 2008 for the discrete nonholonomic momentum equation.
 
 #include <lagroid/core/noether.hpp>
 

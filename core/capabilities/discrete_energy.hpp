@@ -1,5 +1,14 @@
 #pragma once
-/// The discrete energy of an arrow.
+/// The discrete energy of an arrow, E_d = -d(L + <lambda, phi>)/dh.
+///
+/// It is the energy that a step with free time keeps, where that of the continuous system oscillates.
+///
+///     const double energy = discrete_energy(system, step, /*start*/ 0.0, system.h);
+///
+/// Requires a variational system that takes its step, or its start and step, as arguments (Timed).
+/// `discrete_energy_quantity` returns it for a ledger. Nothing throws.
+///
+/// Source: [G] Example 6.1, with the multiplier's term that the printed equation lacks.
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/quantity.hpp>
@@ -23,9 +32,9 @@ template <Timed Sys> double discrete_energy(const Sys& system, const Step<Sys>& 
   return energy;
 }
 
-/// E_d as a quantity of trajectory points. Where it is kept, its round-off is relative to the power of the momentum,
-/// were it to carry the arrow's coordinates along in one step: far from the origin, velocities lose digits. Where it is
-/// bounded, its size is that of its terms: the momentum's power along the arrow is that of the kinetic one.
+/// E_d as a quantity of trajectory points. Its round-off is relative to |E_d| and, where it is conserved, |mu| times
+/// the size of the arrow's coordinates over the step, since far from the origin velocities lose digits; where it is
+/// bounded, the momentum times the displacement over the step, the size of its kinetic term.
 template <Timed Sys> Quantity<Sys> discrete_energy_quantity(const Sys& system, Promise promise) {
   using Point = TrajectoryPoint<Sys>;
   return {"discrete energy E_d",

@@ -1,5 +1,12 @@
 #pragma once
-/// How the paths of a groupoid can wind.
+/// Loops of a groupoid's source fibres: paths from one arrow to another that differ by whole turns.
+///
+/// A boundary value has a solution for each number of turns; a search that multiplies its first guesses by loops finds
+/// them.
+///
+///     const auto g = loop_of(system, q, axis, Eigen::VectorXd::Constant(1, 0.5));  // half of a turn about the axis
+///
+/// Requires `loop_count(system)` numbers of turns. Returns the unit at q where they are integers. Nothing throws.
 
 #include <lagroid/core/groupoid.hpp>
 #include <lagroid/core/member_name.hpp>
@@ -8,7 +15,7 @@
 
 namespace lagroid {
 
-/// The number of loops that X, a groupoid or a system, says there are; zero where it says nothing.
+/// The number of loops that X, a groupoid or a system, declares; zero where it declares none.
 template <class X> constexpr int loops_of() {
   if constexpr (requires { X::loops; }) {
     return X::loops;
@@ -24,9 +31,10 @@ template <class X> constexpr int loops_of() {
 ///         const Object<double>& q, const Vector<double, dimension>& axis, const Vector<double, loops>& turns
 ///
 /// unit(q) where all turns are integers, and smooth in them, so that t -> loop(q, axis, t k) is a closed curve for
-/// integers k. `axis` is any vector of A_qG: it tells loops of the same number of turns from one another, as rotations
-/// about different axes. On a group they are one-parameter subgroups through the kernel of exp. A system writes its own
-/// where what is to be gone around is no matter of the groupoid: the centre of attraction in the plane.
+/// integers k. `axis` is any vector of A_qG: it distinguishes loops of the same number of turns, as rotations about
+/// different axes. On a group they are one-parameter subgroups through the kernel of exp. A system writes its own
+/// where the obstacle that paths go around belongs to it and not to the groupoid, as a centre of attraction in the
+/// plane.
 template <class X>
 concept Winding = loops_of<X>()
 > 0;
@@ -41,7 +49,7 @@ concept HasLoop = requires(const Sys& system, const ObjectOf<typename Sys::Group
   { system.loop(q, axis, turns) } -> std::convertible_to<ArrowOf<typename Sys::GroupoidType>>;
 };
 
-/// Who says how the paths of a system wind: the system itself, or else its groupoid.
+/// The object that has the loops of a system: the system itself, or else its groupoid.
 template <class Sys> const auto& winder(const Sys& system) {
   if constexpr (Winding<Sys>) {
     return system;
@@ -54,7 +62,7 @@ inline constexpr int windings = Winding<Sys> ? loops_of<Sys>() : loops_of<typena
 
 }  // namespace detail
 
-/// In how many loops the paths of a system can wind. (A SizedSystem knows it when it runs.)
+/// The number of loops in which the paths of a system can wind, for a SizedSystem a number of its run time.
 template <class Sys> int loop_count(const Sys& system) {
   if constexpr (requires { system.loop_count(); }) {
     return system.loop_count();
@@ -77,7 +85,7 @@ auto loop_of(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q,
   }
 }
 
-/// Whether a system that says how its paths wind, in part, says all of it.
+/// Whether a system that has one of `loops` and `loop` has both.
 template <class Sys> constexpr bool loops_and_loop_fit() {
   if constexpr (Winding<Sys>) {
     return detail::HasLoop<Sys>;

@@ -1,5 +1,14 @@
 #pragma once
-/// Systems that also know the continuous motion which they discretise.
+/// The continuous motion that a system discretises, as a vector field on A*G: q' = rho(X) with X = dH/dmu, and mu'.
+///
+/// Runge-Kutta methods step along it; steps of the discrete Lagrangian do not need it.
+///
+///     Rates<Pair<1>> rates(const State<Pair<1>>& z) const { return {z.momentum, -z.object}; }
+///
+/// for H = (p^2 + q^2) / 2.
+///
+/// Requires a system with a time step `h`. Returns the field in the basis of A_qG. `rates_fit` is false for a member of
+/// this name and another form.
 
 #include <lagroid/core/system.hpp>
 

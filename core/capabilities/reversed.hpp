@@ -1,5 +1,13 @@
 #pragma once
-/// A system run backwards.
+/// A system run backwards: L(g^{-1}) with the constraints on g^{-1}.
+///
+/// A step of it from (q', -mu') leads to (q, -mu) where a step of the system leads from (q, mu) to (q', mu'): a test of
+/// solvers, and a way back.
+///
+///     const Reversed<Sys> backwards(system);
+///     const double value = backwards.lagrangian(g);  // L(g^{-1})
+///
+/// Requires a variational system (else it does not compile). Nothing throws.
 
 #include <lagroid/core/system.hpp>
 

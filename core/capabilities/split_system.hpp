@@ -1,5 +1,17 @@
 #pragma once
-/// Systems whose energy is a sum of parts that can be integrated in closed form.
+/// Systems whose energy is a sum H = H_0 + ... + H_{k-1} of parts that can be integrated in closed form.
+///
+/// Compositions of the exact flows of the parts are explicit symplectic methods of any order.
+///
+///     static constexpr int parts = 2;  // kinetic, then potential
+///     template <int I, class S>
+///     FlowOf<Pair<1>, S> flow(double t, const Vector<S, 1>& q, const Vector<S, 1>& p) const {
+///       if constexpr (I == 0) return {{q, q + p * t}, p * 0.0};
+///       return {{q, q}, q * -t};
+///     }
+///
+/// Requires flows that are exact, for t of either sign, on a system without forces and arrow constraints (see
+/// `SplitSystem`). Returns the arrow along which a flow leads and the change of the momentum. Nothing throws.
 
 #include <lagroid/core/system.hpp>
 

@@ -1,5 +1,16 @@
 #pragma once
-/// Systems known for every step size, and systems that depend on time.
+/// Systems known for every step size, L(g, h), and systems that depend on time, L(g, t, h).
+///
+/// Steps of varying size, composition methods, free time and driven motions need the step, or its start, as an
+/// argument.
+///
+///     template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
+///       return (g.target - g.source).squaredNorm() * 0.5 / step;
+///     }
+///     template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
+///
+/// Requires T = double and T = S, negative steps too, and a member `h` (and `time`, for a system that depends on it).
+/// Such functions of another form fail `step_arguments_fit` or `start_arguments_fit`. Nothing throws.
 
 #include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/core/system.hpp>
@@ -55,7 +66,7 @@ concept SpeaksOfStart = requires(Sys& system, const ArrowOf<typename Sys::Groupo
   system.constraint(g, start, step);
 };
 
-/// Whether these functions bear a step (and a start) that carries derivatives, beside arrows that do.
+/// Whether these functions take a step (and a start) with derivatives, beside arrows that have them.
 using SteppedScalar = Jet<double, 1>;
 template <class Sys, class... Times>
 concept TakesTimes = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType, SteppedScalar>& g,

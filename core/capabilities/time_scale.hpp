@@ -1,5 +1,15 @@
 #pragma once
-/// Systems that know how fast they move.
+/// Systems that declare a time scale sigma(q, mu), to which steps are to be proportional, by its rate d log sigma / dt.
+///
+/// Adaptive steps that follow a smooth, reversible function of the state keep the long-time behaviour of symplectic
+/// methods.
+///
+///     double time_scale_rate(const State<Pair<2>>& z) const {
+///       return 1.5 * z.object.dot(z.momentum) / z.object.squaredNorm();
+///     }
+///
+/// is that of sigma = |q|^{3/2}, the time scale of a fall towards a centre. Requires that sigma is the same, and its
+/// rate the opposite, for the reversed motion. `time_scale_fits` is false for a member of this name and another form.
 
 #include <lagroid/core/system.hpp>
 

@@ -1,5 +1,16 @@
 #pragma once
-/// Frames of a whole arrow: what a groupoid may supply so that one pass gives the derivatives at both ends.
+/// Frames e_1 ... e_d of the tangent space T_gG of a whole arrow, d <= 2n, from which derivatives at both ends follow
+/// by a matrix product.
+///
+/// Displacing both ends of an arrow costs 2n infinitesimals; on a group they are displacements of one another, and a
+/// frame of n does.
+///
+///     if constexpr (HasArrowFrame<G>) {
+///       const auto jet = groupoid.template frame_jet<Jet<double, G::arrow_dimension>>(g);  // one pass for both ends
+///     }
+///
+/// Requires nothing of a groupoid: a frame is optional, and `arrow_dimension_of` is 0 without one. laws::groupoid_laws
+/// tests it to second order.
 
 #include <lagroid/core/groupoid.hpp>
 

@@ -1,5 +1,14 @@
 #pragma once
-/// Derivatives of functions over any scalar, over that scalar: one dual number for each direction.
+/// Derivatives of functions over any scalar, exact, one dual number for each direction: df/dt (x + t v), gradients,
+/// Jacobians.
+///
+/// They nest, since the scalar may itself have derivatives; for many directions of one function, Jet is faster.
+///
+///     const auto f = [](const auto& x) { return x(0) * x(0) + x(1); };
+///     const Vector<double, 2> df = gradient_of(f, Vector<double, 2>(1, 2));  // (2, 1)
+///     const double along = derivative_along(f, Vector<double, 2>(1, 2), Vector<double, 2>(0, 3));  // 3
+///
+/// Requires an f that takes Vector<Dual<S>, N> and returns a value, not an expression of Eigen. Nothing throws.
 
 #include <lagroid/core/scalars/dual.hpp>
 

@@ -1,5 +1,14 @@
 #pragma once
-/// One arrow after another of a path whose nodes are displaced.
+/// A path g_1 ... g_N whose nodes are displaced: arrow k becomes tau(v_{k-1})^{-1} g_k tau(v_k).
+///
+/// Corrections of a boundary value are displacements of its nodes. Taken one after another, an arrow needs but one new
+/// retraction.
+///
+///     ArrowOf<G> back = start, moved = start, product = start;  // the unit at the first node, which stays
+///     for (std::size_t k = 0; k < path.size(); ++k) displace_next(groupoid, path[k], v[k], back, moved, product);
+///
+/// Requires that the arrows are given in order, each with what the call before left in `back` and `product`. Errors are
+/// those of `compose`.
 
 #include <lagroid/core/groupoid.hpp>
 

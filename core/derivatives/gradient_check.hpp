@@ -1,5 +1,14 @@
 #pragma once
-/// Whether the gradient that a solver is about to trust is that of L.
+/// A test that the gradient which a solver is about to use is that of L + <lambda, phi> + <lambda, C>, by central
+/// differences.
+///
+/// Derivatives are automatic, so they are wrong where the function that is differentiated is not the one that was
+/// meant: above all where a Lagrangian keeps an Eigen expression in `auto`, which refers to numbers that are gone when
+/// it is evaluated. Solvers then converge, to nonsense.
+///
+///     check_gradient(system, step);  // checked builds do this at the first step of an integrator
+///
+/// Errors: WrongGradient where the two disagree. laws::derivative_laws is the sharper test, at many samples.
 
 #include <lagroid/core/derivatives/two_sided.hpp>
 
@@ -17,11 +26,8 @@ class WrongGradient : public std::domain_error {
 };
 
 /// Compares the gradients at a step with central differences of L + <lambda, phi> + <lambda, C>, to three digits and to
-/// what the differences themselves are good for. Throws WrongGradient where they disagree.
-///
-/// Derivatives are automatic, so they are wrong where the function that is differentiated is not the one that was
-/// meant: above all where a Lagrangian keeps an Eigen expression in `auto`, which refers to numbers that are gone when
-/// it is evaluated. Solvers then converge, to nonsense. `laws::derivative_laws` asks more of more samples.
+/// the uncertainty of the differences themselves. Throws WrongGradient where they disagree; where the differences are
+/// not finite, nothing is compared.
 template <DiscreteSystem Sys> void check_gradient(const Sys& system, const Step<Sys>& step) {
   using V = AlgebroidVector<typename Sys::GroupoidType>;
   constexpr int n = Sys::dimension;

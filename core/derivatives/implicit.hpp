@@ -1,5 +1,17 @@
 #pragma once
-/// Functions that are defined by equations, over any scalar.
+/// Functions x(y) that are defined by equations F(x, y) = 0, over any scalar, with their derivatives.
+///
+/// A generating function or a Legendre transform that must be solved for is then used, and differentiated, like a
+/// formula.
+///
+///     const auto residual = [](const auto& x, const auto& y) { return (x.cwiseProduct(x) - y).eval(); };
+///     const Vector<double, 1> guess(1.0);
+///     const auto root = solve_implicit<double, 1, 1>(residual, guess, Vector<double, 1>(2.0));  // sqrt(2)
+///
+/// Requires an F over any scalar, Vector<U, N> x Vector<U, M> -> Vector<U, N>, whose derivative F_x is regular at the
+/// solution. Returns x over the scalar of y; nothing is allocated.
+///
+/// Errors: the numbers of x are not numbers (NaN) where Newton's method does not converge from the guess.
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/scalars/jet.hpp>

@@ -1,5 +1,17 @@
 #pragma once
-/// Every second derivative of an arrow's augmented Lagrangian: the two-sided derivative and both one-sided Hessians.
+/// Every second derivative of f = L + <lambda, phi> + <lambda, C> at an arrow: d2f/dv dw of `TwoSided`, and the
+/// symmetric Hessians of v -> f(tau(v)^{-1} g) and w -> f(g tau(w)).
+///
+/// Newton's method for boundary values needs them at every arrow; on a group one pass along the arrow's frame gives all
+/// three.
+///
+///     const auto d = second_derivatives(system, g, lambda);
+///     const auto curvature = d.source_hessian;  // and d.target_hessian, d.mixed, d.value, ...
+///
+/// Requires a variational system: forces and nonholonomic reactions have no Hessian. Returns the system's own second
+/// derivatives where it has them.
+///
+/// Errors: a `second_derivatives` of another form does not compile. Nothing throws.
 
 #include <lagroid/core/derivatives/arrow_frame.hpp>
 #include <lagroid/core/derivatives/two_sided.hpp>

@@ -1,5 +1,16 @@
 #pragma once
-/// The equations of one step, their matrix, and when it is regular.
+/// The equations of one step, F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0, their matrix, and its condition.
+///
+/// Every solver of steps has these equations and this matrix; where the matrix is regular, the step depends smoothly on
+/// the state.
+///
+///     const auto d = two_sided(system, step.arrow, step.multipliers);
+///     const auto residual = StepEquations<Sys>::residual(d, momentum);  // zero at a step from (alpha(g), momentum)
+///     const double condition = regularity_condition(system, step);     // infinite where the system is not regular
+///
+/// Nothing throws.
+///
+/// Source: [G] Def. 3.3, Def. 3.5, Corollary 3.4.
 
 #include <lagroid/core/derivatives/two_sided.hpp>
 

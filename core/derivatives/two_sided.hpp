@@ -1,5 +1,20 @@
 #pragma once
-/// The two-sided derivative: every first and second derivative the dynamics needs, in one evaluation.
+/// The two-sided derivative of f = L + <lambda, phi> + <lambda, C o alpha>: the first and mixed second derivatives of
+/// (v, w) -> f(tau(v)^{-1} g tau(w)) at v = w = 0, by one evaluation over hyper-dual numbers.
+///
+/// The discrete Legendre transforms and the matrix of a step are made of it; a system writes L and the constraints
+/// alone.
+///
+///     const TwoSidedOf<Sys> d = two_sided(system, g, lambda);
+///     const auto mu = -d.source_gradient;      // F-(g, lambda)
+///     const auto next_mu = d.target_gradient;  // F+(g, lambda)
+///
+/// Requires functions of the system that are templates on the scalar. Returns the system's own derivatives where it has
+/// them, and includes discrete forces and reactions (see `Gradients`).
+///
+/// Errors: a function that takes doubles alone does not compile, and the message names it. Nothing throws.
+///
+/// Source: [G] Def. 3.3.
 
 #include <lagroid/core/derivatives/annihilator.hpp>
 #include <lagroid/core/derivatives/arrow_frame.hpp>
@@ -49,7 +64,7 @@ template <class Sys, class S> constexpr void require_scalar() {
       "forces(g) is there for doubles alone: it is a const template on the scalar (see System)");
 }
 
-/// What acts on the two ends of g beside the Lagrangian: discrete forces, and at the source the reaction
+/// The impulses at the two ends of g beside those of the Lagrangian: discrete forces, and at the source the reaction
 /// <lambda, omega>.
 template <DiscreteSystem Sys, class S = double>
 Forces<S, Sys::dimension> impulses(const Sys& system, const ArrowOf<typename Sys::GroupoidType, S>& g,

@@ -1,5 +1,15 @@
 #pragma once
-/// What integrators ask of a manifold on which a Lie group acts.
+/// A manifold M with a Lie group G that acts on it from the left, exp(u) z: what an integrator for homogeneous spaces
+/// requires.
+///
+/// Methods that move a point by the group stay on M: a unit vector is turned, not pushed off its sphere.
+///
+///     const Spheres<1> sphere{};
+///     Spheres<1>::Point z(0, 0, 1);
+///     sphere.act(Spheres<1>::Algebra(0.1, 0, 0), z);  // turned by 0.1 about the first axis
+///
+/// Requires the operations listed at `HomogeneousSpace`, without allocation; laws::homogeneous_laws tests them. Results
+/// are written into the last argument. Nothing throws.
 
 #include <lagroid/core/types.hpp>
 

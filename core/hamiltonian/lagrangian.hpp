@@ -1,5 +1,18 @@
 #pragma once
-/// The Lagrangian submanifold Sigma_L of T*G that a system generates, and the linear maps its dynamics is made of.
+/// The Lagrangian submanifold Sigma_L = { d(L + <lambda, phi>)(g) : phi(g) = 0 } of T*G that a system generates, and
+/// the linear maps of which its dynamics is made.
+///
+/// That the step is a Poisson map is a statement about Sigma_L; here it can be measured at a step.
+///
+///     const GeneratedSubmanifold<Sys> sigma(system);  // refers to the system
+///     const SubmanifoldTangent tangent = sigma.tangent(step);
+///     const double lagrangian = lagrangian_defect(tangent.canonical), poisson = poisson_defect(tangent);
+///
+/// Requires a variational system (else it does not compile), and a step that satisfies the constraints, whose
+/// derivatives are independent there. Returns defects relative to the size of the terms, infinite where numbers are not
+/// finite. Nothing throws.
+///
+/// Source: [G] Theorem 3.1, 3.3, Remark 2.17.
 
 #include <lagroid/core/hamiltonian/symplectic.hpp>
 #include <lagroid/core/system.hpp>
@@ -169,11 +182,12 @@ LegendreRanks legendre_ranks(const SubmanifoldTangent& tangent);
 /// Returns the largest product of two of length one, relative to Pi, all in coordinates in which the tangent maps are
 /// equilibrated; round-off up to the condition of the maps there.
 ///
-/// With object constraints this says that the step is symplectic on the constrained phase space: among the annihilating
-/// covectors are the differentials of C at both ends, along whose Hamiltonian vector fields momenta are projected.
+/// With object constraints a defect of zero means that the step is symplectic on the constrained phase space: among the
+/// annihilating covectors are the differentials of C at both ends, along whose Hamiltonian vector fields momenta are
+/// projected.
 double poisson_defect(const SubmanifoldTangent& tangent);
 
-/// The same for any map of A*G, say a step by another method: `map` takes a point (q, mu) over any scalar (DualPoint)
+/// The same for any map of A*G, as a step by another method: `map` takes a point (q, mu) over any scalar (DualPoint)
 /// to such a point.
 template <Groupoid G, class Map>
 double poisson_defect(const G& groupoid, const typename CotangentGroupoid<G>::template Object<double>& z,

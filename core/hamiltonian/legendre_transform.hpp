@@ -1,5 +1,19 @@
 #pragma once
-/// The continuous Legendre transform, over any scalar and in both directions.
+/// The continuous Legendre transform f*(q, y) = ext_x (y.x - f(q, x)), over any scalar and in both directions.
+///
+/// A system written by its Lagrangian then serves methods that need its Hamiltonian, and the other way round.
+///
+///     struct Particle {
+///       template <class S> S lagrangian(const Vector<S, 1>& q, const Vector<S, 1>& v) const {
+///         return (v.squaredNorm() - q.squaredNorm()) * 0.5;
+///       }
+///     };
+///     const double energy = HamiltonianOf<Particle>{}.hamiltonian(q, p);
+///
+/// Requires a function over any scalar that is regular in its second argument. Returns values over the scalar of the
+/// arguments, with derivatives.
+///
+/// Errors: not numbers (NaN) where Newton's method, from zero, finds no x.
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/derivatives/implicit.hpp>

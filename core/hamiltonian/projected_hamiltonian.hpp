@@ -1,5 +1,23 @@
 #pragma once
-/// Hamiltonian dynamics on T*Q for Q = {C(q) = 0}, by projection instead of multipliers.
+/// Hamiltonian dynamics on T*Q for Q = { C(q) = 0 } by projection instead of multipliers: q' = P dH/dp, p' = -P^T dH/dq
+/// + W dH/dp.
+///
+/// The constrained motion becomes an explicit vector field, which any integrator of vector fields takes.
+///
+///     struct Pendulum : ProjectedHamiltonian<Pendulum, 2, 1> {
+///       template <class S> Vector<S, 1> constraint(const Vector<S, 2>& q) const {
+///         return Vector<S, 1>(q.squaredNorm() - 1.0);
+///       }
+///       template <class S> S hamiltonian(const Vector<S, 2>& q, const Vector<S, 2>& p) const {
+///         return p.squaredNorm() * 0.5 + q(1);
+///       }
+///     };
+///     const auto rates = Pendulum{}.rates(q, p);  // rates.q, rates.p
+///
+/// Requires that dC has full rank and, for the field to stay on T*Q, that C(q) = 0 and dC p = 0. Returns derivatives
+/// exact to round-off; they are not finite where dC loses rank. Nothing throws.
+///
+/// Source: [H] (chameq), (wmatr).
 
 #include <lagroid/core/scalars/dual.hpp>
 #include <lagroid/core/scalars/jet.hpp>

@@ -1,5 +1,11 @@
 #pragma once
-/// Quadrature on [0, 1].
+/// Quadrature on [0, 1]: sum_i b_i f(c_i), the integral of f for polynomials of degree below `order`.
+///
+/// Discrete Lagrangians are quadratures of the action over a step, and their order is that of the rule.
+///
+///     const QuadratureRule& rule = quadrature_rules::simpson;
+///     double sum = 0;
+///     for (std::size_t i = 0; i < rule.nodes.size(); ++i) sum += rule.weights[i] * f(rule.nodes[i]);
 
 #include <array>
 #include <span>

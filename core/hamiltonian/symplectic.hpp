@@ -1,5 +1,18 @@
 #pragma once
-/// The symplectic form of T*G and the Poisson structure of A*G.
+/// The symplectic form of T*G in canonical coordinates, and the Poisson structure of A*G: {q^a, mu_i} = rho(e_i)^a,
+/// {mu_i, mu_j} = -<mu, [e_i, e_j]>.
+///
+/// Momenta of a rigid body or a rolling ball do not commute; this tensor is the structure that a step of a discrete
+/// Lagrangian system keeps.
+///
+///     const auto pi = poisson_tensor(groupoid, q, mu);
+///     const DualPoint<Vector<double, 0>, double, 3> z{q, mu};
+///     const double rate = PoissonAlgebra<SO3>(groupoid).bracket(z, first, second);  // {first, second} at z
+///
+/// Requires functions that take a DualPoint over any scalar to that scalar. Returns values over the scalar of the
+/// point. Nothing throws.
+///
+/// Source: [G] 2.1.
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/cotangent.hpp>
@@ -97,8 +110,7 @@ auto poisson_tensor(const G& groupoid, const Q& q, const Vector<S, G::dimension>
 }
 
 /// Functions on A*G take a point (q, mu) over any scalar, `DualPoint`, to that scalar. Their Poisson bracket at z:
-/// {f, h} = df.Pi.dh, with f and h differentiated along the anchors and the momenta only, which is all that Pi asks
-/// for.
+/// {f, h} = df.Pi.dh, with f and h differentiated along the anchors and the momenta only, which is all that Pi needs.
 template <Groupoid G> class PoissonAlgebra {
  public:
   static constexpr int n = G::dimension;

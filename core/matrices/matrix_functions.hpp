@@ -1,6 +1,12 @@
 #pragma once
-/// Functions of square matrices whose size is known when it runs. Eigen's templates for them are the dearest there are
-/// to compile: they are compiled here alone.
+/// e^A, the principal logarithm and the eigenvalues of square matrices whose size is known at run time.
+///
+/// Eigen's templates for them are the most expensive there are to compile: they are compiled here alone.
+///
+///     const Eigen::MatrixXd rotation = matrix_exponential(generator);
+///     const Eigen::MatrixXd again = matrix_logarithm(rotation);
+///
+/// The logarithm requires that no eigenvalue lies on the negative real axis or at 0.
 
 #include <Eigen/Core>
 

@@ -2,9 +2,16 @@
 /// A few independent numbers side by side, one in each lane of a vector register: the scalar of ensembles.
 ///
 /// A formula written once for any scalar, evaluated on batches, is evaluated for as many members of an ensemble at once
-/// as a register has lanes. **What a lane holds depends on nothing but what that lane held before**: no operation here
-/// takes one path or another by what its neighbours are, except where both paths give each lane the same bits. (The
-/// trigonometric functions of xsimd itself reduce their arguments by the largest of them, so they are not used.)
+/// as a register has lanes.
+///
+///     const Batch<2> x = Batch<2>::load(numbers);  // two numbers
+///     const Batch<2> y = select(x > 0.0, sqrt(x), Batch<2>(0.0));
+///     y.store(numbers);
+///
+/// Requires formulas without branches on values (`select` in their place) and a width that the machine has registers
+/// for. **What a lane holds depends on nothing but what that lane held before**: no operation here takes one path or
+/// another by what its neighbours are, except where both paths give each lane the same bits. (The trigonometric
+/// functions of xsimd itself reduce their arguments by the largest of them, so they are not used.) Nothing throws.
 
 #include <lagroid/core/scalars/elementary.hpp>
 
@@ -71,7 +78,7 @@ template <int Width = widest_batch> class Batch {
     return load(x.data());
   }
 
-  // The compiler's own vector arithmetic: what it knows of numbers, it knows of these.
+  // The compiler's own vector arithmetic, which it optimises as it does that of numbers.
   LAGROID_INLINE friend Batch operator+(const Batch& a, const Batch& b) { return made(a.lanes_ + b.lanes_); }
   LAGROID_INLINE friend Batch operator-(const Batch& a, const Batch& b) { return made(a.lanes_ - b.lanes_); }
   LAGROID_INLINE friend Batch operator*(const Batch& a, const Batch& b) { return made(a.lanes_ * b.lanes_); }

@@ -1,5 +1,13 @@
 #pragma once
-/// The first-order dual number: one value, one directional derivative.
+/// The first-order dual number x + d e, e^2 = 0, over any scalar: a value and one directional derivative.
+///
+/// Nested (Dual<Dual<double>>), it gives derivatives of any order, one direction at a time.
+///
+///     const Dual<double> x(2.0, 1.0);
+///     const Dual<double> y = sin(x) * x;
+///     const double slope = y.derivative;  // of x sin x at 2
+///
+/// Requires a T on which the elementary functions are defined. Comparisons are those of the values. Nothing throws.
 
 #include <lagroid/core/scalars/special_functions.hpp>
 #include <lagroid/core/types.hpp>

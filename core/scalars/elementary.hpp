@@ -1,5 +1,14 @@
 #pragma once
-/// The elementary functions of derivative-carrying scalars, each from its value and two derivatives.
+/// The elementary functions of scalars with derivatives (Jet, HyperDual, SecondJet), each from its value and two
+/// derivatives: f(x + v) = f + f' v + f'' v v / 2.
+///
+/// A formula uses them as it uses those of <cmath>, found by argument-dependent lookup.
+///
+///     using std::sin;  // for doubles
+///     return sin(x) * sqrt(x);
+///
+/// Requires arguments at which the function is smooth; at others derivatives are not finite. (`abs` and `atan2` take
+/// the derivative of the branch, and powers 0 and 1 are smooth at zero.) Nothing throws.
 
 #include <lagroid/core/scalars/special_functions.hpp>
 #include <lagroid/core/types.hpp>
@@ -9,8 +18,8 @@
 
 namespace lagroid {
 
-/// A scalar with derivatives in one or more directions: knows how to compose with a function of one variable
-/// (`Jet`, `HyperDual`, `SecondJet`).
+/// A scalar with derivatives in one or more directions: `chain` composes it with a function of one variable (`Jet`,
+/// `HyperDual`, `SecondJet`).
 template <class X>
 concept Differentiated = requires(const X& x, typename X::Real f) {
   { x.value } -> std::convertible_to<typename X::Real>;

@@ -1,5 +1,16 @@
 #pragma once
-/// The mixed second-order dual number: the scalar behind the two-sided derivative.
+/// The hyper-dual number x + a.v + b.w + v^T C w: a value with first derivatives in two sets of variables, v and w, and
+/// the mixed second ones.
+///
+/// A discrete Lagrangian depends on both ends of an arrow; one evaluation gives the discrete Legendre transforms and
+/// the matrix of the step.
+///
+///     HyperDual<double, 1, 1> x(2.0), y(3.0);
+///     x.set_left(0, 1);
+///     y.set_right(0, 1);
+///     const double mixed = (x * x * y).mixed(0, 0);  // d2(x^2 y) / dx dy = 4
+///
+/// Returns exact derivatives. Comparisons are those of the values. Nothing throws.
 
 #include <lagroid/core/scalars/pack.hpp>
 #include <lagroid/core/scalars/scalar_operators.hpp>
@@ -11,10 +22,10 @@ namespace lagroid {
 
 /// x + a.v + b.w + v^T C w with two independent sets of infinitesimals v (L of them) and w (R of them), v v = w w = 0.
 ///
-/// Evaluating f on it gives f, df/dv, df/dw and d2f/dv dw exactly, in one pass. Pure second derivatives in v or in w
-/// are not carried; seed both sets with the same directions to obtain them. Constructible from a double, unlike nested
-/// first-order jets, so that formulas may contain plain constants. Each row of C lies in one register where the machine
-/// has them wide enough. Like a double, indeterminate until given a value.
+/// Evaluating f on it gives f, df/dv, df/dw and d2f/dv dw exactly, in one pass. It has no second
+/// derivatives in v alone or in w alone; seed both sets with the same directions to obtain them. Constructible from a
+/// double, unlike nested first-order jets, so that formulas may contain plain constants. Each row of C lies in one
+/// register where the machine has them wide enough. Like a double, indeterminate until given a value.
 template <class T, int L, int R> class HyperDual : public ScalarOperators<HyperDual<T, L, R>, T> {
  public:
   using Real = T;

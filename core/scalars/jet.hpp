@@ -1,5 +1,13 @@
 #pragma once
-/// The first-order dual number with several infinitesimals: the scalar behind gradients.
+/// The first-order jet x + a.v, v v = 0: a value with its gradient in N variables.
+///
+/// It is the scalar behind gradients: one evaluation gives all N derivatives, in vector registers.
+///
+///     const auto x = Jet<double, 2>::variable(3.0, 0);
+///     const auto y = Jet<double, 2>::variable(4.0, 1);
+///     const Vector<double, 2> gradient = sqrt(x * x + y * y).gradient();  // (0.6, 0.8)
+///
+/// Returns exact derivatives. Comparisons are those of the values. Nothing throws.
 
 #include <lagroid/core/scalars/pack.hpp>
 #include <lagroid/core/scalars/scalar_operators.hpp>

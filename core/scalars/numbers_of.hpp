@@ -1,5 +1,6 @@
 #pragma once
-/// Matrices as lists of numbers.
+/// The numbers of a matrix of any size as a list, column after column: what a NumberArchive visits where sizes are
+/// known at run time only.
 
 #include <cstddef>
 #include <span>

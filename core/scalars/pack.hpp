@@ -1,5 +1,13 @@
 #pragma once
-/// A few numbers side by side in vector registers: the storage of derivative-carrying scalars.
+/// N numbers side by side in vector registers, with componentwise operations: the storage of scalars with derivatives.
+///
+/// The chain rule is a few multiplications of whole gradients; in registers each costs as much as one of a number.
+///
+///     const Pack<double, 3> a = Pack<double, 3>::load(numbers);
+///     const Pack<double, 3> b = 2.0 * a + Pack<double, 3>::unit(0);
+///     b.store(numbers);
+///
+/// Like a double, a pack is indeterminate until given a value. Nothing throws.
 
 #include <lagroid/core/types.hpp>
 

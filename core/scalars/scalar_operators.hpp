@@ -1,5 +1,13 @@
 #pragma once
-/// The operators of a derivative-carrying scalar that follow from a few of its own, and what Eigen needs to know of it.
+/// The operators of a scalar with derivatives that follow from eight of its own, and the traits by which Eigen's
+/// vectors and matrices take it.
+///
+/// A new scalar writes its own eight, derives from ScalarOperators, and can stand wherever a double can.
+///
+///     class MyScalar : public ScalarOperators<MyScalar, double> { ... };
+///
+/// The eight are -x, x + y, x - y, x * y, x / y, x + t, x * t and t / x, t a real. Requires a member `value` too, of
+/// which comparisons are made.
 
 #include <lagroid/core/scalars/elementary.hpp>
 

@@ -1,5 +1,13 @@
 #pragma once
-/// The second-order jet: value, gradient and symmetric Hessian of a function of N variables.
+/// The second-order jet x + g.v + v^T H v / 2, v v v = 0: a value with gradient and symmetric Hessian in N variables.
+///
+/// On a group, one evaluation along the arrow's frame gives every second derivative at both ends.
+///
+///     const auto x = SecondJet<double, 2>::variable(3.0, 0);
+///     const auto y = SecondJet<double, 2>::variable(4.0, 1);
+///     const double mixed = (x * x * y).hessian(0, 1);  // 2 x = 6
+///
+/// Returns exact derivatives. Comparisons are those of the values. Nothing throws.
 
 #include <lagroid/core/scalars/pack.hpp>
 #include <lagroid/core/scalars/scalar_operators.hpp>

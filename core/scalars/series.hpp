@@ -1,5 +1,17 @@
 #pragma once
-/// Truncated power series in time: the scalar that turns a formula into the Taylor coefficients of its values.
+/// Truncated power series x_0 + x_1 t + ... + x_{K-1} t^{K-1}: the scalar that turns a formula into the Taylor
+/// coefficients of its values.
+///
+/// The solution of an ordinary differential equation follows from its right side alone, to any order.
+///
+///     const auto decay = [](const auto& z) { return (-z).eval(); };
+///     const auto z = taylor_solution<4>(decay, Vector<double, 1>(1.0));
+///     const double at_tenth = z(0).at(0.1);  // 1 - t + t^2/2 - t^3/6
+///
+/// Requires functions that are smooth at the constant terms. Comparisons are those of the constant terms. Nothing
+/// throws.
+///
+/// Source: Griewank and Walther, *Evaluating Derivatives*, 2008, chapter 13.
 
 #include <lagroid/core/types.hpp>
 
@@ -11,9 +23,8 @@
 
 namespace lagroid {
 
-/// x_0 + x_1 t + ... + x_{K-1} t^{K-1} modulo t^K, with coefficients of any scalar T. Each operation costs O(K^2)
-/// operations of T, by the recurrences that its differential equation gives (Griewank and Walther, *Evaluating
-/// Derivatives*, 2008, chapter 13). Comparisons are those of the constant terms.
+/// x_0 + x_1 t + ... + x_{K-1} t^{K-1} modulo t^K, with coefficients of any scalar T. A product, a quotient
+/// or an elementary function costs O(K^2) operations of T, by the recurrence that its differential equation gives.
 template <class T, int K> class Series {
   static_assert(K >= 1);
 

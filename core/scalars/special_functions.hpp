@@ -1,8 +1,14 @@
 #pragma once
-/// Analytic functions that the group maps are made of, free of cancellation near zero.
+/// Analytic functions of which the exponential and logarithm of rotations are made, free of cancellation near zero: the
+/// Stumpff functions c_K(x) = sum_i (-x)^i / (2i + K)!, and the ratio of a rotation angle to the sine of its half.
 ///
 /// Both families take an argument in which they are analytic (a squared angle, a cosine), so that they can be
-/// differentiated at the identity, where the angle itself can not.
+/// differentiated at the identity, where the angle itself cannot.
+///
+///     const double x = w.squaredNorm();  // of a rotation vector
+///     const double sinc = stumpff<1>(x), versine = stumpff<2>(x);  // sin|w| / |w|, (1 - cos|w|) / |w|^2
+///
+/// Requires x >= 0; for the ratio, -1 < w <= 1. Nothing throws.
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,15 @@
 #pragma once
-/// The identities of a Lie algebroid as a test suite that any groupoid runs by naming itself.
+/// The identities of a Lie algebroid, as a test suite that any groupoid runs by naming itself: bracket bilinear,
+/// antisymmetric, Jacobi, Leibniz with the anchor, the anchor a homomorphism; and the local bisections of the groupoid.
+///
+/// The Poisson structure of A*G is made of them.
 ///
 ///     EXPECT_TRUE(lagroid::laws::algebroid_laws<MyGroupoid>().holds());
+///
+/// Requires RapidCheck and, where objects are not vectors of R^n, a `draw_object`. Returns a LawReport; an exception of
+/// the groupoid is recorded in it as a failure.
+///
+/// Source: [G] Def. 2.7, 2.9, Remarks 2.8, 2.10, and A.1.
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/bisection.hpp>
@@ -45,7 +53,7 @@ template <Groupoid G> struct RandomSection {
 }  // namespace detail
 
 /// The laws of [G] Def. 2.7, 2.9 and Remarks 2.8, 2.10, for sections with random coefficients of second degree, and
-/// what the geometry asks of the groupoid: its chart of the objects and its local bisections, which multiply, are
+/// those of the groupoid's geometry: its chart of the objects and its local bisections, which multiply, are
 /// inverted and translate arrows ([G] A.1).
 template <Groupoid G, class DrawObject>
 LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const GroupoidLawOptions& options = {}) {

@@ -1,6 +1,15 @@
 #pragma once
-/// The symplectic groupoid T*G => A*G as a test suite that any groupoid runs by naming itself. (That T*G is a groupoid
-/// is asked by groupoid_laws<CotangentGroupoid<MyGroupoid>>.)
+/// The symplectic groupoid T*G => A*G as a test suite that any groupoid runs by naming itself: source anti-Poisson,
+/// target Poisson, their fibres orthogonal, units and the graph of the product Lagrangian.
+///
+/// That steps of a discrete Lagrangian system are Poisson maps rests on these statements.
+///
+///     EXPECT_TRUE(lagroid::laws::cotangent_laws<MyGroupoid>().holds());
+///
+/// Requires RapidCheck and, where objects are not vectors of R^n, a `draw_object`. (That T*G is a groupoid is tested by
+/// groupoid_laws<CotangentGroupoid<MyGroupoid>>.) Returns a LawReport.
+///
+/// Source: [G] Theorem A.1, Def. 2.11.
 
 #include <lagroid/core/bisection.hpp>
 #include <lagroid/core/hamiltonian/symplectic.hpp>
@@ -16,7 +25,7 @@ inline double matrix_defect(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) 
 
 }  // namespace detail
 
-/// [G] Theorem A.1, Def. 2.11 and what is said after it: the graph of the product is Lagrangian, the source is
+/// [G] Theorem A.1, Def. 2.11 and the remarks after it: the graph of the product is Lagrangian, the source is
 /// anti-Poisson, the target Poisson, their fibres orthogonal, the units Lagrangian. `Cotangent` is CotangentGroupoid<G>
 /// or, to see the suite fail, a subclass with other operations.
 template <Groupoid G, class DrawObject, class Cotangent>

@@ -1,5 +1,14 @@
 #pragma once
-/// The two-sided derivative against two independent ways of computing it.
+/// The derivatives of a system against nested dual numbers, an independent and slow way to compute them.
+///
+/// Run it before a trajectory: a Lagrangian that keeps an Eigen expression in `auto` has wrong derivatives, and steps
+/// still converge.
+///
+///     const auto draw = [&] { return laws::step_from(system, a_random_state()); };
+///     EXPECT_TRUE(lagroid::laws::derivative_laws(system, draw).holds());
+///
+/// Requires RapidCheck, and a `draw` that returns a random Step of the system. Returns a LawReport of the laws
+/// "automatic derivatives", "gradients" and, where the system has its own, "analytic derivatives".
 
 #include <lagroid/core/derivatives/second_derivatives.hpp>
 #include <lagroid/core/testing/property.hpp>

@@ -1,7 +1,11 @@
 #pragma once
-/// The laws of a group acting on a manifold, as a test suite that any homogeneous space runs by naming itself.
+/// The laws of a group acting on a manifold, as a test suite that any homogeneous space runs by naming itself: exp(s u)
+/// exp(t u) z = exp((s + t) u) z, the action stays on M, u_M is its derivative, and the bracket is that of the group.
 ///
 ///     EXPECT_TRUE(lagroid::laws::homogeneous_laws(MySpace{}, draw_point).holds());
+///
+/// Requires RapidCheck, a `draw_point` that returns a random point of M, and a `name()` of the space. Returns a
+/// LawReport.
 
 #include <lagroid/core/hamiltonian/homogeneous_space.hpp>
 #include <lagroid/core/testing/property.hpp>

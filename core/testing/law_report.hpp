@@ -1,5 +1,11 @@
 #pragma once
-/// What a law suite says of its subject.
+/// What a law suite returns: for each law the worst defect over its samples, its tolerance, and whether it holds.
+///
+///     const laws::LawReport report = laws::groupoid_laws<SO3>();
+///     std::cout << report;
+///     return report.holds() ? 0 : 1;
+///
+/// Errors: `law(name)` throws std::out_of_range where the suite has no law of that name.
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +35,7 @@ struct Law {
   double worst = 0;
   double tolerance = 0;
   std::string first_failure;    ///< the exception or the sample that broke it, if any
-  int skipped = 0;              ///< samples of which it could not be asked
+  int skipped = 0;              ///< samples at which it could not be tested
   std::string skipped_because;  ///< of the reasons, the commonest
   bool unjudged = false;        ///< too many were skipped
 

@@ -87,7 +87,8 @@ LawReport morphism_laws(const Phi& phi, const DrawObject& draw_object, const Gro
     law("representatives", options.tolerance, [&] {
       const auto image = phi(arrow());
       const ArrowOf<G> stands = representative_of(phi, image);
-      return worst({arrows(phi(stands), image), objects(phi.object(object_over(phi, to.source(image))), to.source(image))});
+      return worst(
+          {arrows(phi(stands), image), objects(phi.object(object_over(phi, to.source(image))), to.source(image))});
     });
   }
   if constexpr (G::dimension == H::dimension) {
@@ -95,8 +96,9 @@ LawReport morphism_laws(const Phi& phi, const DrawObject& draw_object, const Gro
       const auto q = draw_object();
       const V mu = vector();
       const V below = phi.reduced_momentum(q, mu);
-      return worst({relative_defect(phi.related(q, below).momentum, mu),
-                    Phi::keeps_basis ? relative_defect(phi.algebroid(q), Matrix<double, n, n>::Identity().eval()) : 0.0});
+      return worst(
+          {relative_defect(phi.related(q, below).momentum, mu),
+           Phi::keeps_basis ? relative_defect(phi.algebroid(q), Matrix<double, n, n>::Identity().eval()) : 0.0});
     });
   }
   return report;

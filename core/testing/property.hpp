@@ -1,5 +1,15 @@
 #pragma once
 /// The bridge to RapidCheck: random laws with a reproducible, printed seed.
+///
+/// A law of one's own is a function that draws a sample and returns a defect.
+///
+///     const laws::Law law = laws::check_law("exp(v) exp(-v) = 1", 1e-12, [] {
+///       const Vector<double, 3> v = laws::draw_vector<3>(2.0);
+///       return (SO3::exp(v) * SO3::exp(Vector<double, 3>(-v)) - Matrix<double, 3, 3>::Identity()).norm();
+///     });
+///
+/// Returns the worst defect, how many samples were drawn and skipped, and the first failure; an exception breaks the
+/// law, NotSampled passes the sample over. The environment's RC_PARAMS, where it is set, replaces the fixed seed.
 
 #include <lagroid/core/testing/law_report.hpp>
 #include <lagroid/core/types.hpp>
@@ -33,12 +43,12 @@ template <int N> Vector<double, N> draw_vector(double large) {
   return v;
 }
 
-/// Thrown by a law that cannot be asked of the sample drawn: it is passed over and another drawn.
+/// Thrown by a law that cannot be tested at the sample drawn: it is passed over and another drawn.
 struct NotSampled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// rc::check that is silent where the property holds, and otherwise says why not and what reproduces it.
+/// rc::check that is silent where the property holds, and otherwise prints why not and what reproduces it.
 inline void check_quietly(const std::string& name, const std::function<void()>& property) {
   using namespace rc::detail;
   fix_seed();
@@ -54,13 +64,13 @@ inline void check_quietly(const std::string& name, const std::function<void()>& 
   std::cerr << "\nRC_PARAMS=\"" << configToMinimalString(configuration) << "\"\n\n";
 }
 
-/// Of the samples drawn, the share above which passing over some leaves a law unjudged: those that remain are then no
-/// longer the ones that were asked for.
+/// The share of samples passed over above which a law is left unjudged: those that remain are then no longer drawn from
+/// the distribution that the suite states.
 inline constexpr double most_skipped = 1.0 / 3;
 
 /// Runs `defect` (which draws its sample with RapidCheck and returns a relative error) and records the worst value.
-/// Unjudged, unless broken, where more than `most_skipped` of the samples were passed over; the reason told is the
-/// commonest.
+/// Unjudged, unless broken, where more than `most_skipped` of the samples were passed over; the reason reported is
+/// the commonest.
 /// (Any law's defect in one type: RapidCheck's machinery is then compiled once.)
 inline Law check_law(const std::string& name, double tolerance, const std::function<double()>& defect) {
   Law law;

@@ -1,5 +1,10 @@
 #pragma once
-/// How many samples laws draw, and from which seed.
+/// How many samples laws draw, and from which seed, for as long as an object lives.
+///
+///     const laws::Sampling sampling(/*samples*/ 1000, /*seed*/ 7);
+///     const laws::LawReport report = laws::groupoid_laws<SO3>();  // a thousand samples of each law
+///
+/// It sets an environment variable and silences std::cerr, which are the whole process's: one at a time.
 
 #include <cstdlib>
 #include <iostream>
@@ -8,8 +13,8 @@
 
 namespace lagroid::laws {
 
-/// While it lives, every law draws so many samples from this seed, and what fails is told by the reports alone, not on
-/// std::cerr. (The environment and std::cerr are the whole process's: one at a time.)
+/// While it lives, every law draws so many samples from this seed, and failures are in the reports alone, not on
+/// std::cerr.
 class Sampling {
  public:
   Sampling(int samples, long seed) : errors_(std::cerr.rdstate()) {
