@@ -1,5 +1,16 @@
 #pragma once
-/// The action groupoid of a group that acts on a space from the right.
+/// The action groupoid of a Lie group G that acts on a space M from the right: arrows (g, m) from m to m g, with (g,
+/// m)(h, m g) = (g h, m).
+///
+/// A potential takes symmetry from a group: that of a heavy top depends on the vertical as the body sees it. The
+/// objects of this groupoid are what the potential depends on, its arrows still the elements of the group.
+///
+///     const Action<SO3, RotatedDirections> groupoid{};  // m g = g^T m
+///     const auto g = groupoid.tau(Vector<double, 3>(0, 0, 1), Vector<double, 3>(0.1, 0, 0));
+///     const Vector<double, 3> vertical = groupoid.target(g);  // seen from the body after a turn by 0.1
+///
+/// Requires a group that is a groupoid of ours over a single object, and a space with (m g) h = m (g h). Returns arrows
+/// {element, point}. Errors are those of the group.
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/capabilities/loops.hpp>

@@ -1,5 +1,14 @@
 #pragma once
-/// The pair groupoid R^n x R^n => R^n.
+/// The pair groupoid R^n x R^n => R^n: arrows (q0, q1) from q0 to q1, with (q0, q1)(q1, q2) = (q0, q2).
+///
+/// It is the groupoid of discrete mechanics as in textbooks, L_d(q0, q1): particles, and all that has n free
+/// coordinates.
+///
+///     const Pair<2> groupoid;
+///     const auto g = groupoid.tau(Vector<double, 2>(0, 0), Vector<double, 2>(3, 4));  // {source, target}
+///     const double length = (g.target - g.source).norm();
+///
+/// Nothing throws but `compose` in checked builds (NotComposable).
 
 #include <lagroid/core/groupoid.hpp>
 

@@ -1,5 +1,14 @@
 #pragma once
-/// The product of two or more groupoids.
+/// The product of two or more groupoids: arrows (g1, g2, ...), with source, target, product and retraction factor by
+/// factor.
+///
+/// A system of several parts, as a cart and a rotor, has the product of their groupoids.
+///
+///     const Product<Pair<1>, SO2> groupoid;
+///     const auto g = groupoid.unit({Vector<double, 1>(2.0), Vector<double, 0>()});
+///     const auto& [cart, rotor] = g;
+///
+/// Requires factors of any kind, two at least. Returns std::tuples. Errors are those of the factors.
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/capabilities/loops.hpp>

@@ -1,5 +1,19 @@
 #pragma once
-/// Products of spheres and of their cotangent bundles, with the groups that act on them.
+/// Products of spheres (S^2)^k and of their cotangent bundles (T*S^2)^k, with the groups SO(3)^k and SE(3)^k that act
+/// on them: homogeneous spaces.
+///
+/// Chains of pendulums and other systems of directions live here; integrators that move by the group keep |q| = 1 and
+/// q.p = 0 without coordinates.
+///
+///     const CotangentSpheres<1> space{};
+///     CotangentSpheres<1>::Point z = space.zero_point();
+///     z << 0, 0, 1, 0.5, 0, 0;          // q, then p
+///     space.act(CotangentSpheres<1>::Algebra(u), z);  // exp(u) z, u = (xi, eta) in se(3)
+///
+/// Requires points on the space, up to round-off; `project` returns them there, to first order. K may be
+/// Eigen::Dynamic, with `count` factors. Nothing throws.
+///
+/// Source: [H] (act), (infgen).
 
 #include <lagroid/core/scalars/elementary.hpp>
 #include <lagroid/core/scalars/special_functions.hpp>

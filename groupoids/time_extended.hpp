@@ -1,5 +1,18 @@
 #pragma once
-/// The time-extended groupoid R x R x G => R x Q, and mechanics on it. [G] 6.3
+/// The time-extended groupoid R x R x G => R x Q, arrows (t0, t1, g), and mechanics on it: time is a coordinate, and
+/// the step t1 - t0 part of the arrow.
+///
+/// Steps that depend on the motion, and motions that depend on time, are then steps of an ordinary discrete Lagrangian
+/// system, and keep its structure.
+///
+///     const FreeTime<Sys> free(system);                                 // the step is an unknown
+///     const FixedStep<Sys> fixed(system, ConstantStep{0.1});            // t1 - t0 = 0.1
+///     const auto boundary = timed_boundary<Sys>(g, /*start*/ 0, /*h*/ 0.1, /*steps*/ 20);
+///
+/// Requires a variational system that takes its step, or start and step, as arguments (Timed). A step must run forward
+/// in time (`admissible`). Nothing throws.
+///
+/// Source: [G] 6.3, Examples 6.1, 6.2.
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/groupoids/pair.hpp>
@@ -82,7 +95,7 @@ struct PrescribedStep : detail::OnTimeExtended<PrescribedStep<Base, StepSize>, B
   explicit PrescribedStep(Base system, StepSize h)
       : detail::OnTimeExtended<PrescribedStep, Base, 1>(std::move(system)), step_size(std::move(h)) {}
 
-  /// That of `base`, over the step it asks for; p_t and its multiplier are found from there.
+  /// That of `base`, over the step that h(g) gives for it; the multiplier of the step starts from zero.
   Step<PrescribedStep> first_guess(const State<typename PrescribedStep::GroupoidType>& s) const {
     Step<PrescribedStep> guess;
     auto& [time, arrow] = guess.arrow;

@@ -1,5 +1,15 @@
 #pragma once
-/// The trivial groupoid R^n x R^n x H => R^n with a Lie group H, and where other gauge groupoids are.
+/// The trivial groupoid R^n x R^n x H => R^n with a Lie group H: arrows (q0, q1, h), with (q0, q1, h)(q1, q2, k) = (q0,
+/// q2, h k).
+///
+/// A ball on a plate has a position that its motion depends on, and an attitude that enters by its changes alone: so do
+/// all systems with a symmetry group H, after reduction.
+///
+///     const Trivial<2, SO3> groupoid;
+///     const auto g = groupoid.unit({Vector<double, 2>(0, 0), Vector<double, 0>()});
+///     const auto& [position, turn] = g;
+///
+/// Errors are those of Product.
 
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
@@ -10,7 +20,7 @@ namespace lagroid {
 /// that of Atiyah for the bundle below.
 ///
 /// It is the product of Pair<n> and H as it stands: objects of H are a single point, so that composing factor by factor
-/// asks for equal ends in R^n alone. And it is the gauge groupoid Pair(P)/H of the bundle P = R^n x H, H acting from
+/// requires equal ends in R^n alone. And it is the gauge groupoid Pair(P)/H of the bundle P = R^n x H, H acting from
 /// the left on the second factor: the class of ((q0, a), (q1, b)) is (q0, q1, a^{-1} b), by
 /// ProductMorphism<IdentityMorphism<Pair<n>>, LeftQuotient<H>>.
 ///

@@ -1,5 +1,16 @@
 #pragma once
-/// GL(n) and SL(n), n up to four.
+/// GL(n) and SL(n), n up to four: invertible matrices, and matrices of determinant 1, with tau = exp.
+///
+/// Systems of linear deformations live on them; for larger matrices there is LinearFibre.
+///
+///     const Vector<double, 3> v(0.1, 0.2, 0);          // sl(2): [0.1 0; 0.2 -0.1], by columns
+///     const Matrix<double, 2, 2> g = SpecialLinear<2>::exp(v);
+///     const Vector<double, 3> again = SpecialLinear<2>::log(g);
+///
+/// Requires for `log` a matrix without eigenvalues on the closed negative real axis; else it returns numbers that are
+/// not numbers (NaN). Nothing throws.
+///
+/// Source: Denman and Beavers 1976 for the square roots in the logarithm.
 
 #include <lagroid/groupoids/groups/matrix_group.hpp>
 
@@ -9,7 +20,7 @@
 
 namespace lagroid {
 
-/// What GL(n) and SL(n) have in common: `Derived` tells its basis matrices and how coordinates are read off. exp is not
+/// What GL(n) and SL(n) have in common: `Derived` writes its basis matrices. exp is not
 /// onto: a matrix with an eigenvalue on the closed negative real axis has no principal logarithm, and `log` is then not
 /// a number. Memory: column-major matrix.
 template <class Derived, int N, int Dimension>

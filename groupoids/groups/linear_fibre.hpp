@@ -1,5 +1,14 @@
 #pragma once
-/// GL(n) and SL(n), n at run time, as the source fibre of any of their elements.
+/// GL(n) and SL(n), n known at run time, as the source fibre y = z exp(v) of any of their elements.
+///
+/// Newton's method for equations on matrices, of any size, works in these coordinates.
+///
+///     const LinearFibre fibre(Eigen::MatrixXd::Identity(5, 5), LinearFibre::Determinant::any);
+///     const auto y = fibre.at(v);           // 25 coordinates
+///     const auto back = fibre.coordinates(y);  // a std::optional
+///
+/// Requires an invertible z. `coordinates` returns nothing where z^{-1} y has no principal logarithm or, on SL(n),
+/// another determinant. Nothing throws.
 
 #include <lagroid/core/source_fibre.hpp>
 

@@ -1,5 +1,18 @@
 #pragma once
-/// What the matrix groups SO(2), SO(3), SE(2), SE(3) have in common.
+/// What groups of N x N matrices have in common: a group as a groupoid over a single object, with tau = exp or the
+/// Cayley map cay(xi) = (I - hat(xi)/2)^{-1} (I + hat(xi)/2).
+///
+/// A group of one's own writes its algebra, exp and log with their differentials; the groupoid, ad, Ad and the
+/// derivatives of translations follow.
+///
+///     template <Retraction Tau> struct MyGroup : MatrixGroup<MyGroup<Tau>, /*matrices*/ 3, /*dimension*/ 2, Tau> {
+///       static constexpr int basis(int i, int r, int c);  // entry (r, c) of the i-th basis matrix of the algebra
+///       // hat, vee, exp, log, dexp, dexp_inverse, inverse, as in se2.hpp
+///     };
+///
+/// Requires that basis matrices have whole entries. `cayley_inverse` requires no eigenvalue -1. Nothing throws.
+///
+/// Source: [G] 6.1 for the left-trivialised differentials.
 
 #include <lagroid/core/groupoid.hpp>
 

@@ -1,5 +1,14 @@
 #pragma once
-/// O(n) and SO(n), for any n.
+/// O(n) and SO(n), orthogonal matrices, for any n fixed when it is compiled, with the Cayley map as retraction.
+///
+/// Bodies of n dimensions rotate on them; SO(2) and SO(3) have files of their own, with exp.
+///
+///     const Vector<double, 6> v = Vector<double, 6>::Constant(0.1);  // above the diagonal, row by row
+///     const Matrix<double, 4, 4> g = Orthogonal<4>::cayley(v);
+///     const Vector<double, 6> again = Orthogonal<4>::cayley_inverse(g);
+///
+/// Requires for `cayley_inverse` a matrix without eigenvalue -1; near one, its numbers grow without bound. Nothing
+/// throws.
 
 #include <lagroid/groupoids/groups/so2.hpp>
 

@@ -1,5 +1,14 @@
 #pragma once
-/// SO(N), N at run time, as the source fibre of any of its elements.
+/// SO(N), N known at run time, as the source fibre y = z exp(v) of any of its elements.
+///
+/// Newton's method for equations on rotations of any dimension works in these coordinates.
+///
+///     const RotationFibre<> fibre(Eigen::MatrixXd::Identity(5, 5));
+///     const auto y = fibre.at(v);           // 10 coordinates: entries above the diagonal
+///     const auto back = fibre.coordinates(y);  // a std::optional
+///
+/// Errors: std::invalid_argument where z is not orthogonal, by more than 1e-6. `coordinates` returns nothing where y is
+/// not finite or lies in the other component.
 
 #include <lagroid/core/source_fibre.hpp>
 #include <lagroid/groupoids/groups/rotations.hpp>

@@ -1,6 +1,17 @@
 #pragma once
-/// exp, log and their differentials on SO(N), for N chosen at run time. ([N] section 2.3; the spectral forms are ours.)
-/// Compiled for S = double and long double.
+/// exp, log and their differentials on SO(N), N known at run time, by the real Schur form of a skew-symmetric matrix.
+///
+/// In that form exp turns planes by angles, and its differential multiplies numbers, so that both are exact to
+/// round-off at every size.
+///
+///     const SkewSpectrum<double> spectrum(x);        // x = -x^T
+///     const Eigen::MatrixXd rotation = spectrum.exp();
+///     const auto again = principal_log(rotation);  // a std::optional
+///
+/// Compiled for S = double and long double. `principal_log` returns nothing where its argument is not finite or has
+/// determinant -1. Nothing throws.
+///
+/// Source: [N] section 2.3; the spectral forms are ours.
 
 #include <Eigen/Core>
 

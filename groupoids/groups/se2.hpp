@@ -1,5 +1,13 @@
 #pragma once
-/// SE(2), the rigid motions of the plane.
+/// SE(2), the rigid motions of the plane: [R p; 0 1] with R in SO(2), p in R^2; algebra (w, v1, v2).
+///
+/// Planar bodies and wheeled vehicles move on it: w turns, v is the velocity in the body's axes.
+///
+///     const Vector<double, 3> xi(0.1, 1, 0);  // turn, then move
+///     const Matrix<double, 3, 3> g = SE2::exp(xi);
+///     const Vector<double, 3> again = SE2::log(g);
+///
+/// `log` returns the angle in (-pi, pi]; `cayley_inverse` requires one below pi. Nothing throws.
 
 #include <lagroid/groupoids/groups/so2.hpp>
 
@@ -80,7 +88,7 @@ struct SpecialEuclidean2 : MatrixGroup<SpecialEuclidean2<Tau>, 3, 3, Tau> {
   }
 
  private:
-  /// The matrix that carries v to the translation part of exp(w, v): c_1 I + w c_2 J, J = hat(1).
+  /// The matrix that takes v to the translation part of exp(w, v): c_1 I + w c_2 J, J = hat(1).
   template <class S> static Matrix<S, 2, 2> screw(const S& w) {
     const S x = w * w;
     const S a = stumpff<1>(x);

@@ -1,5 +1,13 @@
 #pragma once
-/// SE(3), the rigid motions of space.
+/// SE(3), the rigid motions of space: [R p; 0 1] with R in SO(3), p in R^3; algebra (w, v), rotation first.
+///
+/// A free rigid body moves on it: w is its body angular velocity, v the velocity in its axes.
+///
+///     const SE3 groupoid{};
+///     const Matrix<double, 4, 4> g = groupoid.exp(xi);
+///     const Vector<double, 6> again = groupoid.log(g);
+///
+/// `log` returns a rotation by at most pi; `cayley_inverse` requires an angle below pi. Nothing throws.
 
 #include <lagroid/groupoids/groups/so3.hpp>
 

@@ -1,5 +1,12 @@
 #pragma once
-/// SO(2), the rotations of the plane.
+/// SO(2), the rotations of the plane: exp(w) turns by the angle w.
+///
+/// An angle in a matrix has no seam: motions go round and round without a jump from pi to -pi.
+///
+///     const Matrix<double, 2, 2> g = SO2::exp(Vector<double, 1>(0.1));
+///     const double angle = SO2::log(g)(0);  // in (-pi, pi]
+///
+/// Nothing throws.
 
 #include <lagroid/groupoids/groups/matrix_group.hpp>
 

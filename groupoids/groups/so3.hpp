@@ -1,5 +1,14 @@
 #pragma once
-/// SO(3), the rotations of space.
+/// SO(3), the rotations of space: exp(w) = I + c_1(|w|^2) hat(w) + c_2(|w|^2) hat(w)^2 turns by |w| about w.
+///
+/// Attitudes of rigid bodies without the singularities of angles, and without the sign of quaternions.
+///
+///     const Matrix<double, 3, 3> g = SO3::exp(Vector<double, 3>(0.1, 0, 0));
+///     const Vector<double, 3> w = SO3::log(g);
+///     const Vector<double, 4> quaternion = SO3::quaternion(g);  // (w, x, y, z), w >= 0
+///
+/// `log` returns a vector of norm at most pi, accurate at every angle; `cayley_inverse` requires an angle below pi.
+/// Nothing throws.
 
 #include <lagroid/groupoids/groups/matrix_group.hpp>
 

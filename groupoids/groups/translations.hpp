@@ -1,5 +1,15 @@
 #pragma once
-/// Groups acting on themselves, on matrices and on vectors, as homogeneous spaces.
+/// Homogeneous spaces made of groups: a matrix group acting on itself, GL(N) acting on matrices, R^N on itself by
+/// addition.
+///
+/// Integrators for homogeneous spaces then serve motions on groups, linear systems Y' = A(t) Y, and classical vector
+/// fields.
+///
+///     const Translations<SO3> space;
+///     Matrix<double, 3, 3> g = Matrix<double, 3, 3>::Identity();
+///     space.act(Vector<double, 3>(0.1, 0, 0), g);  // exp(u) g
+///
+/// Nothing throws.
 
 #include <lagroid/groupoids/groups/matrix_group.hpp>
 

@@ -1,5 +1,12 @@
 #pragma once
-/// The additive group R^n.
+/// The additive group R^n as a groupoid over a single object: arrows are vectors, and their product is the sum.
+///
+/// Quantities of which the changes alone matter: an area, a cost, an angle that is counted.
+///
+///     const VectorGroup<2> groupoid;
+///     const Vector<double, 2> sum = groupoid.multiply(Vector<double, 2>(1, 2), Vector<double, 2>(3, 4));  // (4, 6)
+///
+/// Nothing throws.
 
 #include <lagroid/core/groupoid.hpp>
 
