@@ -35,7 +35,8 @@ BoundaryChoice read_boundary_solver(const Section& solver);
 /// [solver] starts and seed. Initial-value runs read them too, so that a scene may switch between the two.
 MultistartOptions read_multistart(const Section& solver);
 
-/// [continuation]: a key of the scene that is carried from other numbers to those that stand there.
+/// [continuation]: a parameter of the scene that goes from other numbers (`from`, at s = 0) to the scene's own (`to`,
+/// at s = 1).
 struct ContinuationChoice {
   std::string parameter;
   std::vector<double> from;
@@ -48,7 +49,8 @@ struct ContinuationChoice {
 };
 std::optional<ContinuationChoice> read_continuation(const Section& scene);
 
-/// True for [boundary], false for [initial]; refuses both and neither. `initial` says what [initial] holds.
+/// True for [boundary], false for [initial]; refuses a scene with both or neither. `initial` is what [initial] holds,
+/// in words for the message.
 bool is_boundary_value(const Section& scene, const std::string& initial);
 
 /// A boundary-value problem as a scene states it: the configuration at the start, and the arrow from there to the end.
@@ -57,8 +59,8 @@ template <DiscreteSystem Sys> struct BoundaryScene {
   ArrowOf<typename Sys::GroupoidType> start;
 };
 
-/// `read` of the scene at s of its continuation. What is refused there is no mistake of the scene itself, but of where
-/// the continuation begins.
+/// Returns read(S), S the scene with its continuation at s. An error of S is reported as one of `continuation.from`:
+/// the scene itself may be right.
 template <class Read>
 auto read_along(const Section& scene, const ContinuationChoice& along, double s, const Read& read) {
   try {
@@ -118,8 +120,7 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
   present(presentation, result);
 }
 
-/// Carries every solution found at the beginning of a continuation to its end. Returns how far the best came: 1 where
-/// one arrived.
+/// Follows every solution found at the beginning of a continuation to its end. Returns the largest s that one reached.
 template <DiscreteSystem Sys, class Read>
 double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scene, const ContinuationChoice& along,
                           const Read& read, const RunContext& context, MultistartResult<Sys>& found,
@@ -164,7 +165,7 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
   return found.solutions.empty() ? farthest->first : 1;
 }
 
-/// Says which path was chosen, and records it; or why there is none.
+/// Chooses a path and records it, with a note on the choice; or writes why there is none.
 template <DiscreteSystem Sys>
 void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind seek,
                       const MultistartResult<Sys>& found, long every, const Observer<Sys>& observer,

@@ -1,5 +1,5 @@
 #pragma once
-/// Systems on (T*S^2)^k, as scenes speak of them.
+/// Systems on (T*S^2)^k, as scenes name them.
 
 #include "../reading/parameter.hpp"
 #include "../reading/scene_reader.hpp"
@@ -42,9 +42,10 @@ class SphereSystem {
   virtual std::unique_ptr<SphereIntegrator> begin(const Points& start,
                                                   const SphereIntegratorOptions& options) const = 0;
 
-  /// Numbers from files that it is made of: a run is taken up with the same ones only.
+  /// Numbers that the system has read from files, as the parameters of a learned model. A run is resumed only where
+  /// they are the same as when it began.
   virtual std::vector<double> from_files() const { return {}; }
-  /// What a scene of it that is read from elsewhere has to say differently, as "key=value": paths of files.
+  /// Overrides "key=value" with which its scene can be read from another folder: relative paths of files made absolute.
   virtual std::vector<std::string> pinned() const { return {}; }
 
   /// The energy first.

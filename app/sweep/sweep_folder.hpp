@@ -1,5 +1,6 @@
 #pragma once
-/// The folder of a sweep while it goes on: what is finished is there, and stays when all else is lost.
+/// The folder of a sweep while it goes on: finished parts are files of their own, so that an interruption costs no more
+/// than the parts that were being computed.
 
 #include "sweep_scene.hpp"
 #include "work/part.hpp"
@@ -39,20 +40,21 @@ class PartFiles {
 /// The folder as a whole, which one process holds.
 class SweepFolder {
  public:
-  /// Throws as OutputFolder does; RunError where it holds parts of who knows which sweep, and, unless `other_build`,
-  /// where another build of lagroid was at work.
+  /// Opens the folder for this process alone. Throws as OutputFolder does, and RunError where the folder holds parts of
+  /// a sweep but no record of which one, where that record is damaged, and where another build of lagroid wrote them
+  /// (its bits may be others), unless `other_build` allows that.
   SweepFolder(const std::filesystem::path& folder, const SweepScene& sweep, bool other_build = false);
 
   /// Whether an earlier command began this sweep, and whether one finished it.
   bool begun() const { return kept_.has_value(); }
   bool finished() const;
-  /// Sets the scene that the command which began ran, and its notes.
+  /// Gives `sweep` the scene and the notes of the command that began it.
   void restore(SweepScene& sweep) const;
   /// Throws OutputError.
   void begin(const SweepScene& sweep);
   /// Which parts are still to be run.
   std::vector<long> missing(const SweepScene& sweep) const;
-  /// All parts, one after the other; takes damaged ones away and throws RunError.
+  /// All parts, one after the other. Removes damaged ones and then throws RunError.
   SweepPart joined(const SweepScene& sweep) const;
   /// To be called when the results are written.
   void finish();

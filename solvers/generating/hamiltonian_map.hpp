@@ -66,20 +66,24 @@ template <int N, int D> struct Phase {
   Vector<double, D> multipliers = Vector<double, D>::Zero();
 };
 
-/// (q_k, p_k) -> (q_{k+1}, p_{k+1}) with C(q_{k+1}) = 0, the multipliers lambda_k acting on q_k. With p~ = p_k +
-/// <lambda_k, C'(q_k)>:
+/// The map (q_k, p_k) -> (q_{k+1}, p_{k+1}) of a generating function, with C(q_{k+1}) = 0. With the multipliers
+/// lambda_k at q_k and p~ = p_k + <lambda_k, C'(q_k)>,
 ///
 ///     type I     p~ = -D1 L_d(q_k, q_{k+1}),          p_{k+1} =  D2 L_d(q_k, q_{k+1})          [V] (2.10), (2.13)
 ///     type II    p~ =  D1 H_d+(q_k, p_{k+1}),         q_{k+1} =  D2 H_d+(q_k, p_{k+1})         [V] (3.14), (3.19)
 ///     type III   q_k = -D2 H_d-(q_{k+1}, p~),         p_{k+1} = -D1 H_d-(q_{k+1}, p~)          [V] (3.15), (3.21)
 ///
-/// The sign of lambda is that of docs/notation.md, [V] has the other. Normal parts <nu, C'(q_k)> of p_k go into
-/// lambda_k: the map is one of T*Q, Q = C^{-1}(0), whose points are momenta modulo them. Three represent a point:
-/// - p_k above arrives at q_k, before its multiplier.
-/// - p~ leaves q_k, after it: the momentum of (2.9) and, word for word, of (3.15) and (3.21), where lambda_{k+1} is
-///   in p_{k+1}, and p_0 must be consistent, or C(q_1) = 0 does not hold. `leave` makes it so.
-/// - The tangent one satisfies <H_p, C'(q)> = 0. It alone is of the order of the method (`project_momentum`).
-/// The q_k are the same. Without constraints (d = 0) this is the map itself.
+/// The sign of lambda is that of docs/notation.md; [V] has the opposite one. Without constraints (d = 0) p~ is p_k.
+///
+/// Momenta at q_k that differ by <nu, C'(q_k)> give the same q_{k+1}, since lambda_k takes up the difference: the map
+/// is one of T*Q, Q = C^{-1}(0), and a point of T*Q is such a class of momenta. Three of its members are in use:
+///
+///     p_k      before the multiplier at q_k acts: what `step` takes and returns
+///     p~       after it: what `leave` makes of p_k
+///     tangent  the one with <H_p, C'(q)> = 0, by `project_momentum`; it alone has the order of the method
+///
+/// [V] (2.9) and, as printed, (3.15) and (3.21) have p~: there lambda_{k+1} is part of p_{k+1}, and C(q_1) = 0 holds
+/// only for a consistent p_0, as `leave` makes it.
 template <GeneratingFunction F> class HamiltonianMap {
  public:
   static constexpr int n = F::dimension;

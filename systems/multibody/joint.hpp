@@ -39,12 +39,13 @@ enum class Role : char {
   damping        ///< no constraint: discrete forces -c phi(g) omega / 2 at both ends
 };
 
-/// All joints of one kind: rows of one step's equations.
+/// All joints of one kind: rows of the equations of a step.
 ///
-/// `first` and `count` choose some of them. Of each joint the gradients stand one after another: for every row one
-/// vector a site and one an attitude: along displacements of the point, and along turns of the body about its axes,
-/// both at the target; or, `along_arrows`, along the displacement and the coordinates xi of the turn, the source being
-/// held.
+/// Functions with `first` and `count` are for the joints first, ..., first + count - 1, and write their results one
+/// joint after another. The gradient of a row is a list of vectors: one for each site of the joint, its derivative
+/// along displacements of that point, then one for each attitude, its derivative along rotations of that body about the
+/// body's axes. Both are displacements of the target of the arrow. Where `along_arrows`, they are instead derivatives
+/// along the displacement over the arrow and the coordinates xi of the rotation over it, with the source held fixed.
 class Joints {
  public:
   virtual ~Joints() = default;

@@ -156,7 +156,9 @@ struct Model {
   void find_gradients(const SceneArrow& motion, const Island& island, std::vector<Vec>& gradients) const;
 
   using Counts = std::function<bool(Role)>;
-  /// D W D^T of the rows that count, D their gradients, with weights of the factors; one on the diagonal of the others.
+  /// The matrix D W D^T, where D has the gradients of the rows whose role `counts`, and W is diagonal and has the
+  /// weights of the factors. Of the other rows the diagonal is one and the rest zero, so that they do not make it
+  /// singular.
   void gather(const Island& island, const std::vector<Vec>& gradients, const std::vector<Vec>& linear_weights,
               const std::vector<Vec>& rotation_weights, const Counts& counts, Elimination& matrix) const;
 

@@ -263,6 +263,19 @@ StepReport Multibody::advance_to(double end) {
   return report;
 }
 
+/// Leaves the arrow that begins at the node of the state in the workspace; the state stays as it is.
+///
+/// 1. `kick`: the momenta with which the arrow begins, p + f, with f the impulse of the effects at this node.
+/// 2. `solve_islands`: island by island, the displacements xi and the multipliers lambda with
+///
+///        F-_K(xi) = p + f + D^T lambda,   C(q g) = 0,   phi(g) = 0,
+///
+///    where D are the gradients of the rows at this node (of vakonomic rows, at the arrow).
+/// 3. `add_reactions`: D^T lambda joins the impulse of this node, so that `accept` adds both to the momenta at once.
+/// 4. `act`: the effects at the target. Their impulse ends this arrow and begins the next.
+///
+/// Besides the failures of the islands' solves the report may have `no_step` (the controller has no size for it),
+/// `left_domain` (a rotation beyond the reach of exp) or `not_finite`.
 StepReport Multibody::solve() {
   Workspace& w = workspace_;
   w.dependence_ended = false;

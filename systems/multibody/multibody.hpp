@@ -134,9 +134,9 @@ class Multibody {
 
   /// Of the time scale |U|^(-3/2): d log / dt.
   double time_scale_rate() const;
-  /// Inertia times velocity that the rows which count allow.
+  /// Inertia times velocity at this node, projected to satisfy the rows whose role `counts`.
   Momenta tangent(const Model::Counts& counts) const;
-  /// What the first multipliers of vakonomic rows add to momenta.
+  /// Adds to momenta `times` the part that is due to the first multipliers of vakonomic rows.
   void add_multipliers(std::vector<Vec>& linear, std::vector<Vec>& spin, double times) const;
   /// The rate at which a row changes where nothing moves by itself: of grounds that move, of plates that turn.
   std::vector<double> imposed_rates() const;

@@ -48,8 +48,8 @@ class IslandSolver {
 
   Residual find_residual(const Model::Island& island);
   void add_turns(const Model::Island& island, Residual& residual);
-  /// Covectors of vakonomic rows, and the displacements under them, at the arrow as it stands; returns by how much
-  /// these moved, over their size.
+  /// Computes the covectors of vakonomic rows at the present arrow, and the displacements that follow from them.
+  /// Returns the largest change of a displacement, relative to their size.
   double follow(const Model::Island& island);
   void find_vakonomic_gradients(const Model::Island& island);
   bool factorise(const Model::Island& island, Elimination& matrix);
