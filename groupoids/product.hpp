@@ -5,7 +5,7 @@
 /// A system of several parts, as a cart and a rotor, has the product of their groupoids.
 ///
 ///     const Product<Pair<1>, SO2> groupoid;
-///     const auto g = groupoid.unit({Vector<double, 1>(2.0), Vector<double, 0>()});
+///     const auto g = groupoid.unit(std::tuple(Vector<double, 1>(2.0), Vector<double, 0>()));
 ///     const auto& [cart, rotor] = g;
 ///
 /// Requires factors of any kind, two at least. Returns std::tuples. Errors are those of the factors.

@@ -6,7 +6,7 @@
 /// all systems with a symmetry group H, after reduction.
 ///
 ///     const Trivial<2, SO3> groupoid;
-///     const auto g = groupoid.unit({Vector<double, 2>(0, 0), Vector<double, 0>()});
+///     const auto g = groupoid.unit(std::tuple(Vector<double, 2>(0, 0), Vector<double, 0>()));
 ///     const auto& [position, turn] = g;
 ///
 /// Errors are those of Product.

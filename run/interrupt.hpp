@@ -1,5 +1,9 @@
 #pragma once
-/// Ctrl-C and SIGTERM while a run goes on.
+/// Ctrl-C and SIGTERM while a run goes on: the first is noted, so that the run can end its step and write its files.
+///
+///     const InterruptGuard guard;
+///     while (!InterruptGuard::interrupted() && advance()) {
+///     }
 
 #include <csignal>
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Where numbers were measured.
+/// Which build this is and on which machine it runs: what the bits of a result depend on, beside what was computed.
+/// Checkpoints and results hold it.
 
 #include <string>
 
@@ -9,9 +10,9 @@ namespace lagroid {
 /// instruction set came to where it was made (machine.cmake).
 const char* build_hash();
 
-/// All that numbers hang on besides what is computed, in one line: two programs that say the same give the same bits.
-/// Compiler, instruction set, the versions of lagroid and of libraries, `build_hash`, and of this machine the C library
-/// with the instructions of the processor by which it chooses its functions.
+/// All that numbers depend on besides what is computed, in one line: two programs with the same line give the same
+/// bits. Compiler, instruction set, the versions of lagroid and of libraries, `build_hash`, and of this machine the C
+/// library with the instructions of the processor by which it chooses its functions.
 std::string program();
 /// The processor, and `program`.
 std::string machine();

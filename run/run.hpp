@@ -1,5 +1,18 @@
 #pragma once
-/// From a system and a state to a trajectory, its ledger and its files.
+/// From a system and a state to a trajectory, its ledger and its files: z_{k+1} = F(z_k), recorded, judged and, where a
+/// folder is named, written.
+///
+/// One call gives a system of one's own what `lagroid run` gives a scene.
+///
+///     RunResult result = run(Dido{}, {{0, 0}, {1, 0, 1}}, {.steps = 126, .folder = "out/dido"});
+///     std::cout << text_report(result);
+///     return result.converged() ? 0 : 1;
+///
+/// Requires a system that is a DiscreteSystem, and a start with finite numbers; it links lagroid::run. Returns a
+/// RunResult, also of a run that ended early: RunResult::status has the reason, and RunResult::output_error why files
+/// could not be written.
+///
+/// Errors: std::invalid_argument, FolderRefused and RunError, as listed at `run`.
 
 #include <lagroid/run/files/output.hpp>
 #include <lagroid/run/files/program_scene.hpp>
@@ -24,7 +37,7 @@
 
 namespace lagroid {
 
-/// What is asked of `run`.
+/// Options of `run`.
 template <DiscreteSystem Sys> struct RunOptions {
   using G = typename Sys::GroupoidType;
 
@@ -38,9 +51,9 @@ template <DiscreteSystem Sys> struct RunOptions {
   std::optional<Presentation<Sys>> presentation{};  ///< labels, panels and shapes of one's own
 };
 
-/// Columns q1, q2, ... of the object and mu1, mu2, ... of the momentum, g1, g2, ... of the configuration where the
-/// objects do not tell it, and panels of these and of every quantity's drift. Objects of two or three coordinates are
-/// drawn as a point that leaves a trail.
+/// Columns q1, q2, ... of the object and mu1, mu2, ... of the momentum, g1, g2, ... of the configuration where it
+/// does not follow from the objects, and panels of these and of every quantity's drift. Objects of two or three
+/// coordinates are drawn as a point that leaves a trail.
 template <DiscreteSystem Sys>
 Presentation<Sys> plain_presentation(const Sys& system, std::string name, std::span<const Quantity<Sys>> quantities);
 
@@ -63,11 +76,11 @@ void run_with_files(RunResult& result, const std::filesystem::path& folder, bool
 /// present point on. The ledger holds the constraints, the system's quantities or, of one that declares symmetries
 /// alone, their momenta; and the discrete energy where the Lagrangian has the step as its argument.
 ///
-/// A step that fails, Ctrl-C or SIGTERM ends the run with what was computed so far, and RunResult::status tells which.
-/// Throws std::invalid_argument for a name that is not one line of text, a start that is not finite, or steps and every
-/// that count nothing;
-/// FolderRefused where the folder holds something else or is not to be written in; RunError where it holds no run, or
-/// one of another system, with other parameters, from another start or by another method, to go on with.
+/// A step that fails, Ctrl-C or SIGTERM ends the run with what was computed so far, and RunResult::status is the
+/// reason. Throws std::invalid_argument for a name that is not one line of text, a start that is not finite, or steps
+/// and every that count nothing; FolderRefused where the folder holds something else or is not to be written in;
+/// RunError where it holds no run, or one of another system, with other parameters, from another start or by another
+/// method, to go on with.
 template <DiscreteSystem Sys>
 RunResult run(const Sys& system, std::unique_ptr<Integrator<Sys>> integrator, const IntegratorOptions& how,
               const RunOptions<Sys>& options) {

@@ -1,5 +1,13 @@
 #pragma once
-/// What a run produces, whatever the system: the common currency of reports, files and plots.
+/// What a run returns, whatever the system: columns of numbers along the trajectory, the ledger, how it ended, and what
+/// its pictures show.
+///
+/// Reports, files and plots are made of it and of nothing else.
+///
+///     for (const LedgerEntry& entry : result.ledger.entries)
+///       if (entry.broken()) std::cerr << entry.name << " drifted by " << entry.drift << '\n';
+///
+/// A run that ended early has a `status` other than "converged", a `message`, and all that was computed until then.
 
 #include <lagroid/run/motion/shape.hpp>
 

@@ -1,5 +1,15 @@
 #pragma once
-/// `study`: what accuracy costs a system of one's own. It compiles all methods that the system has: a minute.
+/// `study`: what accuracy costs a system of one's own, error against processor time of every method that it has.
+///
+/// It answers which method and which step to take for an error that is acceptable.
+///
+///     const Findings findings = study(Pendulum{}, {{1}, {0}}, {.steps = 1000, .budget = 10, .folder = "out/study"});
+///     std::cout << study_text(findings);
+///
+/// Requires a system with a step `h`; it compiles all methods that the system has, which takes a minute. Returns
+/// Findings, of what was measured until the budget was over or Ctrl-C came.
+///
+/// Errors: std::invalid_argument, UnknownMethod, std::domain_error and FolderRefused, as listed at `study`.
 
 #include <lagroid/run/motion/system_marks.hpp>
 #include <lagroid/run/motion/system_motion.hpp>
@@ -19,7 +29,7 @@
 
 namespace lagroid {
 
-/// What is asked of `study`.
+/// Options of `study`.
 template <DiscreteSystem Sys> struct StudyOptions {
   using G = typename Sys::GroupoidType;
 
@@ -66,7 +76,7 @@ requires HasTimeStep<Sys> Experiment experiment_of(const Sys& system, const Stat
 
 namespace detail {
 
-/// A study with its page in `folder`, where there is one; `of` tells what is studied.
+/// A study with its page in `folder`, where there is one; `of` identifies the motion that is studied.
 Findings study_with_files(Experiment experiment, StudyRequest request, const std::string& methods,
                           const std::filesystem::path& folder, const std::string& of, bool progress);
 
@@ -80,7 +90,7 @@ std::string studied(const std::string& name, double step, long steps, const std:
 }  // namespace detail
 
 /// Errors against processor time of every method that the system has, with a recommendation: as `lagroid study` does of
-/// a scene. `study_text(findings)` says it in words.
+/// a scene. `study_text(findings)` is the result in words.
 ///
 ///     Findings findings = study(Pendulum{}, {{1}, {0}}, {.steps = 1000, .budget = 10, .folder = "out/study"});
 ///     std::cout << study_text(findings);

@@ -1,5 +1,15 @@
 #pragma once
-/// State that is kept and restored by one function.
+/// Named fields of a state, kept and restored by one function: `archive("name", field)` writes the field, or reads it.
+///
+/// What is written and what is read then cannot differ, and a field keeps its name in the file.
+///
+///     Archive kept;
+///     kept("time", time);
+///     Archive restored(kept.fields());
+///     restored("time", time);
+///
+/// Returns the same bits. Errors: nlohmann::json::exception where a field is missing or of another kind,
+/// std::out_of_range where a list has another length.
 
 #include <lagroid/core/number_archive.hpp>
 

@@ -1,5 +1,14 @@
 #pragma once
-/// What a run leaves behind so that it can be taken up again.
+/// Checkpoints of a run: its scene, the rows recorded so far and its state, from which it goes on with the same bits.
+///
+/// A process that is killed loses what came after its last checkpoint, and nothing else.
+///
+///     Checkpoint checkpoint("out/run", /*steps*/ 0);  // by the clock
+///     checkpoint.begin(scene);
+///     if (checkpoint.due(step)) checkpoint.keep(trajectory, state);
+///
+/// Requires that the caller holds the folder (OutputFolder). Errors: OutputError where the folder cannot be written,
+/// RunError where there is nothing to go on with, or another build made it.
 
 #include <lagroid/run/files/archive.hpp>
 #include <lagroid/run/run_result.hpp>
@@ -14,7 +23,7 @@ namespace lagroid {
 
 /// The folder `checkpoint` of a run: its scene, the rows recorded so far in parts, and its state. Killed at any moment,
 /// a run loses what came after its last checkpoint and nothing else: parts are only ever added, and the state, which
-/// says how many of them count, is replaced whole. Whoever makes one holds the run's folder (OutputFolder).
+/// has their number, is replaced whole. Whoever makes one holds the run's folder (OutputFolder).
 class Checkpoint {
  public:
   /// `steps`: after how many steps the next one is made; 0: when `seconds` have passed.
@@ -52,7 +61,7 @@ class Checkpoint {
   long parts_ = 0;
   std::size_t rows_ = 0;             ///< of the nodes, kept so far
   std::vector<std::size_t> values_;  ///< of each series, kept so far
-  std::size_t scene_ = 0;            ///< what the scene's text amounts to
+  std::size_t scene_ = 0;            ///< the checksum of the scene's text
   std::vector<std::string> others_;  ///< builds before this one
   long until_look_ = 1;              ///< steps until the clock is looked at
   long stride_ = 1;

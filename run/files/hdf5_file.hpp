@@ -1,6 +1,6 @@
 #pragma once
-/// HDF5 files that are made in memory: HDF5 cannot survive a disk that is full (closing the file crashes, at exit at
-/// the latest).
+/// HDF5 files that are made in memory and then written as a whole: HDF5 itself cannot survive a disk that is full
+/// (closing the file crashes, at exit at the latest).
 
 #include <H5Cpp.h>
 

@@ -1,5 +1,12 @@
 #pragma once
-/// Files that what is broken off goes on from: each there whole, on the disk, or not at all.
+/// Files from which an interrupted computation goes on: each is replaced as a whole, or stays as it was before.
+///
+/// Whatever moment a process is killed at, the file that is found afterwards is one that was written completely.
+///
+///     replace_by_cbor("state.cbor", {{"step", 17}});
+///     const auto state = read_cbor("state.cbor");  // nothing where the file is missing or damaged
+///
+/// Errors: OutputError where the file cannot be written.
 
 #include <nlohmann/json.hpp>
 
@@ -17,10 +24,10 @@ void replace_file(const std::filesystem::path& file, std::string_view bytes);
 /// The bytes of a file; none where there is no such file, or it cannot be read.
 std::optional<std::string> contents(const std::filesystem::path& file);
 
-/// What bytes amount to: enough to notice that they are others.
+/// A checksum of bytes, to notice that they were changed.
 std::size_t sum_of(std::string_view bytes);
 
-/// As CBOR after the sum of its bytes. Throws OutputError.
+/// Replaces the file by the JSON as CBOR, after its checksum. Throws OutputError.
 void replace_by_cbor(const std::filesystem::path& file, const nlohmann::json& json);
 
 /// What `replace_by_cbor` wrote; none where that is missing or damaged.

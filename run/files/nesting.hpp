@@ -1,5 +1,6 @@
 #pragma once
-/// How deep files nest. Whoever reads, copies or deletes what they hold goes down by recursion: it is looked at before.
+/// How deep files nest: their readers are recursive, so that one that nests deeply enough would overflow the stack. The
+/// depth is checked before.
 
 #include <nlohmann/json.hpp>
 

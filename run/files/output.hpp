@@ -1,5 +1,13 @@
 #pragma once
 /// The files of a run: trajectory (HDF5, CSV), summaries, plots.
+///
+///     const OutputFolder held = folder_for_run("out/run", scene_text);
+///     const auto files = write_outputs(result, "out/run");
+///
+/// Requires that the caller holds the folder (OutputFolder). Returns the files written; a missing gnuplot costs the
+/// pictures only, and RunResult::notes has why.
+///
+/// Errors: OutputError and FolderRefused, with the remedy.
 
 #include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/run/run_result.hpp>
@@ -11,15 +19,15 @@
 namespace lagroid {
 
 /// The script that draws the panels, from the columns of trajectory.csv by their names or from what is to be seen of
-/// them, plot.csv: what a run's plot.gp holds. It follows from what the summary says, so that a script by someone else
-/// is told from it.
+/// them, plot.csv: what a run's plot.gp holds. It follows from the summary, so that a script that someone else
+/// wrote can be distinguished from it.
 std::string plot_script(const std::vector<Panel>& panels, bool by_name);
 
 /// The folder for a run of that scene (what was run, as text), or that of a run which is there, to go on with it or to
 /// show it; for this process alone. Throws as OutputFolder does.
 OutputFolder folder_for_run(const std::filesystem::path& folder, const std::string& scene);
 OutputFolder folder_of_run(const std::filesystem::path& folder);
-/// The same for a result whose scene nobody knows: it may be written again, another one may not.
+/// The same for a result whose scene is not known: it may be written again, another one may not.
 OutputFolder folder_for_result(const std::filesystem::path& folder, const RunResult& result);
 
 /// Writes trajectory.h5, trajectory.csv, summary.json, summary.txt, plot.gp, plot.svg and plot.png into `folder`
@@ -27,8 +35,8 @@ OutputFolder folder_for_result(const std::filesystem::path& folder, const RunRes
 /// while it draws, costs the pictures only and is added to the result's notes.
 std::vector<std::filesystem::path> write_outputs(RunResult& result, const std::filesystem::path& folder);
 
-/// The same of what must not be lost with its files: where they cannot be written, RunResult::output_error says why,
-/// and a signal that comes meanwhile is noted (InterruptGuard).
+/// The same of what must not be lost with its files: where they cannot be written, RunResult::output_error has the
+/// reason, and a signal that comes meanwhile is noted (InterruptGuard).
 std::vector<std::filesystem::path> write_outputs_if_possible(RunResult& result, const std::filesystem::path& folder);
 
 }  // namespace lagroid

@@ -1,6 +1,15 @@
 #pragma once
 /// A folder of output files: of one kind, of one scene, written by one process at a time, each file whole or not at
 /// all.
+///
+/// A command can then never overwrite something that it did not make, nor leave half of a file.
+///
+///     const char* const files[] = {"table.csv"};
+///     const OutputFolder held("out/table", OutputKind::report, OutputSource{{"scene", scene}}, files);
+///     write_text(table, "out/table/table.csv");
+///
+/// Errors: FolderRefused where the folder is no place for the files, with the remedy in one line; OutputError where the
+/// disk is full.
 
 #include <filesystem>
 #include <functional>
@@ -32,12 +41,12 @@ class RunError : public std::runtime_error {
 /// What a folder holds. Data (`lagroid trajectories`) lie in folders of the user's own, which they leave unmarked.
 enum class OutputKind { run, sweep, study, optimum, model, report, data };
 
-/// What the contents of a folder were made of: names ("scene", "data", ...) and texts. Where one is another, so are the
-/// results, and the first that is says so.
+/// What the contents of a folder were made of: names ("scene", "data", ...) and texts. Where one differs, so may
+/// the results, and the message names the first that does.
 using OutputSource = std::vector<std::pair<std::string, std::string>>;
 
-/// A folder that this process alone writes in as long as this lives. A file `.lagroid` in it says what it holds and of
-/// what, so that nothing is written over anything else; a folder without one is taken for what its files say.
+/// A folder that this process alone writes in as long as this lives. A file `.lagroid` in it records what it holds
+/// and of what source, so that nothing is written over anything else; a folder without one is judged by its files.
 class OutputFolder {
  public:
   /// Makes the folder where it is missing. Without a `source` it takes the folder as it is: to go on there, to draw
@@ -52,7 +61,7 @@ class OutputFolder {
   /// Where nothing was left, the folder is as before.
   ~OutputFolder();
 
-  /// Whether an earlier command said what it left there.
+  /// Whether an earlier command left its mark there.
   bool known() const { return known_; }
   /// Of a folder whose contents turn out to be somebody else's: it is left without the mark that this made.
   void disown();
@@ -94,9 +103,9 @@ struct Drawing {
 /// drawn. Empty, or the reason why there are no pictures.
 std::string draw(const std::filesystem::path& folder, const Drawing& drawing, bool interrupted_before);
 
-/// `write_whole`, and when all that is there, `draw`: a signal that comes meanwhile ends the drawing. `note` says why
-/// there are no pictures. `tell` writes what speaks of pictures: with the other files, as if there were none, and again
-/// when they are drawn.
+/// `write_whole`, and when all that is there, `draw`: a signal that comes meanwhile ends the drawing. `note` gets the
+/// reason where there are no pictures. `tell` writes the files that name pictures: with the other files, as if there
+/// were none, and again when they are drawn.
 std::vector<std::filesystem::path> write_and_draw(
     const std::filesystem::path& folder, std::span<const char* const> files, const FileWriter& make,
     const Drawing& drawing, std::string& note,

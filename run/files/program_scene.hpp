@@ -1,5 +1,6 @@
 #pragma once
-/// What stands in the place of a scene where a program of one's own runs its system.
+/// What stands in the place of a scene where a program of one's own runs its system: name, method, step, start, and
+/// numbers that identify the system. A run is resumed only where it is the same.
 
 #include <span>
 #include <string>
@@ -7,7 +8,7 @@
 
 namespace lagroid {
 
-/// What has to be the same for such a run to be taken up. `marks` tell the system from others (system_marks.hpp).
+/// What has to be the same for such a run to be resumed. `marks` identify the system (system_marks.hpp).
 struct ProgramRun {
   std::string name;
   std::string method;

@@ -1,5 +1,8 @@
 #pragma once
 /// What a check of laws found, in words and as JSON.
+///
+///     std::cout << text_certificate(certificate);
+///     return certificate.holds() ? 0 : 1;
 
 #include <lagroid/core/testing/law_report.hpp>
 
@@ -19,10 +22,10 @@ struct SymmetryFinding {
 struct Certificate {
   std::string system;
   std::string groupoid;
-  std::string failure;  ///< why the run along which laws are asked ended early, if it did: then nothing was asked
+  std::string failure;         ///< why the run that laws are tested along ended early, if it did: then none was tested
   std::string failure_status;  ///< as in RunResult
   std::size_t states = 0;      ///< of that run, from which samples were drawn; 0: they were drawn by the caller
-  int samples = 0;             ///< asked of each law
+  int samples = 0;             ///< of each law
   long seed = 0;
   double seconds = 0;
   std::vector<laws::LawReport> suites;

@@ -1,5 +1,15 @@
 #pragma once
-/// The certificate of a system of one's own, from C++. Link lagroid::laws beside lagroid::run.
+/// `check`: the certificate of a system of one's own. All laws that apply to it are tested at random states.
+///
+/// Wrong derivatives, a symmetry that is none, a momentum map with a wrong sign: a run may hide them, a law does not.
+///
+///     const Certificate found = check(Dido{}, [] {
+///       return State<Dido::GroupoidType>{{0, 0}, laws::draw_vector<3>(2)};
+///     });
+///     std::cout << text_certificate(found);
+///
+/// Requires states from which a step can be taken, and a link to lagroid::laws beside lagroid::run. Not to be called by
+/// several threads at once. Errors: std::invalid_argument for less than one sample.
 
 #include <lagroid/core/testing/sampling.hpp>
 #include <lagroid/run/ledger/certificate.hpp>
@@ -12,22 +22,16 @@
 
 namespace lagroid {
 
-/// What is asked of `check`.
+/// Options of `check`.
 struct CheckOptions {
   std::string name = "system";  ///< in reports
-  int samples = 100;            ///< asked of each law, at least 1
+  int samples = 100;            ///< of each law, at least 1
   long seed = 20261120;         ///< of the samples: the same ones again
 };
 
-/// Asks the system every law that applies to it (laws::certificate), as `lagroid check` asks those of scenes. `draw()`
-/// returns a State from which a step can be taken; it draws with RapidCheck (laws::draw_uniform, laws::draw_vector).
-///
-///     const Certificate found = check(Dido{}, [] {
-///       return State<Dido::GroupoidType>{{0, 0}, laws::draw_vector<3>(2)};
-///     });
-///     std::cout << text_certificate(found);
-///
-/// Not to be called by several threads at once. Throws std::invalid_argument for less than one sample.
+/// Tests every law that applies to the system (laws::certificate), as `lagroid check` does for scenes. `draw()` returns
+/// a State from which a step can be taken; it draws with RapidCheck (laws::draw_uniform, laws::draw_vector). Not to be
+/// called by several threads at once. Throws std::invalid_argument for less than one sample.
 template <DiscreteSystem Sys>
 Certificate check(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw,
                   const CheckOptions& options = {}) {

@@ -1,5 +1,11 @@
 #pragma once
-/// From the nodes of a motion to its ledger.
+/// From the nodes of a motion to the verdicts of its ledger.
+///
+///     Judge judge(motion.look());
+///     while (motion.advance().converged()) judge.observe(motion.look());
+///     judge.report(result.ledger);
+///
+/// Requires that all nodes have the same quantities. Nothing throws.
 
 #include <lagroid/run/ledger/ledger.hpp>
 #include <lagroid/run/motion/observables.hpp>

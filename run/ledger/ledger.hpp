@@ -1,5 +1,16 @@
 #pragma once
-/// Watching promises while a trajectory is made.
+/// Promises watched while a trajectory is made: for each quantity its drift |I(z_k) - I(z_0)|, the bound that its
+/// promise sets, and the verdict.
+///
+/// A ledger distinguishes round-off from error without a tolerance of the user's: bounds follow from the size of the
+/// terms and, for round-off, the number of steps.
+///
+///     QuantityWatch energy("energy", Promise::bounded, /*components*/ 1);
+///     energy.observe(&value, size);  // at every node
+///     std::cout << energy.entry().verdict;
+///
+/// Requires at each node the size of the terms that the quantity is a sum of. Verdicts are "kept", "BROKEN", "bounded",
+/// "growing", "unjudged", "watched" or "counted". Nothing throws.
 
 #include <lagroid/run/motion/observables.hpp>
 #include <lagroid/run/run_result.hpp>
@@ -23,7 +34,7 @@ inline double worse(double a, double b) { return a <= b || std::isnan(b) ? b : a
 ///
 /// A conserved one is held to a random walk of round-off in its terms. A bounded one is held to half of its size along
 /// the motion, the geometric mean over the nodes (so that a passage near a singularity counts for no more than its
-/// nodes): an energy that is farther off says nothing of the motion, whether it still grows or not. Where only its own
+/// nodes): an energy that is farther off describes no motion, whether it still grows or not. Where only its own
 /// norm is known that bound may be too narrow, and what exceeds it is unjudged.
 ///
 /// Numbers that are none are never kept or bounded: a drift that is not finite is BROKEN; terms that are not finite, or
@@ -33,7 +44,7 @@ class QuantityWatch {
  public:
   QuantityWatch(std::string name, Promise promise, std::size_t width, SizeOf size_of = SizeOf::terms);
   /// `size` is the size of the terms the quantity is made of; round-off is relative to it. `noise` is what one
-  /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not carried along.
+  /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not updated by steps.
   void observe(const double* values, double size, double noise = 0);
   LedgerEntry entry() const;
   /// The norm of the last deviation from the first value.
@@ -76,8 +87,8 @@ class QuantityWatch {
 };
 
 /// Whether positions still have the digits of the motion: where a step moves them by less than a thousand of their own
-/// units in the last place, what is computed is rounding, however well it keeps its momenta. Asked of positions above a
-/// million, for at an equilibrium near the origin nothing is lost, and at two nodes of every 64, so that it costs
+/// units in the last place, what is computed is rounding, however well it keeps its momenta. Tested at positions above
+/// a million, for at an equilibrium near the origin nothing is lost, and at two nodes of every 64, so that it costs
 /// nothing.
 class PositionWatch {
  public:

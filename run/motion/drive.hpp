@@ -1,5 +1,11 @@
 #pragma once
-/// The loop: from a motion's first node to its last, with checkpoints, progress and interrupts.
+/// A run from a motion's first node to its last: the loop with checkpoints, a progress bar and interrupts.
+///
+///     RunResult result;
+///     drive(motion, {.steps = 1000}, {.record = true}, result);
+///
+/// Requires a motion at its first node. The result has the trajectory, the ledger and how the run ended. Errors:
+/// RunError where the checkpoint to go on from is of another run, OutputError where the folder cannot be used.
 
 #include <lagroid/run/motion/motion.hpp>
 #include <lagroid/run/run_result.hpp>
@@ -17,7 +23,7 @@ struct RunExtent {
   std::string scene;    ///< to be kept, so that the run can be taken up
 };
 
-/// What is asked of a run.
+/// Options of a run.
 struct RunContext {
   bool record = false;             ///< keep the trajectory
   bool progress = false;           ///< show a bar
@@ -26,7 +32,7 @@ struct RunContext {
 };
 
 /// Runs the motion, which is at its first node, from there or from its checkpoint, and keeps checkpoints where
-/// `context` names a folder. The result has its trajectory, its ledger and all else that is told of it. A step that
+/// `context` names a folder. The result has its trajectory, its ledger and all else that reports need. A step that
 /// fails, Ctrl-C or SIGTERM ends it with what was computed so far. Throws RunError where the checkpoint is of another
 /// run, OutputError where the folder cannot be used.
 void drive(Motion& motion, const RunExtent& pace, const RunContext& context, RunResult& result);

@@ -1,5 +1,10 @@
 #pragma once
-/// The loop over the nodes of a motion.
+/// The loop over the nodes of a motion: step, judge, record.
+///
+///     WatchedMotion watched(motion, &judge, &recorder, /*every*/ 1);
+///     const IntegrationEnd end = integrate_nodes(watched, 1000, [](const StepReport&) { return true; });
+///
+/// Requires that motion, judge and recorder outlive it. A step that fails is not made; the end has its report.
 
 #include <lagroid/run/ledger/judge.hpp>
 #include <lagroid/run/motion/motion.hpp>
@@ -55,7 +60,7 @@ struct IntegrationEnd {
 };
 
 /// Makes `count` steps and sees their nodes; fewer where a step fails, which is then not made, where the numbers of its
-/// node are not finite, or where `goes_on(report)`, which is asked after each other, says no.
+/// node are not finite, or where `goes_on(report)`, called after every other step, returns false.
 IntegrationEnd integrate_nodes(WatchedMotion& watched, long count,
                                const std::function<bool(const StepReport&)>& goes_on);
 

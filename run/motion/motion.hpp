@@ -1,5 +1,14 @@
 #pragma once
 /// What can be run: one interface for systems on groupoids, scenes of bodies and systems on spheres.
+///
+/// Loop, recorder, ledger, studies and Python are written once, against it.
+///
+///     while (motion.index() < 1000) {
+///       if (const StepReport report = motion.advance(); !report.converged()) break;
+///       std::cout << motion.time() << '\n';
+///     }
+///
+/// A motion of one's own derives from Motion. A step that does not converge must leave everything as it was.
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/run/motion/observables.hpp>
@@ -21,7 +30,7 @@ struct NamedVector {
 };
 
 /// A motion: it advances from node to node, and what is to be seen at a node can be looked at. The loop, the recorder
-/// and the ledger (drive.hpp, recorder.hpp, judge.hpp), studies and Python know nothing else of what they run.
+/// and the ledger (drive.hpp, recorder.hpp, judge.hpp), studies and Python use nothing else of what they run.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -52,7 +61,7 @@ class Motion {
   /// False where looking costs so much that only the nodes that are recorded are looked at.
   virtual bool is_judged_at_every_node() const { return true; }
 
-  /// Adds what is told of the whole run: panels, shapes, conventions, notes, what the ledger counts.
+  /// Adds what describes the whole run: panels, shapes, conventions, notes, what the ledger counts.
   virtual void describe(RunResult& result) const = 0;
   /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
   /// bits.

@@ -1,5 +1,13 @@
 #pragma once
-/// What is to be seen of a motion at a node.
+/// What can be observed of a motion at a node: fields to be recorded, quantities with their promises, residuals of
+/// constraints.
+///
+///     for (std::size_t i = 0; i < node.quantities().size(); ++i) {
+///       std::vector<double> values(node.quantities()[i].components.size());
+///       const double size = node.measure(i, values.data());
+///     }
+///
+/// Fields and quantities are the same at every node, in the same order.
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/run/run_result.hpp>
@@ -17,7 +25,7 @@ struct Field {
   Columns columns{};                      ///< without values
   std::vector<std::size_t> shape{};       ///< of a matrix, whose columns come one after another; empty: a vector
   bool is_unit_quaternion = false;        ///< of a rotation that both signs mean: recorded without jumps
-  std::optional<std::size_t> drift_of{};  ///< how far that quantity is from its first value: the judge knows
+  std::optional<std::size_t> drift_of{};  ///< how far that quantity is from its first value, by the judge
 };
 
 /// What a watched quantity's sizes are: of the terms that it is made of, or, where these are not known, its own norm,
@@ -31,10 +39,10 @@ struct Watched {
   Promise promise = Promise::bounded;
   bool on_arrows = false;  ///< evaluated on the arrow that led to a node: the first node has none
   SizeOf size_of = SizeOf::terms;
-  bool is_promised = true;  ///< by the method; else it is told how far the quantity went
+  bool is_promised = true;  ///< by the method; else the ledger has how far the quantity went
 };
 
-/// What the ledger tells of constraints.
+/// What the ledger holds of constraints.
 enum class Constrained {
   no,
   promised,  ///< the method keeps them to round-off

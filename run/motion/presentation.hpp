@@ -1,5 +1,11 @@
 #pragma once
-/// How reports speak of a system.
+/// How reports name the numbers of a system: labels, units, panels and shapes.
+///
+/// The mathematics is in systems/; what a person reads is declared here, apart from it.
+///
+///     Presentation<Sys> p = plain_presentation<Sys>(system, "pendulum", quantities);
+///     p.momentum = {"p"};
+///     p.momentum_unit = "kg m^2/s";
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/run/run_result.hpp>
@@ -18,7 +24,7 @@ template <class Sys> struct ExtraColumns {
   std::function<void(const TrajectoryPoint<Sys>&, double*)> evaluate;
 };
 
-/// How reports speak of a system: the mathematics is in systems/, the words and units are here.
+/// The words and units of a system.
 template <class Sys> struct Presentation {
   std::string name;
   std::vector<std::string> position;  ///< labels; may be empty (a group has one object)

@@ -1,5 +1,10 @@
 #pragma once
 /// From the nodes of a motion to the rows of its trajectory.
+///
+///     Recorder recorder(motion.look());
+///     recorder.record(motion.look(), /*judge*/ nullptr);
+///
+/// Requires that all nodes have the same fields.
 
 #include <lagroid/run/ledger/judge.hpp>
 #include <lagroid/run/motion/observables.hpp>

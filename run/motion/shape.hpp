@@ -1,5 +1,9 @@
 #pragma once
-/// What a run looks like in space.
+/// What a run looks like in space: rigid shapes that move with the recorded columns.
+///
+///     Shape bob{"sphere", {0.05}};
+///     bob.position = {"x", "y", 0.0};  // columns, or constants
+///     bob.trail = true;
 
 #include <array>
 #include <string>

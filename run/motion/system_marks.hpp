@@ -1,5 +1,9 @@
 #pragma once
-/// Numbers by which a system is told from one with other parameters.
+/// Numbers that identify a system: its declared parameters, and its momenta and constraints on an arrow near a unit.
+///
+/// A run or a study is resumed only by a system with the same numbers; the latter detect members that are not declared.
+///
+///     const std::vector<double> marks = marks_of(system, q);
 
 #include <lagroid/core/derivatives/two_sided.hpp>
 #include <lagroid/core/parameter.hpp>
@@ -10,7 +14,7 @@
 namespace lagroid {
 
 /// The parameters that the system declares; and its momenta and constraints on an arrow near the unit at `q`, which
-/// tell members that it does not declare.
+/// depend on members that it does not declare.
 template <DiscreteSystem Sys>
 std::vector<double> marks_of(const Sys& system, const ObjectOf<typename Sys::GroupoidType>& q) {
   using V = Vector<double, Sys::dimension>;

@@ -1,5 +1,11 @@
 #pragma once
-/// Systems on groupoids as motions.
+/// An integrator of a system on a groupoid as a Motion.
+///
+///     SystemMotion<Sys> motion(system, presentation, watched(system, options), std::move(integrator), options);
+///     const StepReport report = motion.advance();
+///
+/// Requires the options with which the integrator was made. Steps fail as those of the integrator do; nothing throws
+/// but what the system's own functions throw.
 
 #include <lagroid/core/capabilities/discrete_energy.hpp>
 #include <lagroid/run/ledger/ledger.hpp>

@@ -1,5 +1,13 @@
 #pragma once
-/// What is to be seen at the points of a system's trajectories.
+/// What can be observed at the points of a system's trajectories: position, momentum, multipliers, residuals and
+/// quantities.
+///
+///     SystemNode<Sys> node(system, presentation, quantities_of(system));
+///     node.see(point);
+///     const Endpoint end = node.endpoint();
+///
+/// Requires points in order, and a presentation that outlives it. Momenta are reported tangent to the object
+/// constraints.
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/derivatives/two_sided.hpp>
@@ -62,7 +70,7 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
   SystemNode& operator=(const SystemNode&) = delete;
 
   /// Goes on to the next point. `noise`: what the evaluation of its momentum lost, relative to its size, where that was
-  /// not carried along from the point before.
+  /// not updated from the point before.
   void see(const Point& point, double noise = 0) {
     point_ = point;
     point_.state.momentum = tangent_momentum(system_, point.state);

@@ -1,5 +1,7 @@
 #pragma once
 /// Times in words.
+///
+///     std::cout << duration(0.00456);  // 4.56 ms
 
 #include <string>
 

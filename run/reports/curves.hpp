@@ -1,5 +1,10 @@
 #pragma once
-/// What of a trajectory its pictures show.
+/// Which rows of a trajectory its pictures show: a thousand points across, without losing a spike, however long the
+/// run.
+///
+///     const std::vector<Stroke> strokes = visible_strokes(panel, trajectory);
+///
+/// Requires a panel whose columns the trajectory has.
 
 #include <lagroid/run/run_result.hpp>
 
@@ -18,7 +23,7 @@ std::string label_of(const std::string& label, double offset);
 /// Rows to be joined by a line.
 using Stroke = std::vector<std::size_t>;
 
-/// The rows of a panel that can be told apart in a picture of a thousand points across, however long the run. Over a
+/// The rows of a panel that can be distinguished in a picture of a thousand points across, however long the run. Over a
 /// column that never falls, as the time, they are the first, the last, and the least and the greatest of every curve in
 /// each of a thousand equal parts: no spike is lost. A path in the plane is followed and left out where it has been
 /// before, to 1 / 400 of the picture.

@@ -1,5 +1,8 @@
 #pragma once
-/// Text in gnuplot's scripts. What a scene says comes into them by this, and else by the files of data that they draw.
+/// Text in gnuplot's scripts. Text of a scene enters a script by this function, and else by the files of data that it
+/// draws.
+///
+///     script += "set title " + gnuplot_string(name);  // whatever the name contains, it is shown and not run
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,8 @@
 #pragma once
-/// Text that anyone may have written as text of HTML, Markdown, CSV and JSON: it shows what it is, and means nothing
-/// there. Characters that a terminal would obey are visible (text.hpp).
+/// Text that anyone may have written, in HTML, Markdown, CSV and JSON: it is shown as it is, and has no meaning there.
+/// Characters that a terminal would obey are visible (text.hpp).
+///
+///     page += "<h1>" + in_html(name) + "</h1>";
 
 #include <nlohmann/json_fwd.hpp>
 

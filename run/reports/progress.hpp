@@ -1,5 +1,8 @@
 #pragma once
 /// A progress bar on the terminal for runs over a second.
+///
+///     Progress progress("steps", /*total*/ 1000, /*enabled*/ true);
+///     for (long k = 1; k <= 1000; ++k) progress.update(k);
 
 #include <chrono>
 #include <string>

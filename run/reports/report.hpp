@@ -1,5 +1,8 @@
 #pragma once
 /// A run in words and as JSON.
+///
+///     std::cout << text_report(result);  // what was run, how it ended, the ledger
+///     file << json_report(result);       // the same for programs; keys: docs/scenes.md
 
 #include <lagroid/run/run_result.hpp>
 
@@ -16,7 +19,7 @@ std::string text_report(const RunResult& result);
 /// One JSON object; numbers read back to the same doubles. Keys: docs/scenes.md.
 std::string json_report(const RunResult& result);
 
-/// The plot panels that such a summary tells. Throws nlohmann::json::exception where it tells none.
+/// The plot panels in such a summary. Throws nlohmann::json::exception where there are none.
 std::vector<Panel> panels_of(const nlohmann::ordered_json& summary);
 
 /// The JSON object for a run that never began: status "invalid_scene" and the message.

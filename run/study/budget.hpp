@@ -1,5 +1,8 @@
 #pragma once
 /// The time that a study may take.
+///
+///     const Budget budget(60);  // s of wall clock, from now on
+///     while (!budget.over()) measure();
 
 #include <chrono>
 

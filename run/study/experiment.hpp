@@ -1,5 +1,10 @@
 #pragma once
-/// A motion to be integrated by many methods with many steps.
+/// A motion to be integrated by many methods with many steps: how it begins for each, when it ends, and which methods
+/// apply.
+///
+///     const std::unique_ptr<Motion> motion = experiment.begin(experiment.methods.front(), experiment.step);
+///
+/// Errors: MethodRefused where a method does not take the step.
 
 #include <lagroid/run/motion/motion.hpp>
 #include <lagroid/run/study/method.hpp>
@@ -12,7 +17,7 @@
 
 namespace lagroid {
 
-/// A method that does not take this step; says why.
+/// A method that does not take this step; the message has the reason.
 class MethodRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -22,10 +27,10 @@ struct Experiment {
   double end = 0;               ///< the time that the motion lasts, s
   double step = 0;              ///< its own step
   std::vector<Method> methods;  ///< all that apply
-  /// The motion from its start, by that method and that step, to last until `end`. May be asked by several threads at
+  /// The motion from its start, by that method and that step, to last until `end`. May be called by several threads at
   /// once. Throws MethodRefused.
   std::function<std::unique_ptr<Motion>(const Method& method, double h, double end)> motion;
-  std::function<bool()> interrupted = nullptr;  ///< asked now and then, where there is somebody to ask
+  std::function<bool()> interrupted = nullptr;  ///< called now and then; null: never interrupted
 
   bool stopped() const { return interrupted && interrupted(); }
   std::unique_ptr<Motion> begin(const Method& method, double h) const { return motion(method, h, end); }

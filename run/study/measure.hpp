@@ -1,5 +1,13 @@
 #pragma once
-/// What methods cost, and how far their numbers are from the truth.
+/// What methods cost, and how far their numbers are from the truth: errors at the end, of invariants and of
+/// constraints, and processor time.
+///
+///     const auto truth = extrapolated_reference(experiment, /*seconds*/ 20);
+///     const Measurement found = measure_once(experiment, experiment.methods[0], 0.1, truth.get(), /*longest, s*/ 1);
+///     std::cout << found.trajectory;
+///
+/// Requires a reference that is better than what is measured; its `uncertainty` is how much. Errors: std::domain_error
+/// where no two extrapolations can be compared. A run that fails is a Measurement with a status.
 
 #include <lagroid/run/study/experiment.hpp>
 #include <lagroid/run/study/study_integrator.hpp>
@@ -18,9 +26,9 @@ namespace lagroid {
 class Reference {
  public:
   virtual ~Reference() = default;
-  /// At that time. Several threads may ask at once.
+  /// At that time. May be called by several threads at once.
   virtual std::vector<NamedVector> at(double time) const = 0;
-  /// Of the state at the end, in the measure of `distance`: errors below a few times this are not told apart.
+  /// Of the state at the end, in the measure of `distance`: errors below a few times this cannot be distinguished.
   double uncertainty = 0;
   double seconds_elsewhere = 0;  ///< of wall clock that `at` takes, about, at another time than the end
   std::string description;

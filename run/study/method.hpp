@@ -1,5 +1,5 @@
 #pragma once
-/// The ways to integrate a scene.
+/// A way to integrate a scene, as studies select it: its name, its order, and its keys in [time].
 
 #include <string>
 #include <vector>

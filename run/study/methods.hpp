@@ -1,5 +1,9 @@
 #pragma once
-/// Methods by the patterns of their names.
+/// Methods by patterns of their names.
+///
+///     const std::vector<Method> chosen = matching("splitting*,runge-kutta", experiment.methods);
+///
+/// Errors: UnknownMethod where a pattern fits no method; the message lists those there are.
 
 #include <lagroid/run/study/method.hpp>
 
@@ -9,7 +13,7 @@
 
 namespace lagroid {
 
-/// A pattern that no method of the scene has; says which there are.
+/// A pattern that fits no method of the scene; the message lists those there are.
 class UnknownMethod : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,5 +1,11 @@
 #pragma once
-/// What accuracy costs a motion, by all methods that apply to it.
+/// A study: what accuracy costs a motion, by all methods that apply to it.
+///
+///     const Findings findings = study(experiment, {.target = 1e-6, .budget = 10});
+///     std::cout << study_text(findings);
+///
+/// Returns Findings, also of a study that was ended early. Errors: std::domain_error where there is nothing to compare
+/// with.
 
 #include <lagroid/run/study/findings/study_files.hpp>
 #include <lagroid/run/study/survey.hpp>
@@ -10,7 +16,7 @@
 
 namespace lagroid {
 
-/// What is asked of a study.
+/// Options of a study.
 struct StudyRequest {
   std::vector<Method> methods{};  ///< empty: all of the experiment's
   Steps steps{};
@@ -22,13 +28,13 @@ struct StudyRequest {
   double reference_seconds = share_of_reference * budget;  ///< that an extrapolated one may take
 };
 
-/// Measures errors at the end, of invariants and of constraints against processor time. `goes_on(spent)` hears now and
-/// then what part of the budget is spent, and may end it. Throws std::domain_error where there is nothing to compare
-/// with.
+/// Measures errors at the end, of invariants and of constraints against processor time. `goes_on(spent)` is called now
+/// and then with the part of the budget that is spent, and ends the study where it returns false. Throws
+/// std::domain_error where there is nothing to compare with.
 Findings study(const Experiment& experiment, const StudyRequest& request,
                const std::function<bool(double spent)>& goes_on = nullptr);
 
-/// The same until Ctrl-C or SIGTERM, with a bar on the terminal where `progress` asks for one.
+/// The same until Ctrl-C or SIGTERM, with a bar on the terminal where `progress` is set.
 Findings study_until_interrupted(Experiment experiment, const StudyRequest& request, bool progress);
 
 }  // namespace lagroid

@@ -1,5 +1,8 @@
 #pragma once
-/// Motions as a study looks at them: integrated alone, without records.
+/// Motions as a study integrates them: alone, without records, so that nothing but steps is timed.
+///
+///     IntegrationCost work;
+///     const StepReport report = integrate_to(motion, /*end*/ 10.0, work);
 
 #include <lagroid/run/motion/motion.hpp>
 

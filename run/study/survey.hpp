@@ -1,5 +1,9 @@
 #pragma once
 /// Which methods a study runs with which steps, and how often, within its time.
+///
+///     const Budget budget(60);
+///     const auto go_on = [](double) { return true; };
+///     const Survey found = survey(experiment, experiment.methods, {}, reference, /*repetitions*/ 5, budget, go_on);
 
 #include <lagroid/run/study/budget.hpp>
 #include <lagroid/run/study/measure.hpp>
@@ -39,8 +43,8 @@ struct Survey {
 /// of the time left, methods are given up whose error, expected by their order, another has reached at a tenth of the
 /// cost; where it does not fit into that time, those that promise most make their runs. Looking ends when two thirds of
 /// the budget are over. Then every run is timed alone, without looks: `repetitions` times, interleaved, first those
-/// near the least cost of their errors, then the others, as long as there is time. `report` hears what part of the
-/// budget is spent, and says whether to go on.
+/// near the least cost of their errors, then the others, as long as there is time. `report` is called with the
+/// part of the budget that is spent, and returns whether to go on.
 Survey survey(const Experiment& experiment, const std::vector<Method>& methods, const Steps& steps,
               const Reference& reference, int repetitions, const Budget& budget,
               const std::function<bool(double spent)>& report);

@@ -1,5 +1,10 @@
 #pragma once
-/// From measurements to what an error costs.
+/// From measurements to what an error costs: the cost at which each method comes below it, and the cheapest method.
+///
+///     const std::optional<Cost> cost = least_cost(findings.runs, Axis::trajectory, 1e-6);
+///     if (cost) std::cout << cost->method << ": " << cost->seconds << " s";
+///
+/// Returns nothing where no run came below the error.
 
 #include <lagroid/run/study/measure.hpp>
 

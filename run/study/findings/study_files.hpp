@@ -1,5 +1,11 @@
 #pragma once
-/// The files of a study.
+/// All that a study found, and its files: a page with figures, CSV and JSON.
+///
+///     std::string note;
+///     const auto files = write_study(findings, "out/study", note);
+///
+/// Requires that the caller holds the folder (`folder_for_study`). Returns the files written; `note` has the reason
+/// where there are no pictures. Errors: OutputError, FolderRefused.
 
 #include <lagroid/run/study/survey.hpp>
 
@@ -43,7 +49,7 @@ std::vector<std::string> not_measured(const Findings& findings);
 std::string study_text(const Findings& findings);
 std::string study_json(const Findings& findings);
 /// study.csv, study.json, study.md, study.gp and, where gnuplot runs, study.svg and study.png; study.html holds all of
-/// it. `note` says why there are no pictures, if there are none.
+/// it. `note` gets the reason where there are no pictures.
 std::vector<std::filesystem::path> write_study(const Findings& findings, const std::filesystem::path& folder,
                                                std::string& note);
 
