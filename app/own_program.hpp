@@ -1,6 +1,8 @@
 #pragma once
 /// A program of one's own: the commands of lagroid, for systems of one's own.
 ///
+/// Scenes, studies, sweeps and pictures then work for the system as they do for those of the library.
+///
 ///     int main(int argc, char** argv) { return lagroid::program(argc, argv, {lagroid::module<Dido>()}); }
 ///
 /// One source makes three programs (`lagroid_program` in CMake; `lagroid run dido.cpp` builds the one that it needs):
@@ -8,6 +10,9 @@
 ///     LAGROID_STEPS_ALONE defined   equal steps of the discrete Lagrangian alone: seconds to compile
 ///     neither                       all methods, studies, sweeps, boundary values
 ///     LAGROID_WITH_LAWS defined     the laws: `check`
+///
+/// Requires a system with a default constructor. Returns the exit code of the command; what goes wrong is one line on
+/// standard error.
 
 #if defined(LAGROID_STEPS_ALONE)
 #include "own/steps_module.hpp"
@@ -37,7 +42,7 @@
 
 namespace lagroid {
 
-/// A system as a program knows it.
+/// A system of a program, whatever its type.
 struct Module {
   std::shared_ptr<const app::SystemModule> of;
 #if defined(LAGROID_WITH_LAWS)
@@ -45,7 +50,7 @@ struct Module {
 #endif
 };
 
-/// The module of a system for scenes that say `system = "NAME"`: its parameters are those that it declares
+/// The module of a system for scenes with `system = "NAME"`: its parameters are those that it declares
 /// (core/parameter.hpp). The name is the class's unless it is given: SpringPendulum becomes spring_pendulum. `dress`
 /// changes the labels, units, panels and shapes that reports would choose.
 template <DiscreteSystem Sys>

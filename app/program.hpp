@@ -1,5 +1,10 @@
 #pragma once
-/// A program: the commands that all have, and the parts that it is given.
+/// A program: the commands that all programs have, and the families, systems and further commands that this one is
+/// given.
+///
+///     return program(argc, argv, {.families = {&systems_family()}, .systems = {&pendulum}, .commands = {}});
+///
+/// Requires that all of them outlive the call. Returns the exit code; what goes wrong is one line on standard error.
 
 #include "command/program_command.hpp"
 #include "families/family.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 /// Which build this is and on which machine it runs: what the bits of a result depend on, beside what was computed.
-/// Checkpoints and results hold it.
+/// Checkpoints, sweeps and studies record it.
 
 #include <string>
 

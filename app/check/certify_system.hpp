@@ -1,5 +1,10 @@
 #pragma once
-/// The laws of a system along the run of its scene.
+/// The laws of a system, tested along the run of its scene: at states of the run, with momenta changed by up to a tenth
+/// of the largest.
+///
+///     const Certificate found = certify(module.task(scene, context), {.samples = 100});
+///
+/// Returns a Certificate; where the run itself fails, one without laws whose `failure` is the reason.
 
 #include "../scenes/system_module.hpp"
 #include "check_options.hpp"

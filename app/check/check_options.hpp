@@ -1,5 +1,5 @@
 #pragma once
-/// What `lagroid check` is given.
+/// Options of `lagroid check`.
 
 #include "../command/command.hpp"
 

@@ -1,6 +1,10 @@
 #pragma once
-/// The laws of the kinds of scenes. (Apart from the families themselves, because laws compile long: what knows families
-/// is in every program, what knows laws in lagroid-check alone.)
+/// The laws of each kind of scenes. (They are apart from the families themselves because they take long to compile:
+/// every program has families, lagroid-check alone has laws.)
+///
+///     const Certificate found = laws_of(scene).certify(scene, options);
+///
+/// Errors: SceneError for a scene that is no motion and no path.
 
 #include "../families/family.hpp"
 #include "own_check.hpp"
@@ -19,7 +23,7 @@ class FamilyLaws {
   virtual Certificate certify(const Section& scene, const CheckOptions& options) const = 0;
 };
 
-/// Those of systems, along the runs of their scenes, given how the system of a module is asked.
+/// Those of systems, along the runs of their scenes, given a function that tests the system of a module.
 class LawsOfSystems final : public FamilyLaws {
  public:
   explicit LawsOfSystems(AskLaws ask) : ask_(std::move(ask)) {}
@@ -32,7 +36,7 @@ class LawsOfSystems final : public FamilyLaws {
   AskLaws ask_;
 };
 
-/// Which laws this program has; it says so at its start.
+/// Sets which laws this program has, at its start.
 void use_laws(std::vector<const FamilyLaws*> laws);
 /// Those of the family that the scene is of. Throws SceneError for what is no motion and no path.
 const FamilyLaws& laws_of(const Section& scene);

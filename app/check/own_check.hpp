@@ -11,7 +11,7 @@
 
 namespace lagroid::app {
 
-/// How the system of a module is asked its laws, along the run of a scene.
+/// Tests the laws of the system of a module, along the run of a scene.
 using AskLaws =
     std::function<Certificate(const SystemModule& module, const Section& scene, const CheckOptions& options)>;
 

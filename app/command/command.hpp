@@ -1,5 +1,12 @@
 #pragma once
-/// What the programs have in common: the scene on the command line, what is printed, how they end.
+/// What commands have in common: the scene on the command line, what is printed, and how they end.
+///
+/// A mistake of the user's is one line and an exit code, never a stack of exceptions.
+///
+///     if (!scene_exists) return refuse(options.json, exit_bad_input, "invalid_scene", "scene: no such file");
+///     print(text_report(result));
+///
+/// Returns exit codes: `exit_bad_input`, `exit_failed`, `exit_interrupted`, `exit_internal_error`, or 0.
 
 #include <CLI/CLI.hpp>
 
@@ -32,10 +39,10 @@ bool asks_for_json(int argc, char** argv);
 /// Prints on standard output what a terminal shows and does not obey (text.hpp), or throws OutputError.
 void print(const std::string& text);
 
-/// Says in one line on standard error what went wrong. Where that is closed or full nobody is told.
+/// Writes in one line on standard error what went wrong. Where that is closed or full, nothing is written.
 void complain(const std::string& message);
 
-/// Ends a command that has no result: one line, and one JSON object where `json` is asked for. Returns `code`.
+/// Ends a command that has no result: one line, and one JSON object where `json` is set. Returns `code`.
 int refuse(bool json, int code, const std::string& status, const std::string& message);
 
 /// Reads the command line with the named `app`, then serves it. What goes wrong becomes one line and an exit code.

@@ -1,5 +1,7 @@
 #pragma once
 /// Commands that a program may have or not.
+///
+///     const ProgramCommand learn = command_of("learn", "fits a Hamiltonian to trajectories", add_options, run_learn);
 
 #include "command.hpp"
 
@@ -14,11 +16,11 @@ namespace lagroid::app {
 /// A command that is compiled into programs that name it.
 struct ProgramCommand {
   std::string name;
-  /// Adds it to the program's command line; what is returned tells whether it was given.
+  /// Adds it to the program's command line; the CLI::App returned is parsed where the command was given.
   std::function<CLI::App*(CLI::App& program)> add;
-  /// Carries it out. `told` learns what messages need: the scene, and whether JSON was asked for.
+  /// Executes it. `told` is set to what messages need: the scene, and whether they are to be JSON.
   std::function<int(SceneOptions& told)> run;
-  /// Carries out a scene that `lagroid run` was given but is this command's; null where there are none.
+  /// Executes a scene that `lagroid run` was given but is this command's; null where there are none.
   std::function<int(const SceneOptions& scene, const std::optional<std::string>& out)> run_scene = nullptr;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 /// Words of the shell.
+///
+///     std::cout << "lagroid run " << quoted(file);  // whatever the name of the file contains
 
 #include <string>
 

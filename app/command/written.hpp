@@ -1,5 +1,5 @@
 #pragma once
-/// What a command says of the files that it wrote.
+/// What a command reports of the files that it wrote.
 
 #include <nlohmann/json.hpp>
 

@@ -12,11 +12,13 @@ namespace lagroid::app {
 /// Serves a command line for the systems: commands that all programs have, and sweeps.
 int own_program(int argc, char** argv, std::vector<const SystemModule*> systems);
 
-/// A scene asks for more than a program of steps alone has. (Not a std::exception: it is no mistake of anybody's.)
+/// A scene needs more than a program of steps alone has. (Not a std::exception: it is no error, and no handler of
+/// errors may catch it.)
 struct NeedsAllMethods {};
-/// Tells who started this program (run_source.hpp) that the one with all methods is needed. Returns the exit code.
+/// Reports to the process that started this program (run_source.hpp) that the one with all methods is needed. Returns
+/// the exit code.
 int ask_for_all_methods();
-/// The variable that names the file in which it is told.
+/// The environment variable that names the file into which that is written.
 inline constexpr const char* where_to_ask = "LAGROID_ASK_FOR_ALL_METHODS";
 
 /// The class's name as scenes spell it: of lagroid::SpringPendulum, spring_pendulum.

@@ -1,5 +1,9 @@
 #pragma once
 /// Other programs, run to their ends.
+///
+///     const int code = run_process({"cmake", "--version"}, {.out = "version.txt"});
+///
+/// Errors: std::system_error where the program cannot be started.
 
 #include <filesystem>
 #include <string>

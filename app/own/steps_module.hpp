@@ -1,5 +1,13 @@
 #pragma once
-/// Systems of a program that is compiled in seconds: equal steps of the discrete Lagrangian, by Newton's iteration.
+/// Systems of a program that is compiled in seconds: equal steps of the discrete Lagrangian, F-(g, lambda) = mu, by
+/// Newton's iteration.
+///
+/// A first run of a new system need not wait a minute for methods that it does not use.
+///
+///     const StepsModule<Dido> module("dido", "Dido's problem", /*dress*/ nullptr);
+///     const RunResult result = module.run(scene, context);
+///
+/// Errors: NeedsAllMethods where the scene names another method or a boundary value; SceneError where it has a mistake.
 
 #include "../scenes/system_module.hpp"
 #include "../scenes/system_scene.hpp"

@@ -1,5 +1,10 @@
 #pragma once
 /// Numbers from HDF5 files.
+///
+///     const Eigen::MatrixXd x = read_hdf5("trajectories.h5", "/x");
+///
+/// Returns the data set as a matrix, with whatever numbers that are not finite stand in it. Errors: DataError, one line
+/// with the remedy.
 
 #include <Eigen/Core>
 

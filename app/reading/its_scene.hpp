@@ -1,5 +1,7 @@
 #pragma once
-/// The scene that another file is about.
+/// The scene that another file refers to: `scene = "FILE"`, or the table [scene].
+///
+///     const Section scene = read_its_scene(read_scene("sweep.toml", {}));
 
 #include "scene_reader.hpp"
 

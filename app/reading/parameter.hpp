@@ -1,5 +1,10 @@
 #pragma once
-/// [parameters] of a scene, as a system declares them (core/parameter.hpp).
+/// [parameters] of a scene, as a system declares them (core/parameter.hpp): read, checked and listed.
+///
+///     const Dido system = read_parameters<Dido>(scene);
+///
+/// Returns the system that its constructor makes, with the numbers of the scene. Errors: SceneError for a key that is
+/// missing, a number that its rule refuses, or a combination that the system refuses.
 
 #include "scene_reader.hpp"
 

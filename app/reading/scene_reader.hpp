@@ -1,5 +1,13 @@
 #pragma once
-/// Reading scenes: TOML with every mistake reported by file, line and key.
+/// Reading scenes: TOML, with every mistake reported by file, line and key.
+///
+/// Every key that is read is remembered, so that one that nothing has read, such as a misspelt one, is refused.
+///
+///     const Section scene = read_scene("kepler.toml", {"time.steps=10"});
+///     const double step = scene.section("time", "step and steps").number("step", positive);
+///     scene.finish();  // refuses what was not read
+///
+/// Errors: SceneError, one line with file, line, key, what is wrong and what to do.
 
 #include <lagroid/core/parameter.hpp>
 
@@ -49,7 +57,7 @@ class Section {
   /// One of the given words.
   std::string choice(std::string_view key, const std::vector<std::string>& words) const;
   std::string choice_or(std::string_view key, const std::string& fallback, const std::vector<std::string>& words) const;
-  /// Any string; `what` says which in messages.
+  /// Any string; `what` is its meaning, for messages.
   std::string text(std::string_view key, std::string_view what) const;
   bool is_number(std::string_view key) const;
   bool is_table(std::string_view key) const;
@@ -64,7 +72,7 @@ class Section {
   /// quaternion.
   std::array<double, 4> attitude(std::string_view key) const;
 
-  /// A table that must be there (`purpose` says what for), or may be missing (then empty).
+  /// A table that must be there (`purpose` is what it holds, for messages), or one that may be missing (then empty).
   Section section(std::string_view key, std::string_view purpose) const;
   Section section_or_empty(std::string_view key) const;
   /// The tables [[key]], in order; named key.0, key.1, ... in messages and by --set. None where the key is missing.
@@ -97,7 +105,7 @@ class Section {
   /// What stands in this table and below, as overrides "path=value" of a scene; all of it counts as read.
   std::vector<std::string> as_overrides() const;
 
-  /// Refuses every key that nobody asked for, in this table and the tables below it.
+  /// Refuses every key that was not read, in this table and the tables below it.
   void finish() const;
 
   /// A SceneError at a key of this table (or at the table itself when key is empty).
@@ -110,7 +118,7 @@ class Section {
     std::string file;
     std::set<std::string, std::less<>> overridden;  ///< keys given by --set
     toml::table root;
-    std::set<std::string, std::less<>> known;  ///< every key asked for
+    std::set<std::string, std::less<>> known;  ///< every key that was looked for
     bool interpolated = false;
     std::string overrider;  ///< what stands in messages before the keys that were overridden
   };

@@ -1,5 +1,13 @@
 #pragma once
-/// Scenes of any system.
+/// Scenes of any system: [parameters], [time], [solver], and [initial] or [boundary] in the coordinates of its
+/// groupoid.
+///
+/// A system of one's own needs no code of its own to be read from scenes.
+///
+///     const ModuleOf<Dido> module = any_module<Dido>("dido", "Dido's problem");
+///     const RunResult result = module.run(read_scene("dido.toml", {}), {.record = true});
+///
+/// Requires a system with a default constructor. Errors: SceneError for a mistake in a scene.
 
 #include "boundary_value.hpp"
 #include "system_module.hpp"
@@ -36,7 +44,7 @@ PreparedScene<Sys> read_any_system(const Section& scene, const RunContext& conte
   return simulation(scene, context, system, presentation, initial.state, initial.configuration);
 }
 
-/// The module of a system that says nothing of scenes; `dress` may add words and pictures.
+/// The module of a system that has no code of its own for scenes; `dress` may add words and pictures.
 template <DiscreteSystem Sys>
 ModuleOf<Sys> any_module(const std::string& name, const std::string& summary, Dress<Sys> dress = nullptr) {
   return {name, summary, [name, dress](const Section& scene, const RunContext& context) {

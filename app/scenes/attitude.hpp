@@ -1,5 +1,5 @@
 #pragma once
-/// The attitude over time, in reports of scenes.
+/// The panel that shows an attitude over time, in reports of scenes.
 
 #include "scene_arrow.hpp"
 

@@ -1,5 +1,15 @@
 #pragma once
-/// Boundary-value runs of any system.
+/// Boundary-value scenes of any system: paths g_1 ... g_N = g for which the action is stationary, searched from many
+/// first guesses and, with [continuation], along a parameter.
+///
+///     const PreparedScene<Sys> prepared = boundary_value<Sys>(scene, context, presentation, read_ends<Sys>);
+///     const RunResult result = prepared.run(nullptr);
+///
+/// Requires a variational system that does not depend on time. Returns the cheapest minimum found, or stationary path
+/// where the scene wants one, and all others in RunResult::minima; where there is none, a status and the best path as
+/// far as it came. Errors: SceneError for a mistake in the scene, before anything is computed.
+///
+/// Source: [G] section 5.
 
 #include "../reading/scene_reader.hpp"
 #include "simulation.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// Initial-value scenes that have been read.
+/// Initial-value scenes that have been read: a motion at its start, how far it goes, and the methods that apply.
 
 #include <lagroid/run/motion/drive.hpp>
 #include <lagroid/run/motion/motion.hpp>

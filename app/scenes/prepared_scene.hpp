@@ -1,5 +1,8 @@
 #pragma once
 /// A scene, read and checked, before anything is computed.
+///
+///     const RunResult result = prepared.run(nullptr);            // the whole of it
+///     const std::unique_ptr<Motion> motion = prepared.begin();  // the motion alone, of an initial value
 
 #include <lagroid/core/system.hpp>
 #include <lagroid/run/motion/drive.hpp>

@@ -1,5 +1,13 @@
 #pragma once
 /// How scenes give arrows, groupoid by groupoid: the configuration of an initial value, the ends of a boundary value.
+///
+/// A user writes a position or an attitude, not the coordinates of an arrow; a groupoid of one's own may have a
+/// specialisation too.
+///
+///     const SceneArrow<SO3> arrows{};
+///     const Matrix<double, 3, 3> attitude = arrows.read(initial, "attitude");  // [initial] attitude = [1, 0, 0, 0]
+///
+/// Errors: SceneError where the numbers are no arrow.
 
 #include "../reading/scene_reader.hpp"
 
@@ -30,7 +38,7 @@ inline std::array<double, 4> quaternion_of(const Matrix<double, 3, 3>& rotation)
   return {q(0), q(1), q(2), q(3)};
 }
 
-/// How a scene speaks of the arrows of a groupoid G that end at a node:
+/// How a scene writes the arrows of a groupoid G that end at a node:
 ///
 ///     static constexpr std::string_view key                    of [initial] and of the ends in [boundary]
 ///     Arrow read(section, key) const                           the arrow that the key gives, or that is there without

@@ -1,5 +1,11 @@
 #pragma once
-/// Initial-value runs of any system.
+/// Initial-value scenes of any system: [time], [solver] and [output], and the run that they specify.
+///
+///     const PreparedScene<Sys> prepared = simulation(scene, context, system, presentation, state, configuration);
+///     const RunResult result = prepared.run(nullptr);
+///
+/// Requires that the scene's other keys have been read. Errors: SceneError for a mistake in the scene or a method that
+/// the system does not have, before anything is computed.
 
 #include "../reading/scene_reader.hpp"
 #include "prepared_scene.hpp"
@@ -71,7 +77,7 @@ template <DiscreteSystem Sys> struct NewtonInitialValue {
   RunExtent pace;
 };
 
-/// Whether it is one: nothing is asked of steps and solver beyond their size and number.
+/// Whether it is one: the scene sets nothing of steps and solver beyond their size and number.
 inline bool is_plain(const IntegratorChoice& choice) {
   const IntegratorOptions& o = choice.options;
   return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.composition.stages() == 1 &&
@@ -79,7 +85,7 @@ inline bool is_plain(const IntegratorChoice& choice) {
          o.step.max_iterations == IntegratorOptions().step.max_iterations && choice.accuracy == 0;
 }
 
-/// The system's motion as the scene asks for it.
+/// The system's motion as the scene specifies it.
 template <DiscreteSystem Sys>
 std::unique_ptr<Motion> motion_of(const Sys& system, const Presentation<Sys>& presentation,
                                   const State<typename Sys::GroupoidType>& initial,

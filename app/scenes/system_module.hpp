@@ -1,5 +1,10 @@
 #pragma once
-/// Systems as a program knows them: by name, whatever their type.
+/// Systems of a program, by their names, whatever their types: what listings, runs and studies need of each.
+///
+///     for (const SystemModule* module : system_modules()) std::cout << module->summary() << '\n';
+///
+/// A module is made by `any_module` (any_system.hpp), or from a function that reads scenes of the system (`ModuleOf`).
+/// Errors: SceneError of the scenes that it reads.
 
 #include "../reading/parameter.hpp"
 #include "../reading/scene_reader.hpp"
@@ -18,7 +23,7 @@
 
 namespace lagroid::app {
 
-/// What `lagroid list` says of a system that scenes can name.
+/// What `lagroid list` shows of a system that scenes can name.
 struct ListedSystem {
   std::string name;
   std::string summary;
@@ -51,7 +56,7 @@ class SystemModule {
   std::string summary_;
 };
 
-/// What `list` says of a system with its default parameters.
+/// What `list` shows of a system with its default parameters.
 template <DiscreteSystem Sys> ListedSystem listed_system(const std::string& name, const std::string& summary) {
   ListedSystem out{name, summary, Sys::GroupoidType::name(), listed_parameters<Sys>(), {}, {}};
   const Sys system;
@@ -89,7 +94,7 @@ template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
   std::span<const DeclaredMethod> own_methods_;
 };
 
-/// The systems of this program, in the order in which they are listed. A program says at its start which it has.
+/// The systems of this program, in the order in which they are listed. A program sets them at its start.
 std::span<const SystemModule* const> system_modules();
 void use_systems(std::vector<const SystemModule*> modules);
 

@@ -1,6 +1,12 @@
 #pragma once
-/// What any system reads from a scene, and what reports say of it: parameters as it declares them, arrows as its
-/// groupoid is spoken of (scene_arrow.hpp).
+/// What any system reads from a scene, and its words in reports: parameters as it declares them, arrows as scenes write
+/// them (scene_arrow.hpp).
+///
+///     const auto system = read_system<Sys>(scene);
+///     const Presentation<Sys> presentation = dressed<Sys>(system, "dido", /*dress*/ nullptr);
+///     const InitialValue<Sys> initial = read_initial(system, scene, presentation.momentum);
+///
+/// Errors: SceneError for a mistake in the scene.
 
 #include "../reading/parameter.hpp"
 #include "attitude.hpp"
@@ -17,11 +23,11 @@
 
 namespace lagroid::app {
 
-/// Says of a system what reports cannot know: labels, units, panels, shapes. It is handed what they would say without.
+/// Changes a presentation where reports need more than they can deduce: labels, units, panels, shapes.
 template <class Sys> using Dress = void (*)(Presentation<Sys>& presentation, const Sys& system);
 
-/// What reports say of any system: the numbers of its configuration, its attitude where it has one, its momenta mu1,
-/// mu2, ... and what it keeps.
+/// The presentation that is deduced for any system: the numbers of its configuration, its attitude where it has one,
+/// its momenta mu1, mu2, ... and what it keeps.
 template <DiscreteSystem Sys> Presentation<Sys> presentation_of(const Sys& system, std::string_view name) {
   using G = typename Sys::GroupoidType;
   using Point = TrajectoryPoint<Sys>;

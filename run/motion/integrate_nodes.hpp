@@ -60,7 +60,7 @@ struct IntegrationEnd {
 };
 
 /// Makes `count` steps and sees their nodes; fewer where a step fails, which is then not made, where the numbers of its
-/// node are not finite, or where `goes_on(report)`, called after every other step, returns false.
+/// node are not finite, or where `goes_on(report)`, called after each step that was made, returns false.
 IntegrationEnd integrate_nodes(WatchedMotion& watched, long count,
                                const std::function<bool(const StepReport&)>& goes_on);
 
