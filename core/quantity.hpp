@@ -5,7 +5,8 @@
 /// A ledger compares the promise with the run: drift where it promised none is a fault of the method, the system or the
 /// code.
 ///
-///     const Quantity<Sys> energy{"energy", {"H"}, Promise::bounded, /*needs_step*/ false,
+///     const bool needs_step = false;
+///     const Quantity<Sys> energy{"energy", {"H"}, Promise::bounded, needs_step,
 ///                                [](const auto& p, double* out) { *out = p.state.momentum.squaredNorm() / 2; }};
 ///
 /// Requires that `evaluate` writes as many numbers as there are components and, unless `serialize` is set, depends on

@@ -4,7 +4,7 @@
 ///
 /// A first run of a new system need not wait a minute for methods that it does not use.
 ///
-///     const StepsModule<Dido> module("dido", "Dido's problem", /*dress*/ nullptr);
+///     const StepsModule<Dido> module("dido", "Dido's problem", nullptr);  // without words of its own
 ///     const RunResult result = module.run(scene, context);
 ///
 /// Errors: NeedsAllMethods where the scene names another method or a boundary value; SceneError where it has a mistake.

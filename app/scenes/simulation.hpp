@@ -4,8 +4,9 @@
 ///     const PreparedScene<Sys> prepared = simulation(scene, context, system, presentation, state, configuration);
 ///     const RunResult result = prepared.run(nullptr);
 ///
-/// Requires that the scene's other keys have been read. Errors: SceneError for a mistake in the scene or a method that
-/// the system does not have, before anything is computed.
+/// Requires that the scene's other keys have been read. For a system of one's own include
+/// lagroid/solvers/integrators/integrator_methods.hpp too, else it does not compile. Errors: SceneError for a mistake
+/// in the scene or a method that the system does not have, before anything is computed.
 
 #include "../reading/scene_reader.hpp"
 #include "prepared_scene.hpp"

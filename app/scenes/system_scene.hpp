@@ -3,7 +3,7 @@
 /// them (scene_arrow.hpp).
 ///
 ///     const auto system = read_system<Sys>(scene);
-///     const Presentation<Sys> presentation = dressed<Sys>(system, "dido", /*dress*/ nullptr);
+///     const Presentation<Sys> presentation = dressed<Sys>(system, "dido", nullptr);
 ///     const InitialValue<Sys> initial = read_initial(system, scene, presentation.momentum);
 ///
 /// Errors: SceneError for a mistake in the scene.

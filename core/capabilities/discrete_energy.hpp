@@ -3,7 +3,8 @@
 ///
 /// It is the energy that a step with free time keeps, where that of the continuous system oscillates.
 ///
-///     const double energy = discrete_energy(system, step, /*start*/ 0.0, system.h);
+///     const double start = 0;
+///     const double energy = discrete_energy(system, step, start, system.h);
 ///
 /// Requires a variational system that takes its step, or its start and step, as arguments (Timed).
 /// `discrete_energy_quantity` returns it for a ledger. Nothing throws.

@@ -1,7 +1,7 @@
 #pragma once
 /// How many samples laws draw, and from which seed, for as long as an object lives.
 ///
-///     const laws::Sampling sampling(/*samples*/ 1000, /*seed*/ 7);
+///     const laws::Sampling sampling(1000, 7);                     // samples, seed
 ///     const laws::LawReport report = laws::groupoid_laws<SO3>();  // a thousand samples of each law
 ///
 /// It sets an environment variable and silences std::cerr, which are the whole process's: one at a time.

@@ -5,7 +5,7 @@
 /// A group of one's own writes its algebra, exp and log with their differentials; the groupoid, ad, Ad and the
 /// derivatives of translations follow.
 ///
-///     template <Retraction Tau> struct MyGroup : MatrixGroup<MyGroup<Tau>, /*matrices*/ 3, /*dimension*/ 2, Tau> {
+///     template <Retraction Tau> struct MyGroup : MatrixGroup<MyGroup<Tau>, 3, 2, Tau> {  // 3 x 3, of dimension 2
 ///       static constexpr int basis(int i, int r, int c);  // entry (r, c) of the i-th basis matrix of the algebra
 ///       // hat, vee, exp, log, dexp, dexp_inverse, inverse, as in se2.hpp
 ///     };

@@ -3,7 +3,7 @@
 ///
 /// A process that is killed loses what came after its last checkpoint, and nothing else.
 ///
-///     Checkpoint checkpoint("out/run", /*steps*/ 0);  // by the clock
+///     Checkpoint checkpoint("out/run", 0);  // by the clock, not after a number of steps
 ///     checkpoint.begin(scene);
 ///     if (checkpoint.due(step)) checkpoint.keep(trajectory, state);
 ///

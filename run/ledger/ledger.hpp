@@ -5,7 +5,7 @@
 /// A ledger distinguishes round-off from error without a tolerance of the user's: bounds follow from the size of the
 /// terms and, for round-off, the number of steps.
 ///
-///     QuantityWatch energy("energy", Promise::bounded, /*components*/ 1);
+///     QuantityWatch energy("energy", Promise::bounded, 1);  // of one component
 ///     energy.observe(&value, size);  // at every node
 ///     std::cout << energy.entry().verdict;
 ///

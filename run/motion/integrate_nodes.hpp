@@ -1,7 +1,7 @@
 #pragma once
 /// The loop over the nodes of a motion: step, judge, record.
 ///
-///     WatchedMotion watched(motion, &judge, &recorder, /*every*/ 1);
+///     WatchedMotion watched(motion, &judge, &recorder, 1);  // every node is recorded
 ///     const IntegrationEnd end = integrate_nodes(watched, 1000, [](const StepReport&) { return true; });
 ///
 /// Requires that motion, judge and recorder outlive it. A step that fails is not made; the end has its report.

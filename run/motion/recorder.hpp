@@ -2,7 +2,7 @@
 /// From the nodes of a motion to the rows of its trajectory.
 ///
 ///     Recorder recorder(motion.look());
-///     recorder.record(motion.look(), /*judge*/ nullptr);
+///     recorder.record(motion.look(), nullptr);  // or the judge, where a field is a drift
 ///
 /// Requires that all nodes have the same fields.
 

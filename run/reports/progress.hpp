@@ -1,7 +1,7 @@
 #pragma once
 /// A progress bar on the terminal for runs over a second.
 ///
-///     Progress progress("steps", /*total*/ 1000, /*enabled*/ true);
+///     Progress progress("steps", 1000, true);  // enabled
 ///     for (long k = 1; k <= 1000; ++k) progress.update(k);
 
 #include <chrono>

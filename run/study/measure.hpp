@@ -2,8 +2,8 @@
 /// What methods cost, and how far their numbers are from the truth: errors at the end, of invariants and of
 /// constraints, and processor time.
 ///
-///     const auto truth = extrapolated_reference(experiment, /*seconds*/ 20);
-///     const Measurement found = measure_once(experiment, experiment.methods[0], 0.1, truth.get(), /*longest, s*/ 1);
+///     const auto truth = extrapolated_reference(experiment, 20);  // in 20 s
+///     const Measurement found = measure_once(experiment, experiment.methods[0], 0.1, truth.get(), 1);
 ///     std::cout << found.trajectory;
 ///
 /// Requires a reference that is better than what is measured; its `uncertainty` is how much. Errors: std::domain_error

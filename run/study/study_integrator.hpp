@@ -2,7 +2,7 @@
 /// Motions as a study integrates them: alone, without records, so that nothing but steps is timed.
 ///
 ///     IntegrationCost work;
-///     const StepReport report = integrate_to(motion, /*end*/ 10.0, work);
+///     const StepReport report = integrate_to(motion, 10.0, work);  // to the time 10 s
 
 #include <lagroid/run/motion/motion.hpp>
 

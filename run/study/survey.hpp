@@ -3,7 +3,7 @@
 ///
 ///     const Budget budget(60);
 ///     const auto go_on = [](double) { return true; };
-///     const Survey found = survey(experiment, experiment.methods, {}, reference, /*repetitions*/ 5, budget, go_on);
+///     const Survey found = survey(experiment, experiment.methods, {}, reference, 5, budget, go_on);
 
 #include <lagroid/run/study/budget.hpp>
 #include <lagroid/run/study/measure.hpp>
