@@ -5,8 +5,8 @@
 /// Steps that depend on the motion, and motions that depend on time, are then steps of an ordinary discrete Lagrangian
 /// system, and keep its structure.
 ///
-///     const FreeTime<Sys> free(system);                         // the step is an unknown
-///     const FixedStep<Sys> fixed(system, ConstantStep{0.1});                    // t1 - t0 = 0.1
+///     const FreeTime<Sys> free(system);                          // the step is an unknown
+///     const FixedStep<Sys> fixed(system, ConstantStep{0.1});     // t1 - t0 = 0.1
 ///     const auto boundary = timed_boundary<Sys>(g, 0, 0.1, 20);  // from time 0, 20 steps of 0.1
 ///
 /// Requires a variational system that takes its step, or start and step, as arguments (Timed). A step must run forward
