@@ -3,7 +3,8 @@
 ///
 /// A law of one's own is a function that draws a sample and returns a defect.
 ///
-///     const laws::Law law = laws::check_law("exp(v) exp(-v) = 1", 1e-12, [] {
+///     const std::string name = "exp(v) exp(-v) = 1";
+///     const laws::Law law = laws::check_law(name, 1e-12, [] {
 ///       const Vector<double, 3> v = laws::draw_vector<3>(2.0);
 ///       return (SO3::exp(v) * SO3::exp(Vector<double, 3>(-v)) - Matrix<double, 3, 3>::Identity()).norm();
 ///     });
