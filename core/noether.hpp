@@ -2,8 +2,8 @@
 /// Noether symmetries of a discrete constrained Lagrangian system: sections X of AG, with functions f on Q, for which
 /// <mu, X(q)> + f(q) is a constant of the motion.
 ///
-/// A declared symmetry is a quantity of the ledger, conserved up to round-off; `examine` tests by samples whether a
-/// candidate is one.
+/// Where a system names no quantities of its own, the ledger watches the constants of its declared symmetries,
+/// conserved up to round-off; `examine` tests by samples whether a candidate is a symmetry.
 ///
 ///     const Symmetry<Sys> shift("momentum", [](const auto&) { return Vector<double, 2>(1, 0); });
 ///     const SymmetryVerdict verdict = examine<Sys>(system, shift, samples);
