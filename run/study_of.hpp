@@ -3,7 +3,8 @@
 ///
 /// It answers which method and which step to take for an error that is acceptable.
 ///
-///     const Findings findings = study(Pendulum{}, {{1}, {0}}, {.steps = 1000, .budget = 10, .folder = "out/study"});
+///     const State<Pair<1>> start{Vector<double, 1>(1.0), Vector<double, 1>(0.0)};
+///     const Findings findings = study(Pendulum{}, start, {.steps = 1000, .budget = 10, .folder = "out/study"});
 ///     std::cout << study_text(findings);
 ///
 /// Requires a system with a step `h`; it compiles all methods that the system has, which takes a minute. Returns
@@ -91,9 +92,6 @@ std::string studied(const std::string& name, double step, long steps, const std:
 
 /// Errors against processor time of every method that the system has, with a recommendation: as `lagroid study` does of
 /// a scene. `study_text(findings)` is the result in words.
-///
-///     Findings findings = study(Pendulum{}, {{1}, {0}}, {.steps = 1000, .budget = 10, .folder = "out/study"});
-///     std::cout << study_text(findings);
 ///
 /// Ctrl-C ends it with what was measured so far. Throws std::invalid_argument for a name that is not one line of text,
 /// or numbers of which there is no study; UnknownMethod for a pattern that is no method's name; std::domain_error where
