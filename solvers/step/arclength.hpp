@@ -1,5 +1,20 @@
 #pragma once
-/// Implicit steps of any size, by following their solution from step zero.
+/// Implicit steps y = z tau(h g(y)) of any size h, by following their solution from h = 0 (pseudo-arclength
+/// continuation):
+///
+///     v = h g(z tau(v)),    h = sinh(s),    the curve (v, s) that starts at (0, 0).
+///
+/// Newton's iteration converges for small h only, and a homotopy in h itself ends where the curve turns back in h; its
+/// arclength grows monotonically.
+///
+///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
+///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });  // lie_differentials.hpp
+///     const auto step = solve_implicit_step(ImplicitStep{fibre, field, /*h=*/100.0});
+///
+/// Returns the solution with its status: `not_converged` (limit of steps), `stagnated` (no step along the curve is
+/// small enough), `ill_conditioned` (round-off above the tolerance), `not_finite`. `SolutionPath::reach` throws
+/// std::invalid_argument for a step nearer to zero than one already reached. The equation is [N] (1.1); the
+/// continuation is ours.
 
 #include <lagroid/solvers/newton/lie_newton.hpp>
 

@@ -1,5 +1,7 @@
 #pragma once
-/// Equations on a source fibre through Ceres, of sizes known when it runs: compiled once, without Ceres in its header.
+/// Square equations r(g, lambda) = 0 on a source fibre, of sizes known at run time, as a least-squares problem for
+/// Ceres. CeresStep solves its steps through it, so that no header of a step includes Ceres and the bridge is compiled
+/// once.
 
 #include <memory>
 

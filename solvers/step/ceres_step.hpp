@@ -1,5 +1,15 @@
 #pragma once
-/// One implicit step through Ceres.
+/// One implicit step as a least-squares problem for Ceres: min |r(g, lambda)|^2 / 2 over the source fibre and the
+/// multipliers, r the scaled step equations (step_solver.hpp). It shares no code with NewtonStep beyond the equations,
+/// and so checks it; it is slower.
+///
+///     CeresStep<Kepler> ceres(/*max_iterations=*/50);
+///     StepSolution<Kepler> found{{Pair<2>::unit(Vector<double, 2>(1, 0)), {}}, {}};
+///     const StepReport report = ceres.solve(Kepler{}, {{1, 0}, {0, 1}}, found);
+///
+/// Requires a guess whose arrow starts at the object of the state. Status: `stagnated` where the residual stays above
+/// 1000 times its round-off and above the tolerance, `not_finite`, `left_domain`. The constructor throws MissingLibrary
+/// in a build without Ceres.
 
 #include <lagroid/solvers/newton/fibre_coordinates.hpp>
 #include <lagroid/solvers/step/ceres_fibre.hpp>

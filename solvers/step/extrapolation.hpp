@@ -1,5 +1,15 @@
 #pragma once
-/// First guesses: a smooth sequence of vectors continued by one.
+/// The next vector of a smooth sequence, by the polynomial through the last m + 1:
+///
+///     x_{k+1} ~ sum_{j=0..m} (-1)^j binomial(m + 1, j + 1) x_{k-j}.
+///
+/// The unknowns of the steps of a trajectory are such a sequence, and this is their first guess (StepPredictor).
+///
+///     Extrapolation<1, 3> sequence;
+///     for (double t : {0.0, 0.1, 0.2}) sequence.push(Vector<double, 1>(std::sin(t)));
+///     const double near_sine = sequence.next()(0);  // sin(0.3), nearly
+///
+/// `next` requires one vector at least. The degree m follows the sequence, up to MaxDegree.
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/core/types.hpp>

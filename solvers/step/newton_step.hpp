@@ -1,5 +1,18 @@
 #pragma once
-/// Newton's iteration on the source fibre of a groupoid.
+/// Newton's iteration for one implicit step, on the source fibre of the groupoid:
+///
+///     g <- g tau(w),    lambda <- lambda + dlambda,    (w, dlambda) = -J^{-1} r(g, lambda),
+///
+/// r the step equations (step_solver.hpp) and J their matrix. It is the default solver: its iterates never leave the
+/// fibre, and it stops at round-off, not at a tolerance, so that long runs do not drift by what the solver leaves.
+///
+///     NewtonStep<Kepler> newton({.max_iterations = 20});
+///     StepSolution<Kepler> found{{Pair<2>::unit(Vector<double, 2>(1, 0)), {}}, {}};
+///     const StepReport report = newton.solve(Kepler{}, {{1, 0}, {0, 1}}, found);
+///
+/// Requires a guess whose arrow starts at the object of the state; one solver serves one trajectory, because it keeps a
+/// matrix from step to step. Status: `singular` ([G] Def. 3.5), `stagnated`, `not_converged`, `not_finite`,
+/// `left_domain` (a solution that the system's `admissible` rejects). [N] (3.5), from Lie groups to source fibres.
 
 #include <lagroid/solvers/linear_algebra/factored_square.hpp>
 #include <lagroid/solvers/linear_algebra/small_inverse.hpp>

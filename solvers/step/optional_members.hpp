@@ -1,5 +1,7 @@
 #pragma once
-/// The optional members of a system that methods look for.
+/// Checks at compile time that the optional members of a system (rates, flows, time scale, step arguments, loops,
+/// traits) have the signatures that methods look for. A member that does not fit would not be found, and its method
+/// silently not offered; with this check it does not compile, and the message names the right signature.
 
 #include <lagroid/core/capabilities/loops.hpp>
 #include <lagroid/core/capabilities/rates.hpp>

@@ -1,5 +1,6 @@
 #pragma once
-/// Solvers of a step by name.
+/// Defines the solvers of a step by their names (StepMethod): what `make_step_solver` makes. Include it for a system of
+/// your own; those of systems/ are compiled in the library.
 
 #include <lagroid/solvers/step/ceres_step.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>

@@ -1,5 +1,19 @@
 #pragma once
-/// One implicit step after another: where each solve starts, and which solution is taken.
+/// Solves the steps of a trajectory one after another: it chooses where each solve starts and which solution is taken.
+///
+///     x_{k+1} ~ sum_j (-1)^j binomial(m + 1, j + 1) x_{k-j},    x = (chart of the arrow, multipliers).
+///
+/// A good first guess saves most iterations, and an implicit step at a large h has several solutions, of which only the
+/// one that is continuous in h belongs to the motion.
+///
+///     const Kepler kepler;
+///     StepPredictor<Kepler> predictor(kepler, make_step_solver(kepler, StepMethod::newton));
+///     StepSolution<Kepler> first;
+///     const StepReport report = predictor.solve({{1, 0}, {0, 1}}, first);
+///
+/// Requires states that follow each other smoothly; call `forget` after a jump. The report is that of the solver, with
+/// the iterations of all attempts; `left_domain` also where the solution found is another than the continuous one. A
+/// step that does not converge is not remembered. An optional member of the system that does not fit does not compile.
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/derivatives/gradient_check.hpp>

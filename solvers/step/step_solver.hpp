@@ -1,5 +1,18 @@
 #pragma once
-/// The interface of everything that solves one implicit step.
+/// The interface of everything that solves one implicit step: for (q, mu), the arrow g from q and its multipliers with
+///
+///     F-(g, lambda) = mu,    phi(g) = 0,    C(beta(g)) = 0.
+///
+/// All integrators take their solver through it, so that each runs with any solver, one of your own included.
+///
+///     const Kepler kepler;
+///     StepSolution<Kepler> found{{Pair<2>::unit(Vector<double, 2>(1, 0)), {}}, {}};
+///     const StepReport report = make_step_solver(kepler, StepMethod::newton)->solve(kepler, {{1, 0}, {0, 1}}, found);
+///
+/// The solution is given on entry as a first guess whose arrow starts at q. The report has status, iterations and
+/// residual; where it is `converged`, the solution holds the step. Failures are a SolveStatus, never an exception; only
+/// the solver "ceres" throws, when it is made in a build without Ceres (MissingLibrary). [G] Def. 3.3 and after Def.
+/// 3.5
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 #include <lagroid/core/number_archive.hpp>
