@@ -1,5 +1,20 @@
 #pragma once
-/// Steps that keep the energy: the step size as an unknown. [G] Example 6.1
+/// Steps that keep the discrete energy: the step size h is an unknown, determined by
+///
+///     F-(g, lambda; h) = mu,    phi(g; h) = 0,    E_d(g, lambda; h) = E_d of the first step.
+///
+/// The step then adapts to the motion, and the scheme remains symplectic on the phase space extended by time and
+/// energy.
+///
+///     const Kepler kepler;
+///     AdaptiveIntegrator<Kepler> orbit(kepler, {{1, 0}, {0, 1.2}}, Pair<2>::unit(Vector<double, 2>(1, 0)),
+///                                      std::make_unique<NewtonStep<Kepler>>(),
+///                                      std::make_unique<NewtonStep<FreeTime<Kepler>>>());
+///     const StepReport report = orbit.advance();
+///
+/// Requires a Timed system (a Lagrangian for every step size); `h` is the first step. The configuration must end at the
+/// initial object (std::invalid_argument). Status, beside those of the solver: `no_step` (no h near the last keeps
+/// E_d), `degenerate` (E_d does not depend on h); `without_root` says what to do instead of stopping. [G] Example 6.1
 
 #include <lagroid/core/scalars/compensation.hpp>
 #include <lagroid/groupoids/time_extended.hpp>

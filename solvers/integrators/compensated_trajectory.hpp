@@ -1,5 +1,17 @@
 #pragma once
-/// The accumulation of steps into a trajectory.
+/// The state that a sequence of solved steps leads to, summed with compensation (Kahan):
+///
+///     q' = beta(g),    mu' = mu + (F+ - F-)(g, lambda),    configuration' = configuration g,    t' = t + h.
+///
+/// Over millions of steps plain sums would lose digits, and F+ itself would add the residual of every solve.
+///
+///     StepSolution<Kepler> solution;  // of a StepSolver
+///     CompensatedTrajectory<Kepler> orbit({}, {{1, 0}, {0, 1}}, Pair<2>::unit(Vector<double, 2>(1, 0)));
+///     orbit.join({}, solution);
+///     orbit.arrive(0.01);
+///
+/// Requires solutions that converged, each from the state that the last one led to. The constructor throws
+/// std::invalid_argument where the configuration does not end at the initial object.
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/scalars/compensation.hpp>

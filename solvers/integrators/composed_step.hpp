@@ -1,5 +1,5 @@
 #pragma once
-/// A step of several stages, taken whole or not at all.
+/// A step of several stages, taken whole or not at all: the one loop of all composed steps, whatever their stages are.
 
 #include <lagroid/solvers/step/step_solver.hpp>
 

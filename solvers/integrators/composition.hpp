@@ -1,5 +1,20 @@
 #pragma once
-/// Steps of higher order, composed of steps of different length.
+/// Steps of order four, six and eight, composed of steps of different length:
+///
+///     Psi_h = Phi_{gamma_s h} o ... o Phi_{gamma_1 h}.
+///
+/// For accurate motions they are cheaper than small steps of order two, and they keep what Phi keeps.
+///
+///     const Kepler kepler;
+///     CompositionIntegrator<Kepler> orbit(
+///         kepler, {{1, 0}, {0, 1}}, Pair<2>::unit(Vector<double, 2>(1, 0)), compositions::suzuki,
+///         [&] { return make_step_solver(kepler, StepMethod::newton); });
+///     const StepReport report = orbit.advance();
+///
+/// Requires a variational system with a step `h` whose discretisation is self-adjoint, or the parts of `symmetrised`;
+/// its steps must be solvable backwards, for some gamma are negative. The configuration must end at the initial object
+/// (std::invalid_argument). A step of which one stage fails leaves everything as it was; the report is that stage's.
+/// Coefficients and sources are those of compositions.hpp.
 
 #include <lagroid/core/capabilities/adjoint.hpp>
 #include <lagroid/core/capabilities/stepped.hpp>

@@ -1,5 +1,16 @@
 #pragma once
-/// Symmetric compositions: from a symmetric step of order two, steps of orders four, six and eight.
+/// Symmetric compositions: the coefficients gamma_i that make of a symmetric step of order two one of order four, six
+/// or eight, and those for the exact flows of two parts of an energy.
+///
+///     Psi_h = Phi_{gamma_s h} o ... o Phi_{gamma_1 h}
+///
+/// They are constants, chosen by name or order; a list of your own is a `Composition` as well.
+///
+///     static constexpr std::array gamma{0.5, 0.5};
+///     const Composition halves{"two halves", 2, gamma, "our own"};
+///     const Composition eighth = compositions::kahan_li_8;
+///
+/// Sources stand with each list (Hairer, Lubich, Wanner V.3.2; Blanes and Moan 2002).
 
 #include <array>
 #include <span>

@@ -1,5 +1,17 @@
 #pragma once
-/// The one-step map on A*G: (q, mu) -> g -> (q', mu').
+/// The one-step map of a discrete Lagrangian on A*G, with equal steps:
+///
+///     solve F-(g, lambda) = mu, phi(g) = 0 for g from q,    then q' = beta(g),  mu' = F+(g, lambda).
+///
+/// The map is Poisson and keeps the momenta of all symmetries of L and phi, which is why one wants it for long motions.
+///
+///     const Kepler kepler;
+///     FixedStepIntegrator<Kepler> orbit(kepler, {{1, 0}, {0, 1}}, Pair<2>::unit(Vector<double, 2>(1, 0)),
+///                                       std::make_unique<NewtonStep<Kepler>>());
+///     const StepReport report = orbit.advance();
+///
+/// Requires a configuration that ends at the initial object (std::invalid_argument). `advance` returns the solver's
+/// report; unless that is `converged`, the point stays as it was. [G] Def. 3.3 and after Def. 3.5; momenta, Theorem 4.9
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/solvers/generating/constrained_momentum.hpp>

@@ -1,5 +1,15 @@
 #pragma once
-/// Initial-value runs by a method chosen at run time.
+/// Integrators of initial values by a method chosen at run time: (q_k, mu_k) -> (q_{k+1}, mu_{k+1}), k = 0, 1, ...
+/// Scenes, Python and studies choose the method by options; loop, ledger and output then need one interface only.
+///
+///     const Kepler kepler;
+///     const State<Pair<2>> start{{1, 0}, {0, 1}};
+///     auto integrator = make_integrator(kepler, start, Pair<2>::unit(start.object), {.fixed = StepKind::splitting});
+///     while (integrator->point().time < 10 && integrator->advance().converged()) {}
+///
+/// Requires a configuration that ends at the initial object, and of the system what the method uses. `make_integrator`
+/// throws std::invalid_argument where the system has not got that (the message names the member) or the configuration
+/// ends elsewhere; `advance` reports a SolveStatus, and where it is not `converged` the point stays as it was.
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/quantity.hpp>

@@ -1,5 +1,6 @@
 #pragma once
-/// The integrators that a user can name.
+/// Defines the integrators by their options: what `make_integrator` and `step_for_accuracy` make. Include it for a
+/// system of your own; those of systems/ are compiled in the library.
 
 #include <lagroid/solvers/integrators/adaptive.hpp>
 #include <lagroid/solvers/integrators/composition.hpp>

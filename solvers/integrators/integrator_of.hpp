@@ -1,5 +1,5 @@
 #pragma once
-/// An integrator of a known type as one that is chosen at run time.
+/// Puts an integrator of a known type behind the interface `Integrator`, at the cost of one virtual call a step.
 
 #include <lagroid/solvers/integrators/integrator.hpp>
 

@@ -1,5 +1,13 @@
 #pragma once
-/// The classical Runge-Kutta method, as most people would use it: to see what a method that keeps nothing does.
+/// The classical Runge-Kutta method of order four for the rates (q', mu') of a system, in coordinates. It keeps no
+/// momentum, no constraint and no structure: it is there to compare with.
+///
+///     RungeKuttaIntegrator<Kepler> orbit(Kepler{}, {{1, 0}, {0, 1}}, Pair<2>::unit(Vector<double, 2>(1, 0)));
+///     const StepReport report = orbit.advance();
+///
+/// Requires a system with `rates` and a step `h`, and a configuration that ends at the initial object
+/// (std::invalid_argument). Status: `not_finite`, which leaves everything as it was. (Kutta 1901; Hairer, Norsett,
+/// Wanner I, table II.1.2.)
 
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/capabilities/stepped.hpp>

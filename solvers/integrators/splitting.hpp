@@ -1,5 +1,17 @@
 #pragma once
-/// Explicit steps of high order: compositions of the exact flows that a system's energy splits into.
+/// Explicit steps of high order: compositions of the exact flows phi_i of the parts of the energy H = H_0 + ... + H_r.
+///
+///     Phi_h = phi0_{h/2} o phi1_{h/2} o ... o phir_h o ... o phi1_{h/2} o phi0_{h/2}        (Strang)
+///
+/// No equations are solved, so that a step costs a few evaluations; it is symmetric and Poisson.
+///
+///     SplittingIntegrator<Kepler> orbit(Kepler{}, {{1, 0}, {0, 1}}, Pair<2>::unit(Vector<double, 2>(1, 0)),
+///                                       splittings::srkn6);
+///     const StepReport report = orbit.advance();
+///
+/// Requires a SplitSystem with a step `h`. The constructor throws std::invalid_argument for a composition that the
+/// system does not admit (`splits_by`) and for a configuration that does not end at the initial object. Status:
+/// `not_finite`, which leaves everything as it was.
 
 #include <lagroid/core/capabilities/split_system.hpp>
 #include <lagroid/core/capabilities/stepped.hpp>

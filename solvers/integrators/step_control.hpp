@@ -1,5 +1,19 @@
 #pragma once
-/// Reversible control of the step size.
+/// Reversible control of the step size by a time scale sigma(z) of the system:
+///
+///     rho_{k+1/2} = rho_{k-1/2} - epsilon (d log sigma / dt)(z_k),    h_{k+1/2} = epsilon / rho_{k+1/2}.
+///
+/// Steps become short where the motion is fast, and a symmetric method stays reversible, as it does not under the usual
+/// control by error estimates.
+///
+///     const Kepler kepler;
+///     ControlledIntegrator<Kepler> orbit(kepler, {{1, 0}, {0, 1.2}}, Pair<2>::unit(Vector<double, 2>(1, 0)),
+///                                        std::make_unique<NewtonStep<Kepler>>());
+///     const StepReport report = orbit.advance();
+///
+/// Requires a Timed system with a `time_scale_rate`; `h` is the first step. The configuration must end at the initial
+/// object (std::invalid_argument). Status, beside those of the solver: `no_step` where the motion changes too fast for
+/// epsilon. (Hairer and Soderlind 2005; Hairer, Lubich, Wanner VIII.3.2.)
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/capabilities/time_scale.hpp>

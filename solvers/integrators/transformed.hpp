@@ -1,5 +1,16 @@
 #pragma once
-/// Explicit steps of high order that follow an attraction: equal ones of another time.
+/// Explicit steps that are equal in another time s and so short where an attraction is strong:
+///
+///     dt = ds / (-U(q)) = ds / (T(p) - E),    flows of log(T - E) - log(-U).
+///
+/// Close encounters are the reason: equal steps of t fail there, and on Kepler's orbits only the time is in error here.
+///
+///     TransformedIntegrator<Kepler> orbit(Kepler{}, {{1, 0}, {0, 0.1}}, Pair<2>::unit(Vector<double, 2>(1, 0)));
+///     const StepReport report = orbit.advance();
+///
+/// Requires an AttractiveSystem, with U < 0. The constructor throws std::invalid_argument for a composition of two
+/// flows and for a configuration that does not end at the initial object. Status: `left_domain` where U >= 0 or T <= E,
+/// `not_finite`; both leave everything as it was. (Mikkola and Tanikawa 1999; Preto and Tremaine 1999.)
 
 #include <lagroid/core/capabilities/split_system.hpp>
 #include <lagroid/solvers/integrators/splitting.hpp>
