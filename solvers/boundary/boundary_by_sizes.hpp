@@ -1,5 +1,7 @@
 #pragma once
-/// Boundary-value problems given to algorithms that know the sizes of a system alone, and what these find brought back.
+/// Brings boundary-value problems of a system to algorithms that know its sizes alone (SizedSystem), and their
+/// solutions back. So the algorithms are compiled once for a list of sizes, and a user's system need not compile them
+/// again.
 
 #include <lagroid/core/any_system/sized_system.hpp>
 #include <lagroid/solvers/boundary/boundary_solver.hpp>

@@ -1,5 +1,14 @@
 #pragma once
-/// Boundary-value problems through Ceres.
+/// A boundary-value problem as a least-squares problem for Ceres: the squared, scaled residual of the KKT equations in
+/// the arrows X_k = g_1 ... g_k and the multipliers.
+///
+///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
+///     const BoundaryCeres<Kepler> ceres;
+///     const auto found = ceres.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
+///
+/// Requires and returns what boundary_solver.hpp says, Ceres' headers and library beside. Status: `ill_conditioned` (a
+/// solution is near, but the normal equations are too ill-conditioned to reach it), `stagnated`, `not_converged`,
+/// `not_finite`. It looks for stationary paths of any kind, whatever kind is wanted.
 
 #include <lagroid/core/derivatives/gradient_derivative.hpp>
 #include <lagroid/solvers/boundary/boundary_newton.hpp>

@@ -1,5 +1,15 @@
 #pragma once
 /// Starting paths of a boundary-value problem: straight, wound and bent.
+///
+///     straight:  q -> tau_q(t v), tau_q(v) = g;    wound:  X_k loop(axis, turns k / N);    bent:  X_k tau(v_k)
+///
+/// A descent stays in the homotopy class of its start, so that starts must lie in several of them.
+///
+///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
+///     const Path<Kepler> straight = geodesic_path(problem, 100);
+///     const Path<Kepler> seventh = BoundaryGuesses{.seed = 1}(problem, 100, /*index=*/6);
+///
+/// Requires a boundary arrow in the domain of tau^{-1}. The same seed and index give the same path.
 
 #include <lagroid/core/capabilities/loops.hpp>
 #include <lagroid/solvers/boundary/continuation.hpp>

@@ -1,5 +1,10 @@
 #pragma once
-/// The KKT system of a boundary-value problem, as a symmetric block-tridiagonal matrix along the path.
+/// The KKT matrix of a boundary-value problem, symmetric and block-tridiagonal along the path, with its elimination:
+///
+///     rows of node k:  (phi(g_k), C(q_k), F+(g_k) - F-(g_{k+1})),    columns:  (lambda_k, kappa_k, v_k).
+///
+/// The solvers of boundary values take from it residual, Newton steps and the inertia, which tells minima from saddles.
+/// Requires arrows that compose; numbers that are not finite show in `residual_norm`.
 
 #include <lagroid/core/derivatives/second_derivatives.hpp>
 #include <lagroid/solvers/boundary/boundary_problem.hpp>

@@ -1,5 +1,7 @@
 #pragma once
-/// Solvers of a boundary-value problem by name, and the search of its solutions, for systems of any sizes.
+/// Defines the solvers of boundary values by their names (BoundaryMethod), and their search, for systems of any sizes.
+/// Include it where the library has not the sizes of your system; the compiler's message then asks for it. In a build
+/// without Ceres `make_boundary_solver(BoundaryMethod::ceres)` throws MissingLibrary.
 
 #include <lagroid/solvers/boundary/boundary_newton.hpp>
 #include <lagroid/solvers/boundary/boundary_shooting.hpp>

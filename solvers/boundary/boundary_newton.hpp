@@ -1,5 +1,17 @@
 #pragma once
-/// Boundary-value problems by Newton's method on the full KKT system, globalised.
+/// Newton's method for a boundary-value problem, on the equations of the whole path at once:
+///
+///     F+(g_k, lambda_k) = F-(g_{k+1}, lambda_{k+1}),    phi(g_k) = 0,    C(q_k) = 0,    g_1 ... g_N = g.
+///
+/// It is the default: linear in N, quadratically convergent, and globalised by descent of the action (for minima) or of
+/// the residual (for stationary paths), so that rough guesses do.
+///
+///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
+///     const BoundaryNewton<Kepler> newton;
+///     const auto found = newton.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
+///
+/// Requires and returns what boundary_solver.hpp says. Status: `stagnated` (no step lowers action or residual),
+/// `not_converged` (limit of iterations), `not_finite`. [G] section 5, Theorem 5.1
 
 #include <lagroid/solvers/boundary/boundary_kkt.hpp>
 #include <lagroid/solvers/boundary/boundary_solver.hpp>

@@ -1,5 +1,16 @@
 #pragma once
-/// Boundary-value problems: critical points of the action over trajectories with a fixed product.
+/// Boundary-value problems: given an arrow g, arrows g_1, ..., g_N with
+///
+///     g_1 g_2 ... g_N = g,    phi(g_k) = 0,    C(q_k) = 0,    that make  sum_k L(g_k)  stationary.
+///
+/// Optimal control and Lambert's problem are of this kind; fixing the product fixes both ends on any groupoid.
+///
+///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};  // from, to
+///     const auto why = inadmissible_ends(problem);                             // nothing: the ends are possible
+///     const Path<Kepler> line = resampled(problem, {{problem.boundary, {}}}, 100);
+///
+/// Requires a variational system whose Lagrangian does not depend on time (else it does not compile); a path has one
+/// arrow at least. What is wrong with ends or paths is returned as a sentence. [G] section 5
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/derivatives/displaced_arrow.hpp>

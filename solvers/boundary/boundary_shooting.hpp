@@ -1,5 +1,16 @@
 #pragma once
-/// Boundary-value problems by shooting.
+/// Shooting: Newton's method on the initial momentum mu_0 of a trajectory whose end is given,
+///
+///     mu_0 <- mu_0 + S^{-1} tau^{-1}((g_1 ... g_N)^{-1} g),    S = d(end node) / d(mu_0).
+///
+/// It checks BoundaryNewton by other means, and is good where trajectories depend mildly on their start.
+///
+///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
+///     const BoundaryShooting<Kepler> shooting;
+///     const auto found = shooting.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
+///
+/// Requires and returns what boundary_solver.hpp says. Status: `stagnated` (no change of mu_0 brings the end nearer),
+/// `not_converged`, `not_finite`, or that of the step that failed on the way, with a message that names the remedy.
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 #include <lagroid/solvers/boundary/boundary_newton.hpp>

@@ -1,5 +1,17 @@
 #pragma once
-/// The boundary-value problem of any system, from guesses to stationary paths.
+/// The boundary-value problem of any system, from first guesses to all stationary paths that are found:
+///
+///     stationary paths of  sum_k L(g_k),    g_1 ... g_N = g,    from many starts, on few arrows first and then on N.
+///
+/// This is what a user calls; no guess is needed.
+///
+///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
+///     const auto found = solve_boundary(*make_boundary_solver<Kepler>(), problem, /*steps=*/100);
+///     const double least = found.solutions.empty() ? NAN : found.solutions.front().cost;
+///
+/// Requires two steps at least and a system as in boundary_problem.hpp. Returns distinct solutions, cheapest first,
+/// each with its path, cost and kind; none found is no error: `best_failure` then has status and message. Throws
+/// std::invalid_argument for ends that admit no path and options out of range.
 
 #include <lagroid/solvers/boundary/boundary_guesses.hpp>
 #include <lagroid/solvers/boundary/multistart.hpp>

@@ -1,5 +1,7 @@
 #pragma once
-/// What the solvers of boundary values are called.
+/// The names of the solvers of boundary values in scenes and Python: newton, shooting, ceres; the first is the default.
+///
+///     const BoundaryMethod method = choice_of(boundary_words, "shooting");  // throws std::invalid_argument for others
 
 #include <lagroid/solvers/boundary/boundary_solver.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>

@@ -1,5 +1,19 @@
 #pragma once
-/// Solutions carried from one boundary-value problem to the next: along stages, or along a homotopy.
+/// Continuation: the solution of one boundary-value problem is the start for a neighbouring one, along stages (`carry`)
+/// or along a homotopy s in [0, 1] (`follow`, with a secant predictor and adaptive steps in s).
+///
+/// Problems that no guess solves are reached from easy ones: other parameters, ends, or numbers of arrows.
+///
+///     const auto stage = [](double s) {
+///       return BoundaryStage<Kepler>{{Kepler{}, {{1, 0}, {-0.3 - 0.2 * s, 0.8}}}, 100};
+///     };
+///     const auto solver = make_boundary_solver<Kepler>();
+///     const auto first = solver->solve(stage(0).problem, geodesic_path(stage(0).problem, 100), false);
+///     const auto last = follow(*solver, stage, first);
+///
+/// Requires a converged start and a family that is continuous in s. Returns the last solution with how far s came and a
+/// status: `left_domain` where the solution is not near its prediction or no short arrow joins the old start to the new
+/// one, else that of the last solve. `carry` throws what the solver throws.
 
 #include <lagroid/solvers/boundary/boundary_by_sizes.hpp>
 

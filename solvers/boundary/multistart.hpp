@@ -1,5 +1,14 @@
 #pragma once
-/// Many starts, then continuation: how local minima of a boundary-value problem are found.
+/// Multistart: a boundary-value problem is solved from many guesses, and each distinct solution continued through
+/// harder stages. One start finds one stationary path; which one is chance, and the cheapest is wanted.
+///
+///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
+///     const auto guess = [&](int i) { return BoundaryGuesses{}(problem, 20, i); };
+///     const auto found = multistart<Kepler>(*make_boundary_solver<Kepler>(), {{problem, 20}}, 10, guess, [](int) {});
+///
+/// Requires guesses that the solver admits, and that `guess` may be called from several threads. Returns solutions,
+/// cheapest first, the best failure and the effort; the result does not depend on the number of threads. Exceptions of
+/// solver and guess are passed on.
 
 #include <lagroid/solvers/boundary/continuation.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
