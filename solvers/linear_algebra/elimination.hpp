@@ -1,5 +1,14 @@
 #pragma once
-/// Gaussian elimination of one sparse pattern, many times.
+/// Gaussian elimination of one sparse pattern, many times: A x = b with a pattern known beforehand. The multipliers of
+/// a chain of joints have such a matrix in every iteration of every step, and its order and fill are found once.
+///
+///     Elimination elimination(2, {{0, 1}});
+///     elimination.value(elimination.index(0, 0)) = elimination.value(elimination.index(1, 1)) = 1;
+///     double x[] = {1, 2};
+///     if (elimination.factorise()) elimination.solve(x);  // b on entry, x on return
+///
+/// Requires a structurally symmetric pattern and leading pivots that do not vanish; `clear` before the values are
+/// written anew, for a factorisation takes their place. `factorise` returns false for a singular matrix.
 
 #include <utility>
 #include <vector>

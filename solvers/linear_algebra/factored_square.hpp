@@ -1,5 +1,10 @@
 #pragma once
-/// A square matrix, factored to solve with. Small sizes are compiled once, in the library.
+/// A square matrix factored to solve with, P A = L U with partial pivoting. It is Eigen's, compiled once in the library
+/// for the sizes of step equations, which Eigen's templates would compile anew in every file.
+///
+///     FactoredSquare<2> lu;
+///     lu.compute(Matrix<double, 2, 2>::Identity());
+///     const auto x = lu.solve({1, 2});  // sensible where lu.rcond() is not tiny
 
 #include <lagroid/core/types.hpp>
 #include <lagroid/solvers/linear_algebra/small_sizes.hpp>

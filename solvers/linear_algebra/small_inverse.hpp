@@ -1,5 +1,15 @@
 #pragma once
-/// The inverse of a small matrix whose structure changes little from one call to the next.
+/// The inverse of a small matrix whose structure changes little from one call to the next, as -A^{-1} b.
+///
+/// A chord iteration multiplies by the inverse many times before it makes another; without a search for pivots and with
+/// columns in registers both are fast.
+///
+///     SmallInverse<2> inverse;
+///     const bool good = inverse.invert(Matrix<double, 2, 2>::Identity());
+///     const auto correction = inverse.correction({1, 2});  // (-1, -2)
+///
+/// Requires `choose_pivots` for a matrix like those that follow, where entries are not near one or sizes are five to
+/// eight. `invert` returns false where the result is not to be trusted.
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 #include <lagroid/core/number_archive.hpp>

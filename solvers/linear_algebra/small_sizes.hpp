@@ -1,6 +1,6 @@
 #pragma once
-/// The sizes of step equations of which the linear algebra is compiled once, in the library; larger ones are compiled
-/// where they are used.
+/// The sizes of step equations, one to ten, of which the linear algebra is compiled once, in the library; larger ones
+/// are compiled where they are used.
 
 #define LAGROID_FOR_SMALL_SIZES(of) \
   of<1>;                            \

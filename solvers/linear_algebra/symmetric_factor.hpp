@@ -1,5 +1,13 @@
 #pragma once
-/// Bunch and Kaufman's factorisation of a small symmetric indefinite matrix.
+/// Bunch and Kaufman's factorisation of a small symmetric indefinite matrix, P A P^T = L D L^T. The blocks of a KKT
+/// matrix are indefinite, and the signs of D count their negative eigenvalues, which tell minima from saddles.
+///
+///     SymmetricFactor<2> factor;
+///     factor.compute(Eigen::Matrix<double, 2, 2, Eigen::RowMajor>{{0, 1}, {1, 0}});
+///     const Vector<double, 2> x = factor.solve({1, 2});  // (2, 1); factor.negative() is 1
+///
+/// Requires a symmetric matrix. A singular one shows in `smallest()`, a NaN likewise, as zero; `solve` then has no
+/// meaning.
 
 #include <lagroid/core/scalars/pack.hpp>
 #include <lagroid/core/types.hpp>

@@ -1,5 +1,13 @@
 #pragma once
-/// Equations on source fibres through Ceres, beside the Newton iterations of lie_newton.hpp.
+/// Equations f(z tau(v)) = 0 on source fibres as least squares in v for Ceres: version 2 of lie_newton.hpp with a trust
+/// region, to compare with.
+///
+///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
+///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });  // lie_differentials.hpp
+///     const auto found = solve_by_ceres(ImplicitStep{fibre, field, /*h=*/0.5}, Vector<double, 3>::Zero());
+///
+/// Requires what lie_newton.hpp does. Status: `stagnated` at a minimum of |f| where f is not zero, `not_finite`,
+/// `not_converged`. Throws MissingLibrary in a build without Ceres.
 
 #include <lagroid/solvers/newton/lie_newton.hpp>
 

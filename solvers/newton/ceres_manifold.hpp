@@ -1,5 +1,13 @@
 #pragma once
-/// The source fibre of a groupoid as a Ceres manifold.
+/// The source fibre of a groupoid as a manifold of Ceres: Plus(g, w) = g tau(w), Minus(h, g) = tau^{-1}(g^{-1} h). With
+/// it arrows of any groupoid are parameter blocks of a Ceres problem.
+///
+///     Vector<double, SourceFibreManifold<SO3>::ambient> arrow;  // coordinates_of_arrow of the first guess
+///     ceres::Problem problem;
+///     problem.AddParameterBlock(arrow.data(), int(arrow.size()), new SourceFibreManifold<SO3>);
+///
+/// Requires arrows in arrow coordinates, the source of which Plus does not change, and Ceres' headers. Plus and Minus
+/// return false where the result is not finite.
 
 #include <lagroid/solvers/newton/fibre_coordinates.hpp>
 

@@ -1,6 +1,17 @@
 #pragma once
-/// Diagonally implicit Crouch-Grossman methods for y' = y g(y), whose stages the Newton iteration solves ([N] section
-/// 6).
+/// Diagonally implicit Crouch-Grossman methods for y' = y g(y):
+///
+///     Y_i = y tau(h a_i1 K_1) ... tau(h a_ii K_i),    K_i = g(Y_i),    y+ = y tau(h b_1 K_1) ... tau(h b_s K_s).
+///
+/// Implicit methods of order one to three on a group, whose stages are solved for any h (arclength.hpp).
+///
+///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
+///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });  // lie_differentials.hpp
+///     LieIntegrator integrator(CrouchGrossman::dirk3(), fibre, field);
+///     const LieStepReport report = integrator.advance(0.1);
+///
+/// Requires a lower triangular a (std::invalid_argument otherwise). `advance` returns the status of the stage that
+/// failed, or `not_finite`, and then stays where it was. [N] section 6
 
 #include <lagroid/solvers/step/arclength.hpp>
 

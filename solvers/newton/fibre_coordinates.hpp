@@ -1,5 +1,10 @@
 #pragma once
-/// The source fibre of a groupoid as a manifold in the coordinates of its arrows.
+/// The source fibre of a groupoid as a manifold in the coordinates of its arrows:
+///
+///     plus(g, w) = g tau(w),    minus(h, g) = tau^{-1}(g^{-1} h),    frame(g) w = d/dt g tau(t w).
+///
+/// All uses of Ceres go through it; it knows nothing of Ceres itself. `plus` and `minus` return false where the result
+/// is not finite.
 
 #include <lagroid/core/groupoid.hpp>
 

@@ -1,5 +1,17 @@
 #pragma once
-/// Differentials other than the exact ones, for the iterations of lie_newton.hpp ([N] section 3.2).
+/// Other differentials for the iterations of lie_newton.hpp: finite differences, truncated series of dexp and of its
+/// inverse, and exact ones by dual numbers.
+///
+///     dexp_v = sum_k (-1)^k ad_v^k / (k + 1)!
+///
+/// They serve where no derivative is written (AutomaticField, FiniteDifferences), and to see what cheaper ones cost in
+/// convergence ([N] section 5).
+///
+///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
+///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });
+///     const auto found = lie_newton(FiniteDifferences(ImplicitStep{fibre, field, 0.5}), Vector<double, 3>::Zero());
+///
+/// Requirements stand with each class. [N] section 3.2
 
 #include <lagroid/core/scalars/dual.hpp>
 #include <lagroid/solvers/newton/lie_newton.hpp>

@@ -1,5 +1,18 @@
 #pragma once
-/// The Newton iteration on Lie groups ([N]), on the source fibres of any groupoid.
+/// The Newton iteration on Lie groups, on the source fibres of any groupoid, for f(y) = 0 with values in the algebra:
+///
+///     df_y(u) = -f(y),    y <- y tau(u)             version 1, on the group
+///     df_y dtau_v(w) = -f(y),    v <- v + w         version 2, in the coordinates y = z tau(v)
+///
+/// Implicit steps y = z tau(h g(y)) are such equations, and fixed-point iteration solves them for small h only.
+///
+///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
+///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });  // lie_differentials.hpp
+///     const auto found = lie_newton(ImplicitStep{fibre, field, /*h=*/0.5}, Vector<double, 3>::Zero());
+///
+/// Requires an equation as `FibreEquation` describes it, and a start. Returns the last iterate with residual,
+/// iterations and status: `left_domain` (y has no coordinates any more), `singular` (df has no inverse), `stagnated`
+/// (damping found no smaller residual), `not_finite`, `not_converged`. [N] sections 3 and 5
 
 #include <lagroid/core/source_fibre.hpp>
 #include <lagroid/solvers/status.hpp>
