@@ -1,5 +1,18 @@
 #pragma once
-/// Lie group integrators: with equal steps, and with steps that an error estimate controls.
+/// Lie group integrators for z' = F(t, z)_M(z): with equal steps, and with steps that an error estimate controls,
+///
+///     h <- 0.9 h (tolerance / error)^(1 / order).
+///
+/// They integrate motions on spheres and other homogeneous spaces that are not those of a discrete Lagrangian.
+///
+///     const auto spin = [](double, const auto&, auto& out) { out.setConstant(1); };  // an element of the algebra
+///     LieGroupIntegrator integrator(Spheres<1>{}, spin, lie_group_methods::commutator_free_4,
+///                                   Spheres<1>::Point(0, 0, 1), /*h=*/0.01);
+///     const StepReport report = integrator.advance();
+///
+/// Requires a start on M of the size of its points, and for control a method that has an embedded one
+/// (std::invalid_argument otherwise). Status: `not_finite`; with control also `no_step` (the error stays too large) and
+/// `not_converged` (limit of steps). The point is then the last one accepted.
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/solvers/lie_group/step.hpp>

@@ -1,5 +1,16 @@
 #pragma once
-/// Magnus integrators for linear equations on homogeneous spaces.
+/// Magnus integrators for linear equations z' = A(t)_M(z) on homogeneous spaces, of order 2, 4 or 6:
+///
+///     z <- exp(Omega) z,    Omega = int A - 1/2 int int_{s < t} [A(s), A(t)] + ...
+///
+/// Where the equation is linear they need fewer exponentials than general methods: one a step.
+///
+///     auto a = [](double t, auto& out) { out = Eigen::Vector3d(1, t, 0); };
+///     Spheres<1>::Point z(0, 0, 1);
+///     MagnusStep<Spheres<1>>({}, /*order=*/4).advance(a, /*t=*/0, /*h=*/0.1, z);
+///
+/// Any other order throws std::invalid_argument. Whether numbers are finite is for the caller to look at. (Blanes,
+/// Casas and Ros, BIT 40 (2000).)
 
 #include <lagroid/core/hamiltonian/homogeneous_space.hpp>
 #include <lagroid/solvers/methods/method.hpp>

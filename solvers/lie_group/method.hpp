@@ -1,5 +1,15 @@
 #pragma once
-/// The coefficients of explicit Lie group integrators.
+/// The coefficients of explicit Lie group integrators, for z' = F(t, z)_M(z) on a homogeneous space M:
+///
+///     Z_i = exp(h sum_j w_rj K_j) ... exp(h sum_j w_1j K_j) z_n,    K_j = F(t + c_j h, Z_j)      (commutator-free)
+///     z_{n+1} = exp(u) z_n,    u' = dexp_u^{-1} F(t, exp(u) z_n)                                  (Munthe-Kaas)
+///
+/// Such methods stay on M, as spheres of unit vectors, whatever the step, without a projection.
+///
+///     const LieGroupMethod* method = lie_group_methods::named("munthe-kaas-54");  // null for an unknown name
+///     const int order = lie_group_methods::commutator_free_4.order;
+///
+/// Sources stand with each method.
 
 #include <array>
 #include <cstddef>

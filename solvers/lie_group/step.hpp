@@ -1,5 +1,15 @@
 #pragma once
-/// One step of an explicit Lie group integrator.
+/// One step z -> z after time h of an explicit Lie group integrator (method.hpp). It is for integrators of one's own,
+/// and takes any scalar, derivatives included; LieGroupIntegrator has the loop.
+///
+///     auto spin = [](double, const auto&, auto& out) { out.setConstant(1); };  // an element of the algebra
+///     Spheres<1>::Point z(0, 0, 1);
+///     LieGroupStep<Spheres<1>> step({}, lie_group_methods::commutator_free_4);
+///     step.advance(spin, /*t=*/0, /*h=*/0.1, z);
+///
+/// Requires a field(t, z, out) that writes an element of the algebra, z of the size of the space's points, and `forget`
+/// where a method that reuses its last slope does not go on from where it ended. Whether numbers are finite is for the
+/// caller to look at. `error` is that of the embedded method, where there is one.
 
 #include <lagroid/core/hamiltonian/homogeneous_space.hpp>
 #include <lagroid/core/number_archive.hpp>
