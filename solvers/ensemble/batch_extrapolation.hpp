@@ -1,5 +1,5 @@
 #pragma once
-/// First guesses for the members of a batch: what `Extrapolation` does for one trajectory.
+/// First guesses for the members of a batch: the polynomials of extrapolation.hpp, of a degree of its own in each lane.
 
 #include <lagroid/core/scalars/batch.hpp>
 #include <lagroid/solvers/step/extrapolation.hpp>

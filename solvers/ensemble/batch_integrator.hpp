@@ -1,5 +1,7 @@
 #pragma once
-/// The members of one batch on their way: what `FixedStepIntegrator` does for one trajectory.
+/// The members of one batch, integrated together, each in its own lane: the map of fixed_step_integrator.hpp over the
+/// scalar Batch. A lane that the batch does not solve is solved alone, by NewtonStep; one that fails then keeps its
+/// last state, with a status. `start` is required for every lane. Ensemble has the batches.
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/scalars/compensation.hpp>

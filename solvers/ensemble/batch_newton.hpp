@@ -1,5 +1,6 @@
 #pragma once
-/// Newton's iteration on the source fibres of several members at once, one in each lane.
+/// Newton's iteration on the source fibres of several members at once, one in each lane: the chord iteration of
+/// newton_step.hpp with masks in place of branches. Returns the mask of lanes that converged.
 
 #include <lagroid/core/scalars/batch.hpp>
 #include <lagroid/solvers/linear_algebra/small_inverse.hpp>

@@ -1,5 +1,18 @@
 #pragma once
-/// Very many members of one system: a member in each lane of a batch, batches on threads.
+/// An ensemble: very many motions of one system that differ in their initial states,
+///
+///     (q_i, mu_i) -> (q_i', mu_i'),    i = 1, ..., M,    one in each lane of a vector register, registers on threads.
+///
+/// Members share instructions, so that one costs less than a run of its own, and what becomes of it depends neither on
+/// the others nor on the threads.
+///
+///     const std::vector<State<Pair<2>>> initial(1000, {{1, 0}, {0, 1}});
+///     Ensemble<Kepler> orbits(Kepler{}, initial);
+///     const bool all_steps = orbits.advance_to(2000, {.threads = 0});
+///
+/// Requires a system whose Lagrangian can be evaluated on batches (else it does not compile), one configuration for
+/// each member or none, and `every` of one at least (std::invalid_argument). A member whose step fails keeps its last
+/// state and has a status that says why; the others go on.
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/solvers/ensemble/batch_integrator.hpp>

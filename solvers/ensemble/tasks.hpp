@@ -1,5 +1,11 @@
 #pragma once
-/// Independent pieces of work on the threads of one machine.
+/// Independent pieces of work, i = 0, ..., n - 1, on the threads of one machine. It is the one place that starts
+/// threads, and results are in the order of i, so that no result depends on the number of threads.
+///
+///     std::vector<double> roots(100);
+///     for_each_task(100, /*threads=*/0, [&](long i) { roots[std::size_t(i)] = std::sqrt(double(i)); });
+///
+/// Requires pieces that write to places of their own only. The exception of the least i is rethrown.
 
 #include <cstddef>
 #include <functional>
