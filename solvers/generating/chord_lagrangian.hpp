@@ -1,5 +1,20 @@
 #pragma once
-/// Discrete Lagrangians along chords.
+/// Discrete Lagrangians along chords, generating functions of type I from a continuous Lagrangian L(q, v):
+///
+///     L_d(q0, q1) = h sum b_i L(q0 + c_i (q1 - q0), (q1 - q0) / h).
+///
+/// The quickest way to a variational integrator: L is written once, the quadrature chosen. The trapezoid gives
+/// Stormer-Verlet, with constraints RATTLE.
+///
+///     struct Spring {
+///       static constexpr int dimension = 1, constraints = 0;
+///       template <class S> S lagrangian(const Vector<S, 1>& q, const Vector<S, 1>& v) const {
+///         return (v(0) * v(0) - q(0) * q(0)) * 0.5;
+///       }
+///     };
+///     inline const ChordLagrangian<Spring> discrete{{}, quadrature_rules::trapezoid};
+///
+/// The step is taken by HamiltonianMap (hamiltonian_map.hpp).
 
 #include <lagroid/core/hamiltonian/generating_function.hpp>
 #include <lagroid/core/hamiltonian/quadrature_rule.hpp>

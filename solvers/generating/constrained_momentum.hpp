@@ -1,5 +1,16 @@
 #pragma once
-/// Momenta at an object, with the velocity that keeps the constraints there.
+/// The momentum over a state as it is reported: with the velocity that keeps the constraints there,
+///
+///     mu + <nu, omega(q)>,    M w - <nu, omega> = mu - mu_0,    <omega, w> + phi(e) = 0.
+///
+/// Between two steps half of a reaction has acted when an object is reached; without it reported momenta of constrained
+/// systems would be of order one across the constraints.
+///
+///     const SphericalPendulum pendulum;
+///     const Vector<double, 3> p = tangent_momentum(pendulum, {{0, 0, -1}, {1, 0, 0.2}});
+///
+/// Requires a system whose mass and constraints together are regular at the state. For systems without object or
+/// nonholonomic constraints it is mu itself. The dynamics is the same with it and without it.
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 

@@ -1,5 +1,11 @@
 #pragma once
-/// The exact generating functions of constrained Hamilton's equations, along solutions.
+/// The exact generating functions of constrained Hamilton's equations: the action along the solution,
+///
+///     L_d^E(q0, q1) = int_0^h (p.q' - H) dt,    H_d+ = p1.q1 - L_d^E,    H_d- = -p0.q0 - L_d^E,
+///
+/// with its first derivatives p0 and p1. Orders of discrete ones are measured against them. Requires a start that
+/// satisfies the constraint and the hidden one; not a number where the solution ends before the time. [V] (2.7),
+/// (3.10), (3.12)
 
 #include <lagroid/core/hamiltonian/generating_function.hpp>
 #include <lagroid/core/scalars/series.hpp>

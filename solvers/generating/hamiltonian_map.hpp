@@ -1,5 +1,18 @@
 #pragma once
-/// The constrained discrete Hamiltonian maps that generating functions generate.
+/// Constrained discrete Hamiltonian maps (q_k, p_k) -> (q_{k+1}, p_{k+1}) from a generating function of type I, II or
+/// III:
+///
+///     p_k + <lambda_k, C'(q_k)> = D1 H_d+(q_k, p_{k+1}),    q_{k+1} = D2 H_d+(q_k, p_{k+1}),    C(q_{k+1}) = 0
+///
+/// (type II; all three stand with the class). They are symplectic on T*C^{-1}(0), as RATTLE is, which is one of them.
+///
+///     Phase<1, 0> point{Vector<double, 1>(1), Vector<double, 1>(0)};
+///     const HamiltonianMap map(ChordLagrangian<Spring>{});  // the Spring of chord_lagrangian.hpp
+///     const SolveStatus status = map.step(point, /*h=*/0.1);
+///
+/// Requires a function as the concept GeneratingFunction describes it, and a step that is not zero. The status is
+/// `singular`, `left_domain`, `not_finite` or `not_converged` where there is no step; the point then stays as it was.
+/// [V] (2.10), (2.13), (3.14) to (3.21)
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 #include <lagroid/core/hamiltonian/generating_function.hpp>

@@ -1,5 +1,24 @@
 #pragma once
-/// Hamilton's equations with holonomic constraints: the hidden constraint, and multipliers that it determines.
+/// Hamilton's equations with holonomic constraints, the hidden constraint, and the multipliers that it determines:
+///
+///     q' = H_p,    p' = -H_q + <lambda, C'(q)>,    C(q) = 0,    C'(q) H_p(q, p) = 0.
+///
+/// A momentum belongs to a motion on C^{-1}(0) only where it satisfies the hidden constraint; `project_momentum` makes
+/// it so, and `hamiltonian_rates` is the right-hand side for any method of differential equations.
+///
+///     struct Rod {
+///       static constexpr int dimension = 2, constraints = 1;
+///       template <class S> S hamiltonian(const Vector<S, 2>& q, const Vector<S, 2>& p) const {
+///         return p.squaredNorm() * 0.5 + q(1);
+///       }
+///       template <class S> Vector<S, 1> constraint(const Vector<S, 2>& q) const {
+///         return Vector<S, 1>(q.squaredNorm() - 1.0);
+///       }
+///     };
+///     inline Vector<double, 2> tangent() { return project_momentum<Rod, 2>({}, {0, -1}, {1, 1}); }  // (1, 0)
+///
+/// Requires a regular G_p C' (G the hidden constraint); not a number where it is not. [V] (3.6), with the other sign of
+/// lambda, and Remark 3.2
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/derivatives/implicit.hpp>

@@ -1,5 +1,14 @@
 #pragma once
-/// Poincare's relative invariant: the loop integral of p dq, which symplectic steps on pair groupoids keep.
+/// Poincare's relative invariant, the loop integral of p dq around a closed curve of states. Symplectic steps on pair
+/// groupoids keep it, which is how symplecticity shows over many steps, where derivatives of the map lose their digits.
+///
+///     std::vector<State<Pair<1>>> loop;
+///     for (double t = 0; t < 6; t += 2 * std::numbers::pi / 9)
+///       loop.push_back({Vector<double, 1>(std::cos(t)), Vector<double, 1>(std::sin(t))});
+///     const double area = loop_integral<Pair<1>>(loop);
+///
+/// Requires an odd number of states (std::invalid_argument), at equal steps of the curve's parameter. `carried` is
+/// empty where a step of one of them fails.
 
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>

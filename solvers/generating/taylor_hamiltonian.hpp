@@ -1,5 +1,21 @@
 #pragma once
-/// Hamiltonian Taylor variational integrators.
+/// Hamiltonian Taylor variational integrators: generating functions of type II from a continuous Hamiltonian H(q, p),
+/// by Taylor's method of order r along the motion and a quadrature.
+///
+///     H_d+(q0, p1) = p1.q~1 - h sum b_i (p_i.H_p(q_i, p_i) - H(q_i, p_i))
+///
+/// They are made from H itself, where there is no Lagrangian or none is wanted. Their order is min(r + 1, that of the
+/// quadrature) without constraints, and at most two with them.
+///
+///     struct Spring {
+///       static constexpr int dimension = 1, constraints = 0;
+///       template <class S> S hamiltonian(const Vector<S, 1>& q, const Vector<S, 1>& p) const {
+///         return (p(0) * p(0) + q(0) * q(0)) * 0.5;
+///       }
+///     };
+///     inline const HamiltonianMap symplectic_euler(TaylorHamiltonian<Spring, 0>{});  // hamiltonian_map.hpp
+///
+/// Requires H over any scalar. Not a number where the initial momentum is not found from p1. [V] 5.4.1, Theorem 5.1
 
 #include <lagroid/core/hamiltonian/generating_function.hpp>
 #include <lagroid/core/hamiltonian/quadrature_rule.hpp>
