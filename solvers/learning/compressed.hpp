@@ -1,5 +1,13 @@
 #pragma once
-/// Least squares with many residuals and few parameters.
+/// Least squares with many residuals and few parameters: (J, r) turned by an orthogonal matrix into a triangle,
+///
+///     Q^T (J r) = (R s),    R^T R = J^T J,    R^T s = J^T r,    |s| = |r|.
+///
+/// Rows are added in blocks, so that J is never in memory as a whole, nor its condition number squared.
+///
+///     learning::Compressed compressed(/*parameters=*/2);
+///     compressed.add(Eigen::MatrixXd::Random(1000, 3));  // rows of (J r)
+///     const Eigen::MatrixXd& triangle = compressed.triangle();
 
 #include <Eigen/Core>
 

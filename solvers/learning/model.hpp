@@ -1,5 +1,17 @@
 #pragma once
-/// Hamiltonians with parameters on (T*S^2)^k, for those who train, measure and run them.
+/// Hamiltonians with parameters theta on (T*S^2)^k,
+///
+///     H(q, p; theta) = 1/2 p^T M(q)^{-1} p + V(q; theta),
+///
+/// behind one interface for those who train, measure and run them, whatever the potential is.
+///
+///     const auto model = learning::polynomial_model(/*bodies=*/1, /*degree=*/3);
+///     const Eigen::VectorXd theta = model->start(/*seed=*/1);
+///     const double energy = model->energy(theta, Eigen::VectorXd{{0, 0, -1, 0.5, 0, 0}});
+///
+/// Requires theta of size() numbers and states of 6k numbers, (q_1, p_1, q_2, p_2, ...). polynomial_model and
+/// network_model throw std::invalid_argument for sizes out of range; `follow` returns false where the motion cannot be
+/// followed. [H]
 
 #include <lagroid/groupoids/spheres.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>

@@ -1,5 +1,10 @@
 #pragma once
-/// Hamilton's equations on (T*S^2)^k for H = 1/2 p^T M(q)^{-1} p + V(q) with parameters.
+/// Hamilton's equations on (T*S^2)^k, as an element of the algebra se(3)^k at each point,
+///
+///     F = (q_i x v_i, dV/dq_i x q_i - tau_i q_i x v_i),    H = 1/2 p^T M(q)^{-1} p + V(q),
+///
+/// with parameters of mass matrix and potential. Written for any scalar, so that derivatives in the parameters pass
+/// through an integrator. Requires `set` with size() parameters before anything is evaluated. [H] (mapfham), (mmatrp)
 
 #include <lagroid/groupoids/spheres.hpp>
 #include <lagroid/solvers/learning/potentials/potential.hpp>

@@ -1,5 +1,16 @@
 #pragma once
-/// The model of any potential.
+/// The model of any potential: a class that writes V(q; theta) becomes a Model, with trajectories and their exact
+/// derivatives in theta.
+///
+///     struct Weight {
+///       int size() const { return 1; }
+///       template <class S, class T> S energy(const learning::Places<S, 1>& q, const T* theta) const {
+///         return S(theta[0]) * q(2);
+///       }
+///     };
+///     inline const learning::ParametricModel<Weight, 1> model("weight", Weight{});
+///
+/// Requires a Potential (potentials/potential.hpp).
 
 #include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/solvers/learning/model.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// The errors of a model's trajectories, as training sums them.
+/// The weighted squared error of a model's trajectories, as training sums it: a detail of train.hpp.
 
 #include <lagroid/solvers/learning/train.hpp>
 

@@ -1,5 +1,19 @@
 #pragma once
-/// Fits a Hamiltonian to trajectories.
+/// Fits a Hamiltonian to trajectories: minimises over theta the mean squared error of what an integrator predicts,
+///
+///     sum_{n, j} w_nj |z_j(theta; z_n0) - z_nj|^2,    z_j after j intervals from the start of trajectory n.
+///
+/// The integrator is part of the fit, so that data may be as coarse as its steps allow, and no derivative of the data
+/// is needed.
+///
+///     using namespace learning;
+///     const Trajectories data = assemble(std::vector<Observation>{});  // of rows that were observed
+///     const Trained trained = train(*polynomial_model(data.bodies, 3), data, {.starts = 4});
+///     if (trained.usable()) std::cout << to_string(trained.outcome) << ' ' << trained.mse << '\n';
+///
+/// Requires data from `assemble`, of as many bodies as the model, and options in range (std::invalid_argument).
+/// Whatever numbers do is an Outcome with a message that names the remedy. Throws MissingLibrary in a build without
+/// Ceres. [H]
 
 #include <lagroid/solvers/learning/model.hpp>
 #include <lagroid/solvers/learning/trajectories.hpp>

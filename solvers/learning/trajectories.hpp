@@ -1,5 +1,13 @@
 #pragma once
-/// Data to learn from: pieces of trajectories on (T*S^2)^k.
+/// Data to learn from: N trajectories of M points z = (q_1, p_1, ..., q_k, p_k) each on (T*S^2)^k, at equal intervals.
+///
+///     std::vector<learning::Observation> rows;
+///     const Eigen::VectorXd hanging{{0, 0, -1, 0, 0, 0}};
+///     for (int j = 0; j < 3; ++j) rows.push_back({.row = j, .trajectory = 0, .time = 0.1 * j, .z = hanging});
+///     const learning::Trajectories data = learning::assemble(rows);
+///
+/// Rows of one trajectory stand together, in the order of time. `assemble` checks everything and throws DataRefused,
+/// with the row, what is wrong, and what to do.
 
 #include <Eigen/Core>
 

@@ -1,5 +1,10 @@
 #pragma once
-/// Potentials that are small networks.
+/// Potentials that are small networks,
+///
+///     V = w . a_L,    a_l = tanh(W_l a_{l-1} + b_l),    a_0 = (q_1, ..., q_k).
+///
+/// For potentials of no known form. No bodies, no layers, layers without units or more than `most` parameters throw
+/// std::invalid_argument.
 
 #include <lagroid/core/scalars/elementary.hpp>
 #include <lagroid/solvers/learning/potentials/potential.hpp>

@@ -1,5 +1,10 @@
 #pragma once
-/// Potentials that are polynomials in the coordinates.
+/// Potentials that are polynomials in the coordinates x of q_1, ..., q_k,
+///
+///     V = sum_a theta_a x^a,    1 <= |a| <= d.
+///
+/// Linear in theta; gravity is of degree one. No bodies, no degree or more than `most` monomials throw
+/// std::invalid_argument.
 
 #include <lagroid/solvers/learning/potentials/potential.hpp>
 

@@ -1,5 +1,14 @@
 #pragma once
-/// Potentials with parameters.
+/// Potentials V(q; theta) on (S^2)^k: what a class must write to be learned.
+///
+///     struct Weight {
+///       int size() const { return 1; }
+///       template <class S, class T> S energy(const learning::Places<S, 1>& q, const T* theta) const {
+///         return S(theta[0]) * q(2);
+///       }
+///     };
+///
+/// Requires an energy in any scalars, or value and gradient in any scalar, where a formula by hand is faster.
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/types.hpp>
