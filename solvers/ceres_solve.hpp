@@ -1,5 +1,6 @@
 #pragma once
-/// What every use of Ceres has in common.
+/// Settings and call that every use of Ceres has in common. Ceres returns its first point where it ends by a failure;
+/// here it is always the best one that it came to, and nothing is written on standard error.
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>

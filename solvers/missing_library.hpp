@@ -1,5 +1,6 @@
 #pragma once
-/// What this build of the library is without.
+/// The exception for what needs a library that this build of lagroid is without; its message names the library and the
+/// package to install.
 
 #include <fmt/format.h>
 

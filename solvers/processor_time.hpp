@@ -1,5 +1,5 @@
 #pragma once
-/// What a computation took.
+/// The processor time of the calling thread, for measurements that other programs on the machine must not disturb.
 
 #include <ctime>
 

@@ -1,5 +1,9 @@
 #pragma once
-/// How an iterative solve ended.
+/// How an iterative solve ended: a typed status in place of an exception, because a step that fails is an outcome of a
+/// numerical method and not a mistake of the program.
+///
+///     const SolveStatus status = SolveStatus::no_step;
+///     if (status != SolveStatus::converged) std::cerr << to_string(status) << '\n';
 
 #include <string_view>
 

@@ -1,6 +1,13 @@
 #pragma once
-/// The methods by which a system can be integrated, each declared once: scenes, Python, studies, citations and the
-/// refusals of `make_integrator` look up here what they are called, what they need and what they are by default.
+/// The methods by which a system can be integrated, each declared once: name, order, what it needs of a system, source.
+/// Scenes, Python, studies, citations and the errors of `make_integrator` take them from here, so that no two of them
+/// differ.
+///
+///     const IntegrationMethod& method = integration_method("fixed", "splitting");  // throws for unknown names
+///     const IntegratorOptions options = options_of(method);
+///     const Composition* eighth = usual_composition(8);  // null where there is none of the order
+///
+/// `integration_method` and `choice_of` throw std::invalid_argument for names that are none of a method or a word.
 
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/methods/sources.hpp>

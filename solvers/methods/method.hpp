@@ -1,5 +1,16 @@
 #pragma once
-/// What a one-step method declares of itself; tests hold it to its order (laws::order_laws).
+/// What a one-step method z -> Phi_h(z) declares of itself: order, symmetry, symplecticity. Ledgers promise by it, and
+/// a test holds each method to its order (laws::order_laws).
+///
+///     struct Euler : System<Euler, Pair<1>> {
+///       double h = 0.1;
+///       template <class S> S lagrangian(const PairArrow<S, 1>& g) const {
+///         return (g.target - g.source).squaredNorm() * (0.5 / h) - g.source(0) * g.source(0) * (0.5 * h);
+///       }
+///       MethodTraits traits() const { return {"symplectic Euler", 1, false, true, false}; }
+///     };
+///
+/// A system writes `traits()` where its discretisation is no self-adjoint one of order two, else nothing.
 
 #include <lagroid/core/member_name.hpp>
 

@@ -1,5 +1,9 @@
 #pragma once
-/// By which of the declared methods a system can be integrated.
+/// By which of the declared methods a system can be integrated: its capabilities, as the type of the system shows them.
+///
+///     const Capabilities able = capabilities_of(Kepler{});
+///     const std::string why = why_not({.mode = TimeMode::controlled}, able);  // empty: it can
+///     const std::vector<NamedMethod> methods = named_methods(able);
 
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/capabilities/split_system.hpp>

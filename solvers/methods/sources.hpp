@@ -1,5 +1,7 @@
 #pragma once
-/// The papers that methods are from.
+/// The papers that methods are from, by the keys that `lagroid cite` knows.
+///
+///     const Source source = source_of(compositions::kahan_li_8);  // source.key, source.what; empty for classical ones
 
 #include <lagroid/solvers/integrators/compositions.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
