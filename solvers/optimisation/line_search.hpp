@@ -1,5 +1,10 @@
 #pragma once
-/// How far to go along a direction of descent.
+/// How far to go along a direction of descent d: a step t with
+///
+///     f(R_x(t d)) <= f(x) + c t <grad f, d>        (Armijo),
+///
+/// and by secants one that is nearly lowest. Details of the methods; both return 0 where no step is found. Require
+/// <grad f, d> < 0, given as `slope`, and d tangent at the state.
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

@@ -1,5 +1,6 @@
 #pragma once
-/// How large a step f bears.
+/// An estimate of the Lipschitz constant L of the Riemannian gradient, from which methods take their step sizes, as c /
+/// L.
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

@@ -1,5 +1,15 @@
 #pragma once
-/// The loop that all methods of optimisation share: what stops it, what it tells, and how it ends.
+/// Minimisation on a manifold, min f(x), x in Q: the loop that all methods share, what stops it, and how it ends.
+///
+/// A method is one object with two functions, so that all are stopped, recorded and compared in the same way.
+///
+///     using namespace optimisation;
+///     ConjugateGradient method;
+///     const Result found = minimise(Sphere(3), Height(), Eigen::Vector3d(1, 0, 0), method, {.gradient = 1e-9});
+///     std::cout << to_string(found.outcome) << ' ' << found.value << ' ' << found.message << '\n';
+///
+/// (`Height` stands in objective.hpp.) Requires a start on the manifold. Returns the best point with value, gradient
+/// and effort. Never throws for numbers: the Outcome tells, with a message that names the remedy.
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>

@@ -1,5 +1,15 @@
 #pragma once
-/// Functions that are minimised.
+/// Functions f on the space around a manifold, of which the restriction is minimised.
+///
+///     struct Height final : optimisation::Objective {
+///       double evaluate(const optimisation::Point& x, optimisation::Vector& gradient) const override {
+///         gradient << 0, 0, 1;
+///         return x(2);
+///       }
+///     };
+///
+/// Requires the value and the gradient in the space around, which comes with its size; the tangent part, and a Hessian
+/// where none is written, are deduced.
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 

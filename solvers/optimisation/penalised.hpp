@@ -1,5 +1,17 @@
 #pragma once
-/// A constraint as a part of the function ([V] 5.5).
+/// A constraint as a part of the function,
+///
+///     min f(x) + weight |C(x)|^2 / 2    in flat space, then the nearest point of the manifold.
+///
+/// To compare with: what methods on the manifold gain over methods that know no manifold.
+///
+///     using namespace optimisation;
+///     ConjugateGradient method;
+///     const Result found = minimise_penalised(Sphere(3), Height(), /*weight=*/1e3, Eigen::Vector3d(1, 0, 0), method,
+///                                             {.gradient = 1e-6});
+///
+/// (`Height` stands in objective.hpp.) Requires a positive weight. Outcome: `off_manifold` where the penalty left more
+/// than a tenth of the constraint, else those of `minimise`. [V] 5.5
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

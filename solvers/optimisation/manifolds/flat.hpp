@@ -1,5 +1,5 @@
 #pragma once
-/// No constraint at all.
+/// The vector space R^n, a manifold without constraint: R_x(v) = x + v.
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 

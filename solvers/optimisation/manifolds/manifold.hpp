@@ -1,5 +1,18 @@
 #pragma once
-/// Manifolds on which functions are minimised.
+/// Manifolds Q = C^{-1}(0) in a space of matrices with the metric <A, B> = Trace(A^T B): what a class must write so
+/// that functions can be minimised on it.
+///
+///     P_x : E -> T_xQ,    R_x : T_xQ -> Q,    R_x(0) = x,  dR_x(0) = 1,    log_x : Q -> T_xQ
+///
+/// A manifold of your own derives from `Manifold` and is tested by laws::manifold_laws; those here are spheres, Stiefel
+/// manifolds, flat spaces and products.
+///
+///     const optimisation::Sphere sphere(3);
+///     optimisation::Point to(3);
+///     sphere.retract(optimisation::Retraction::qr, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), to);
+///
+/// A retraction that is not offered throws std::invalid_argument; what does not exist at a point returns false. [V]
+/// 5.3.2
 
 #include <Eigen/Core>
 

@@ -1,5 +1,11 @@
 #pragma once
-/// Products of manifolds.
+/// Products of manifolds, Q_1 x ... x Q_k, with the sum of their metrics.
+///
+///     std::vector<std::unique_ptr<optimisation::Manifold>> spheres;
+///     for (int i = 0; i < 12; ++i) spheres.push_back(std::make_unique<optimisation::Sphere>(3));
+///     const optimisation::ProductManifold points(std::move(spheres));
+///
+/// No factors throw std::invalid_argument.
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The unit sphere.
+/// The unit sphere S^(n-1) in R^n, C(x) = (x^T x - 1) / 2: exp_x(v) = x cos|v| + v sin|v| / |v|. n < 2 throws
+/// std::invalid_argument.
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 

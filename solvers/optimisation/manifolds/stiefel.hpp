@@ -1,5 +1,7 @@
 #pragma once
-/// The Stiefel manifold, and with it the orthogonal group.
+/// The Stiefel manifold St(m, n) = {X in R^(n x m), X^T X = I}, and with m = n the orthogonal group; tangent projection
+/// P_X Z = Z - X sym(X^T Z). Eigenvectors and best rotations are minima on it. Sizes other than 1 <= m <= n throw
+/// std::invalid_argument. [V] 5.3.2
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 

@@ -1,5 +1,17 @@
 #pragma once
-/// Constrained Hamiltonian maps that minimise ([V] Algorithm 1), and the setting of them that we recommend.
+/// Accelerated descent by constrained Hamiltonian maps: with D = x - x_before, the step
+///
+///     V = P_x(mu D - s grad f(x)),    x+ = x + V + normal vector at x, on the manifold.
+///
+/// The momentum mu D makes it faster than gradient descent where f is ill-conditioned, at one gradient a step.
+/// `RobustDescent` is the setting that we recommend.
+///
+///     using namespace optimisation;
+///     RobustDescent method({}, {.rescale = true, .restart = true});
+///     const Result found = minimise(Sphere(3), Height(), Eigen::Vector3d(1, 0, 0), method, {.gradient = 1e-9});
+///
+/// (`Height` stands in objective.hpp.) Options out of range throw std::invalid_argument, with the remedy; a step that
+/// leads off the manifold ends as `no_step`, unless `rescale` shortens it. [V] Algorithm 1, (3.19)
 
 #include <lagroid/solvers/optimisation/methods/bregman.hpp>
 #include <lagroid/solvers/optimisation/minimise.hpp>

@@ -1,5 +1,13 @@
 #pragma once
-/// The time-dependent Bregman Hamiltonians and what their discrete flows multiply momenta and gradients by.
+/// The time-dependent Bregman Hamiltonians, and the coefficients of their discrete flows:
+///
+///     r+ = r - beta(t) grad f(q) - dC^T lambda,    q+ = q + alpha(t) r+.
+///
+/// HamiltonianDescent (accelerated.hpp) takes its mu and s from them.
+///
+///     const optimisation::Coefficients now = optimisation::coefficients({.p = 6}, /*t=*/0.1, /*h=*/1e-3);
+///
+/// `check` throws std::invalid_argument, with the remedy, for numbers out of range. [V] (5.2) to (5.5), (5.11), (5.12)
 
 #include <string>
 

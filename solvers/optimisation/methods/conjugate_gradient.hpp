@@ -1,6 +1,17 @@
 #pragma once
-/// Riemannian nonlinear conjugate gradients (Absil, Mahony and Sepulchre, Optimization Algorithms on Matrix Manifolds,
-/// 2008, section 8.3), to compare with.
+/// Riemannian nonlinear conjugate gradients,
+///
+///     d+ = -grad f(x+) + b T d,    b of Hestenes and Stiefel, T the transport to x+.
+///
+/// Where value and gradient cost about the same they need fewer evaluations than accelerated descent
+/// (docs/optimisation.md).
+///
+///     using namespace optimisation;
+///     ConjugateGradient method;
+///     const Result found = minimise(Sphere(3), Height(), Eigen::Vector3d(1, 0, 0), method, {.gradient = 1e-9});
+///
+/// (`Height` stands in objective.hpp.) Requires a retraction that the manifold offers. (Absil, Mahony and Sepulchre,
+/// Optimization Algorithms on Matrix Manifolds, 2008, section 8.3.)
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

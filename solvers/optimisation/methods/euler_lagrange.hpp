@@ -1,5 +1,16 @@
 #pragma once
-/// The semi-implicit Euler discretisation of the Bregman Euler-Lagrange equations ([V] Algorithm 2).
+/// The semi-implicit Euler discretisation of the Bregman Euler-Lagrange equations,
+///
+///     a = b_k V - h c_k grad f(X),    X+ = R_X(h a),    V+ = a, transported to X+.
+///
+/// To compare with accelerated.hpp, which discretises the same motions by symplectic maps.
+///
+///     using namespace optimisation;
+///     EulerLagrange method({.p = 6, .h = 1e-3});
+///     const Result found = minimise(Sphere(3), Height(), Eigen::Vector3d(1, 0, 0), method, {.gradient = 1e-9});
+///
+/// (`Height` stands in objective.hpp.) Options out of range throw std::invalid_argument, with the remedy. [V] Algorithm
+/// 2
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

@@ -1,5 +1,13 @@
 #pragma once
-/// Riemannian gradient descent ([V] Algorithm 3).
+/// Riemannian gradient descent, X+ = R_X(-t grad f(X)), with a fixed t, t = c / L or a line search: the simplest
+/// method, to compare with.
+///
+///     using namespace optimisation;
+///     GradientDescent method({.c = 1});
+///     const Result found = minimise(Sphere(3), Height(), Eigen::Vector3d(1, 0, 0), method, {.gradient = 1e-9});
+///
+/// (`Height` stands in objective.hpp.) Options out of range throw std::invalid_argument, with the remedy. [V] Algorithm
+/// 3
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

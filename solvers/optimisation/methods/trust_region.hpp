@@ -1,5 +1,16 @@
 #pragma once
-/// The Riemannian trust region method (Absil, Baker and Gallivan, Found. Comput. Math. 7 (2007) 303), to compare with.
+/// The Riemannian trust region method: each step minimises
+///
+///     m(v) = f + <grad f, v> + <v, Hess f v> / 2,    |v| <= radius.
+///
+/// It converges faster than linearly near a minimum, at the price of Hessians times vectors.
+///
+///     using namespace optimisation;
+///     TrustRegion method;
+///     const Result found = minimise(Sphere(3), Height(), Eigen::Vector3d(1, 0, 0), method, {.gradient = 1e-9});
+///
+/// (`Height` stands in objective.hpp.) Requires a retraction that the manifold offers. (Absil, Baker and Gallivan,
+/// Found. Comput. Math. 7 (2007) 303.)
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

@@ -1,5 +1,11 @@
 #pragma once
-/// Laws of manifolds and of functions on them, for a user's own.
+/// Laws of manifolds and of functions on them, for your own: projections, retractions, logarithm and Hessian at random
+/// points; gradients and Hessians of an objective against differences.
+///
+///     const laws::LawReport report = laws::manifold_laws(optimisation::Sphere(3));
+///     std::cout << report;  // report.holds(): all of them
+///
+/// Requires a manifold whose `nearest` succeeds from random matrices.
 
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
