@@ -1,5 +1,12 @@
 #pragma once
-/// Every law there is, asked of one system.
+/// The certificate of a system: every suite of laws that applies to it, from the axioms of its groupoid to Noether's
+/// theorem. One call tests a system of your own by all that the theory states of it.
+///
+///     const auto draw = [] { return State<Pair<2>>{{1, 0}, {0, 1 + 0.1 * laws::draw_uniform()}}; };
+///     for (const laws::LawReport& suite : laws::certificate<Kepler>(Kepler{}, draw)) std::cout << suite;
+///
+/// Requires states from which a step can be taken. Returns one report a suite, each with its laws, samples and the
+/// largest defect; a law that does not hold is no exception. The suites' headers name equations and sources.
 
 #include <lagroid/core/testing/algebroid_laws.hpp>
 #include <lagroid/core/testing/cotangent_laws.hpp>

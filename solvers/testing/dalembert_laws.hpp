@@ -1,5 +1,15 @@
 #pragma once
-/// The discrete Lagrange-d'Alembert principle as a property that any system runs by naming itself.
+/// The discrete Lagrange-d'Alembert principle as laws of a forced or nonholonomic system,
+///
+///     <dL, (v, w)> + <f-, v> + <f+, w> = 0  at every inner node, along displacements that annihilators and dC allow,
+///
+/// with derivatives that share nothing with those of the solvers.
+///
+///     const ChaplyginSleigh sleigh;
+///     const auto draw = [&] { return sleigh.sliding(laws::draw_uniform(), laws::draw_uniform()); };
+///     std::cout << laws::dalembert_laws(sleigh, draw);
+///
+/// Requires states from which a step can be taken. (Cortes and Martinez 2001; Marsden and West 2001, part 3.)
 
 #include <lagroid/core/testing/derivative_laws.hpp>
 #include <lagroid/solvers/testing/variational_laws.hpp>

@@ -1,5 +1,12 @@
 #pragma once
-/// What [G] says of the dynamics, as properties that any system runs by naming itself.
+/// The statements of [G] on the dynamics, as laws of any system: Sigma_L is Lagrangian, F- and F+ are source and target
+/// of T*G and have equal rank, the step is a Poisson map, and runs backwards to where it began.
+///
+///     const auto draw = [] { return State<Pair<2>>{{1, 0}, {0, 1 + 0.1 * laws::draw_uniform()}}; };
+///     std::cout << laws::dynamics_laws(Kepler{}, draw);
+///
+/// Requires a variational system and states from which a step can be taken. [G] Theorems 2.16 and 3.1, Def. 3.3,
+/// Corollary 3.4
 
 #include <lagroid/core/capabilities/reversed.hpp>
 #include <lagroid/core/hamiltonian/lagrangian.hpp>

@@ -1,5 +1,11 @@
 #pragma once
-/// What an ensemble promises of its members, as properties that any system runs by naming itself.
+/// The laws of an ensemble: a member is its own trajectory, whatever the others are, their order, the threads and the
+/// pauses; and it fails alone.
+///
+///     const auto draw = [] { return State<Pair<2>>{{1, 0}, {0, 1 + 0.1 * laws::draw_uniform()}}; };
+///     std::cout << laws::ensemble_laws(Kepler{}, draw);
+///
+/// Requires a system that can be evaluated on batches.
 
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/ensemble/ensemble.hpp>

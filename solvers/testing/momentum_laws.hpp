@@ -1,5 +1,11 @@
 #pragma once
-/// Momentum conservation as a property that any system runs by naming itself.
+/// Conservation as laws of any system: every quantity that is promised as conserved is, and declared symmetries are
+/// ones, with momenta that stay constant (Noether's theorem).
+///
+///     const auto draw = [] { return State<Pair<2>>{{1, 0}, {0, 1 + 0.1 * laws::draw_uniform()}}; };
+///     std::cout << laws::momentum_laws(Kepler{}, draw) << laws::noether_laws(Kepler{}, Kepler{}.symmetries(), draw);
+///
+/// A state from which a step fails is passed over; `step_from` throws NotSampled there. [G] Def. 4.8, Theorem 4.9
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/property.hpp>

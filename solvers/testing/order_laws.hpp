@@ -1,5 +1,13 @@
 #pragma once
-/// The order that a method shows, held to the order it declares.
+/// The order that a method shows, compared with the order it declares: the slope p in
+///
+///     |z_h(T) - z(T)| = c h^p + O(h^(p+1)),    h = T / steps.
+///
+///     const laws::OrderProblem growth{[](int n) { return Eigen::VectorXd::Constant(1, std::pow(1 + 1.0 / n, n)); },
+///                                     Eigen::VectorXd::Constant(1, std::exp(1))};
+///     std::cout << laws::order_laws({"Euler", 1, false, false, true}, growth);
+///
+/// Requires an exact end to round-off, and errors that are above it for three numbers of steps.
 
 #include <lagroid/core/testing/law_report.hpp>
 #include <lagroid/solvers/methods/method.hpp>

@@ -1,5 +1,7 @@
 #pragma once
-/// Reduced dynamics as a property: [G] Corollary 4.6 and Remark 4.7.
+/// Reduced dynamics as laws of a morphism Phi of groupoids: stepping then reducing is reducing then stepping, and the
+/// trajectory is reconstructed from the reduced one. Requires a Phi with `object` and `algebroid`, and pairs of an
+/// object and a reduced momentum from `draw`. [G] Corollary 4.6, Remark 4.7
 
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>

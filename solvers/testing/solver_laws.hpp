@@ -1,5 +1,11 @@
 #pragma once
-/// What is asked of a solver of steps, as a property that any system runs by naming itself.
+/// The law that every solver of steps must satisfy: it solves what NewtonStep solves, to the same arrow, multipliers
+/// and momentum, for thousands of steps.
+///
+///     const auto draw = [] { return State<Pair<2>>{{1, 0}, {0, 1 + 0.1 * laws::draw_uniform()}}; };
+///     std::cout << laws::solver_laws(Kepler{}, draw, StepMethod::ceres, /*steps=*/100);
+///
+/// States from which NewtonStep fails are passed over.
 
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>

@@ -1,5 +1,15 @@
 #pragma once
-/// The discrete constrained action principle as a property that any system runs by naming itself. [G] section 5
+/// The discrete constrained action principle as laws of any system,
+///
+///     d sum_k L(g_k) = 0  along every variation that keeps  g_1 ... g_n,  phi(g_k) = 0  and  C(q_k) = 0,
+///
+/// with derivatives that share nothing with those of the solvers.
+///
+///     const auto draw = [] { return State<Pair<2>>{{1, 0}, {0, 1 + 0.1 * laws::draw_uniform()}}; };
+///     std::cout << laws::variational_laws(Kepler{}, draw);
+///
+/// Requires a variational system that does not depend on time, and states from which a step can be taken. [G] section
+/// 5, Theorem 5.1
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 #include <lagroid/core/hamiltonian/lagrangian.hpp>
