@@ -1,5 +1,19 @@
 #pragma once
-/// The variational integrator of chains of spherical pendula.
+/// RATTLE for chains of spherical pendula, in O(k) a step:
+///
+///     v* = v + h/2 a(q, T),    q+ = q + h v*,    tensions T such that |q_i+| = 1,
+///     v+ = v* + h/2 a(q+, T+),    tensions T+ such that q_i+.v_i+ = 0.
+///
+/// The one method of these chains that is symplectic, and keeps the momentum about the vertical exactly.
+///
+///     const PendulumChain<2> chain({1, 1}, {1, 0.5});
+///     PendulumChain<2>::Points start = chain.space().zero_point();
+///     start.topRows<3>() << 1, 0, 0, 0, 0, -1;
+///     ChainRattle<2> rattle(chain, start, /*h=*/0.01);
+///     const StepReport report = rattle.advance();
+///
+/// Requires as many points as links (std::invalid_argument). Status: `left_domain` where the step is too large for the
+/// rods to keep their lengths, `not_finite`; both leave everything as it was. (Hairer, Lubich, Wanner VII.1.4.)
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/core/scalars/numbers_of.hpp>

@@ -1,5 +1,13 @@
 #pragma once
-/// Trajectories of pendulum chains, to learn from.
+/// Trajectories of pendulum chains, to learn from: starts drawn as in [H], motions followed to round-off, and noise
+/// added if wanted.
+///
+///     const PendulumChain<Eigen::Dynamic> chain(Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1));
+///     const std::vector<learning::Observation> rows = draw_trajectories(chain, {.count = 100, .seed = 1});
+///     const learning::Trajectories data = learning::assemble(rows);
+///
+/// Throws std::invalid_argument for numbers out of range, and std::runtime_error where the motion cannot be followed.
+/// [H]
 
 #include <lagroid/solvers/learning/trajectories.hpp>
 #include <lagroid/systems/pendulums/pendulum_chain.hpp>

@@ -1,5 +1,13 @@
 #pragma once
-/// The damped planar pendulum.
+/// The damped planar pendulum, p' = -m g l sin q - c q': a pendulum with the discrete forces
+///
+///     f- = f+ = -c (q1 - q0) / 2.
+///
+/// The smallest forced system: it promises a balance of energy in place of its conservation.
+///
+///     DampedPendulum pendulum;
+///     pendulum.damping = 0.2;
+///     const auto forces = pendulum.forces(PairArrow<double, 1>{Vector<double, 1>(0.0), Vector<double, 1>(0.1)});
 
 #include <lagroid/core/capabilities/balance.hpp>
 #include <lagroid/systems/pendulums/pendulum.hpp>

@@ -1,5 +1,11 @@
 #pragma once
-/// A pendulum that is driven: by a torque, or by its moving support.
+/// A pendulum that is driven, by a torque or by its moving support: the smallest system that depends on time,
+///
+///     L = m l^2 q'^2 / 2 - U(q, t),    U = -m l (g - a nu^2 cos nu t) cos q - b q cos nu t.
+///
+///     DrivenPendulum pendulum;
+///     pendulum.amplitude = 0.1;
+///     pendulum.frequency = 30;  // a nu > sqrt(2 g l): it stands upright
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>

@@ -1,5 +1,15 @@
 #pragma once
-/// The planar pendulum.
+/// The planar pendulum: q the angle from the downward vertical, p = m l^2 q',
+///
+///     L = m l^2 q'^2 / 2 + m g l cos q.
+///
+/// The smallest system with all that the library knows of one.
+///
+///     Pendulum pendulum;
+///     pendulum.length = 0.5;
+///     const double energy = pendulum.energy({Vector<double, 1>(0.1), Vector<double, 1>(0.0)});
+///
+/// `refused` says why lengths and masses whose inertia has lost its digits are none.
 
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>

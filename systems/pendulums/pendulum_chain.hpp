@@ -1,5 +1,15 @@
 #pragma once
-/// Chains of spherical pendula: O(k) vector fields on (TS^2)^k and (T*S^2)^k, and the variational step.
+/// Chains of k spherical pendula on (TS^2)^k and (T*S^2)^k,
+///
+///     L = 1/2 sum_ij M_ij q_i'.q_j' - g sum_i mu_i l_i e_3.q_i,    M_ij = mu_max(i,j) l_i l_j,    |q_i| = 1,
+///
+/// as vector fields whose evaluation costs O(k), by the tensions of the rods.
+///
+///     const PendulumChain<2> chain({1, 1}, {1, 0.5});
+///     PendulumChain<2>::Points start = chain.space().zero_point();
+///     start.topRows<3>() << 1, 0, 0, 0, 0, -1;  // q_1 = e_1, q_2 = -e_3, at rest
+///
+/// Masses and lengths must be as many, and in the range of `chain_number` (std::invalid_argument). [H] (mapfham)
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/spheres.hpp>

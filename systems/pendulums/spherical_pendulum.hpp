@@ -1,5 +1,14 @@
 #pragma once
-/// The spherical pendulum, as R^3 with an object constraint.
+/// The spherical pendulum on R^3 with an object constraint,
+///
+///     L = m |q'|^2 / 2 - m g q3,    C(q) = (|q|^2 - l^2) / 2 = 0.
+///
+/// With the trapezoid its step is SHAKE, with the momenta that are reported RATTLE.
+///
+///     const SphericalPendulum pendulum;
+///     const double energy = pendulum.energy({{0, 0, -1}, {0.5, 0, 0}});
+///
+/// Requires a start with |q| = l.
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/scalars/special_functions.hpp>
