@@ -1,5 +1,15 @@
 #pragma once
-/// Turning a body with one axis forbidden.
+/// The cheapest way to turn a body that cannot turn about the axis n: on SO(3),
+///
+///     l(w) = w.W w / 2,    n.w = 0.
+///
+/// Its extremals are known in closed form where W is a multiple of the identity across n, which tests the solvers.
+///
+///     AttitudeControl system;
+///     system.h = 0.05;
+///     const BoundaryProblem<AttitudeControl> quarter_turn{system, SO3::exp(Vector<double, 3>(0, 0, 1.5))};
+///
+/// Requires positive weights and a unit vector n.
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>

@@ -1,5 +1,18 @@
 #pragma once
-/// Constrained mechanics and optimal control on matrix groups. [G] 6.1
+/// Constrained mechanics and optimal control on a matrix group: a Lagrangian or cost l(xi) and constraints psi(xi) = 0
+/// on the body velocity xi, A' = A hat(xi), discretised as
+///
+///     L(g) = h l(xi),    phi(g) = h psi(xi),    xi = tau^{-1}(g) / h,    tau = exp or cay.
+///
+/// A problem is two formulas on the Lie algebra; energy, first guess and reference follow from a third.
+///
+///     struct Sled : GroupControl<Sled, SE2, 1> {
+///       template <class S> S l(const Vector<S, 3>& xi) const { return xi.squaredNorm() * 0.5; }
+///       template <class S> Vector<S, 1> psi(const Vector<S, 3>& xi) const { return Vector<S, 1>(xi(2)); }
+///     };
+///
+/// Requires l and, if there are constraints, psi over any scalar. `energy` and `reference` require `control`, the
+/// inverse of the Legendre transform. [G] 6.1
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>

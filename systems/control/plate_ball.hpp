@@ -1,5 +1,15 @@
 #pragma once
-/// Optimal control of a ball that rolls on a rotating plate. [G] 6.2
+/// Optimal control of a ball that rolls on a rotating plate, on R^2 x R^2 x SO(3) => R^2:
+///
+///     L = h (u^2 + v^2) / 2,    phi1 = dy + r w1 - h Omega x,    phi2 = dx - r w2 + h Omega y,    phi3 = h c - w3.
+///
+/// The paper's example: a groupoid that is no group, with constraints that are not integrable.
+///
+///     PlateBall system;
+///     system.h = 0.1;
+///     system.plate_rate = 0.5;
+///
+/// Requires a positive radius; `infeasible` says why parameters admit no motion. [G] 6.2, (8)
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>

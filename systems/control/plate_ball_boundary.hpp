@@ -1,5 +1,14 @@
 #pragma once
-/// The plate-ball boundary-value problem, from guesses to minima.
+/// The plate-ball boundary-value problem, from guesses to minima: the cheapest way to roll a ball from one place and
+/// attitude to another in a given time.
+///
+///     PlateBall system;
+///     system.h = 5.0 / 100;
+///     const auto found = solve_plate_ball(*make_boundary_solver<PlateBall>(), system,
+///                                         {{{0, 0}, {1, 1}}, SO3::exp(Vector<double, 3>(0, 0, 1))}, {.steps = 100});
+///
+/// Requires h = horizon / steps. Throws std::invalid_argument where `unreachable` has a reason or the boundary is not
+/// finite. Returns the minima found, cheapest first.
 
 #include <lagroid/solvers/boundary/boundary_values.hpp>
 #include <lagroid/systems/control/plate_ball.hpp>

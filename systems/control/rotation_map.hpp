@@ -1,5 +1,9 @@
 #pragma once
-/// The kinetic term of bodies that turn about a fixed point.
+/// The kinetic term of bodies that turn about a fixed point, and the parameters that they share:
+///
+///     h l(w),    l(w) = w.I w / 2,    w = tau^{-1}(g) / h.
+///
+/// [G] 6.1
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>

@@ -1,5 +1,15 @@
 #pragma once
-/// Steering at constant speed: planar elastica.
+/// Steering at constant speed: on SE(2), with xi = (w, v1, v2),
+///
+///     l(xi) = w^2 / 2,    v1 = speed,    v2 = 0.
+///
+/// The cheapest paths from pose to pose are Euler's elastica.
+///
+///     Unicycle system;
+///     system.h = 0.05;
+///     const BoundaryProblem<Unicycle> aside{system, SE2::exp(Vector<double, 3>(0, 0.8, 0.3))};
+///
+/// Requires a positive speed.
 
 #include <lagroid/groupoids/groups/se2.hpp>
 #include <lagroid/systems/control/group_control.hpp>
