@@ -1,5 +1,15 @@
 #pragma once
-/// A rigid body under thrust and drag.
+/// A rigid body under thrust and drag, M' = M x w + T - c w, with the discrete forces
+///
+///     f- = f+ = (h T - c tau^{-1}(g)) / 2.
+///
+/// A forced system on a group, whose ledger balances energy against work.
+///
+///     DrivenBody body;
+///     body.torque = {0, 0, 0.1};
+///     body.drag = 0.05;
+///
+/// Requires positive principal moments and a drag that is not negative.
 
 #include <lagroid/core/capabilities/balance.hpp>
 #include <lagroid/systems/rotations/rigid_body.hpp>

@@ -1,5 +1,13 @@
 #pragma once
-/// A rigid body with three rotors.
+/// A rigid body with a rotor on each principal axis, a satellite with reaction wheels, on SO(3) x SO(2)^3:
+///
+///     l(w, t) = (w.I w + sum_i J_i (w_i + t_i)^2) / 2,    M = I w + j,  j_i = J_i (w_i + t_i),    M' = M x w,  j' = 0.
+///
+///     Gyrostat satellite;
+///     Vector<double, 6> momentum;
+///     momentum << 0.1, 1, 0.1, 0, 0, 0.5;  // (M, j)
+///
+/// Requires positive moments. (Marsden and Ratiu, Introduction to Mechanics and Symmetry, 15.11.)
 
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/noether.hpp>

@@ -1,5 +1,14 @@
 #pragma once
-/// A rigid body with a fixed point, under gravity.
+/// A rigid body with a fixed point under gravity, reduced by rotations about the vertical: on the action groupoid of
+/// SO(3) on S^2, with v the vertical seen from the body,
+///
+///     M' = M x I^{-1} M + v x weight,    v' = v x I^{-1} M,    L(g, v) = h l(tau^{-1}(g) / h) - h (U(v) + U(v g)) / 2.
+///
+///     HeavyTop top;
+///     top.inertia = {1, 1, 0.5};
+///     const double energy = top.energy({{0, 0.6, 0.8}, {0, 0, 2}});
+///
+/// Requires positive principal moments and unit vectors v.
 
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/noether.hpp>

@@ -1,5 +1,15 @@
 #pragma once
-/// The discrete constrained Lie-Poisson equations: momenta without arrows. [G] 6.1
+/// The discrete constrained Lie-Poisson equations of a GroupControl, momenta without arrows:
+///
+///     (dtau^{-1}_{-h xi})^* (dl(xi) + <lambda, dpsi(xi)>) = mu,    psi(xi) = 0,    mu' = Ad*_{tau(h xi)} mu.
+///
+/// The same step as that of the groupoid, in other unknowns: each checks the other.
+///
+///     const AttitudeControl system;
+///     const auto step = lie_poisson_step(system, Vector<double, 3>(0.3, 0.2, 0.1));
+///     if (step.converged()) std::cout << step.momentum.transpose() << '\n';
+///
+/// Requires a system with `control`. Status: `not_finite`, `not_converged`. [G] 6.1
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/solvers/status.hpp>

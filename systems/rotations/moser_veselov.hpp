@@ -1,5 +1,18 @@
 #pragma once
-/// The free rigid body by the discrete Moser-Veselov algorithm, preprocessed to high order.
+/// The free rigid body by the discrete Moser-Veselov algorithm,
+///
+///     h hat(M) = g D - D g^T,    M' = g^T M,    L(g) = tr(D (1 - g)) / h,    D = tr(I~) / 2 - I~.
+///
+/// It is explicit (in closed form), keeps energy and momentum, and with preprocessed moments I~ it is of order up to
+/// ten.
+///
+///     const Vector<double, 3> momentum(0.1, 1, 0.1);
+///     const auto body = MoserVeselov::preprocessed({1, 2, 3}, momentum, /*h=*/0.1, /*order=*/10);
+///     const auto turn = body.rodrigues(momentum);  // nothing where h is too large
+///
+/// Requires positive moments, finite numbers and one of the orders 2, 4, 6, 8, 10 (std::invalid_argument); throws
+/// std::domain_error where h is too large for the moments or for a step. (Moser and Veselov 1991; Hairer and Vilmart
+/// 2006.)
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>

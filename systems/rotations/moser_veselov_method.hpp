@@ -1,5 +1,5 @@
 #pragma once
-/// The method of Moser and Veselov for the free rigid body, as it is declared.
+/// The declaration of the Moser-Veselov method: name, orders and source, for scenes and studies.
 
 #include <lagroid/solvers/methods/declared_methods.hpp>
 

@@ -1,5 +1,15 @@
 #pragma once
-/// The free rigid body.
+/// The free rigid body on SO(3), with body angular momentum M:
+///
+///     M' = M x I^{-1} M,    A' = A hat(I^{-1} M),    L(g) = h l(tau^{-1}(g) / h),  l(w) = w.I w / 2.
+///
+/// The smallest system on a group. Its motion is known, and its spatial momentum A M is kept exactly.
+///
+///     RigidBody body;
+///     body.inertia = {1, 2, 3};
+///     const double energy = body.energy({{}, {0.1, 1, 0.1}});
+///
+/// Requires positive principal moments. [G] 6.1
 
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/quantity.hpp>

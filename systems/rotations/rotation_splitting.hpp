@@ -1,5 +1,14 @@
 #pragma once
-/// The kinetic energy of a rigid body as the sum of two that are integrated in closed form.
+/// The kinetic energy of a rigid body as the sum of two whose flows are known,
+///
+///     M.I^{-1} M / 2 = H_sym + H_rest,    H_sym of a symmetric top, H_rest = (1/I_a - 1/I_b) M_a^2 / 2.
+///
+/// The splitting steps of rigid bodies and tops are made of these flows.
+///
+///     const RotationSplitting kinetic(Vector<double, 3>(1, 2, 3));
+///     const FlowOf<SO3, double> turn = kinetic.symmetric(/*t=*/0.1, Vector<double, 3>(0.1, 1, 0.1));
+///
+/// Requires positive moments.
 
 #include <lagroid/core/capabilities/split_system.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
