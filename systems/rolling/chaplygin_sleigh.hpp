@@ -1,5 +1,16 @@
 #pragma once
-/// The Chaplygin sleigh.
+/// The Chaplygin sleigh, a body that slides on the plane on a blade: nonholonomic, on SE(2), with xi = (w, v1, v2),
+///
+///     l = (m v1^2 + m (v2 + a w)^2 + I w^2) / 2,    v2 = 0.
+///
+/// Energy is conserved and yet nearly all motions approach a straight one: phase volume is not kept.
+///
+///     const ChaplyginSleigh sleigh;
+///     const State<SE2> start = sleigh.sliding(/*turning=*/1, /*speed=*/0.5);
+///     const double energy = sleigh.energy(start);
+///
+/// Requires positive mass and inertia, and starts that keep v2 = 0, which `sliding` makes. (Bloch, Nonholonomic
+/// Mechanics and Control, chapter 1.)
 
 #include <lagroid/core/capabilities/balance.hpp>
 #include <lagroid/groupoids/groups/se2.hpp>

@@ -1,5 +1,17 @@
 #pragma once
-/// A ball that rolls on a rotating plate.
+/// A ball that rolls on a rotating plate: the mechanics of the ball of plate_ball.hpp, nonholonomic,
+///
+///     L = (m |q1 - q0|^2 + k m r^2 |h w|^2) / (2 h),
+///     phi1 = dy + r h w1 - h Omega x,    phi2 = dx - r h w2 + h Omega y,    (x, y) the middle of the arrow.
+///
+/// The discrete ball goes round the same circle as the continuous one.
+///
+///     RollingBall ball;
+///     ball.plate_rate = 1;
+///     const auto start = ball.rolling({0.5, 0}, {0, 0.2}, /*spin=*/0);
+///
+/// Requires positive mass, radius and inertia factor, and starts that roll, which `rolling` makes. (Neimark and Fufaev,
+/// Dynamics of Nonholonomic Systems, 1972.)
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>

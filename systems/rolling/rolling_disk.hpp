@@ -1,5 +1,16 @@
 #pragma once
-/// An upright disk that rolls on the plane.
+/// An upright disk that rolls on the plane, nonholonomic on SE(2) x SO(2):
+///
+///     l = (m (v1^2 + v2^2) + J w^2 + I s^2) / 2,    v1 - R s = 0,    v2 = 0.
+///
+/// Its motion is known, circles at constant rates, and the discrete one is of the same kind.
+///
+///     const RollingDisk disk;
+///     const auto start = disk.rolling(/*turning=*/0.5, /*rate=*/2);
+///     const double energy = disk.energy(start);
+///
+/// Requires positive parameters, and starts that roll, which `rolling` makes. (Bloch, Nonholonomic Mechanics and
+/// Control, chapter 1.)
 
 #include <lagroid/core/capabilities/balance.hpp>
 #include <lagroid/core/parameter.hpp>
