@@ -1,5 +1,18 @@
 #pragma once
-/// Hamiltonian motion on (T*S^2)^k from any energy.
+/// Hamiltonian motion on (T*S^2)^k from any energy H(q, p), as a map to the algebra se(3)^k:
+///
+///     F[H](q, p) = (q x dH/dp, dH/dq x q + dH/dp x p).
+///
+/// A class with `energy` is a vector field for every Lie group integrator; its gradient is automatic.
+///
+///     struct Rod {
+///       template <class S> S energy(const Eigen::Matrix<S, 6, 1>& z) const {
+///         return z.template tail<3>().squaredNorm() * 0.5 + z(2);
+///       }
+///     };
+///     inline const HamiltonianField<Rod, 1> field{Rod{}};
+///
+/// Requires an energy over any scalar, or one with a gradient of its own. [H] (mapfham), (hameqpend)
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/scalars/jet.hpp>
