@@ -1,5 +1,6 @@
 #pragma once
-/// Where the bodies of a scene are, and how their points and attitudes are named.
+/// The configuration of a scene, where its points and bodies are at one time, and the loads on them; `Site` and
+/// `Attitude` name a point and a rotation. SI units.
 
 #include <lagroid/core/types.hpp>
 

@@ -1,5 +1,16 @@
 #pragma once
-/// What acts on the bodies of a scene.
+/// What acts on the bodies of a scene: a potential energy U, or forces and torques. An effect of your own is a small
+/// struct; of an energy the forces -dU/dx and torques follow automatically.
+///
+///     struct RubberBand {
+///       std::array<Site, 2> sites;
+///       double stiffness = 1;  // N/m
+///       template <class S> S energy(const Vector<S, 3>& a, const Vector<S, 3>& b) const {
+///         return (b - a).squaredNorm() * (0.5 * stiffness);
+///       }
+///     };
+///
+/// It is added by `Scene::add`, and laws::effect_laws compare energy and forces.
 
 #include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/systems/multibody/configuration.hpp>

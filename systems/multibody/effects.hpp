@@ -1,5 +1,6 @@
 #pragma once
-/// The effects that scenes can name.
+/// The effects that scenes can name: weights and other forces, gravity, springs, centrifugal forces, torques and
+/// motors. Each struct's comment has its energy or its force.
 
 #include <lagroid/systems/multibody/effect.hpp>
 

@@ -1,5 +1,18 @@
 #pragma once
-/// What ties the bodies of a scene together.
+/// What ties the bodies of a scene together: equations C(q) = 0 on places or phi(g) = 0 on the motion of a step, with
+/// their reactions. A joint of your own is a small struct with a value and a gradient.
+///
+///     struct OnPlane {
+///       static constexpr int rows = 1;
+///       std::array<Site, 1> sites;
+///       void value(const Configuration& at, double* c) const { c[0] = at(sites[0])(2); }
+///       void gradient(const Configuration& at, Vec* g, RowSize* size) const {
+///         g[0] = {0, 0, 1};
+///         size[0] = {at.size(sites[0]), 1};
+///       }
+///     };
+///
+/// It is added by `Scene::add`, and laws::joint_laws compare gradient and value. Requires what JointsOf lists.
 
 #include <lagroid/systems/multibody/effect.hpp>
 

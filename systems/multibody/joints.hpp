@@ -1,5 +1,6 @@
 #pragma once
-/// The joints that scenes can name are made of these.
+/// The joints that scenes can name are made of these: rods, coincident points, angles, planes; rolling, spins, blades;
+/// and dampers of any of them. Each struct's comment has its equation.
 
 #include <lagroid/systems/multibody/joint.hpp>
 

@@ -1,5 +1,6 @@
 #pragma once
-/// What a scene is while it moves.
+/// What a scene is while it moves, the same from its first node to its last: factors of the groupoid, points, rows of
+/// joints, and islands, in arrays sorted by island. A detail of Multibody, made by `assemble`.
 
 #include <lagroid/solvers/linear_algebra/elimination.hpp>
 #include <lagroid/systems/multibody/joint.hpp>

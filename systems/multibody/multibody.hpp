@@ -1,5 +1,21 @@
 #pragma once
-/// The motion of a scene.
+/// The motion of a scene of bodies, joints and effects, one variational step after another:
+///
+///     L(q, g) = sum_b K_b(g_b) - h (U(q) + U(q g)) / 2,    C(q) = 0 for joints (of point masses this is RATTLE).
+///
+/// What joints tie together is solved together, for the multipliers alone, in time linear in the bodies of chains and
+/// trees; bodies that nothing ties move one by one.
+///
+///     Scene scene;
+///     const Body bob = scene.point_mass(/*mass=*/1, {1, 0, 0}, /*velocity=*/{0, 0, 0});
+///     scene.add(Rod{{scene.ground({0, 0, 0}), bob.centre}, /*length=*/1});  // joints.hpp
+///     Multibody motion(std::move(scene), /*h=*/0.01);
+///     const StepReport report = motion.advance();
+///
+/// Requires a finite step and a scene whose joints hold at its start. The constructor throws std::invalid_argument for
+/// joints whose gradient is not finite or vanishes in round-off, and for control or composition that the scene does not
+/// admit; std::domain_error where one island mixes vakonomic joints with others, dampers or drag that do not go with
+/// them. A step that does not converge changes nothing, and its report has the status.
 
 #include <lagroid/solvers/integrators/compositions.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>

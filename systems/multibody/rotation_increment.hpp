@@ -1,5 +1,10 @@
 #pragma once
-/// The turn of one body in one step.
+/// The rotation of one body in one step, in coordinates xi, g = tau(xi):
+///
+///     F-(xi) = (dtau^{-1}_{-xi})^T I xi / h,    F+ = g^T F-.
+///
+/// A detail of the steps of scenes, with derivative, quaternion and frames in closed form. Requires |xi| below `limit`
+/// where tau is the exponential. [G] 6.1
 
 #include <lagroid/core/scalars/special_functions.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>

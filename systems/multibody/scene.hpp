@@ -1,5 +1,17 @@
 #pragma once
 /// A scene while it is written: bodies, their points, what ties them and what acts on them.
+///
+///     G = product of Pair(R^3), SO(3) x SO(3) => SO(3), Pair(R^2) x Pair(S^1),    one or two factors a body.
+///
+/// It is a list without motion: Multibody makes a motion of it.
+///
+///     Scene scene;
+///     const Body book = scene.rigid_body(1, {3, 2, 1}, {0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0}, {0.01, 1, 0});
+///     const Site corner = scene.point_of(book, {0.1, 0.1, 0});
+///     scene.add(ConstantForce{{corner}, {0, 0, -1}});  // effects.hpp
+///
+/// Requires positive masses and principal moments, and unit quaternions; nothing is checked here. SI units, angles in
+/// radians.
 
 #include <lagroid/systems/multibody/joint.hpp>
 #include <lagroid/systems/multibody/rotation_increment.hpp>

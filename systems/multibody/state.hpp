@@ -1,5 +1,6 @@
 #pragma once
-/// Where the motion of a scene stands.
+/// The state of the motion of a scene: all that its next step depends on, to the last bit. Multibody hands it out and
+/// goes on from it (`restore`, which throws std::invalid_argument for a state of another scene).
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/solvers/integrators/step_control.hpp>

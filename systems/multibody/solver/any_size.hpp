@@ -1,5 +1,5 @@
 #pragma once
-/// Norms and inverses of numbers of any size.
+/// Norms of vectors and inverses of matrices whose squares or determinants overflow or underflow.
 
 #include <lagroid/systems/multibody/configuration.hpp>
 

@@ -1,5 +1,6 @@
 #pragma once
-/// From a written scene to what moves.
+/// From a scene as it was written to the arrays that its steps run over: sites are numbered, islands found, and their
+/// matrices prepared.
 
 #include <lagroid/solvers/linear_algebra/elimination.hpp>
 #include <lagroid/systems/multibody/model.hpp>

@@ -1,5 +1,9 @@
 #pragma once
-/// The equations of one step of an island.
+/// The equations of one step of an island, the bodies that joints tie together:
+///
+///     F-_K(xi) = p + D^T lambda,    C(q g) = 0,
+///
+/// solved for the multipliers alone, by Newton's iteration with S = D' A^{-1} D^T. A detail of Multibody.
 
 #include <lagroid/solvers/step/step_solver.hpp>
 #include <lagroid/systems/multibody/model.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// What lists take.
+/// The bytes that lists hold, for the measurement of memory.
 
 #include <cstddef>
 

@@ -1,5 +1,6 @@
 #pragma once
-/// What a step of a scene is computed in.
+/// The workspace of a step of a scene: the arrow as far as it is known, and buffers, so that steps allocate nothing.
+/// All of it follows from model and state.
 
 #include <lagroid/systems/multibody/model.hpp>
 #include <lagroid/systems/multibody/solver/any_size.hpp>

@@ -1,5 +1,15 @@
 #pragma once
-/// Laws of effects, joints and scenes, for a user's own.
+/// Laws of effects, joints and scenes, for your own: forces are those of the energy, gradients those of the values;
+/// steps are of order two, symplectic and reversible where the scene allows it.
+///
+///     const auto fall = [] {
+///       multibody::Scene scene;
+///       scene.point_mass(1, {0, 0, 0}, {1, 0, 0});
+///       return scene;
+///     };
+///     std::cout << laws::scene_laws({"free point", fall, /*h=*/0.01, /*horizon=*/0.5});
+///
+/// A law that does not hold is no exception: the report says so.
 
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
