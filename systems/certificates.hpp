@@ -1,5 +1,6 @@
 #pragma once
-/// The certificates of the library's systems, compiled once (target lagroid_certificates).
+/// The certificates of the library's systems, compiled once (target lagroid_certificates): `laws::certificate`,
+/// declared without the suites' headers. For a system of your own include solvers/testing/certificate.hpp instead.
 
 #include <lagroid/core/system.hpp>
 #include <lagroid/core/testing/law_report.hpp>

@@ -1,5 +1,10 @@
 #pragma once
-/// Ensembles of the library's systems, compiled.
+/// Ensembles of some of the library's systems (Pendulum, PlateBall, RigidBody), compiled once; include it in place of
+/// solvers/ensemble/ensemble.hpp.
+///
+///     const std::vector<State<Pair<1>>> initial(1000, {Vector<double, 1>(0.5), Vector<double, 1>(0.0)});
+///     Ensemble<Pendulum> pendulums(Pendulum{}, initial);
+///     const bool all_steps = pendulums.advance_to(2000);
 
 #include <lagroid/solvers/ensemble/ensemble.hpp>
 #include <lagroid/systems/control/plate_ball.hpp>

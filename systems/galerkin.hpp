@@ -1,5 +1,17 @@
 #pragma once
-/// Discrete Lagrangians of high order: curves with inner nodes.
+/// Discrete Lagrangians of high order: the curve of a step is a polynomial of degree s with inner nodes,
+///
+///     L(q0, x, q1) = h sum_i b_i L(q(c_i), q'(c_i)),    b, c of Lobatto's quadrature,
+///
+/// of order 2 s, symmetric, and one step where compositions take several, some of them backwards.
+///
+///     const GalerkinMechanics<Kepler, 3> kepler{Kepler{}};  // order six
+///     const auto start = kepler.extended({{1, 0}, {0, 1}});
+///     const auto end = kepler.reduced(start);
+///
+/// Requires a variational system without constraints (it does not compile otherwise), one of point masses or on a
+/// matrix group. States are extended by the nodes' momenta, which are zero. (Marsden and West 2001, 2.2.6; Hall and
+/// Leok 2015.)
 
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/groups/vector_group.hpp>

@@ -2,9 +2,9 @@
 /// The templates of core and solvers for a system, compiled once.
 ///
 /// A system's header ends with LAGROID_STEPS(extern template, Sys) and LAGROID_SOLVERS(extern template, Sys); files
-/// that the build makes (systems/systems.cmake) hold them without `extern`, all in namespace lagroid. A system of
-/// your own needs neither: its templates are compiled where they are used. A forced or nonholonomic system, which has
-/// no action whose critical points the boundary solvers would look for, holds LAGROID_STEP_SOLVERS in place of
+/// that the build makes (systems/systems.cmake) hold them without `extern`, all in namespace lagroid. A system of your
+/// own needs neither: its templates are compiled where they are used. A forced or nonholonomic system, which has no
+/// action whose critical points the boundary solvers would look for, has LAGROID_STEP_SOLVERS in place of
 /// LAGROID_SOLVERS, and so does one that depends on time.
 
 #include <lagroid/core/any_system/any_system_of.hpp>

@@ -1,5 +1,13 @@
 #pragma once
-/// The planar Kepler problem.
+/// The planar Kepler problem: a unit mass under U = -k / |q|,
+///
+///     q' = p,    p' = -k q / |q|^3.
+///
+/// Its orbits are known, and its close encounters hard: the first test of steps that adapt.
+///
+///     Kepler kepler;
+///     kepler.h = 0.05;
+///     const double energy = kepler.energy({{1, 0}, {0, 1.2}});
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/systems/instances.hpp>

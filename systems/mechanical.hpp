@@ -1,5 +1,17 @@
 #pragma once
-/// Point-mass mechanics on R^n: what pendulum, Kepler and spherical pendulum have in common.
+/// Point-mass mechanics on R^n, L = m |q'|^2 / 2 - U(q), discretised as
+///
+///     L(q0, q1) = m |q1 - q0|^2 / (2 h) - h U,    U at the midpoint, or the mean of both ends (Stormer-Verlet).
+///
+/// A system of this kind is its mass and its potential; step, splitting, rates and energy follow.
+///
+///     struct Spring : MechanicalSystem<Spring, 1> {
+///       static double mass() { return 1; }
+///       template <class S> S potential(const Vector<S, 1>& q) const { return q(0) * q(0) * 0.5; }
+///     };
+///
+/// Requires `mass` and `potential`, the latter over any scalar; with object constraints, flows, rates and reference are
+/// the derived class' own.
 
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/capabilities/split_system.hpp>

@@ -1,5 +1,6 @@
 #pragma once
-/// The fields and starting points of [N] section 5. Compiled for S = double and long double.
+/// The fields and starting points of [N] section 5, g : O(N) -> so(N), to reproduce its figures with. Compiled for S =
+/// double and long double.
 
 #include <lagroid/groupoids/groups/rotations.hpp>
 

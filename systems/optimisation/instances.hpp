@@ -1,5 +1,12 @@
 #pragma once
-/// Problems with their manifold and, where linear algebra knows it, their minimum.
+/// Problems with their manifold and, where linear algebra knows it, their minimum: what optimisation is measured on.
+///
+///     const Eigen::MatrixXd a = optimisation::random_symmetric(100, /*seed=*/1);
+///     const auto problem = optimisation::rayleigh_instance(optimisation::SymmetricOperator::of(a));
+///     const optimisation::Point start = optimisation::random_start(*problem.manifold, 1);
+///
+/// Weights and sizes that do not fit throw std::invalid_argument; `random_start` throws std::runtime_error where a
+/// random matrix has no nearest point. [V] 5.3
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>

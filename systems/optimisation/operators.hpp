@@ -1,5 +1,11 @@
 #pragma once
-/// Symmetric matrices that need not be written down.
+/// Symmetric matrices that need not be written down, y = A x, and the eigenvalues that are references for minima.
+///
+///     const Eigen::VectorXd d = Eigen::VectorXd::LinSpaced(100, 1, 100);
+///     const optimisation::SymmetricOperator a{100, [d](const auto& x, auto y) { y = d.asDiagonal() * x; }};
+///     const Eigen::VectorXd least = optimisation::smallest_eigenvalues(a, 3);
+///
+/// Requires that `apply` is symmetric; `spectrum` throws std::runtime_error where it sees that it is not.
 
 #include <Eigen/Core>
 

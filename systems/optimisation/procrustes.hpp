@@ -1,5 +1,10 @@
 #pragma once
-/// The orthogonal matrix that best takes one matrix to another.
+/// Procrustes' problem, the orthogonal matrix that best takes one matrix to another:
+///
+///     min |A X - B|_F^2,    X^T X = I.
+///
+/// Where X is square the solution is known from a singular value decomposition. Sizes that do not fit throw
+/// std::invalid_argument. [V] (5.9), (5.10)
 
 #include <lagroid/solvers/optimisation/objective.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Random matrices that are the same on every platform.
+/// Random matrices that are the same on every platform, as no distribution of the standard library promises.
 
 #include <Eigen/Core>
 

@@ -1,5 +1,12 @@
 #pragma once
-/// Eigenvectors as minima.
+/// Eigenvectors as minima: of the Rayleigh quotient on the sphere, and of Brockett's function on Stiefel manifolds,
+///
+///     f(v) = -v^T A v,    f(X) = Trace(X^T A X N).
+///
+///     const Eigen::MatrixXd a = optimisation::random_symmetric(100, /*seed=*/1);
+///     const optimisation::Brockett f(optimisation::SymmetricOperator::of(a), Eigen::Vector3d(1, 2, 3));
+///
+/// Weights of Brockett's function must rise and not be negative (std::invalid_argument). [V] 5.3.1, (5.7)
 
 #include <lagroid/solvers/optimisation/objective.hpp>
 #include <lagroid/systems/optimisation/operators.hpp>
