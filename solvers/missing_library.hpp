@@ -9,7 +9,7 @@
 
 namespace lagroid {
 
-/// What was asked for needs a library that this build is without.
+/// What was called needs a library that this build is without.
 class MissingLibrary : public std::runtime_error {
  public:
   MissingLibrary(std::string_view asked, std::string_view library, std::string_view package)

@@ -18,7 +18,7 @@ enum class SolveStatus {
   not_finite,       ///< a NaN or an infinity appeared, or numbers too small to keep their digits
   not_converged,    ///< the iteration limit was reached
   ill_conditioned,  ///< near a solution, but the method's own arithmetic cannot come closer; another method can
-  no_step,          ///< no positive step size does what is asked of it
+  no_step,          ///< no positive step size does what it should
   degenerate,       ///< what is to determine the step size does not depend on it
 };
 

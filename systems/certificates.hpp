@@ -10,7 +10,8 @@
 
 namespace lagroid::laws {
 
-/// Every law there is, asked of one system (solvers/testing/certificate.hpp; include that for a system of your own).
+/// Every law that applies, tested on one system (solvers/testing/certificate.hpp; include that for a system of your
+/// own).
 template <DiscreteSystem Sys>
 std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw);
 

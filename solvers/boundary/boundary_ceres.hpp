@@ -6,9 +6,9 @@
 ///     const BoundaryCeres<Kepler> ceres;
 ///     const auto found = ceres.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
 ///
-/// Requires and returns what boundary_solver.hpp says, Ceres' headers and library beside. Status: `ill_conditioned` (a
-/// solution is near, but the normal equations are too ill-conditioned to reach it), `stagnated`, `not_converged`,
-/// `not_finite`. It looks for stationary paths of any kind, whatever kind is wanted.
+/// Requirements and result are those of boundary_solver.hpp; Ceres and its headers must be there. Status:
+/// `ill_conditioned` (a solution is near, but the normal equations are too ill-conditioned to reach it), `stagnated`,
+/// `not_converged`, `not_finite`. It looks for stationary paths of any kind, whatever kind is wanted.
 
 #include <lagroid/core/derivatives/gradient_derivative.hpp>
 #include <lagroid/solvers/boundary/boundary_newton.hpp>
@@ -26,9 +26,9 @@ namespace lagroid {
 /// The KKT equations as a least-squares problem of zero residual: unknowns are the reaches X_k = g_1 ... g_k, points of
 /// the source fibre over the first object (k = 1 ... N-1), and the multipliers. Levenberg-Marquardt on the squared
 /// residual knows nothing of minima: any stationary point attracts it. Its normal equations square the condition
-/// number, so that on very long paths it stalls above the tolerance: that is told from a problem without a solution by
-/// one Newton step, and reported as `ill_conditioned`. What Ceres says of its own success is not believed: the status
-/// follows from the residual, evaluated anew.
+/// number, so that on very long paths it stalls above the tolerance: one Newton step distinguishes that from a problem
+/// without a solution, and it is reported as `ill_conditioned`. Ceres' own verdict is not used: the status follows from
+/// the residual, evaluated anew.
 template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;

@@ -88,7 +88,7 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     scale_ = scale_.unaryExpr([](double x) { return std::exp2(std::round(std::log2(x))); });
   }
 
-  /// What a factorisation says of the matrix.
+  /// What a factorisation shows of the matrix.
   struct Inertia {
     long negative = 0;
     double smallest = std::numeric_limits<double>::infinity();  ///< |pivot|, scaled

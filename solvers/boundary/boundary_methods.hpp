@@ -1,6 +1,6 @@
 #pragma once
 /// Defines the solvers of boundary values by their names (BoundaryMethod), and their search, for systems of any sizes.
-/// Include it where the library has not the sizes of your system; the compiler's message then asks for it. In a build
+/// Include it where the library has not the sizes of your system; the compiler's message names it then. In a build
 /// without Ceres `make_boundary_solver(BoundaryMethod::ceres)` throws MissingLibrary.
 
 #include <lagroid/solvers/boundary/boundary_newton.hpp>

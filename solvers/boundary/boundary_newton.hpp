@@ -10,7 +10,7 @@
 ///     const BoundaryNewton<Kepler> newton;
 ///     const auto found = newton.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
 ///
-/// Requires and returns what boundary_solver.hpp says. Status: `stagnated` (no step lowers action or residual),
+/// Requirements and result are those of boundary_solver.hpp. Status: `stagnated` (no step lowers action or residual),
 /// `not_converged` (limit of iterations), `not_finite`. [G] section 5, Theorem 5.1
 
 #include <lagroid/solvers/boundary/boundary_kkt.hpp>

@@ -169,7 +169,7 @@ template <DiscreteSystem Sys> std::optional<std::string> inadmissible_ends(const
 
 /// Why a path is no start for a problem, or nothing: it has no arrows, they do not compose, or their product is not the
 /// boundary arrow; by more than 1e-6 of the largest coordinate met on the way. A NaN or an infinity is no reason: the
-/// solver's status tells of those.
+/// solver's status reports those.
 template <DiscreteSystem Sys>
 std::optional<std::string> inadmissible_path(const BoundaryProblem<Sys>& problem, const Path<Sys>& path) {
   const auto& groupoid = problem.system.groupoid;

@@ -9,8 +9,9 @@
 ///     const BoundaryShooting<Kepler> shooting;
 ///     const auto found = shooting.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
 ///
-/// Requires and returns what boundary_solver.hpp says. Status: `stagnated` (no change of mu_0 brings the end nearer),
-/// `not_converged`, `not_finite`, or that of the step that failed on the way, with a message that names the remedy.
+/// Requirements and result are those of boundary_solver.hpp. Status: `stagnated` (no change of mu_0 brings the end
+/// nearer), `not_converged`, `not_finite`, or that of the step that failed on the way, with a message that names the
+/// remedy.
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 #include <lagroid/solvers/boundary/boundary_newton.hpp>
@@ -67,7 +68,7 @@ Matrix<double, Sys::dimension, Sys::dimension> end_sensitivity(const Sys& system
 /// Newton's method on the initial momentum: the trajectory is the integrator's, its sensitivity exact, a step is halved
 /// until the miss at the end falls. With object constraints the momentum is determined up to their normals, and the
 /// least change is taken. Good where trajectories depend mildly on their start; elsewhere sensitivities grow like the
-/// flow's own and it fails, with a status that says so, where BoundaryNewton, which holds the whole path, does not.
+/// flow's own and it fails, with a typed status, where BoundaryNewton, which holds the whole path, does not.
 template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;

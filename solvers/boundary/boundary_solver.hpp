@@ -37,7 +37,7 @@ template <class Sys> constexpr StationaryKind natural_seek_of() {
 
 }  // namespace detail
 
-/// Optimal control, with its arrow constraints, asks for minima of the cost. The action of a mechanical system has none
+/// Optimal control, with its arrow constraints, is about minima of the cost. The action of a mechanical system has none
 /// in general: its trajectories are stationary, and minimise only up to the first conjugate point.
 template <DiscreteSystem Sys> inline constexpr StationaryKind natural_seek = detail::natural_seek_of<Sys>();
 
@@ -59,8 +59,8 @@ template <DiscreteSystem Sys> class BoundarySolver {
   virtual ~BoundarySolver() = default;
 
   /// Starts from `path`, whose product must be the boundary arrow and whose ends must satisfy the object constraints.
-  /// Multipliers are found from the arrows unless `keep_multipliers` says that those of `path` are worth starting from.
-  /// Throws std::invalid_argument where `inadmissible_path` has a reason.
+  /// Multipliers are found from the arrows unless `keep_multipliers` is true, for a path whose own are worth starting
+  /// from. Throws std::invalid_argument where `inadmissible_path` has a reason.
   BoundarySolution<Sys> solve(const BoundaryProblem<Sys>& problem, Path<Sys> path, bool keep_multipliers) const {
     if (const auto why = inadmissible_path(problem, path)) throw std::invalid_argument(*why);
     return solve_from(problem, std::move(path), keep_multipliers);
@@ -68,11 +68,11 @@ template <DiscreteSystem Sys> class BoundarySolver {
   StationaryKind seek() const { return seek_; }
 
  protected:
-  /// What `solve` says, for a path that is admissible.
+  /// `solve`, for a path that is admissible.
   virtual BoundarySolution<Sys> solve_from(const BoundaryProblem<Sys>& problem, Path<Sys> path,
                                            bool keep_multipliers) const = 0;
 
-  /// Cost and, if asked for, kind of a converged solution.
+  /// Cost and, where the options want it, kind of a converged solution.
   template <class Kkt> void describe(const Sys& system, Kkt& kkt, BoundarySolution<Sys>& solution) const {
     solution.cost = action(system, solution.path);
     if (!options_.classify) return;

@@ -154,7 +154,7 @@ MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::v
 
 }  // namespace detail
 
-/// Solves stages[0] from `starts` guesses, then carries each distinct solution through the later stages, resampling
+/// Solves stages[0] from `starts` guesses, then continues each distinct solution through the later stages, resampling
 /// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
 /// `solver.seek()`; `guess(i)` is the i-th starting path of the first stage; `report(i)` is called after each start.
 /// Solves go on `threads` threads at once (0: all there are), and so do calls of `guess`; what is found does not depend

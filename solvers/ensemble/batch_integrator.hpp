@@ -227,7 +227,7 @@ template <DiscreteSystem Sys, int W>
   if (!near_guess) anew = anew || only;
 }
 
-/// Joins the arrow of the step to the walk of the lanes given (see `CompensatedTrajectory`).
+/// Joins the arrow of the step to the trajectories of the lanes given (see `CompensatedTrajectory`).
 template <DiscreteSystem Sys, int W>
 void BatchIntegrator<Sys, W>::join(const G& groupoid, const StepSolution<Sys, B>& solution, const Mask& lanes) {
   detail::blend_arrow(groupoid, lanes, solution.step.arrow, step_.arrow);

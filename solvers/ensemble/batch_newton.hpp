@@ -11,7 +11,7 @@
 
 namespace lagroid {
 
-/// Whether a system's own branch is asked in all lanes at once: `admissible` is a template on the scalar.
+/// Whether a system's own branch is evaluated in all lanes at once: `admissible` is a template on the scalar.
 template <class Sys, class B>
 concept HasBranchByLane = requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType, B>& g) {
   { system.admissible(g) } -> std::same_as<MaskOf<B>>;
@@ -57,7 +57,7 @@ void set_arrow_of_lane(const G& groupoid, ArrowOf<G, Batch<W>>& g, int lane, con
 
 }  // namespace detail
 
-/// The short way of `NewtonStep` (chord iterations with a kept inverse, to the same round-off levels), in every lane at
+/// The chord Newton of `NewtonStep` (iterations with a kept inverse, to the same round-off levels), in every lane at
 /// once. Matrices are evaluated lane by lane, when a lane needs a new one: what a scalar with second derivatives keeps
 /// in registers, a batch of them does not. A lane that has converged rests while others go on; one that does not
 /// contract, or whose matrix is not to be trusted, is given up, for the caller to solve otherwise. Each lane's outcome

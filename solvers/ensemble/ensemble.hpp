@@ -12,7 +12,7 @@
 ///
 /// Requires a system whose Lagrangian can be evaluated on batches (else it does not compile), one configuration for
 /// each member or none, and `every` of one at least (std::invalid_argument). A member whose step fails keeps its last
-/// state and has a status that says why; the others go on.
+/// state and has the status of that step; the others go on.
 
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/solvers/ensemble/batch_integrator.hpp>
@@ -27,14 +27,14 @@
 
 namespace lagroid {
 
-/// What an advance of an ensemble may be told.
+/// How an ensemble advances.
 template <DiscreteSystem Sys> struct EnsembleOptions {
   int threads = 1;  ///< 0: all available ones
   /// Called with every member that goes on, at every step whose number is a multiple of `every`: in order for one
   /// member, from all threads at once for several. It may write to places of that member's own.
   std::function<void(long member, const TrajectoryPoint<Sys>& point)> observe = nullptr;
   long every = 1;  ///< at least 1; std::invalid_argument otherwise
-  /// Asked now and then; once it is true the advance ends, and another one goes on from there.
+  /// Called now and then; once it returns true the advance ends, and another one goes on from there.
   std::function<bool()> interrupted = nullptr;
 };
 

@@ -29,7 +29,7 @@ namespace lagroid {
 ///
 ///     M w - <nu, omega> = mu - mu_0,    <omega, w> + phi(e) = 0,    <dC o rho, w> = 0.
 ///
-/// phi(e) is the affine term (a plate that turns). M need not be regular by itself: directions of which L says nothing,
+/// phi(e) is the affine term (a plate that turns). M need not be regular by itself: directions in which L is constant,
 /// because constraints determine them, are solved with the constraints. Vakonomic phi stands in the equations with its
 /// own derivatives, but its multipliers are part of the momentum and no reaction: they stay in mu.
 template <DiscreteSystem Sys>

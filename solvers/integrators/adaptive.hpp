@@ -14,7 +14,8 @@
 ///
 /// Requires a Timed system (a Lagrangian for every step size); `h` is the first step. The configuration must end at the
 /// initial object (std::invalid_argument). Status, beside those of the solver: `no_step` (no h near the last keeps
-/// E_d), `degenerate` (E_d does not depend on h); `without_root` says what to do instead of stopping. [G] Example 6.1
+/// E_d), `degenerate` (E_d does not depend on h); the option `without_root` chooses another step instead of stopping.
+/// [G] Example 6.1
 
 #include <lagroid/core/scalars/compensation.hpp>
 #include <lagroid/groupoids/time_extended.hpp>
@@ -42,8 +43,9 @@ struct AdaptiveOptions {
 /// space and keeps E_d to round-off as long as there is a positive root near the last step.
 ///
 /// For a self-adjoint discretisation E_d = H + a(z) h^2 + ..., and where a(z) changes sign along the motion no positive
-/// step keeps E_d: `no_step`, or what `without_root` says. Where E_d does not depend on h the status is `degenerate`.
-/// h = -(last h) always solves the equations of such a scheme: only h > 0 is taken, the root nearest the last step.
+/// step keeps E_d: `no_step`, or the step that `without_root` chooses. Where E_d does not depend on h the status is
+/// `degenerate`. h = -(last h) always solves the equations of such a scheme: only h > 0 is taken, the root nearest the
+/// last step.
 ///
 /// Newton's method solves both equations at once from the continuation of the last steps; where it fails, or ends
 /// elsewhere, the steps around the last are searched for a change of sign of E_d(h) - E_d, and it starts again from

@@ -20,7 +20,7 @@ namespace lagroid {
 
 /// Psi_h = Phi_{gamma_s h} o ... o Phi_{gamma_1 h}, of a symmetric one-step map Phi_h of order two.
 ///
-/// Requires gamma_{s+1-i} = gamma_i, so that Psi_h is symmetric too and its order even; order p asks of the
+/// Requires gamma_{s+1-i} = gamma_i, so that Psi_h is symmetric too and its order even; order p requires of the
 /// coefficients that sum gamma_i = 1 and, among other conditions, sum gamma_i^k = 0 for odd k from 3 to p - 1 (Hairer,
 /// Lubich, Wanner, *Geometric Numerical Integration*, 2006, V.3.2). Above order two some of them are negative: Phi must
 /// bear steps back. Whatever Phi preserves (momenta, the Poisson structure, reversibility), Psi does.

@@ -65,7 +65,7 @@ template <DiscreteSystem Sys> class Integrator {
   /// The arrows before the last that make up the last step, where there are any: each with its start and its size.
   using Visit = std::function<void(const Step<Sys>&, double start, double size)>;
   virtual void for_each_inner_stage(const Visit&) const {}
-  /// Steps so far whose size was not what the mode asks for.
+  /// Steps so far whose size is not that of the mode.
   virtual long without_root() const { return 0; }
   /// Visits all that the next step goes on from: an integrator begun with the same arguments, to which it is restored,
   /// goes on with the same bits.

@@ -36,7 +36,7 @@ template <SplitSystem Sys> bool is_of_two_flows(const Sys& system) {
 }
 
 /// Whether the composition has its order for the system: one of two flows where there are two, a Nystrom scheme where
-/// the system says that [H_0, [H_0, [H_0, H_1]]] = 0.
+/// the system declares that [H_0, [H_0, [H_0, H_1]]] = 0.
 template <SplitSystem Sys> bool splits_by(const Sys& system, const Composition& composition) {
   if (composition.kicks.empty()) return true;
   return is_of_two_flows(system) && (!composition.nystrom || NystromSystem<Sys>);
@@ -91,7 +91,7 @@ template <SplitSystem Sys, class S> class SplitMotion {
   const typename G::template Arrow<S>& arrow() const { return arrow_; }
 
   bool finite() const { return momentum().allFinite() && system_.groupoid.coordinates_of_arrow(arrow_).allFinite(); }
-  /// What a walk joins.
+  /// What a CompensatedTrajectory joins.
   StepSolution<Sys> solution() const requires std::same_as<S, double> {
     StepSolution<Sys> solution;
     solution.step = {arrow_, Sys::Multipliers::Zero()};

@@ -32,7 +32,7 @@ struct Measures {
   bool complete = true;  ///< false where it was stopped: then the numbers above mean nothing
 };
 
-/// `stop` is asked before each trajectory; true ends the measurement.
+/// `stop` is called before each trajectory; true ends the measurement.
 Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance = 1e-12,
                  const std::function<bool()>& stop = nullptr);
 

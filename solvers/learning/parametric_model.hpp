@@ -24,9 +24,9 @@
 namespace lagroid::learning {
 
 /// Compiles a potential (Potential) into a Model. K is k, or Eigen::Dynamic. Derivatives with respect to the parameters
-/// are carried along by jets, a few directions at a time, through whatever the integrator does.
+/// are those of jets, a few directions at a time, through whatever the integrator does.
 ///
-/// `start` asks the potential for its own start(seed) where it has one; else its parameters begin at zero.
+/// `start` takes the potential's own start(seed) where it has one; else its parameters begin at zero.
 template <class P, int K> class ParametricModel : public Model {
   // Eigen aligns arrays of run-time size to 16 bytes: two doubles.
   static constexpr int lanes = K == Eigen::Dynamic ? 2 : 8;

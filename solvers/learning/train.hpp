@@ -28,11 +28,11 @@ namespace lagroid::learning {
 
 enum class Outcome {
   converged,        ///< the error falls no more
-  reached,          ///< the training error is as small as was asked
+  reached,          ///< the training error is as small as `enough`
   early_stopped,    ///< the error on held-out trajectories rose while the training error fell
   iteration_limit,  ///< as many iterations as were allowed
   time_limit,       ///< as long as was allowed
-  interrupted,      ///< the callback said so
+  interrupted,      ///< by the callback
   too_little_data,  ///< fewer numbers than parameters, or a part without weight
   not_finite,       ///< no start has a finite error and derivative, or further on one has none
 };
@@ -60,7 +60,7 @@ struct Training {
   int iterations = 100;        ///< with all trajectories; zero where the parameters are to be measured only
   Eigen::VectorXd begin = {};  ///< parameters to go on from, in place of starts; empty: Model::start
   /// Of the trajectories, those that are held out to stop early by; 0: none. Which ones, and which ones starts are
-  /// tried on, the seed says, so that it does not matter in what order they come.
+  /// tried on, depends on the seed, so that it does not matter in what order they come.
   double validation = 0;
   int patience = 10;             ///< iterations without a lower error on those
   double enough = 0;             ///< mean squared error at which it stops; 0: none
@@ -72,7 +72,7 @@ struct Training {
   /// Sees every iteration, of starts that are tried at the same time in any order, but never two at once; false
   /// interrupts.
   std::function<bool(const Stage&)> callback = nullptr;
-  /// Asked after every few trajectories, never twice at once; true interrupts.
+  /// Called after every few trajectories, never twice at once; true interrupts.
   std::function<bool()> stop = nullptr;
 };
 
@@ -101,7 +101,7 @@ double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, cons
                           const Trajectories& data);
 
 /// Minimises the mean squared error of the integrator's trajectories by Ceres' Levenberg-Marquardt method with exact
-/// derivatives (ParametricModel), from several starts. Never throws for numbers: the outcome tells. Equal data and
+/// derivatives (ParametricModel), from several starts. Numbers never throw: how it ended is an Outcome. Equal data and
 /// options give equal bits, whatever the threads, unless the time limit or the callback ends it.
 Trained train(const Model& model, const Trajectories& data, const Training& options);
 

@@ -99,7 +99,7 @@ struct LieGroupControl {
   double first_step = 1e-3;
   double largest_step = 1e300;
   long most_steps = 100'000'000;         ///< tried on the way to one end
-  std::function<bool()> stop = nullptr;  ///< asked before each; true ends the advance as a limit of steps does
+  std::function<bool()> stop = nullptr;  ///< called before each; true ends the advance as a limit of steps does
 };
 
 /// Steps whose size follows the estimate of an embedded method: h <- h 0.9 (tolerance / error)^(1/order), changed by

@@ -103,12 +103,12 @@ constexpr std::array<LieGroupMethod::Row, 7> kutta{{{}, {0.5}, {0, 0.5}, {0, 0, 
 constexpr LieGroupMethod::Row kutta_weights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
 }  // namespace detail
 
-/// Munthe-Kaas' method (Appl. Numer. Math. 29, 1999) on Kutta's: u_j' = dexp_u^{-1} F, of which order 4 asks for
-/// F - [u, F] / 2 + [u, [u, F]] / 12 (Hairer, Lubich, Wanner, theorem IV.8.5).
+/// Munthe-Kaas' method (Appl. Numer. Math. 29, 1999) on Kutta's: u_j' = dexp_u^{-1} F, of which order 4 requires F -
+/// [u, F] / 2 + [u, [u, F]] / 12 (Hairer, Lubich, Wanner, theorem IV.8.5).
 inline constexpr LieGroupMethod munthe_kaas_4{
     "munthe-kaas-4", 4, LieGroupScheme::munthe_kaas, 4, {}, detail::kutta, detail::kutta_weights};
 
-/// The same on Dormand and Prince's pair of orders 5 and 4 (Hairer, Norsett, Wanner, table II.5.2). Order 5 asks for no
+/// The same on Dormand and Prince's pair of orders 5 and 4 (Hairer, Norsett, Wanner, table II.5.2). Order 5 requires no
 /// more terms of dexp_u^{-1}, because the third has coefficient zero.
 inline constexpr LieGroupMethod munthe_kaas_54{
     "munthe-kaas-54",

@@ -87,7 +87,7 @@ template <int N> class SymmetricFactor {
   }
 
  private:
-  /// Eliminates one or two unknowns and says how many. Before step k rows k ... N-1 of l_ hold L in columns 0 ... k-1
+  /// Eliminates one or two unknowns; returns how many. Before step k rows k ... N-1 of l_ hold L in columns 0 ... k-1
   /// and the rest of the matrix in the others.
   int pivot(int k) {
     if constexpr (N == 1) return eliminate_one(k);

@@ -80,7 +80,7 @@ enum class OtherOrders {
   preprocessed,    ///< its system is changed beforehand
 };
 
-/// What every method says of itself.
+/// What every method declares of itself.
 struct DeclaredMethod {
   std::string_view name;  ///< the word for it in scenes, Python and studies
   int order = 2;
@@ -131,7 +131,7 @@ inline constexpr std::array<IntegrationMethod, 6> declared_methods{{
      requirements::of_transformed},
 }};
 
-/// The word of [time] mode, and of Python's, for equal steps; `method` then says which.
+/// The word of [time] mode, and of Python's, for equal steps; `method` then names one.
 inline constexpr std::string_view mode_of_equal_steps = "fixed";
 
 /// The words of `mode`: equal steps, and the names of all other methods. The first is the default.
@@ -172,7 +172,7 @@ template <class T, std::size_t N> T choice_of(const std::array<Word<T>, N>& word
   throw std::invalid_argument("\"" + std::string(word) + "\" is no word for it");
 }
 
-/// The composition of each order that `order` alone asks for.
+/// The composition that stands for each order where no name is given.
 inline constexpr std::array<Composition, 4> usual_compositions{compositions::single, compositions::suzuki,
                                                                compositions::kahan_li_6, compositions::kahan_li_8};
 /// Null where there is none of the order.

@@ -15,7 +15,7 @@
 
 namespace lagroid {
 
-/// What `Sys` has for methods to use; `system` says which splittings suit it.
+/// What `Sys` has for methods to use; which splittings suit it depends on `system`.
 template <class Sys> Capabilities capabilities_of(const Sys& system) {
   Capabilities able{.variational = Variational<Sys>,
                     .has_step = HasTimeStep<Sys>,

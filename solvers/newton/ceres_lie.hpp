@@ -17,7 +17,7 @@ namespace lagroid {
 
 namespace detail {
 
-/// f and, where asked for, its matrix of derivatives at v; false where they are not finite.
+/// f and, where `derivative` is not null, its matrix of derivatives at v; false where they are not finite.
 using ChartFunction = std::function<bool(const Eigen::VectorXd& v, Eigen::VectorXd& f, Eigen::MatrixXd* derivative)>;
 
 struct CeresRoot {
@@ -31,9 +31,9 @@ CeresRoot minimise_by_ceres(const ChartFunction& function, Eigen::VectorXd start
 }  // namespace detail
 
 /// f(z tau(v)) = 0 as a least-squares problem of zero residual in the coordinates v, from `start`: version 2 with a
-/// trust region. Of the options, tolerance and max_iterations apply. What Ceres says of its own success is not
-/// believed: the status follows from the residual, evaluated anew; `stagnated` is a minimum, or a place that Ceres took
-/// for one, where f is not zero.
+/// trust region. Of the options, tolerance and max_iterations apply. Ceres' own verdict is not used: the status follows
+/// from the residual, evaluated anew; `stagnated` is a minimum, or a place that Ceres took for one, where f is not
+/// zero.
 template <FibreEquation E>
 LieNewtonResult<typename E::Fibre> solve_by_ceres(const E& equation, const typename E::Fibre::Vector& start,
                                                   const LieNewtonOptions& options = {}) {

@@ -29,7 +29,7 @@ namespace lagroid {
 ///
 /// a is lower triangular; stages with a_ii = 0 are explicit. `order` is that on any group for tau = exp (up to order
 /// two for any tau with tau(v)^{-1} = tau(-v)): the conditions on a and b are the classical ones and, for order three,
-/// sum_{i<j} b_i b_j (c_j - c_i) = 1/6, which the bracket of K_i and K_j asks for (Crouch and Grossman 1993, Owren and
+/// sum_{i<j} b_i b_j (c_j - c_i) = 1/6, which the bracket of K_i and K_j requires (Crouch and Grossman 1993, Owren and
 /// Marthinsen 1999).
 struct CrouchGrossman {
   std::string name;

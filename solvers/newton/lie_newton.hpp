@@ -120,7 +120,7 @@ inline double observed_order(const std::vector<double>& norms) {
   return std::log(last[-2] / last[-3]) / std::log(last[-3] / last[-4]);
 }
 
-/// The iteration from y = z tau(v); `observe` is told the norm of f at the start and after each iteration.
+/// The iteration from y = z tau(v); `observe` is called with the norm of f at the start and after each iteration.
 /// `left_domain` where y has no coordinates any more, `singular` where the differential has no inverse, `not_finite`,
 /// `stagnated` where damping refused, `not_converged` at the limit.
 template <FibreEquation E, class Observe>

@@ -9,7 +9,7 @@
 ///     std::cout << to_string(found.outcome) << ' ' << found.value << ' ' << found.message << '\n';
 ///
 /// (`Height` stands in objective.hpp.) Requires a start on the manifold. Returns the best point with value, gradient
-/// and effort. Never throws for numbers: the Outcome tells, with a message that names the remedy.
+/// and effort. Numbers never throw: how it ended is an Outcome, with a message that names the remedy.
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>
@@ -24,7 +24,7 @@
 namespace lagroid::optimisation {
 
 enum class Outcome {
-  converged,         ///< the gradient, or the value, is as small as was asked
+  converged,         ///< the gradient, or the value, is as small as the stopping criteria want it
   stagnated,         ///< neither falls any more: what is left is rounding
   stationary_start,  ///< the gradient vanishes where it starts, which need not be a minimum
   iteration_limit,   ///< as many iterations as were allowed
@@ -52,7 +52,7 @@ struct State {
   Vector gradient;   ///< its tangent part, the Riemannian gradient
 };
 
-/// A manifold and a function on it, which counts what it is asked. Refers to both.
+/// A manifold and a function on it, which counts evaluations. Refers to both.
 class Problem {
  public:
   Problem(const Manifold& manifold, const Objective& objective) : manifold_(manifold), objective_(objective) {}
@@ -97,7 +97,7 @@ struct Iterate {
 
 /// What ends the loop; the first that holds.
 struct Stopping {
-  double gradient = 0;                                      ///< |grad f| at most this; 0: not asked
+  double gradient = 0;                                      ///< |grad f| at most this; 0: no criterion
   double relative_gradient = 0;                             ///< or this times the one at the start
   double value = -std::numeric_limits<double>::infinity();  ///< f at most this: the minimum, where known, and a gap
   long iterations = 10000;
@@ -132,7 +132,7 @@ struct Recording {
 };
 
 /// Minimises f from `start`, a point of the manifold. Of methods that do not descend in every step the best point is
-/// what is returned. Never throws for numbers: the outcome tells.
+/// what is returned. Numbers never throw: how it ended is an Outcome.
 Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, Method& method,
                 const Stopping& stopping, const Recording& recording = {});
 

@@ -37,7 +37,7 @@ template <class F> struct ArclengthResult {
   SolveStatus status = SolveStatus::not_converged;
   typename F::Point y;
   typename F::Vector v;
-  double h = 0;             ///< where y is a solution: the step asked for, or how far the path was followed
+  double h = 0;             ///< where y is a solution: the step wanted, or how far the path was followed
   double residual = 0;      ///< the norm of f there
   int steps = 0;            ///< along the path, those undone included
   long factorisations = 0;  ///< of the Jacobian, from the start of the path
@@ -67,10 +67,10 @@ template <SourceFibre F, class Field> class SolutionPath {
     tangent_ *= direction_ / tangent_.norm();
   }
 
-  /// Follows the path until it first meets the step h. Several steps are to be asked for in the order in which the path
+  /// Follows the path until it first meets the step h. Several steps must be reached in the order in which the path
   /// meets them first, those further from zero later; throws std::invalid_argument for others. `not_converged` at the
   /// limit of steps, `stagnated` where no step along the path is small enough, `ill_conditioned` where the path meets h
-  /// but round-off is above the tolerance; `h` and `v` then tell how far it was followed.
+  /// but round-off is above the tolerance; `h` and `v` are then where it was followed to.
   ArclengthResult<F> reach(double h) {
     ArclengthResult<F> out;
     if (!std::isfinite(h)) {
@@ -199,7 +199,7 @@ template <SourceFibre F, class Field> class SolutionPath {
   Column x_;     ///< (v, s) at the start of the segment that was followed last
   Column next_;  ///< and at its end
   Column tangent_;
-  double furthest_ = 0;  ///< the last step asked for, along the direction
+  double furthest_ = 0;  ///< the last step wanted, along the direction
   int steps_ = 0;
   long factorisations_ = 0;
 };

@@ -34,8 +34,8 @@ class FibreProblem {
   FibreProblem(const FibreProblem&) = delete;
   FibreProblem& operator=(const FibreProblem&) = delete;
 
-  /// From the point that is given to the best that Ceres comes to, and the iterations it took. What it says of its own
-  /// success is for the caller to find out.
+  /// From the point that is given to the best that Ceres comes to, and the iterations it took. Whether that is a
+  /// solution is for the caller to find out.
   int solve(double* arrow, double* multipliers);
 
  private:

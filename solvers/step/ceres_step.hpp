@@ -20,8 +20,8 @@
 namespace lagroid {
 
 /// The same equations as `NewtonStep`, as a least-squares problem of zero residual on the source fibre, with tolerances
-/// tight enough for momentum conservation. The Ceres problem is built once and reused. What Ceres says of its own
-/// success is not believed: the status follows from the residual, evaluated anew.
+/// tight enough for momentum conservation. The Ceres problem is built once and reused. Ceres' own verdict is not used:
+/// the status follows from the residual, evaluated anew.
 template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
@@ -87,7 +87,7 @@ template <DiscreteSystem Sys> class CeresStep final : public StepSolver<Sys> {
       r = E::residual(d, state->momentum).cwiseProduct(scaling.row);
       Eigen::Map<typename E::Jacobian> j(jacobian);
       j = scaling.row.asDiagonal() * E::jacobian(d);
-      // A point without derivatives is no point to go on from: Ceres, told so in time, tries a shorter step.
+      // A point without derivatives is no point to go on from: false makes Ceres try a shorter step.
       return r.allFinite() && j.allFinite();
     }
   };

@@ -32,14 +32,14 @@ struct NewtonOptions {
   double tolerance = 0;  ///< a scaled residual this small is accepted too; 0: iterate to round-off
 };
 
-/// Version 1 of the Newton iteration ([N] (3.5)), carried from Lie groups to source fibres: g <- g tau(w), lambda <-
-/// lambda + dlambda, with (w, dlambda) from the matrix of `StepEquations`. Unknowns and equations are scaled to a
-/// matrix with entries near one. Iterates to the round-off level of every equation, and on until what the iteration
-/// itself leaves is well below that: it is not random, and would add up over a long run. No allocation.
+/// Version 1 of the Newton iteration ([N] (3.5)), from Lie groups to source fibres: g <- g tau(w), lambda <- lambda +
+/// dlambda, with (w, dlambda) from the matrix of `StepEquations`. Unknowns and equations are scaled to a matrix with
+/// entries near one. Iterates to the round-off level of every equation, and on until what the iteration itself leaves
+/// is well below that: it is not random, and would add up over a long run. No allocation.
 ///
-/// A step whose guess is good (the next one of a smooth trajectory) takes the short way: chord iterations with the
-/// inverse of a matrix that is renewed only when that saves time, gradients alone being evaluated. Whenever these do
-/// not contract, the solve starts again from the guess with a full Newton iteration, damped so that the residual falls.
+/// A step whose guess is good (the next one of a smooth trajectory) takes chord Newton: iterations with the inverse of
+/// a matrix that is renewed only when that saves time, gradients alone being evaluated. Whenever these do not contract,
+/// the solve starts again from the guess with a full Newton iteration, damped so that the residual falls.
 template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
  public:
   using G = typename Sys::GroupoidType;
@@ -126,7 +126,7 @@ template <DiscreteSystem Sys> void NewtonStep<Sys>::serialize(NumberArchive& arc
   archive(scaling_.row, scaling_.column, inverse_);
 }
 
-// ---- the short way
+// ---- chord Newton
 
 template <DiscreteSystem Sys>
 LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G>& state, StepSolution<Sys>& solution,
@@ -209,7 +209,7 @@ template <DiscreteSystem Sys> [[gnu::cold]] void NewtonStep<Sys>::keep(const typ
   chord_.iterations = longest_chord;
 }
 
-// ---- the long way
+// ---- damped Newton
 
 /// Returns the matrix at the step it ends at.
 template <DiscreteSystem Sys>

@@ -17,9 +17,10 @@ LAGROID_MEMBER_NAME(NamesNudge, nudge);
 }  // namespace detail
 
 /// What a method looks for by its name and does not find in the form that it needs would be passed over without a word,
-/// and the method not offered. Does not compile where there is such a member. Asked where a system meets a method:
+/// and the method not offered. Does not compile where there is such a member. Checked where a system meets a method:
 /// wherever implicit steps are made (StepPredictor), and where a solver of boundary values is (make_boundary_solver).
-/// Each header of core that names an optional member says what fits it; what a ledger looks for, `quantities_of` asks.
+/// Each header of core that names an optional member describes what fits it; what a ledger looks for is checked by
+/// `quantities_of`.
 template <class Sys> constexpr void require_optional_members_to_fit() {
   static_assert(rates_fit<Sys>,
                 "rates(z) is there but does not fit: a const function of a State<G> that returns Rates<G>, of a system "

@@ -12,9 +12,9 @@
 
 namespace lagroid {
 
-/// What to say of a step that failed: its number, the time before it (s), and what to do.
+/// A sentence on a step that failed: its number, the time before it (s), and what to do.
 std::string step_failure(const StepReport& report, long step, double time, TimeMode mode);
-/// What to say of steps whose size was not what the mode asks for.
+/// A note on steps whose size is not that of the mode.
 std::string without_root_note(long count, long steps, WithoutRoot instead);
 /// What a method declares of itself.
 std::string description(const MethodTraits& method);

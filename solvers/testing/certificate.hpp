@@ -24,7 +24,7 @@ namespace lagroid::laws {
 /// The suites that apply to a system: of its groupoid, algebroid and cotangent groupoid, at objects of the states
 /// drawn; of its derivatives, its dynamics, its momenta, its declared symmetries and its action principle, at steps
 /// from those states. Of a forced or nonholonomic system, whose step is not Poisson, the Lagrange-d'Alembert principle
-/// is asked in place of dynamics and action. `draw()` returns a State from which a step can be taken.
+/// is tested in place of dynamics and action. `draw()` returns a State from which a step can be taken.
 template <DiscreteSystem Sys>
 std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw) {
   const auto& groupoid = system.groupoid;

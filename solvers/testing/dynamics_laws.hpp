@@ -93,8 +93,8 @@ SubmanifoldTangent solved_graph(const Sys& system, const State<typename Sys::Gro
 /// source and target of T*G (Def. 3.3) and have equal rank (Theorem 2.16, Corollary 3.4, Remark 2.17), the step is a
 /// Poisson map (after Remark 2.17), and the system run backwards recovers the state.
 ///
-/// That the step is Poisson is asked twice. Of the graph that L generates it is a theorem, whatever L: what can fail
-/// are the derivatives. "The computed step is Poisson" asks the map that solvers from `make()` compute, by differences
+/// That the step is Poisson is tested twice. Of the graph that L generates it is a theorem, whatever L: what can fail
+/// are the derivatives. "The computed step is Poisson" tests the map that solvers from `make()` compute, by differences
 /// and to 1e-7: it fails where a solver stops early or does not hand on what it has solved.
 ///
 /// `draw()` returns a State from which a step can be taken. `Submanifold` is GeneratedSubmanifold<Sys> or, to see the

@@ -9,7 +9,7 @@
 ///     system.h = 0.1;
 ///     system.plate_rate = 0.5;
 ///
-/// Requires a positive radius; `infeasible` says why parameters admit no motion. [G] 6.2, (8)
+/// Requires a positive radius; `infeasible` has the reason where parameters admit no motion. [G] 6.2, (8)
 
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>

@@ -58,7 +58,7 @@ class Multibody {
   /// that; std::domain_error where one island obeys two principles.
   Multibody(Scene scene, double h, const Options& options = {});
 
-  /// One step. Where it does not converge nothing changes, and the report says why.
+  /// One step. Where it does not converge nothing changes, and the report has the status.
   StepReport advance();
 
   const SceneState& state() const { return state_; }

@@ -14,7 +14,7 @@
 
 namespace lagroid::optimisation {
 
-/// y = A x for a symmetric A, column by column of x: all that an eigenvalue problem asks of it.
+/// y = A x for a symmetric A, column by column of x: all that an eigenvalue problem needs of it.
 struct SymmetricOperator {
   Eigen::Index size = 0;
   std::function<void(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Ref<Eigen::MatrixXd> y)> apply;

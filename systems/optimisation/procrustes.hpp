@@ -32,8 +32,8 @@ class Procrustes final : public Objective {
   mutable Eigen::MatrixXd residual_;
 };
 
-/// The minimum over O(n), or over the component where det X = `component` (1 or -1; 0: both): X = U D V^T with
-/// A^T B = U S V^T and D = I but for a last entry -1 where the component asks for it.
+/// The minimum over O(n), or over the component where det X = `component` (1 or -1; 0: both): X = U D V^T with A^T B =
+/// U S V^T and D = I but for a last entry -1 where the component requires it.
 Eigen::MatrixXd balanced_procrustes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int component = 0);
 
 }  // namespace lagroid::optimisation

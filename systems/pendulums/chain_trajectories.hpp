@@ -25,7 +25,7 @@ struct ChainTrajectories {
   /// Uniform errors in [-noise, noise] are added to every number of all points but the first, as in [H].
   double noise = 0;
   unsigned seed = 0;
-  std::function<bool()> stop = nullptr;  ///< asked before each inner step; true ends the drawing
+  std::function<bool()> stop = nullptr;  ///< called before each inner step; true ends the drawing
 };
 
 /// Starts are drawn as in [H]: q_i uniform on the sphere, p_i = q_i x s with s uniform in [0, 1]^3. The motion is

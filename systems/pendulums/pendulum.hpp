@@ -9,7 +9,7 @@
 ///     pendulum.length = 0.5;
 ///     const double energy = pendulum.energy({Vector<double, 1>(0.1), Vector<double, 1>(0.0)});
 ///
-/// `refused` says why lengths and masses whose inertia has lost its digits are none.
+/// Requires a positive length and mass; `refused` rejects those whose inertia m l^2 has lost its digits.
 
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>

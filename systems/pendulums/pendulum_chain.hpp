@@ -54,7 +54,8 @@ template <int K> struct PendulumChain {
                       parameter("gravity", &PendulumChain::gravity, "m/s^2", "acceleration"));
   }
 
-  /// Throws std::invalid_argument unless masses and lengths are as many and as the rule says, and g is finite.
+  /// Throws std::invalid_argument unless masses and lengths are as many and in the range of `chain_number`, and g is
+  /// finite.
   PendulumChain(Numbers masses, Numbers lengths, double g = 9.81)
       : mass(std::move(masses)), length(std::move(lengths)), gravity(g), carried(mass) {
     if (mass.size() != length.size() || mass.size() == 0)

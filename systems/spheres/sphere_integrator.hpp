@@ -38,7 +38,7 @@ struct SphereIntegratorOptions {
   double step = 0.01;                    ///< from node to node
   double tolerance = 0;                  ///< of inner steps, which an embedded method then controls; 0: one step a node
   long most_inner = 1'000'000;           ///< of these, from one node to the next
-  std::function<bool()> stop = nullptr;  ///< asked before each of these; true ends the step, which is then not made
+  std::function<bool()> stop = nullptr;  ///< called before each of these; true ends the step, which is then not made
   Composition composition = compositions::single;  ///< of a symmetric method of the system's own
 };
 
@@ -50,7 +50,7 @@ class SphereIntegrator {
   virtual ~SphereIntegrator() = default;
   /// To the next node. Of inner steps the report counts those tried.
   virtual StepReport advance() = 0;
-  /// In the form asked for.
+  /// In the form of the options.
   virtual Points point() const = 0;
   virtual double time() const = 0;
   virtual MethodTraits traits() const = 0;
@@ -130,7 +130,7 @@ template <class F> class ControlledSphereSteps final : public SphereIntegrator {
 }  // namespace detail
 
 /// The integrator of z' = F(z)_M(z) by the Lie group method of that name. Throws std::invalid_argument where there is
-/// none, where a tolerance is asked of one that estimates no error or is negative, and for a composition.
+/// none, where a tolerance is negative or given to one that estimates no error, and for a composition.
 template <class F>
 std::unique_ptr<SphereIntegrator> integrator_on_spheres(F field, const SphereIntegrator::Points& start,
                                                         const SphereIntegratorOptions& options) {
@@ -146,8 +146,8 @@ std::unique_ptr<SphereIntegrator> integrator_on_spheres(F field, const SphereInt
 
 template <int K> struct PendulumChain;
 
-/// A chain of any length. Its own method is "rattle", the variational one (ChainRattle). `start` is of the form asked
-/// for. Throws std::invalid_argument as `integrator_on_spheres`, and where rattle is to have a tolerance. Compiled.
+/// A chain of any length. Its own method is "rattle", the variational one (ChainRattle). `start` is of the form of the
+/// options. Throws std::invalid_argument as `integrator_on_spheres`, and where rattle is to have a tolerance. Compiled.
 std::unique_ptr<SphereIntegrator> make_chain_integrator(const PendulumChain<Eigen::Dynamic>& chain,
                                                         const SphereIntegrator::Points& start,
                                                         const SphereIntegratorOptions& options);

@@ -1,7 +1,7 @@
 #pragma once
 /// Laws of integrators on (TS^2)^k and (T*S^2)^k, for your own: points stay on the bundle, the order is the one
 /// declared, forms agree, steps run backwards, and what the method promises is kept. A law that does not hold is no
-/// exception: the report says so.
+/// exception: the report shows it.
 
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/testing/order_laws.hpp>

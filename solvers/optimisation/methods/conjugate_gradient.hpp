@@ -21,7 +21,7 @@ namespace lagroid::optimisation {
 
 /// Directions d+ = -grad f+ + b T d with the b of Hestenes and Stiefel, not below zero, T the transport by projection;
 /// the steepest descent where d+ does not descend. Steps by secants (`secant_search`) from the minimum along the line
-/// of the parabola whose curvature the last step told.
+/// of the parabola with the curvature of the last step.
 class ConjugateGradient final : public Method {
  public:
   explicit ConjugateGradient(Retraction retraction = Retraction::qr) : retraction_(retraction) {}

@@ -9,7 +9,7 @@
 ///     };
 ///     std::cout << laws::scene_laws({"free point", fall, /*h=*/0.01, /*horizon=*/0.5});
 ///
-/// A law that does not hold is no exception: the report says so.
+/// A law that does not hold is no exception: the report shows it.
 
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
