@@ -3,7 +3,7 @@
 /// Runge-Kutta-Fehlberg 7(8) method with tolerance 1e-14 a step.
 ///
 ///     const VectorField spring = [](const Eigen::VectorXd& y, Eigen::VectorXd& dy) { dy << y(1), -y(0); };
-///     const Eigen::VectorXd end = integrate_reference(spring, Eigen::Vector2d(1, 0), /*t=*/3.0);
+///     const Eigen::VectorXd end = integrate_reference(spring, Eigen::Vector2d(1, 0), 3.0);  // at t = 3
 
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/pair.hpp>

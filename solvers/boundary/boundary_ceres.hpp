@@ -4,7 +4,7 @@
 ///
 ///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
 ///     const BoundaryCeres<Kepler> ceres;
-///     const auto found = ceres.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
+///     const auto found = ceres.solve(problem, geodesic_path(problem, 100), false);
 ///
 /// Requirements and result are those of boundary_solver.hpp; Ceres and its headers must be there. Status:
 /// `ill_conditioned` (a solution is near, but the normal equations are too ill-conditioned to reach it), `stagnated`,

@@ -7,7 +7,7 @@
 ///
 ///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
 ///     const Path<Kepler> straight = geodesic_path(problem, 100);
-///     const Path<Kepler> seventh = BoundaryGuesses{.seed = 1}(problem, 100, /*index=*/6);
+///     const Path<Kepler> seventh = BoundaryGuesses{.seed = 1}(problem, 100, 6);
 ///
 /// Requires a boundary arrow in the domain of tau^{-1}. The same seed and index give the same path.
 

@@ -8,7 +8,7 @@
 ///
 ///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
 ///     const BoundaryNewton<Kepler> newton;
-///     const auto found = newton.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
+///     const auto found = newton.solve(problem, geodesic_path(problem, 100), false);
 ///
 /// Requirements and result are those of boundary_solver.hpp. Status: `stagnated` (no step lowers action or residual),
 /// `not_converged` (limit of iterations), `not_finite`. [G] section 5, Theorem 5.1

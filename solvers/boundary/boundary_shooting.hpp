@@ -7,7 +7,7 @@
 ///
 ///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
 ///     const BoundaryShooting<Kepler> shooting;
-///     const auto found = shooting.solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
+///     const auto found = shooting.solve(problem, geodesic_path(problem, 100), false);
 ///
 /// Requirements and result are those of boundary_solver.hpp. Status: `stagnated` (no change of mu_0 brings the end
 /// nearer), `not_converged`, `not_finite`, or that of the step that failed on the way, with a message that names the

@@ -3,12 +3,13 @@
 ///
 ///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
 ///     const auto solver = make_boundary_solver<Kepler>(BoundaryMethod::newton);
-///     const auto found = solver->solve(problem, geodesic_path(problem, 100), /*keep_multipliers=*/false);
+///     const auto found = solver->solve(problem, geodesic_path(problem, 100), false);  // its multipliers: unknown
 ///
 /// Requires a path whose product is the boundary arrow (`solve` throws std::invalid_argument otherwise), and ends that
 /// satisfy the object constraints (`inadmissible_ends`). Returns a BoundarySolution: path, cost, residual, kind of
 /// stationary point, and a status; where it is not `converged` the path is the best or last iterate, and a message may
-/// say why. From distant guesses use `solve_boundary` (boundary_values.hpp), which has many starts. [G] section 5
+/// say why. (`geodesic_path` is in boundary_guesses.hpp.) From distant guesses use `solve_boundary`
+/// (boundary_values.hpp), which has many starts. [G] section 5
 
 #include <lagroid/solvers/boundary/boundary_problem.hpp>
 #include <lagroid/solvers/step/optional_members.hpp>

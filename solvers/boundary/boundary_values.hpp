@@ -6,7 +6,7 @@
 /// This is what a user calls; no guess is needed.
 ///
 ///     const BoundaryProblem<Kepler> problem{Kepler{}, {{1, 0}, {-0.3, 0.8}}};
-///     const auto found = solve_boundary(*make_boundary_solver<Kepler>(), problem, /*steps=*/100);
+///     const auto found = solve_boundary(*make_boundary_solver<Kepler>(), problem, 100);  // on 100 arrows
 ///     const double least = found.solutions.empty() ? NAN : found.solutions.front().cost;
 ///
 /// Requires two steps at least and a system as in boundary_problem.hpp. Returns distinct solutions, cheapest first,

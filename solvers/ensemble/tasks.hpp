@@ -3,7 +3,7 @@
 /// threads, and results are in the order of i, so that no result depends on the number of threads.
 ///
 ///     std::vector<double> roots(100);
-///     for_each_task(100, /*threads=*/0, [&](long i) { roots[std::size_t(i)] = std::sqrt(double(i)); });
+///     for_each_task(100, 0, [&](long i) { roots[std::size_t(i)] = std::sqrt(double(i)); });  // on all threads
 ///
 /// Requires pieces that write to places of their own only. The exception of the least i is rethrown.
 

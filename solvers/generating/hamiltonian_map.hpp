@@ -8,7 +8,7 @@
 ///
 ///     Phase<1, 0> point{Vector<double, 1>(1), Vector<double, 1>(0)};
 ///     const HamiltonianMap map(ChordLagrangian<Spring>{});  // the Spring of chord_lagrangian.hpp
-///     const SolveStatus status = map.step(point, /*h=*/0.1);
+///     const SolveStatus status = map.step(point, 0.1);  // h
 ///
 /// Requires a function as the concept GeneratingFunction describes it, and a step that is not zero. The status is
 /// `singular`, `left_domain`, `not_finite` or `not_converged` where there is no step; the point then stays as it was.

@@ -3,7 +3,8 @@
 ///
 ///     solve F-(g, lambda) = mu, phi(g) = 0 for g from q,    then q' = beta(g),  mu' = F+(g, lambda).
 ///
-/// The map is Poisson and keeps the momenta of all symmetries of L and phi, which is why one wants it for long motions.
+/// Of a variational system the map is Poisson and keeps the momenta of all symmetries of L and phi, which is why one
+/// wants it for long motions.
 ///
 ///     const Kepler kepler;
 ///     FixedStepIntegrator<Kepler> orbit(kepler, {{1, 0}, {0, 1}}, Pair<2>::unit(Vector<double, 2>(1, 0)),

@@ -5,7 +5,7 @@
 ///
 /// Rows are added in blocks, so that J is never in memory as a whole, nor its condition number squared.
 ///
-///     learning::Compressed compressed(/*parameters=*/2);
+///     learning::Compressed compressed(2);  // of two parameters
 ///     compressed.add(Eigen::MatrixXd::Random(1000, 3));  // rows of (J r)
 ///     const Eigen::MatrixXd& triangle = compressed.triangle();
 

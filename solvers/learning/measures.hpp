@@ -2,7 +2,7 @@
 /// How good a learned Hamiltonian is, on trajectories that it was not trained on: mean squared error, the error as time
 /// goes on, and how far energy and vertical momentum drift.
 ///
-///     const auto model = learning::polynomial_model(/*bodies=*/1, /*degree=*/3);
+///     const auto model = learning::polynomial_model(1, 3);
 ///     const learning::Measures found = learning::measure(*model, model->start(1), learning::Trajectories{});
 ///
 /// Requires theta of model.size() numbers. Trajectories that cannot be followed are counted (`lost`) and left out.

@@ -5,8 +5,8 @@
 ///
 /// behind one interface for those who train, measure and run them, whatever the potential is.
 ///
-///     const auto model = learning::polynomial_model(/*bodies=*/1, /*degree=*/3);
-///     const Eigen::VectorXd theta = model->start(/*seed=*/1);
+///     const auto model = learning::polynomial_model(1, 3);  // bodies, degree
+///     const Eigen::VectorXd theta = model->start(1);  // seed
 ///     const double energy = model->energy(theta, Eigen::VectorXd{{0, 0, -1, 0.5, 0, 0}});
 ///
 /// Requires theta of size() numbers and states of 6k numbers, (q_1, p_1, q_2, p_2, ...). polynomial_model and

@@ -7,7 +7,7 @@
 ///
 ///     const auto spin = [](double, const auto&, auto& out) { out.setConstant(1); };  // an element of the algebra
 ///     LieGroupIntegrator integrator(Spheres<1>{}, spin, lie_group_methods::commutator_free_4,
-///                                   Spheres<1>::Point(0, 0, 1), /*h=*/0.01);
+///                                   Spheres<1>::Point(0, 0, 1), 0.01);  // h
 ///     const StepReport report = integrator.advance();
 ///
 /// Requires a start on M of the size of its points, and for control a method that has an embedded one

@@ -7,7 +7,7 @@
 ///
 ///     auto a = [](double t, auto& out) { out = Eigen::Vector3d(1, t, 0); };
 ///     Spheres<1>::Point z(0, 0, 1);
-///     MagnusStep<Spheres<1>>({}, /*order=*/4).advance(a, /*t=*/0, /*h=*/0.1, z);
+///     MagnusStep<Spheres<1>>({}, 4).advance(a, 0, 0.1, z);  // order 4; t, h
 ///
 /// Any other order throws std::invalid_argument. Whether numbers are finite is for the caller to look at. (Blanes,
 /// Casas and Ros, BIT 40 (2000).)

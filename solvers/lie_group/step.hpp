@@ -5,7 +5,7 @@
 ///     auto spin = [](double, const auto&, auto& out) { out.setConstant(1); };  // an element of the algebra
 ///     Spheres<1>::Point z(0, 0, 1);
 ///     LieGroupStep<Spheres<1>> step({}, lie_group_methods::commutator_free_4);
-///     step.advance(spin, /*t=*/0, /*h=*/0.1, z);
+///     step.advance(spin, 0, 0.1, z);  // t, h
 ///
 /// Requires a field(t, z, out) that writes an element of the algebra, z of the size of the space's points, and `forget`
 /// where a method that reuses its last slope does not go on from where it ended. Whether numbers are finite is for the

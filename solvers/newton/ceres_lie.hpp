@@ -4,7 +4,7 @@
 ///
 ///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
 ///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });  // lie_differentials.hpp
-///     const auto found = solve_by_ceres(ImplicitStep{fibre, field, /*h=*/0.5}, Vector<double, 3>::Zero());
+///     const auto found = solve_by_ceres(ImplicitStep{fibre, field, 0.5}, Vector<double, 3>::Zero());  // h = 0.5
 ///
 /// Requires what lie_newton.hpp does. Status: `stagnated` at a minimum of |f| where f is not zero, `not_finite`,
 /// `not_converged`. Throws MissingLibrary in a build without Ceres.

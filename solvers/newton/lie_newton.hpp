@@ -8,7 +8,7 @@
 ///
 ///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
 ///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });  // lie_differentials.hpp
-///     const auto found = lie_newton(ImplicitStep{fibre, field, /*h=*/0.5}, Vector<double, 3>::Zero());
+///     const auto found = lie_newton(ImplicitStep{fibre, field, 0.5}, Vector<double, 3>::Zero());  // h = 0.5
 ///
 /// Requires an equation as `FibreEquation` describes it, and a start. Returns the last iterate with residual,
 /// iterations and status: `left_domain` (y has no coordinates any more), `singular` (df has no inverse), `stagnated`

@@ -7,7 +7,7 @@
 ///
 ///     using namespace optimisation;
 ///     ConjugateGradient method;
-///     const Result found = minimise_penalised(Sphere(3), Height(), /*weight=*/1e3, Eigen::Vector3d(1, 0, 0), method,
+///     const Result found = minimise_penalised(Sphere(3), Height(), 1e3, Eigen::Vector3d(1, 0, 0), method,
 ///                                             {.gradient = 1e-6});
 ///
 /// (`Height` stands in objective.hpp.) Requires a positive weight. Outcome: `off_manifold` where the penalty left more

@@ -4,12 +4,12 @@
 ///
 ///     v = h g(z tau(v)),    h = sinh(s),    the curve (v, s) that starts at (0, 0).
 ///
-/// Newton's iteration converges for small h only, and a homotopy in h itself ends where the curve turns back in h; its
-/// arclength grows monotonically.
+/// From v = 0 Newton's iteration converges for small h only, and a homotopy in h ends where the curve turns back in h;
+/// one along its arclength does not.
 ///
 ///     const GroupoidFibre<SO3> fibre(SO3::exp(Vector<double, 3>(0.4, -0.2, 0.9)));
 ///     const AutomaticField field(fibre, [](const auto& y) { return y.diagonal().eval(); });  // lie_differentials.hpp
-///     const auto step = solve_implicit_step(ImplicitStep{fibre, field, /*h=*/100.0});
+///     const auto step = solve_implicit_step(ImplicitStep{fibre, field, 100.0});  // h = 100
 ///
 /// Returns the solution with its status: `not_converged` (limit of steps), `stagnated` (no step along the curve is
 /// small enough), `ill_conditioned` (round-off above the tolerance), `not_finite`. `SolutionPath::reach` throws

@@ -1,9 +1,9 @@
 #pragma once
 /// One implicit step as a least-squares problem for Ceres: min |r(g, lambda)|^2 / 2 over the source fibre and the
 /// multipliers, r the scaled step equations (step_solver.hpp). It shares no code with NewtonStep beyond the equations,
-/// and so checks it; it is slower.
+/// and so checks it.
 ///
-///     CeresStep<Kepler> ceres(/*max_iterations=*/50);
+///     CeresStep<Kepler> ceres(50);  // iterations at most
 ///     StepSolution<Kepler> found{{Pair<2>::unit(Vector<double, 2>(1, 0)), {}}, {}};
 ///     const StepReport report = ceres.solve(Kepler{}, {{1, 0}, {0, 1}}, found);
 ///

@@ -2,7 +2,7 @@
 /// Sentences for the user of a scene: why a step failed and what to change, how many steps had no root, what a method
 /// is.
 ///
-///     const std::string why = step_failure({SolveStatus::singular}, /*step=*/7, /*time=*/0.6, TimeMode::fixed);
+///     const std::string why = step_failure({SolveStatus::singular}, 7, 0.6, TimeMode::fixed);
 
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/methods/method.hpp>

@@ -3,7 +3,7 @@
 /// and momentum, for thousands of steps.
 ///
 ///     const auto draw = [] { return State<Pair<2>>{{1, 0}, {0, 1 + 0.1 * laws::draw_uniform()}}; };
-///     std::cout << laws::solver_laws(Kepler{}, draw, StepMethod::ceres, /*steps=*/100);
+///     std::cout << laws::solver_laws(Kepler{}, draw, StepMethod::ceres, 100);  // for 100 steps
 ///
 /// States from which NewtonStep fails are passed over.
 

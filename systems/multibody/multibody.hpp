@@ -7,9 +7,9 @@
 /// trees; bodies that nothing ties move one by one.
 ///
 ///     Scene scene;
-///     const Body bob = scene.point_mass(/*mass=*/1, {1, 0, 0}, /*velocity=*/{0, 0, 0});
-///     scene.add(Rod{{scene.ground({0, 0, 0}), bob.centre}, /*length=*/1});  // joints.hpp
-///     Multibody motion(std::move(scene), /*h=*/0.01);
+///     const Body bob = scene.point_mass(1, {1, 0, 0}, {0, 0, 0});  // mass, place, velocity
+///     scene.add(Rod{{scene.ground({0, 0, 0}), bob.centre}, 1});  // joints.hpp
+///     Multibody motion(std::move(scene), 0.01);  // h
 ///     const StepReport report = motion.advance();
 ///
 /// Requires a finite step and a scene whose joints hold at its start. The constructor throws std::invalid_argument for

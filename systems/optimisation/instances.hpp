@@ -1,7 +1,7 @@
 #pragma once
 /// Problems with their manifold and, where linear algebra knows it, their minimum: what optimisation is measured on.
 ///
-///     const Eigen::MatrixXd a = optimisation::random_symmetric(100, /*seed=*/1);
+///     const Eigen::MatrixXd a = optimisation::random_symmetric(100, 1);  // size, seed
 ///     const auto problem = optimisation::rayleigh_instance(optimisation::SymmetricOperator::of(a));
 ///     const optimisation::Point start = optimisation::random_start(*problem.manifold, 1);
 ///

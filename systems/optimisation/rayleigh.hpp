@@ -3,7 +3,7 @@
 ///
 ///     f(v) = -v^T A v,    f(X) = Trace(X^T A X N).
 ///
-///     const Eigen::MatrixXd a = optimisation::random_symmetric(100, /*seed=*/1);
+///     const Eigen::MatrixXd a = optimisation::random_symmetric(100, 1);  // size, seed
 ///     const optimisation::Brockett f(optimisation::SymmetricOperator::of(a), Eigen::Vector3d(1, 2, 3));
 ///
 /// Weights of Brockett's function must rise and not be negative (std::invalid_argument). [V] 5.3.1, (5.7)

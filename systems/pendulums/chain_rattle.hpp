@@ -9,7 +9,7 @@
 ///     const PendulumChain<2> chain({1, 1}, {1, 0.5});
 ///     PendulumChain<2>::Points start = chain.space().zero_point();
 ///     start.topRows<3>() << 1, 0, 0, 0, 0, -1;
-///     ChainRattle<2> rattle(chain, start, /*h=*/0.01);
+///     ChainRattle<2> rattle(chain, start, 0.01);  // h
 ///     const StepReport report = rattle.advance();
 ///
 /// Requires as many points as links (std::invalid_argument). Status: `left_domain` where the step is too large for the

@@ -6,7 +6,7 @@
 /// Energy is conserved and yet nearly all motions approach a straight one: phase volume is not kept.
 ///
 ///     const ChaplyginSleigh sleigh;
-///     const State<SE2> start = sleigh.sliding(/*turning=*/1, /*speed=*/0.5);
+///     const State<SE2> start = sleigh.sliding(1, 0.5);  // w, v1
 ///     const double energy = sleigh.energy(start);
 ///
 /// Requires positive mass and inertia, and starts that keep v2 = 0, which `sliding` makes. (Bloch, Nonholonomic

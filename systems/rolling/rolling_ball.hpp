@@ -8,7 +8,7 @@
 ///
 ///     RollingBall ball;
 ///     ball.plate_rate = 1;
-///     const auto start = ball.rolling({0.5, 0}, {0, 0.2}, /*spin=*/0);
+///     const auto start = ball.rolling({0.5, 0}, {0, 0.2}, 0);  // place, velocity, spin
 ///
 /// Requires positive mass, radius and inertia factor, and starts that roll, which `rolling` makes. (Neimark and Fufaev,
 /// Dynamics of Nonholonomic Systems, 1972.)

@@ -6,7 +6,7 @@
 /// Its motion is known, circles at constant rates, and the discrete one is of the same kind.
 ///
 ///     const RollingDisk disk;
-///     const auto start = disk.rolling(/*turning=*/0.5, /*rate=*/2);
+///     const auto start = disk.rolling(0.5, 2);  // w, s
 ///     const double energy = disk.energy(start);
 ///
 /// Requires positive parameters, and starts that roll, which `rolling` makes. (Bloch, Nonholonomic Mechanics and

@@ -7,7 +7,7 @@
 /// ten.
 ///
 ///     const Vector<double, 3> momentum(0.1, 1, 0.1);
-///     const auto body = MoserVeselov::preprocessed({1, 2, 3}, momentum, /*h=*/0.1, /*order=*/10);
+///     const auto body = MoserVeselov::preprocessed({1, 2, 3}, momentum, 0.1, 10);  // h, order
 ///     const auto turn = body.rodrigues(momentum);  // nothing where h is too large
 ///
 /// Requires positive moments, finite numbers and one of the orders 2, 4, 6, 8, 10 (std::invalid_argument); throws

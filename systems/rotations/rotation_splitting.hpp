@@ -6,7 +6,7 @@
 /// The splitting steps of rigid bodies and tops are made of these flows.
 ///
 ///     const RotationSplitting kinetic(Vector<double, 3>(1, 2, 3));
-///     const FlowOf<SO3, double> turn = kinetic.symmetric(/*t=*/0.1, Vector<double, 3>(0.1, 1, 0.1));
+///     const FlowOf<SO3, double> turn = kinetic.symmetric(0.1, Vector<double, 3>(0.1, 1, 0.1));  // t, M
 ///
 /// Requires positive moments.
 

@@ -5,7 +5,7 @@
 ///
 /// HamiltonianDescent (accelerated.hpp) takes its mu and s from them.
 ///
-///     const optimisation::Coefficients now = optimisation::coefficients({.p = 6}, /*t=*/0.1, /*h=*/1e-3);
+///     const optimisation::Coefficients now = optimisation::coefficients({.p = 6}, 0.1, 1e-3);  // t, h
 ///
 /// `check` throws std::invalid_argument, with the remedy, for numbers out of range. [V] (5.2) to (5.5), (5.11), (5.12)
 

@@ -7,7 +7,7 @@
 ///       scene.point_mass(1, {0, 0, 0}, {1, 0, 0});
 ///       return scene;
 ///     };
-///     std::cout << laws::scene_laws({"free point", fall, /*h=*/0.01, /*horizon=*/0.5});
+///     std::cout << laws::scene_laws({"free point", fall, 0.01, 0.5});  // h, horizon
 ///
 /// A law that does not hold is no exception: the report shows it.
 
