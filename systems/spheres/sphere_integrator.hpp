@@ -7,9 +7,10 @@
 ///     start << 1, 0, 0, 0, 0, 0;
 ///     const auto motion = make_chain_integrator(chain, start, {.method = "munthe-kaas-54", .tolerance = 1e-10});
 ///
-/// Requires a start on the bundle, of a column for each factor. Throws std::invalid_argument for unknown methods, a
-/// tolerance that is negative or that the method has no estimate for, steps of zero, and compositions of methods that
-/// have none. `advance` reports a status; unless it is `converged` everything stays as it was.
+/// (The chain is in pendulums/pendulum_chain.hpp.) Requires a start on the bundle, of a column for each factor. Throws
+/// std::invalid_argument for unknown methods, a tolerance that is negative or that the method has no estimate for,
+/// steps of zero, and compositions of methods that have none. `advance` reports a status; unless it is `converged`
+/// everything stays as it was.
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/groupoids/spheres.hpp>
