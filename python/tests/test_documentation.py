@@ -1,4 +1,4 @@
-"""The blocks of docs/python.md run, in order, as one program; what it quotes stands in the files."""
+"""Python on pages runs, in order, as one program a page; what docs/python.md quotes stands in the files."""
 
 import contextlib
 import io
@@ -11,21 +11,35 @@ from data import ROOT
 PAGE = (ROOT / "docs" / "python.md").read_text()
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+def blocks(language: str, page: str = PAGE) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+
+
+def run(page: str) -> dict[str, object]:
+    """What the page's program leaves."""
+    names: dict[str, object] = {}
+    folder = os.getcwd()
+    os.chdir(ROOT)
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            for block in blocks("python", (ROOT / "docs" / page).read_text()):
+                exec(compile(block, f"docs/{page}", "exec"), names)  # noqa: S102
+    finally:
+        os.chdir(folder)
+    return names
+
+
+class ComingFrom(unittest.TestCase):
+    def test_first_programs_run(self) -> None:
+        names = run("coming_from.md")
+        self.assertTrue(names["solution"].converged)  # type: ignore[attr-defined]
+        self.assertEqual(names["centre"].status, "converged")  # type: ignore[attr-defined]
+        self.assertGreater(names["centre"].x[2], 0.9)  # type: ignore[attr-defined]
 
 
 class Page(unittest.TestCase):
     def test_python_runs(self) -> None:
-        names: dict[str, object] = {}
-        folder = os.getcwd()
-        os.chdir(ROOT)
-        try:
-            with contextlib.redirect_stdout(io.StringIO()):
-                for block in blocks("python"):
-                    exec(compile(block, "docs/python.md", "exec"), names)  # noqa: S102
-        finally:
-            os.chdir(folder)
+        names = run("python.md")
         self.assertGreater(len(blocks("python")), 8)
         prototype, compiled = names["prototype"], names["compiled"]
         self.assertLess(abs(prototype.object - compiled.object).max(), 1e-11)  # type: ignore[attr-defined]
