@@ -1,4 +1,5 @@
 """The documentation site: the Markdown pages as they stand, and the API reference. `./lagroid docs` builds it."""
+import os
 import pathlib
 import re
 import sys
@@ -24,6 +25,10 @@ html_theme = "sphinx_rtd_theme"
 html_title = f"Lagroid {release}"
 html_math_renderer = "mathml"
 html_static_path = ["site.css"]
+# The switch of versions (templates/versions.html): which one this is, and where from its pages the newest one's lie.
+release_of_site = os.environ.get("LAGROID_SITE_VERSION")
+templates_path = ["templates"]
+html_context = {"site_version": release_of_site or "newest", "site_top": "../../" if release_of_site else ""}
 html_css_files = ["site.css"]
 html_extra_path = ["index.html"]
 html_show_sphinx = False
