@@ -260,8 +260,19 @@ class Pages(unittest.TestCase):
 
 
 class Gallery(unittest.TestCase):
-    def test_is_what_its_scenes_say(self):
+    @classmethod
+    def setUpClass(cls):
         sys.path.insert(0, str(root / "docs/site"))
+
+    def test_moving_picture_is_that_of_its_program(self):
+        import motion
+
+        drawn = motion.draw(*motion.nodes(program.parent / "figure_eight"))
+        theirs, ours = ([float(word) for word in number.findall(text)] for text in (motion.picture.read_text(), drawn))
+        self.assertEqual(len(theirs), len(ours), "draw it: ./lagroid pages gallery")
+        self.assertLess(max(abs(a - b) for a, b in zip(theirs, ours)), 1, "draw it: ./lagroid pages gallery")
+
+    def test_is_what_its_scenes_say(self):
         import gallery
 
         self.assertEqual((root / "docs/gallery.md").read_text(), gallery.page(), "write it: ./lagroid pages gallery")
