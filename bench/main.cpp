@@ -1,6 +1,6 @@
 // lagroid bench: framework, hand-written kernels, Ceres and IPOPT in one run; the table, and the page made from it.
-#include "comparison.hpp"
-#include "pages.hpp"
+#include "report/comparison.hpp"
+#include "report/pages.hpp"
 
 #include <fmt/format.h>
 #include <glog/logging.h>

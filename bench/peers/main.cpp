@@ -1,6 +1,6 @@
 // lagroid_peers: our methods and those of other software on equal problems, by equal measures of error.
 #include "page.hpp"
-#include "problem.hpp"
+#include "problems/problem.hpp"
 #include "study.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "page.hpp"
 
-#include "libraries.hpp"
+#include "libraries/libraries.hpp"
 
-#include "../pages.hpp"
+#include "../report/pages.hpp"
 
 #include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/run/reports/clock.hpp>

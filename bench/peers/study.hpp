@@ -1,7 +1,7 @@
 #pragma once
 /// All runs of a problem up to one time, and what is read off them.
 
-#include "problem.hpp"
+#include "problems/problem.hpp"
 
 #include <cstddef>
 #include <string>
