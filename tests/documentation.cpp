@@ -293,7 +293,8 @@ TEST(HamiltonianMapsPage, WhatItNamesExists) {
   EXPECT_EQ(unknown_names(prose_of(read("docs/hamiltonian_maps.md"))), none);
 }
 TEST(HamiltonianMapsPage, ItsCodeIsThatOfTheTest) {
-  EXPECT_EQ(foreign_blocks(read("docs/hamiltonian_maps.md"), "cpp", read("tests/solvers/hamiltonian_maps.cpp")), none);
+  EXPECT_EQ(foreign_blocks(read("docs/hamiltonian_maps.md"), "cpp", read("tests/solvers/hamiltonian_maps/maps.cpp")),
+            none);
 }
 
 TEST(OptimisationPage, WhatItNamesExists) {
@@ -346,7 +347,7 @@ TEST(Sweeps, WhatItNamesExists) {
   const std::string page = read("docs/sweeps.md");
   const auto laws = matches(page, "`((?:Sweep|Schedule)\\.[A-Za-z]+)`");
   EXPECT_FALSE(laws.empty());
-  const std::string tests = read("tests/app/sweep_command.cpp");
+  const std::string tests = text_of({"tests/app/sweep_command"}, ".cpp");
   for (const std::string& law : laws) {
     const auto dot = law.find('.');
     EXPECT_NE(tests.find("(" + law.substr(0, dot) + ", " + law.substr(dot + 1) + ")"), std::string::npos) << law;

@@ -428,7 +428,8 @@ std::string report(const NewtonFindings& f, bool pictures) {
   out +=
       "## Order of convergence\n\n"
       "The paper's ratio of logarithms of the last residuals, over the steps h <= 1 that converged in three or more "
-      "iterations. (`tests/solvers/lie_newton.cpp` shows the quadratic decay run by run in extended precision.)\n\n" +
+      "iterations. (`tests/solvers/lie_newton/orders.cpp` shows the quadratic decay run by run in extended "
+      "precision.)\n\n" +
       order_table(f) + "\n";
   if (!f.times.empty()) {
     out +=
