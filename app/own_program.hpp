@@ -64,7 +64,7 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
       std::make_shared<const app::ModuleOf<Sys>>(app::any_module<Sys>(std::move(name), std::move(summary), dress));
 #if defined(LAGROID_WITH_LAWS)
   return {made, [made](const app::Section& scene, const app::CheckOptions& options) {
-            return app::certify(made->task(scene, {.progress = !options.json}), options);
+            return app::certify(made->prepare(scene, {.progress = !options.json}), options);
           }};
 #else
   return {made};

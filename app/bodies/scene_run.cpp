@@ -201,7 +201,7 @@ BodiesScene read_bodies(const Section& scene, const RunContext& context) {
   const multibody::Options options = read_options(scene, bodies);
   const Section output = scene.section_or_empty("output");
   BodiesScene out;
-  out.pace = read_extent(scene, context);
+  out.extent = read_extent(scene, context);
   std::set<std::string> chosen;
   for (const NamedBody* body : bodies.chosen(output, "bodies"))
     if (output.has("bodies")) chosen.insert(body->name);

@@ -52,9 +52,9 @@ State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vecto
 
 }  // namespace checking
 
-template <DiscreteSystem Sys> Certificate certify(const PreparedScene<Sys>& task, const CheckOptions& options) {
+template <DiscreteSystem Sys> Certificate certify(const PreparedScene<Sys>& prepared, const CheckOptions& options) {
   checking::Thinned<Sys> run;
-  const RunResult result = task.run([&](const TrajectoryPoint<Sys>& point) { run.add(point); });
+  const RunResult result = prepared.run([&](const TrajectoryPoint<Sys>& point) { run.add(point); });
   auto points = run.points();
   std::vector<Step<Sys>> steps;
   double largest = 0;
@@ -77,10 +77,10 @@ template <DiscreteSystem Sys> Certificate certify(const PreparedScene<Sys>& task
     return certificate;
   }
   certificate.suites =
-      laws::certificate<Sys>(task.system, [&] { return checking::draw_state(task.system, points, largest); });
-  if constexpr (requires { task.system.symmetries(); }) {
-    for (const auto& symmetry : task.system.symmetries()) {
-      const auto found = examine<Sys>(task.system, symmetry, steps);
+      laws::certificate<Sys>(prepared.system, [&] { return checking::draw_state(prepared.system, points, largest); });
+  if constexpr (requires { prepared.system.symmetries(); }) {
+    for (const auto& symmetry : prepared.system.symmetries()) {
+      const auto found = examine<Sys>(prepared.system, symmetry, steps);
       certificate.symmetries.push_back(
           {symmetry.name, std::string(to_string(found.kind)), found.defect, found.kind != SymmetryKind::none});
     }

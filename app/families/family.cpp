@@ -12,7 +12,7 @@ MotionScene SceneFamily::read(const Section& scene, const RunContext&) const { r
 RunResult SceneFamily::run(const Section& scene, const RunContext& context) const {
   const MotionScene read_scene = read(scene, context);
   RunResult result;
-  drive(*read_scene.motion, read_scene.pace, context, result);
+  drive(*read_scene.motion, read_scene.extent, context, result);
   return result;
 }
 

@@ -37,7 +37,7 @@ template <DiscreteSystem Sys> class StepsModule final : public SystemModule {
     const Presentation<Sys> presentation = dressed(system, name(), dress_);
     const InitialValue<Sys> initial = read_initial(system, scene, presentation.momentum);
     const IntegratorChoice choice = read_integrator(scene, capabilities_of(system));
-    const RunExtent pace = read_extent(scene, context);
+    const RunExtent extent = read_extent(scene, context);
     if (!is_plain(choice)) throw NeedsAllMethods{};
     scene.finish();
     auto integrator = std::make_unique<lagroid::detail::IntegratorOf<Sys, FixedStepIntegrator<Sys>>>(
@@ -45,7 +45,7 @@ template <DiscreteSystem Sys> class StepsModule final : public SystemModule {
     SystemMotion<Sys> motion(system, presentation, watched(system, choice.options), std::move(integrator),
                              choice.options);
     RunResult result;
-    drive(motion, pace, context, result);
+    drive(motion, extent, context, result);
     return result;
   }
 

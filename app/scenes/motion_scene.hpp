@@ -13,7 +13,7 @@ namespace lagroid::app {
 /// A motion, how far it is to go, and the methods by which it could be integrated.
 struct MotionScene {
   std::unique_ptr<Motion> motion;
-  RunExtent pace;
+  RunExtent extent;
   std::vector<Method> methods;
 };
 

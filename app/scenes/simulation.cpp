@@ -101,7 +101,7 @@ void read_options(const Section& time, const IntegrationMethod& method, const Ca
   }
 }
 
-void read_stepper(const Section& solver, IntegratorOptions& options) {
+void read_solver(const Section& solver, IntegratorOptions& options) {
   const auto words = words_of(solver_words);
   options.method = choice_of(solver_words, solver.choice_or("method", words.front(), words));
   if (solver.has("max_iterations"))
@@ -142,7 +142,7 @@ IntegratorChoice read_integrator(const Section& scene, const Capabilities& able)
     if (options.fixed != StepKind::variational || options.composition.stages() > 1)
       time.fail("accuracy", "chooses steps of order 2; give step, or leave out order, method and composition");
   }
-  read_stepper(scene.section_or_empty("solver"), options);
+  read_solver(scene.section_or_empty("solver"), options);
   return choice;
 }
 
@@ -196,12 +196,12 @@ std::string kept_scene(const Section& scene) {
 }  // namespace
 
 RunExtent read_extent(const Section& scene, const RunContext& context) {
-  RunExtent pace;
-  pace.steps = read_time(scene).steps;
-  pace.every = read_every(scene);
-  pace.checkpoint = scene.section_or_empty("output").integer_or("checkpoint", 0, 1, most_apart);
-  if (!context.folder.empty() && !context.resume) pace.scene = kept_scene(scene);
-  return pace;
+  RunExtent extent;
+  extent.steps = read_time(scene).steps;
+  extent.every = read_every(scene);
+  extent.checkpoint = scene.section_or_empty("output").integer_or("checkpoint", 0, 1, most_apart);
+  if (!context.folder.empty() && !context.resume) extent.scene = kept_scene(scene);
+  return extent;
 }
 
 }  // namespace lagroid::app

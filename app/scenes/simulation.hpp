@@ -75,7 +75,7 @@ template <DiscreteSystem Sys> struct NewtonInitialValue {
   State<typename Sys::GroupoidType> initial;
   ArrowOf<typename Sys::GroupoidType> configuration;
   Presentation<Sys> presentation;
-  RunExtent pace;
+  RunExtent extent;
 };
 
 /// Whether it is one: the scene sets nothing of steps and solver beyond their size and number.
@@ -101,7 +101,7 @@ std::unique_ptr<Motion> motion_of(const Sys& system, const Presentation<Sys>& pr
 template <DiscreteSystem Sys>
 RunResult simulate(Sys system, const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                    const ArrowOf<typename Sys::GroupoidType>& configuration, const IntegratorChoice& choice,
-                   RunExtent pace, const RunContext& context, const Observer<Sys>& observer) {
+                   RunExtent extent, const RunContext& context, const Observer<Sys>& observer) {
   RunResult result;
   if (choice.accuracy > 0) {
     const double h = step_for_accuracy(system, initial, choice.accuracy, choice.options);
@@ -111,10 +111,10 @@ RunResult simulate(Sys system, const Presentation<Sys>& presentation, const Stat
     } else {
       result.status = std::string(to_string(SolveStatus::no_step));
       result.message = "no step from the initial state has the accuracy asked for; give time.step in place of accuracy";
-      pace.steps = 0;
+      extent.steps = 0;
     }
   }
-  drive(*motion_of(system, presentation, initial, configuration, choice.options, observer), pace, context, result);
+  drive(*motion_of(system, presentation, initial, configuration, choice.options, observer), extent, context, result);
   return result;
 }
 
@@ -126,15 +126,15 @@ PreparedScene<Sys> simulation(const Section& scene, const RunContext& context, c
                               const ArrowOf<typename Sys::GroupoidType>& configuration) {
   const Capabilities able = capabilities_of(system);
   const IntegratorChoice choice = read_integrator(scene, able);
-  const RunExtent pace = read_extent(scene, context);
+  const RunExtent extent = read_extent(scene, context);
   scene.finish();
   std::shared_ptr<const NewtonInitialValue<Sys>> plain;
   if (is_plain(choice))
     plain = std::make_shared<const NewtonInitialValue<Sys>>(
-        NewtonInitialValue<Sys>{initial, configuration, presentation, pace});
+        NewtonInitialValue<Sys>{initial, configuration, presentation, extent});
   return {system,
           [=](const Observer<Sys>& observer) {
-            return simulate(system, presentation, initial, configuration, choice, pace, context, observer);
+            return simulate(system, presentation, initial, configuration, choice, extent, context, observer);
           },
           [=] { return motion_of(system, presentation, initial, configuration, choice.options); },
           integration_methods(able), plain};

@@ -74,15 +74,15 @@ template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
   ModuleOf(std::string name, std::string summary, Read read, std::span<const DeclaredMethod> own_methods = {})
       : SystemModule(std::move(name), std::move(summary)), read_(std::move(read)), own_methods_(own_methods) {}
 
-  PreparedScene<Sys> task(const Section& scene, const RunContext& context) const { return read_(scene, context); }
+  PreparedScene<Sys> prepare(const Section& scene, const RunContext& context) const { return read_(scene, context); }
 
   bool nonholonomic() const override { return Nonholonomic<Sys>; }
   std::span<const DeclaredMethod> own_methods() const override { return own_methods_; }
   RunResult run(const Section& scene, const RunContext& context) const override {
-    return task(scene, context).run(nullptr);
+    return prepare(scene, context).run(nullptr);
   }
   MotionScene read(const Section& scene, const RunContext& context) const override {
-    const PreparedScene<Sys> read = task(scene, context);
+    const PreparedScene<Sys> read = prepare(scene, context);
     if (!read.begin)
       scene.fail("boundary", "a study compares how initial values are integrated: give a scene with [initial]");
     return {read.begin(), read_extent(scene, context), read.methods};

@@ -37,7 +37,7 @@ SphereNode::SphereNode(const SphereSystem& system, SphereForm form, const Method
     : system_(system),
       form_(form),
       constrained_(keeps_spheres ? Constrained::promised : Constrained::watched),
-      walk_(7 * std::numeric_limits<double>::epsilon() * std::sqrt(double(every - 1))),
+      rounding_(7 * std::numeric_limits<double>::epsilon() * std::sqrt(double(every - 1))),
       rods_(system.rods()) {
   const std::size_t k = rods_.size();
   add({"position", labels(k, "{1}{0}"), "m", "of the bobs, z up", false, {}});

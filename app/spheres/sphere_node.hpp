@@ -29,7 +29,7 @@ class SphereNode final : public Observables {
     *value = measured_[quantity].value;
     return measured_[quantity].size;
   }
-  double noise() const override { return walk_; }
+  double noise() const override { return rounding_; }
   Constrained constrained() const override { return constrained_; }
   std::optional<double> residual() const override { return residual_; }
 
@@ -39,7 +39,7 @@ class SphereNode final : public Observables {
   const SphereSystem& system_;
   SphereForm form_;
   Constrained constrained_;
-  double walk_;  ///< of rounding between nodes that are seen, relative to the terms
+  double rounding_;  ///< of rounding between nodes that are seen, relative to the terms
   std::vector<double> rods_;
   std::vector<Field> fields_;
   std::vector<Watched> watched_;

@@ -114,13 +114,13 @@ SphereScene read_spheres(const SphereEntry& entry, const Section& scene, const R
   read.system = entry.read(scene);
   read.options = read_sphere_time(scene, entry, *read.system);
   read.start = read_start(scene, *read.system, read.options.form);
-  out.pace = read_extent(scene, context);
-  if (!out.pace.scene.empty())
-    out.pace.scene = parse_scene(out.pace.scene, scene.file(), read.system->pinned()).whole();
+  out.extent = read_extent(scene, context);
+  if (!out.extent.scene.empty())
+    out.extent.scene = parse_scene(out.extent.scene, scene.file(), read.system->pinned()).whole();
   scene.choice("system", {std::string(entry.name)});
   scene.finish();
   out.methods = sphere_methods(entry, *read.system);
-  out.motion = std::make_unique<SphereMotion>(read, out.pace.every);
+  out.motion = std::make_unique<SphereMotion>(read, out.extent.every);
   return out;
 }
 

@@ -40,7 +40,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     for (long at = 0; at < count; ++at) {
       if (InterruptGuard::interrupted()) return std::nullopt;
       try {
-        members.emplace_back(at, module_.task(scene_.with(design_.member(first + at)), {.record = true}));
+        members.emplace_back(at, module_.prepare(scene_.with(design_.member(first + at)), {.record = true}));
       } catch (const SceneError& error) {
         part.end(at, "invalid_scene", error.problem());
       } catch (const std::exception& error) {
@@ -51,18 +51,18 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     std::vector<State<G>> states;
     std::vector<ArrowOf<G>> configurations;
     for (const Member& member : members) {
-      states.push_back(member.task.plain->initial);
-      configurations.push_back(member.task.plain->configuration);
+      states.push_back(member.prepared.plain->initial);
+      configurations.push_back(member.prepared.plain->configuration);
     }
-    const RunExtent& pace = members.front().task.plain->pace;
-    Ensemble<Sys> ensemble(members.front().task.system, states, configurations);
+    const RunExtent& extent = members.front().prepared.plain->extent;
+    Ensemble<Sys> ensemble(members.front().prepared.system, states, configurations);
     for (std::size_t i = 0; i < members.size(); ++i) members[i].see(ensemble.point(long(i)));
     EnsembleOptions<Sys> options;
     options.interrupted = InterruptGuard::interrupted;
-    options.every = pace.every;
-    if (pace.every <= pace.steps)
+    options.every = extent.every;
+    if (extent.every <= extent.steps)
       options.observe = [&](long i, const TrajectoryPoint<Sys>& point) { members[std::size_t(i)].see(point); };
-    if (!ensemble.advance_to(pace.steps, options)) return std::nullopt;
+    if (!ensemble.advance_to(extent.steps, options)) return std::nullopt;
     for (std::size_t i = 0; i < members.size(); ++i)
       keep_result(members[i].end(ensemble.point(long(i)), ensemble.status(long(i))), keep_, members[i].at, part);
     return part;
@@ -72,8 +72,9 @@ template <class Sys> class LaneRunner final : public MemberRunner {
   struct Member {
     Member(long place, PreparedScene<Sys> its)
         : at(place),
-          task(std::move(its)),
-          node(std::make_unique<SystemNode<Sys>>(task.system, task.plain->presentation, std::vector<Quantity<Sys>>())),
+          prepared(std::move(its)),
+          node(std::make_unique<SystemNode<Sys>>(prepared.system, prepared.plain->presentation,
+                                                 std::vector<Quantity<Sys>>())),
           recorder(*node) {}
 
     void see(const TrajectoryPoint<Sys>& point) {
@@ -82,11 +83,11 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     }
 
     RunResult end(const TrajectoryPoint<Sys>& last, SolveStatus status) {
-      if (last.index % task.plain->pace.every != 0) see(last);
+      if (last.index % prepared.plain->extent.every != 0) see(last);
       RunResult out;
       out.trajectory = std::move(recorder.trajectory());
       out.steps = last.index;
-      out.steps_asked = task.plain->pace.steps;
+      out.steps_asked = prepared.plain->extent.steps;
       if (status != SolveStatus::converged) {
         out.status = std::string(to_string(status));
         out.message = fmt::format("step {} (from t = {:.6g}): {}; lagroid run of this member says what to do",
@@ -96,7 +97,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     }
 
     long at;
-    PreparedScene<Sys> task;
+    PreparedScene<Sys> prepared;
     std::unique_ptr<SystemNode<Sys>> node;
     Recorder recorder;
   };
@@ -126,7 +127,7 @@ std::pair<std::unique_ptr<MemberRunner>, std::string> make_lanes(const Section& 
   if (found == system_modules().end()) return out;
   visit_ensemble(**found, [&]<class Sys>(const ModuleOf<Sys>& module) {
     try {
-      if (module.task(scene, {}).plain)
+      if (module.prepare(scene, {}).plain)
         out = {std::make_unique<LaneRunner<Sys>>(module, scene, design, keep), ""};
       else
         out.second = "they take initial values by equal steps of order 2 by Newton's method";

@@ -79,19 +79,19 @@ void restore(Checkpoint& checkpoint, Trajectory& rows, Kept& run, RunResult& res
 
 }  // namespace
 
-void drive(Motion& motion, const RunExtent& pace, const RunContext& context, RunResult& result) {
+void drive(Motion& motion, const RunExtent& extent, const RunContext& context, RunResult& result) {
   Clock clock;
   result.system = motion.name();
   result.method = description(motion.traits());
-  result.steps_asked = pace.steps;
+  result.steps_asked = extent.steps;
   const Observables& first = motion.look();
   result.initial = first.endpoint();
   Judge judge(first);
   Recorder recorder(first);
-  WatchedMotion watched(motion, &judge, context.record ? &recorder : nullptr, pace.every);
+  WatchedMotion watched(motion, &judge, context.record ? &recorder : nullptr, extent.every);
   Kept run{watched, judge};
   std::optional<Checkpoint> checkpoint;
-  if (!context.folder.empty()) checkpoint.emplace(context.folder, pace.checkpoint);
+  if (!context.folder.empty()) checkpoint.emplace(context.folder, extent.checkpoint);
   const auto keep = [&] {
     if (!checkpoint) return;
     Archive archive;
@@ -106,11 +106,11 @@ void drive(Motion& motion, const RunExtent& pace, const RunContext& context, Run
   watched.observe();
   if (context.resume) {
     restore(*checkpoint, recorder.trajectory(), run, result, clock, context);
-    if (result.steps > pace.steps)
+    if (result.steps > extent.steps)
       throw RunError(fmt::format("{} steps are no more than the run has already, which are {}; ask for more to go on",
-                                 pace.steps, result.steps));
+                                 extent.steps, result.steps));
   } else {
-    if (checkpoint) checkpoint->begin(pace.scene);
+    if (checkpoint) checkpoint->begin(extent.scene);
     keep();
   }
   const auto count = [&](const StepReport& report) {
@@ -121,13 +121,13 @@ void drive(Motion& motion, const RunExtent& pace, const RunContext& context, Run
   IntegrationEnd end;
   bool interrupted = false;
   {
-    Progress progress(result.system, pace.steps, context.progress);
+    Progress progress(result.system, extent.steps, context.progress);
     const InterruptGuard guard;
-    end = integrate_nodes(watched, pace.steps - result.steps, [&](const StepReport& report) {
+    end = integrate_nodes(watched, extent.steps - result.steps, [&](const StepReport& report) {
       count(report);
       ++result.steps;
       progress.update(result.steps);
-      if (guard.interrupted() && result.steps < pace.steps) return false;
+      if (guard.interrupted() && result.steps < extent.steps) return false;
       if (checkpoint && checkpoint->due(result.steps)) keep();
       return true;
     });
@@ -137,10 +137,10 @@ void drive(Motion& motion, const RunExtent& pace, const RunContext& context, Run
   if (end.why == Why::whole || interrupted) keep();  // what failed is counted, but not kept: taken up, it fails again
   if (interrupted) {
     result.status = interrupted_status;
-    result.message =
-        fmt::format("interrupted after step {} of {}; what was computed is kept{}", result.steps, pace.steps,
-                    checkpoint ? fmt::format(", and {} goes on", Checkpoint::how_to_resume(pace.scene, context.folder))
-                               : std::string());
+    result.message = fmt::format(
+        "interrupted after step {} of {}; what was computed is kept{}", result.steps, extent.steps,
+        checkpoint ? fmt::format(", and {} goes on", Checkpoint::how_to_resume(extent.scene, context.folder))
+                   : std::string());
   } else if (end.why == Why::failed) {
     count(end.report);
     result.status = std::string(to_string(end.report.status));

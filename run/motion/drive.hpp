@@ -35,6 +35,6 @@ struct RunContext {
 /// `context` names a folder. The result has its trajectory, its ledger and all else that reports need. A step that
 /// fails, Ctrl-C or SIGTERM ends it with what was computed so far. Throws RunError where the checkpoint is of another
 /// run, OutputError where the folder cannot be used.
-void drive(Motion& motion, const RunExtent& pace, const RunContext& context, RunResult& result);
+void drive(Motion& motion, const RunExtent& extent, const RunContext& context, RunResult& result);
 
 }  // namespace lagroid

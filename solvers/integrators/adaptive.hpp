@@ -64,13 +64,13 @@ template <Timed Sys> class AdaptiveIntegrator {
         fixed_(system, std::move(fixed)),
         extended_(system),
         free_(std::move(free)),
-        walk_(system.groupoid, initial, configuration, start_time(system)) {
+        trajectory_(system.groupoid, initial, configuration, start_time(system)) {
     if constexpr (HasTimeScale<Sys>)
       if (options.without_root == WithoutRoot::controlled)
         controller_.emplace(system.h, time_scale_rate(system, initial));
   }
 
-  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  const TrajectoryPoint<Sys>& point() const { return trajectory_.point(); }
   /// Not symplectic at a given h: on the extended phase space it is, as long as there are roots.
   static MethodTraits traits() { return {"adaptive steps", 2, true, false, false}; }
   /// Steps so far whose energy equation had no root.
@@ -82,7 +82,7 @@ template <Timed Sys> class AdaptiveIntegrator {
     archive(last_size_, time_momentum_, time_momentum_compensation_.lost, degenerate_, without_root_);
     fixed_.serialize(archive);
     free_->serialize(archive);
-    walk_.serialize(fixed_.system().groupoid, archive);
+    trajectory_.serialize(fixed_.system().groupoid, archive);
     past_.serialize(archive);
     if (controller_) controller_->serialize(archive);
   }
@@ -125,7 +125,7 @@ template <Timed Sys> class AdaptiveIntegrator {
   StepPredictor<Sys> fixed_;
   Extended extended_;
   std::unique_ptr<StepSolver<Extended>> free_;
-  CompensatedTrajectory<Sys> walk_;
+  CompensatedTrajectory<Sys> trajectory_;
   std::optional<StepController> controller_;
   Extrapolation<1 + Sys::dimension + Sys::constraints, 4> past_;
   double time_momentum_ = 0;  ///< p_t = -E_d
@@ -283,8 +283,8 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::off_the_energy() {
 
 template <Timed Sys> void AdaptiveIntegrator<Sys>::accept(const Solved& found) {
   const auto& groupoid = fixed_.system().groupoid;
-  walk_.join(groupoid, found.solution);
-  walk_.arrive(found.h);
+  trajectory_.join(groupoid, found.solution);
+  trajectory_.arrive(found.h);
   last_size_ = found.h;
   time_momentum_compensation_.add(time_momentum_, found.time_momentum_change);
   Unknowns unknowns;

@@ -74,21 +74,21 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
                         const Composition& composition, const MakeSolver& make_solver)
       : start_(start_time(parts.front())),
         composition_(composition),
-        walk_(parts.front().groupoid, initial, configuration, start_) {
+        trajectory_(parts.front().groupoid, initial, configuration, start_) {
     for (const Sys& part : parts) {
       h_ += part.h;
-      stages_.push_back({StepPredictor<Sys>(part, make_solver()), walk_.point().step});
+      stages_.push_back({StepPredictor<Sys>(part, make_solver()), trajectory_.point().step});
     }
   }
 
-  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  const TrajectoryPoint<Sys>& point() const { return trajectory_.point(); }
   MethodTraits traits() const { return {std::string(composition_.name), composition_.order, true, true, false}; }
 
   /// The arrows of the last step but the last of them, each with its start and its size.
   template <class Visit> void for_each_inner_stage(const Visit& visit) const {
     double start = point().time - h_;
     for (std::size_t i = 0; i + 1 < stages_.size(); ++i) {
-      const double size = stages_[i].stepper.system().h;
+      const double size = stages_[i].predictor.system().h;
       visit(stages_[i].last, start, size);
       start += size;
     }
@@ -98,16 +98,16 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     for (Stage& stage : stages_) {
-      stage.stepper.serialize(archive);
-      archive.arrow(stage.stepper.system().groupoid, stage.last.arrow);
+      stage.predictor.serialize(archive);
+      archive.arrow(stage.predictor.system().groupoid, stage.last.arrow);
       archive(stage.last.multipliers);
     }
-    walk_.serialize(stages_.front().stepper.system().groupoid, archive);
+    trajectory_.serialize(stages_.front().predictor.system().groupoid, archive);
   }
 
  private:
   struct Stage {
-    StepPredictor<Sys> stepper;
+    StepPredictor<Sys> predictor;
     Step<Sys> last;
   };
 
@@ -115,28 +115,29 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
   double start_;
   Composition composition_;
   std::vector<Stage> stages_;
-  CompensatedTrajectory<Sys> walk_;
+  CompensatedTrajectory<Sys> trajectory_;
 };
 
 template <DiscreteSystem Sys> StepReport CompositionIntegrator<Sys>::advance() {
-  const CompensatedTrajectory<Sys> before = walk_;
+  const CompensatedTrajectory<Sys> before = trajectory_;
   double time = point().time;
   const auto solve = [&](Stage& stage) {
     StepSolution<Sys> solution;
-    set_time(stage.stepper.system(), time);
-    const StepReport report = stage.stepper.solve(point().state, solution);
+    set_time(stage.predictor.system(), time);
+    const StepReport report = stage.predictor.solve(point().state, solution);
     if (!report.converged()) return report;
-    walk_.join(stage.stepper.system().groupoid, solution);
+    trajectory_.join(stage.predictor.system().groupoid, solution);
     stage.last = solution.step;
-    time += stage.stepper.system().h;
+    time += stage.predictor.system().h;
     return report;
   };
   const auto restore = [&] {
-    walk_ = before;
-    for (auto& stage : stages_) stage.stepper.forget();
+    trajectory_ = before;
+    for (auto& stage : stages_) stage.predictor.forget();
   };
   const StepReport report = step_by_stages(stages_, solve, restore);
-  if (report.converged()) walk_.arrive_at(start_ + double(point().index + 1) * h_, stages_.back().stepper.system().h);
+  if (report.converged())
+    trajectory_.arrive_at(start_ + double(point().index + 1) * h_, stages_.back().predictor.system().h);
   return report;
 }
 

@@ -33,12 +33,12 @@ template <DiscreteSystem Sys> class FixedStepIntegrator {
   /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint).
   FixedStepIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
                       std::unique_ptr<StepSolver<Sys>> solver)
-      : stepper_(std::move(system), std::move(solver)),
-        start_(start_time(stepper_.system())),
-        walk_(stepper_.system().groupoid, initial, configuration, start_) {}
+      : predictor_(std::move(system), std::move(solver)),
+        start_(start_time(predictor_.system())),
+        trajectory_(predictor_.system().groupoid, initial, configuration, start_) {}
 
-  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
-  const Sys& system() const { return stepper_.system(); }
+  const TrajectoryPoint<Sys>& point() const { return trajectory_.point(); }
+  const Sys& system() const { return predictor_.system(); }
   /// The system's own, else those of a self-adjoint discretisation.
   MethodTraits traits() const {
     if constexpr (HasTraits<Sys>) {
@@ -51,27 +51,27 @@ template <DiscreteSystem Sys> class FixedStepIntegrator {
   StepReport advance();
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
-    stepper_.serialize(archive);
-    walk_.serialize(system().groupoid, archive);
+    predictor_.serialize(archive);
+    trajectory_.serialize(system().groupoid, archive);
   }
 
  private:
-  StepPredictor<Sys> stepper_;
+  StepPredictor<Sys> predictor_;
   double start_;
-  CompensatedTrajectory<Sys> walk_;
+  CompensatedTrajectory<Sys> trajectory_;
 };
 
 template <DiscreteSystem Sys> LAGROID_FLATTEN StepReport FixedStepIntegrator<Sys>::advance() {
   StepSolution<Sys> solution;
-  const StepReport report = stepper_.solve(point().state, solution);
+  const StepReport report = predictor_.solve(point().state, solution);
   if (report.converged()) {
-    walk_.join(system().groupoid, solution);
+    trajectory_.join(system().groupoid, solution);
     if (has_time_step(system())) {
       const double h = time_step(system());
-      walk_.arrive_at(start_ + double(point().index + 1) * h, h);
-      set_time(stepper_.system(), point().time);
+      trajectory_.arrive_at(start_ + double(point().index + 1) * h, h);
+      set_time(predictor_.system(), point().time);
     } else {
-      walk_.arrive(0);
+      trajectory_.arrive(0);
     }
   }
   return report;

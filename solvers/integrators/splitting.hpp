@@ -154,11 +154,11 @@ template <SplitSystem Sys> class SplittingIntegrator {
       : system_(std::move(system)),
         composition_(composition),
         start_(start_time(system_)),
-        walk_(system_.groupoid, initial, configuration, start_) {
+        trajectory_(system_.groupoid, initial, configuration, start_) {
     if (!splits_by(system_, composition)) throw std::invalid_argument("the splitting is for other systems");
   }
 
-  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  const TrajectoryPoint<Sys>& point() const { return trajectory_.point(); }
   const Sys& system() const { return system_; }
   MethodTraits traits() const {
     const std::string kind = composition_.kicks.empty() ? "Strang splitting, composition " : "splitting ";
@@ -168,13 +168,13 @@ template <SplitSystem Sys> class SplittingIntegrator {
   /// `converged`, or `not_finite` (at a singularity of a flow), which leaves everything as it was.
   StepReport advance();
   /// Visits all that the next step goes on from.
-  void serialize(NumberArchive& archive) { walk_.serialize(system_.groupoid, archive); }
+  void serialize(NumberArchive& archive) { trajectory_.serialize(system_.groupoid, archive); }
 
  private:
   Sys system_;
   Composition composition_;
   double start_;
-  CompensatedTrajectory<Sys> walk_;
+  CompensatedTrajectory<Sys> trajectory_;
 };
 
 template <SplitSystem Sys> StepReport SplittingIntegrator<Sys>::advance() {
@@ -183,8 +183,8 @@ template <SplitSystem Sys> StepReport SplittingIntegrator<Sys>::advance() {
   StepReport report;
   report.status = motion.finite() ? SolveStatus::converged : SolveStatus::not_finite;
   if (!report.converged()) return report;
-  walk_.join(system_.groupoid, motion.solution());
-  walk_.arrive_at(start_ + double(point().index + 1) * system_.h, system_.h);
+  trajectory_.join(system_.groupoid, motion.solution());
+  trajectory_.arrive_at(start_ + double(point().index + 1) * system_.h, system_.h);
   return report;
 }
 

@@ -65,38 +65,38 @@ class ControlledIntegrator {
   /// `configuration` is the arrow whose target is the initial object (see TrajectoryPoint); `system.h` the first step.
   ControlledIntegrator(Sys system, const State<G>& initial, const ArrowOf<G>& configuration,
                        std::unique_ptr<StepSolver<Sys>> solver)
-      : stepper_(std::move(system), std::move(solver)),
-        walk_(stepper_.system().groupoid, initial, configuration, start_time(stepper_.system())),
-        controller_(stepper_.system().h, time_scale_rate(stepper_.system(), initial)) {}
+      : predictor_(std::move(system), std::move(solver)),
+        trajectory_(predictor_.system().groupoid, initial, configuration, start_time(predictor_.system())),
+        controller_(predictor_.system().h, time_scale_rate(predictor_.system(), initial)) {}
 
-  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  const TrajectoryPoint<Sys>& point() const { return trajectory_.point(); }
   static MethodTraits traits() { return {"controlled steps", 2, true, false, false}; }
 
   StepReport advance() {
-    Sys& system = stepper_.system();
+    Sys& system = predictor_.system();
     const double size = controller_.step();
     if (!(size > 0)) return {SolveStatus::no_step};
     system.h = size;
     set_time(system, point().time);
     StepSolution<Sys> solution;
-    const StepReport report = stepper_.solve(point().state, solution);
+    const StepReport report = predictor_.solve(point().state, solution);
     if (!report.converged()) return report;
-    walk_.join(system.groupoid, solution);
-    walk_.arrive(system.h);
+    trajectory_.join(system.groupoid, solution);
+    trajectory_.arrive(system.h);
     controller_.pass(time_scale_rate(system, point().state), system.h);
     return report;
   }
 
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
-    stepper_.serialize(archive);
-    walk_.serialize(stepper_.system().groupoid, archive);
+    predictor_.serialize(archive);
+    trajectory_.serialize(predictor_.system().groupoid, archive);
     controller_.serialize(archive);
   }
 
  private:
-  StepPredictor<Sys> stepper_;
-  CompensatedTrajectory<Sys> walk_;
+  StepPredictor<Sys> predictor_;
+  CompensatedTrajectory<Sys> trajectory_;
   StepController controller_;
 };
 

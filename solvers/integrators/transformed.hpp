@@ -41,11 +41,11 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
         composition_(composition),
         energy_(system_.kinetic_energy(initial.momentum) + system_.potential_energy(initial.object)),
         step_(-system_.h * system_.potential_energy(initial.object)),
-        walk_(system_.groupoid, initial, configuration) {
+        trajectory_(system_.groupoid, initial, configuration) {
     if (!composition.kicks.empty()) throw std::invalid_argument("transformed time takes compositions of steps");
   }
 
-  const TrajectoryPoint<Sys>& point() const { return walk_.point(); }
+  const TrajectoryPoint<Sys>& point() const { return trajectory_.point(); }
   MethodTraits traits() const {
     return {"splitting in transformed time, composition " + std::string(composition_.name),
             composition_.order,
@@ -61,7 +61,7 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     archive(energy_, step_);
-    walk_.serialize(system_.groupoid, archive);
+    trajectory_.serialize(system_.groupoid, archive);
   }
 
  private:
@@ -69,7 +69,7 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
   Composition composition_;
   double energy_;
   double step_;  ///< of s
-  CompensatedTrajectory<Sys> walk_;
+  CompensatedTrajectory<Sys> trajectory_;
 };
 
 template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance() {
@@ -100,8 +100,8 @@ template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance()
                   : inside                                 ? SolveStatus::converged
                                                            : SolveStatus::left_domain;
   if (!report.converged()) return report;
-  walk_.join(system_.groupoid, motion.solution());
-  walk_.arrive(time);
+  trajectory_.join(system_.groupoid, motion.solution());
+  trajectory_.arrive(time);
   return report;
 }
 

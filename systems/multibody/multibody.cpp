@@ -14,11 +14,11 @@ namespace lagroid::multibody {
 namespace {
 
 /// sum += increment with what earlier sums lost.
-LAGROID_INLINE inline void add(Vec& sum, Vec& carry, const Vec& increment) {
-  const Vec step = carry + increment;
+LAGROID_INLINE inline void add(Vec& sum, Vec& compensation, const Vec& increment) {
+  const Vec step = compensation + increment;
   const Vec before = sum;
   sum += step;
-  carry = step - (sum - before);
+  compensation = step - (sum - before);
 }
 
 /// Sets the step of the controller, if it can give one.
@@ -26,7 +26,7 @@ bool take_controlled_step(const Model& model, const SceneState& state, Workspace
   const double size = state.control->step();
   if (!(size > 0)) return false;
   w.inertia.set_step(model.factors, size);
-  w.next.time = state.at.time + (state.time_carry + size);
+  w.next.time = state.at.time + (state.time_compensation + size);
   return true;
 }
 
@@ -36,7 +36,7 @@ void kick(const Model& model, const SceneState& state, Workspace& w) {
   std::fill(w.spin_impulse.begin(), w.spin_impulse.end(), Vec::Zero());
   w.add_impulse(model, state.loads);
   for (std::size_t f = 0; f < w.kicked.size(); ++f) {
-    w.kicked[f] = state.momentum[f] + (state.momentum_carry[f] + w.impulse[f]);
+    w.kicked[f] = state.momentum[f] + (state.momentum_compensation[f] + w.impulse[f]);
     w.displacement[f] = w.inertia.response[f].cwiseProduct(w.kicked[f]);
   }
   for (std::size_t k = 0; k < w.inertia.dragged_response.size(); ++k) {
@@ -45,7 +45,7 @@ void kick(const Model& model, const SceneState& state, Workspace& w) {
   }
   if (model.rows.vakonomic) w.vakonomic.free_displacement = w.displacement;
   for (std::size_t r = 0; r < w.spin_kicked.size(); ++r)
-    w.spin_kicked[r] = state.spin[r] + (state.spin_carry[r] + w.spin_impulse[r]);
+    w.spin_kicked[r] = state.spin[r] + (state.spin_compensation[r] + w.spin_impulse[r]);
 }
 
 StepReport solve_islands(const Model& model, const SceneState& state, const StepOptions& options, Workspace& w) {
@@ -124,7 +124,7 @@ void end_factors(const Model& model, SceneState& state, Workspace& w) {
     state.dissipated += xi.dot(impulse) / w.inertia.h;
   }
   for (std::size_t r = 0; r < w.spin_impulse.size(); ++r) {
-    const Vec total = state.spin[r] + (state.spin_carry[r] + w.spin_impulse[r]);
+    const Vec total = state.spin[r] + (state.spin_compensation[r] + w.spin_impulse[r]);
     w.spin_impulse[r] += w.inertia.turns[r].carried_change(w.turned[r], total);
   }
   for (const int d : factors.damped_turns) {
@@ -154,9 +154,9 @@ void end_vakonomic(const Model& model, const SceneState& state, Workspace& w) {
 
 /// The arrow's target becomes the node where the state stands.
 void arrive(const Model& model, SceneState& state, Workspace& w) {
-  for (std::size_t f = 0; f < state.place_carry.size(); ++f) {
-    const Vec step = state.place_carry[f] + w.displacement[f];
-    state.place_carry[f] = step - (w.next.x[f] - state.at.x[f]);
+  for (std::size_t f = 0; f < state.place_compensation.size(); ++f) {
+    const Vec step = state.place_compensation[f] + w.displacement[f];
+    state.place_compensation[f] = step - (w.next.x[f] - state.at.x[f]);
   }
   swap(state.at, w.next);
   std::swap(state.attitude, w.next_attitude);
@@ -298,7 +298,7 @@ StepReport Multibody::solve() {
 void Multibody::accept() {
   Workspace& w = workspace_;
   state_.step = w.inertia.h;
-  if (state_.control) state_.time_carry += w.inertia.h - (w.next.time - state_.at.time);
+  if (state_.control) state_.time_compensation += w.inertia.h - (w.next.time - state_.at.time);
   std::swap(w.rows.precision, state_.precision);
   if (model_.rows.on_arrows) note_arrow_residual(model_, w, state_);
   end_factors(model_, state_, w);
@@ -307,8 +307,9 @@ void Multibody::accept() {
   if (!model_.rows.compliance.empty()) end_damping(model_, state_, w);
   w.add_impulse(model_, state_.loads);
   for (std::size_t f = 0; f < state_.momentum.size(); ++f)
-    add(state_.momentum[f], state_.momentum_carry[f], w.impulse[f]);
-  for (std::size_t r = 0; r < state_.spin.size(); ++r) add(state_.spin[r], state_.spin_carry[r], w.spin_impulse[r]);
+    add(state_.momentum[f], state_.momentum_compensation[f], w.impulse[f]);
+  for (std::size_t r = 0; r < state_.spin.size(); ++r)
+    add(state_.spin[r], state_.spin_compensation[r], w.spin_impulse[r]);
   if (state_.control) state_.control->pass(time_scale_rate(), w.inertia.h);
 }
 
@@ -330,7 +331,8 @@ void Multibody::follow_state() {
 
 void Multibody::reverse() {
   if (state_.control) state_.control->pass(-time_scale_rate(), state_.control->step());
-  for (auto* list : {&state_.momentum, &state_.momentum_carry, &state_.spin, &state_.spin_carry, &state_.guess.turns})
+  for (auto* list :
+       {&state_.momentum, &state_.momentum_compensation, &state_.spin, &state_.spin_compensation, &state_.guess.turns})
     for (Vec& v : *list) v = -v;
   for (SceneState::Guess& stage : state_.stages)
     for (Vec& v : stage.turns) v = -v;

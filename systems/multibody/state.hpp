@@ -29,12 +29,12 @@ struct SceneState {
   };
 
   long index = 0;
-  double step = 0;        ///< that led here; at the start, the first
-  double time_carry = 0;  ///< of sums of steps that are controlled
-  double dissipated = 0;  ///< J
-  Configuration at;       ///< the places of linear factors first
+  double step = 0;               ///< that led here; at the start, the first
+  double time_compensation = 0;  ///< of sums of steps that are controlled
+  double dissipated = 0;         ///< J
+  Configuration at;              ///< the places of linear factors first
   std::vector<Quaternion> attitude;
-  std::vector<Vec> place_carry, momentum, momentum_carry, spin, spin_carry;
+  std::vector<Vec> place_compensation, momentum, momentum_compensation, spin, spin_compensation;
   Guess guess;
   std::vector<Guess> stages;  ///< of a composed step, each with its own
   std::optional<StepController> control;

@@ -21,9 +21,9 @@ std::optional<RunResult> run(const Section& scene) {
   if (family.command() != "run" || scene.section_or_empty("time").has("tolerance")) return std::nullopt;
   MotionScene read = family.read(scene, {});
   constexpr long most_steps = 2;
-  read.pace.steps = std::min(read.pace.steps, most_steps);
+  read.extent.steps = std::min(read.extent.steps, most_steps);
   RunResult result;
-  drive(*read.motion, read.pace, {.record = true}, result);
+  drive(*read.motion, read.extent, {.record = true}, result);
   return result;
 }
 

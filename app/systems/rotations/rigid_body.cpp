@@ -35,7 +35,7 @@ PreparedScene<RigidBody> moser_veselov(const Section& scene, const RunContext& c
   const int order = int(time.integer_or("order", moser_veselov_method.order, orders.front(), orders.back()));
   if (std::find(orders.begin(), orders.end(), order) == orders.end())
     time.fail("order", fmt::format("must be {}, got {}", any_of_these(orders), order));
-  const RunExtent pace = read_extent(scene, context);
+  const RunExtent extent = read_extent(scene, context);
   scene.finish();
   MoserVeselov system;
   try {
@@ -49,7 +49,7 @@ PreparedScene<RigidBody> moser_veselov(const Section& scene, const RunContext& c
             const Observer<MoserVeselov> as_body = [&](const TrajectoryPoint<MoserVeselov>& p) {
               observer({p.index, p.time, p.step_size, p.state, p.configuration, {p.step.arrow, {}}});
             };
-            return simulate(system, presentation, initial.state, initial.configuration, {}, pace, context,
+            return simulate(system, presentation, initial.state, initial.configuration, {}, extent, context,
                             observer ? as_body : nullptr);
           },
           [=] { return motion_of(system, presentation, initial.state, initial.configuration, {}); }};
@@ -71,9 +71,9 @@ PreparedScene<RigidBody> read(const Section& scene, const RunContext& context) {
   if (!scene.has("boundary") &&
       read_method_word(scene.section_or_empty("time"), own_methods) == moser_veselov_method.name)
     return moser_veselov(scene, context);
-  PreparedScene<RigidBody> task = read_any_system<RigidBody>(scene, context, name, dress);
-  if (task.begin) add_moser_veselov(task.methods);
-  return task;
+  PreparedScene<RigidBody> prepared = read_any_system<RigidBody>(scene, context, name, dress);
+  if (prepared.begin) add_moser_veselov(prepared.methods);
+  return prepared;
 }
 
 }  // namespace

@@ -262,7 +262,7 @@ void Assembly::add_linear_factors() {
     islands.push_back(islands_of_factors_[std::size_t(i)]);
   }
   set_ranges(islands, &Model::Island::dragged);
-  start_.momentum_carry = start_.place_carry = std::vector<Vec>(start_.momentum.size(), Vec::Zero());
+  start_.momentum_compensation = start_.place_compensation = std::vector<Vec>(start_.momentum.size(), Vec::Zero());
 }
 
 void Assembly::add_rotations() {
@@ -279,7 +279,7 @@ void Assembly::add_rotations() {
     if (!r.damping.isZero(0)) factors.damped_turns.push_back(k);
   }
   start_.at.attitude.assign(start_.spin.size() + 1, Mat::Identity());
-  start_.spin_carry = std::vector<Vec>(start_.spin.size(), Vec::Zero());
+  start_.spin_compensation = std::vector<Vec>(start_.spin.size(), Vec::Zero());
 }
 
 void Assembly::clear_loads() {

@@ -176,7 +176,7 @@ void IslandSolver::place(const Model::Island& island) {
   Configuration& next = workspace_.next;
   for (int f = island.linear.first; f < island.linear.last; ++f) {
     const auto i = std::size_t(f);
-    next.x[i] = from_.at.x[i] + (from_.place_carry[i] + workspace_.displacement[i]);
+    next.x[i] = from_.at.x[i] + (from_.place_compensation[i] + workspace_.displacement[i]);
   }
   for (int r = island.rotations.first; r < island.rotations.last; ++r) {
     const auto i = std::size_t(r);
