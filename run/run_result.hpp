@@ -46,7 +46,8 @@ struct Endpoint {
   std::vector<double> momentum;
 };
 
-struct Minimum {
+/// Of a boundary value: a path that was found, and what kind of stationary point of the action it is.
+struct StationaryPath {
   double cost = 0;
   int starts = 0;  ///< that led to it; none where a way down from a saddle did
   std::vector<double> momentum;
@@ -108,7 +109,7 @@ struct RunResult {
   std::vector<double> first_multipliers;
   std::vector<double> last_multipliers;
   int starts = 0;  ///< of a boundary value, all that were made
-  std::vector<Minimum> minima;
+  std::vector<StationaryPath> stationary_paths;
   std::vector<std::string> notes;
   Ledger ledger;
   Trajectory trajectory;

@@ -183,13 +183,13 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
   const Sys& system = problem.stage.problem.system;
   for (const auto& s : found.solutions) {
     const auto momentum = tangent_momentum(system, legendre_minus(system, s.path.front()));
-    result.minima.push_back({s.cost,
-                             s.starts,
-                             {momentum.data(), momentum.data() + momentum.size()},
-                             s.kind.is_minimum,
-                             s.kind.isolated,
-                             s.kind.normal,
-                             s.kind.negative_directions});
+    result.stationary_paths.push_back({s.cost,
+                                       s.starts,
+                                       {momentum.data(), momentum.data() + momentum.size()},
+                                       s.kind.is_minimum,
+                                       s.kind.isolated,
+                                       s.kind.normal,
+                                       s.kind.negative_directions});
   }
   const auto best = std::find_if(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
     return seek == StationaryKind::stationary || s.kind.is_minimum;

@@ -113,7 +113,8 @@ void keep_result(const RunResult& r, const KeptColumns& keep, long at, SweepPart
   part.end(at, r.status, r.converged() ? std::string() : r.message);
   part.set(at, "run/steps", "1", "arrows computed", double(r.steps));
   if (r.cost) part.set(at, "run/cost", "action", "of the path", *r.cost);
-  if (!r.minima.empty()) part.set(at, "run/stationary_paths", "1", "found", double(r.minima.size()));
+  if (!r.stationary_paths.empty())
+    part.set(at, "run/stationary_paths", "1", "found", double(r.stationary_paths.size()));
   const auto broken = std::count_if(r.ledger.entries.begin(), r.ledger.entries.end(),
                                     [](const LedgerEntry& entry) { return entry.broken(); });
   if (!r.ledger.entries.empty())

@@ -27,7 +27,7 @@ namespace lagroid::python {
 namespace {
 
 namespace fs = std::filesystem;
-using lagroid::Endpoint, lagroid::LedgerEntry, lagroid::Minimum, lagroid::RunResult, lagroid::Columns;
+using lagroid::Endpoint, lagroid::LedgerEntry, lagroid::StationaryPath, lagroid::RunResult, lagroid::Columns;
 
 /// Runs the scene; with a folder, keeps checkpoints there and leaves the files of a run.
 std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std::optional<fs::path>& folder,
@@ -137,16 +137,17 @@ void bind_scenes(py::module_& module) {
         return fmt::format("<{}: {}, drift {:.2e}: {}>", e.name, e.promise, e.drift, e.verdict);
       });
 
-  py::class_<Minimum>(module, "Minimum", "A stationary path of a boundary value.")
-      .def_readonly("cost", &Minimum::cost, "The sum of the Lagrangian over its arrows.")
-      .def_readonly("starts", &Minimum::starts, "How many starts led to it; none where a way down from a saddle did.")
+  py::class_<StationaryPath>(module, "StationaryPath", "A stationary path of a boundary value.")
+      .def_readonly("cost", &StationaryPath::cost, "The sum of the Lagrangian over its arrows.")
+      .def_readonly("starts", &StationaryPath::starts,
+                    "How many starts led to it; none where a way down from a saddle did.")
       .def_property_readonly(
-          "momentum", [](const py::object& self) { return view(self.cast<const Minimum&>().momentum, self); },
+          "momentum", [](const py::object& self) { return view(self.cast<const StationaryPath&>().momentum, self); },
           "At its start.")
-      .def_readonly("is_minimum", &Minimum::is_minimum, "Whether its second variation is positive.")
-      .def_readonly("isolated", &Minimum::isolated, "False: one of a continuous family.")
-      .def_readonly("normal", &Minimum::normal, "False: abnormal, its multipliers are not unique.")
-      .def_readonly("negative_directions", &Minimum::negative_directions, "Directions that lower the action.");
+      .def_readonly("is_minimum", &StationaryPath::is_minimum, "Whether its second variation is positive.")
+      .def_readonly("isolated", &StationaryPath::isolated, "False: one of a continuous family.")
+      .def_readonly("normal", &StationaryPath::normal, "False: abnormal, its multipliers are not unique.")
+      .def_readonly("negative_directions", &StationaryPath::negative_directions, "Directions that lower the action.");
 
   py::class_<Columns>(module, "Columns", "A recorded quantity: a row for each node, or for each arrow.")
       .def_readonly("name", &Columns::name, "Of the data set in files.")
@@ -193,7 +194,16 @@ void bind_scenes(py::module_& module) {
           [](const py::object& self) { return view(self.cast<const RunResult&>().last_multipliers, self); },
           "Of the last arrow.")
       .def_readonly("starts", &RunResult::starts, "Of a boundary value: how many there were; else 0.")
-      .def_readonly("minima", &RunResult::minima, "Of a boundary value: the stationary paths found, cheapest first.")
+      .def_readonly("stationary_paths", &RunResult::stationary_paths,
+                    "Of a boundary value: those found, cheapest first.")
+      .def_property_readonly(
+          "minima",
+          [](const RunResult& r) {
+            if (PyErr_WarnEx(PyExc_DeprecationWarning, "Run.minima is Run.stationary_paths", 1) != 0)
+              throw py::error_already_set();
+            return r.stationary_paths;
+          },
+          "What stationary_paths were called in version 0.2.")
       .def_readonly("notes", &RunResult::notes, "What else there is to say.")
       .def_property_readonly(
           "ledger", [](const RunResult& r) { return r.ledger.entries; }, "What was promised and found.")

@@ -22,7 +22,6 @@ from ._lagroid import (
     Integrator,
     Kepler,
     LedgerEntry,
-    Minimum,
     Panel,
     Pendulum,
     PlateBall,
@@ -31,6 +30,7 @@ from ._lagroid import (
     RollingDisk,
     Run,
     SphericalPendulum,
+    StationaryPath,
     Trajectory,
     Unicycle,
     __version__,
@@ -68,7 +68,6 @@ __all__ = [
     "MatrixGroup",
     "Measures",
     "Method",
-    "Minimum",
     "Optimum",
     "OutputError",
     "Pairs",
@@ -90,6 +89,7 @@ __all__ = [
     "SolveError",
     "Sphere",
     "SphericalPendulum",
+    "StationaryPath",
     "Stiefel",
     "Sweep",
     "Trajectories",
@@ -119,7 +119,7 @@ for _name in _lagroid.system_classes:
         __all__.append(_name)
 
 # Names of version 0.2, which go with 0.4.
-_renamed = {"March": "Trajectory", "PrototypeMarch": "PrototypeTrajectory"}
+_renamed = {"March": "Trajectory", "Minimum": "StationaryPath", "PrototypeMarch": "PrototypeTrajectory"}
 
 
 def __getattr__(name: str) -> object:

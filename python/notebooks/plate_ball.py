@@ -16,8 +16,8 @@ settings = {"time.steps": 20, "solver.starts": 10} if quick else {}
 run = lagroid.require(lagroid.run(examples / "plate_ball.toml", set=settings))
 print(run)
 print("cost", run.cost)
-for minimum in run.minima:
-    print("  stationary path of cost", minimum.cost, "a minimum" if minimum.is_minimum else "no minimum")
+for path in run.stationary_paths:
+    print("  stationary path of cost", path.cost, "a minimum" if path.is_minimum else "no minimum")
 
 # %% [markdown]
 # Its path and its controls; the momentum is conserved along it.

@@ -168,8 +168,8 @@ class Scenes(unittest.TestCase):
     def test_boundary_value(self) -> None:
         run = lagroid.require(lagroid.run(EXAMPLES / "kepler_boundary.toml"))
         self.assertIsNotNone(run.cost)
-        self.assertGreaterEqual(len(run.minima), 1)
-        self.assertEqual(run.minima[0].momentum.shape, (2,))
+        self.assertGreaterEqual(len(run.stationary_paths), 1)
+        self.assertEqual(run.stationary_paths[0].momentum.shape, (2,))
 
     def test_systems_are_those_of_the_listing(self) -> None:
         systems = lagroid.systems()

@@ -282,7 +282,7 @@ class Systems(unittest.TestCase):
         paths = system.boundary(np.concatenate([start, end]), run.steps)
         costs = [path.cost for path in paths]
         self.assertEqual(costs, sorted(costs))
-        self.assertAlmostEqual(min(costs), run.minima[0].cost, places=9)
+        self.assertAlmostEqual(min(costs), run.stationary_paths[0].cost, places=9)
         np.testing.assert_allclose(paths[0].object[-1], end, atol=1e-9)
         self.assertEqual(paths[0].momentum.shape, (run.steps + 1, 2))
         self.assertEqual(paths[0].arrow.shape, (run.steps, 4))

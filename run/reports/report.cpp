@@ -94,10 +94,10 @@ std::string solved(const RunResult& r) {
   return r.status == "no_minimum" ? "no minimum found" : "not every equation solved";
 }
 
-std::string kind(const Minimum& m) {
-  std::string out = m.is_minimum ? "minimum" : fmt::format("saddle ({} descending)", m.negative_directions);
-  if (!m.isolated) out += ", not isolated";
-  if (!m.normal) out += ", abnormal";
+std::string kind(const StationaryPath& path) {
+  std::string out = path.is_minimum ? "minimum" : fmt::format("saddle ({} descending)", path.negative_directions);
+  if (!path.isolated) out += ", not isolated";
+  if (!path.normal) out += ", abnormal";
   return out;
 }
 
@@ -117,11 +117,11 @@ std::string text_report(const RunResult& r) {
   }
   if (r.final.body_attitude)
     line(fmt::format("            the ball itself, A^T: ({:.8g})", fmt::join(*r.final.body_attitude, ", ")));
-  if (!r.minima.empty()) {
+  if (!r.stationary_paths.empty()) {
     line("  stationary paths");
-    for (const auto& m : r.minima)
-      line(fmt::format("    cost {:<18.12g} {}  found by {} of {} starts  initial momentum {}", m.cost, kind(m),
-                       m.starts, r.starts, numbers(m.momentum)));
+    for (const auto& path : r.stationary_paths)
+      line(fmt::format("    cost {:<18.12g} {}  found by {} of {} starts  initial momentum {}", path.cost, kind(path),
+                       path.starts, r.starts, numbers(path.momentum)));
   }
   for (const auto& note : r.notes) line("  note: " + note);
   line("  ledger");
@@ -157,16 +157,16 @@ std::string json_report(const RunResult& r) {
   out["final"] = json(r.final);
   out["multipliers"] = {{"first", r.first_multipliers}, {"last", r.last_multipliers}};
   if (r.starts > 0) out["starts"] = r.starts;
-  Json minima = Json::array();
-  for (const auto& m : r.minima)
-    minima.push_back({{"cost", m.cost},
-                      {"starts", m.starts},
-                      {"momentum", m.momentum},
-                      {"is_minimum", m.is_minimum},
-                      {"isolated", m.isolated},
-                      {"normal", m.normal},
-                      {"negative_directions", m.negative_directions}});
-  out["minima"] = minima;
+  Json paths = Json::array();
+  for (const auto& path : r.stationary_paths)
+    paths.push_back({{"cost", path.cost},
+                     {"starts", path.starts},
+                     {"momentum", path.momentum},
+                     {"is_minimum", path.is_minimum},
+                     {"isolated", path.isolated},
+                     {"normal", path.normal},
+                     {"negative_directions", path.negative_directions}});
+  out["stationary_paths"] = paths;
   Json ledger;
   ledger["entries"] = array_of(r.ledger.entries);
   ledger["iterations"] = {

@@ -142,7 +142,7 @@ TEST(AnySystem, HasBoundaryValues) {
       "ends.toml", {});
   const RunResult result = module.run(named(ends), {});
   EXPECT_TRUE(result.converged()) << result.message;
-  EXPECT_EQ(result.minima.size(), 1u) << "of a quadratic action";
+  EXPECT_EQ(result.stationary_paths.size(), 1u) << "of a quadratic action";
   EXPECT_THROW(module.read(named(ends), {}), SceneError) << "no initial value";
 }
 

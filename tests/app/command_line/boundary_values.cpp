@@ -13,8 +13,8 @@ TEST_F(CommandLine, BoundaryValueJson) {
   const Outcome r = run("run " + example("plate_ball") + " --json");
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_NEAR(json.at("cost").get<double>(), 7.2978550783250329880, 1e-11);
-  EXPECT_EQ(json.at("minima").at(0).at("is_minimum"), true);
-  EXPECT_EQ(json.at("minima").at(0).at("momentum").size(), 5U);
+  EXPECT_EQ(json.at("stationary_paths").at(0).at("is_minimum"), true);
+  EXPECT_EQ(json.at("stationary_paths").at(0).at("momentum").size(), 5U);
   EXPECT_EQ(json.at("final").at("attitude").size(), 4U);
   EXPECT_EQ(json.at("multipliers").at("first").size(), 3U);
   EXPECT_NEAR(json.at("final").at("position").at(0).get<double>(), 1.0, 1e-14);

@@ -78,7 +78,8 @@ TEST_F(CommandLine, EveryExampleRuns) {
     EXPECT_EQ(r.code, 0) << entry.path() << r.err;
     const auto json = nlohmann::json::parse(r.out);
     EXPECT_EQ(json.at("status"), "converged");
-    for (const char* key : {"steps", "seconds", "iterations", "initial", "final", "multipliers", "minima", "ledger"})
+    for (const char* key :
+         {"steps", "seconds", "iterations", "initial", "final", "multipliers", "stationary_paths", "ledger"})
       EXPECT_TRUE(json.contains(key)) << key;
     for (const auto& e : json.at("ledger").at("entries")) EXPECT_NE(e.at("verdict"), "BROKEN") << entry.path() << e;
   }
