@@ -20,8 +20,8 @@ BoundaryChoice read_boundary_solver(const Section& solver) {
   const auto words = words_of(boundary_words);
   choice.method = choice_of(boundary_words, solver.choice_or("method", words.front(), words));
   if (solver.has("seek"))
-    choice.seek = solver.choice("seek", {"minima", "stationary"}) == "minima" ? StationaryKind::minima
-                                                                              : StationaryKind::stationary;
+    choice.stationary_kind = solver.choice("seek", {"minima", "stationary"}) == "minima" ? StationaryKind::minima
+                                                                                         : StationaryKind::stationary;
   choice.multistart = read_multistart(solver);
   choice.multistart.amplitude = solver.number_or("amplitude", 0, nonnegative);
   choice.options.tolerance = solver.number_or("tolerance", choice.options.tolerance, positive);

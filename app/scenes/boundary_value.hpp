@@ -36,7 +36,7 @@ namespace lagroid::app {
 /// [solver] of a boundary-value run.
 struct BoundaryChoice {
   BoundaryMethod method = BoundaryMethod::newton;
-  std::optional<StationaryKind> seek;
+  std::optional<StationaryKind> stationary_kind;
   BoundaryOptions options;
   MultistartOptions multistart;
 };
@@ -177,7 +177,7 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
 
 /// Chooses a path and records it, with a note on the choice; or writes why there is none.
 template <DiscreteSystem Sys>
-void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind seek,
+void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind kind,
                       const MultistartResult<Sys>& found, long every, const Observer<Sys>& observer,
                       RunResult& result) {
   const Sys& system = problem.stage.problem.system;
@@ -192,7 +192,7 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
                                        s.kind.negative_directions});
   }
   const auto best = std::find_if(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
-    return seek == StationaryKind::stationary || s.kind.is_minimum;
+    return kind == StationaryKind::stationary || s.kind.is_minimum;
   });
   if (best != found.solutions.end()) {
     record_path(system, presentation, best->path, problem.start, every, observer, result);
@@ -262,7 +262,8 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
                                const Search& search, const Observer<Sys>& observer) {
   const auto& [scene, presentation, problem, first, choice, along, every] = run;
   const auto clock = std::chrono::steady_clock::now();
-  const auto solver = make_boundary_solver<Sys>(choice.method, choice.options, choice.seek.value_or(natural_seek<Sys>));
+  const auto solver = make_boundary_solver<Sys>(choice.method, choice.options,
+                                                choice.stationary_kind.value_or(natural_stationary_kind<Sys>));
   MultistartOptions multistart = choice.multistart;
   MultistartResult<Sys> found;
   {
@@ -286,8 +287,8 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
     reached = continue_solutions(*solver, scene, *along, read, context, found, result);
   result.iterations = found.iterations;
   // Where nothing arrived, the farthest path is one of the problem it was solved for.
-  report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation, solver->seek(),
-                   found, every, observer, result);
+  report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation,
+                   solver->stationary_kind(), found, every, observer, result);
   result.ledger.mean_iterations = double(found.start_iterations) / double(found.starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

@@ -6,5 +6,8 @@
 namespace lagroid {
 
 using Seek [[deprecated("Seek is StationaryKind")]] = StationaryKind;
+template <DiscreteSystem Sys>
+[[deprecated("natural_seek is natural_stationary_kind")]] inline constexpr StationaryKind natural_seek =
+    natural_stationary_kind<Sys>;
 
 }  // namespace lagroid

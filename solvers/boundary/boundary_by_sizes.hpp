@@ -71,7 +71,7 @@ template <DiscreteSystem Sys> class BoundarySolverBySizes final : public Boundar
  public:
   using Sized = SizedSystemOf<Sys>;
   BoundarySolverBySizes(BoundaryOptions options, std::unique_ptr<const BoundarySolver<Sized>> solver)
-      : BoundarySolver<Sys>(options, solver->seek()), solver_(std::move(solver)) {}
+      : BoundarySolver<Sys>(options, solver->stationary_kind()), solver_(std::move(solver)) {}
 
   const BoundarySolver<Sized>& sized() const { return *solver_; }
 
@@ -90,7 +90,7 @@ template <DiscreteSystem Sys> class BoundarySolverOfSystem final : public Bounda
  public:
   using Sized = SizedSystemOf<Sys>;
   explicit BoundarySolverOfSystem(const BoundarySolver<Sys>& solver)
-      : BoundarySolver<Sized>({}, solver.seek()), solver_(&solver) {}
+      : BoundarySolver<Sized>({}, solver.stationary_kind()), solver_(&solver) {}
 
  private:
   BoundarySolution<Sized> solve_from(const BoundaryProblem<Sized>& problem, Path<Sized> path,
@@ -131,13 +131,13 @@ template <class Sized> inline constexpr bool boundary_sizes_compiled = false;
 /// `make_boundary_solver` of sizes.
 template <DiscreteSystem Sized>
 std::unique_ptr<BoundarySolver<Sized>> make_sized_boundary_solver(BoundaryMethod method, BoundaryOptions options,
-                                                                  StationaryKind seek);
+                                                                  StationaryKind kind);
 
 }  // namespace detail
 
 template <DiscreteSystem Sys>
 std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method, BoundaryOptions options,
-                                                          StationaryKind seek) {
+                                                          StationaryKind kind) {
   using Sized = SizedSystemOf<Sys>;
   constexpr bool available = detail::boundary_sizes_compiled<Sized> || requires {
     sizeof(detail::BoundarySolvers<Sized>);
@@ -152,7 +152,7 @@ std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method,
   require_optional_members_to_fit<Sys>();
   if constexpr (available)
     return std::make_unique<BoundarySolverBySizes<Sys>>(
-        options, detail::make_sized_boundary_solver<Sized>(method, options, seek));
+        options, detail::make_sized_boundary_solver<Sized>(method, options, kind));
 }
 
 }  // namespace lagroid

@@ -46,7 +46,7 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
     BoundaryKkt<Sys> kkt;
     if (!keep_multipliers) {
       // The same start as Newton's: an admissible path with its least-squares multipliers.
-      auto prepared = BoundaryNewton<Sys>(options_, seek_).prepare(problem, std::move(path));
+      auto prepared = BoundaryNewton<Sys>(options_, stationary_kind_).prepare(problem, std::move(path));
       if (!prepared.converged()) return prepared;
       path = std::move(prepared.path);
       out.iterations = prepared.iterations;
@@ -94,7 +94,7 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
   }
 
   using BoundarySolver<Sys>::options_;
-  using BoundarySolver<Sys>::seek_;
+  using BoundarySolver<Sys>::stationary_kind_;
   static constexpr int ambient = SourceFibreManifold<G>::ambient;
 
   /// Levenberg-Marquardt from `path`, which becomes what it found.

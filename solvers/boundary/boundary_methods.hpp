@@ -16,26 +16,26 @@ namespace lagroid::detail {
 
 template <DiscreteSystem Sized> struct BoundarySolvers {
   static std::unique_ptr<BoundarySolver<Sized>> make(BoundaryMethod method, BoundaryOptions options,
-                                                     StationaryKind seek) {
+                                                     StationaryKind kind) {
     switch (method) {
       case BoundaryMethod::shooting:
-        return std::make_unique<BoundaryShooting<Sized>>(options, seek);
+        return std::make_unique<BoundaryShooting<Sized>>(options, kind);
       case BoundaryMethod::ceres:
 #ifdef LAGROID_WITHOUT_CERES
         throw MissingLibrary("the solver \"ceres\" of boundary values", "Ceres", "libceres-dev");
 #else
-        return std::make_unique<BoundaryCeres<Sized>>(options, seek);
+        return std::make_unique<BoundaryCeres<Sized>>(options, kind);
 #endif
       default:
-        return std::make_unique<BoundaryNewton<Sized>>(options, seek);
+        return std::make_unique<BoundaryNewton<Sized>>(options, kind);
     }
   }
 };
 
 template <DiscreteSystem Sized>
 std::unique_ptr<BoundarySolver<Sized>> make_sized_boundary_solver(BoundaryMethod method, BoundaryOptions options,
-                                                                  StationaryKind seek) {
-  return BoundarySolvers<Sized>::make(method, options, seek);
+                                                                  StationaryKind kind) {
+  return BoundarySolvers<Sized>::make(method, options, kind);
 }
 
 }  // namespace lagroid::detail

@@ -55,7 +55,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
     const Sys& system = problem.system;
     if (keep_multipliers) polish(problem, work, path, out);
     if (!out.converged() && restore(problem, work, path, out)) {
-      if (seek_ == StationaryKind::minima) {
+      if (stationary_kind_ == StationaryKind::minima) {
         find_minimum(problem, work, path, out);
       } else {
         find_stationary(problem, work, path, out);
@@ -71,7 +71,7 @@ template <DiscreteSystem Sys> class BoundaryNewton final : public BoundarySolver
   }
 
   using BoundarySolver<Sys>::options_;
-  using BoundarySolver<Sys>::seek_;
+  using BoundarySolver<Sys>::stationary_kind_;
   using Kkt = BoundaryKkt<Sys>;
   using Columns = typename Kkt::Columns;
 

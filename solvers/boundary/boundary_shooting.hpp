@@ -82,7 +82,7 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
     const Sys& system = problem.system;
     BoundarySolution<Sys> out;
     if (!keep_multipliers) {
-      out = BoundaryNewton<Sys>(options_, seek_).prepare(problem, std::move(path));
+      out = BoundaryNewton<Sys>(options_, stationary_kind_).prepare(problem, std::move(path));
       if (!out.converged()) return out;
       path = std::move(out.path);
     }
@@ -130,7 +130,7 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
   }
 
   using BoundarySolver<Sys>::options_;
-  using BoundarySolver<Sys>::seek_;
+  using BoundarySolver<Sys>::stationary_kind_;
 
   /// A trajectory from a momentum, and the displacement of its end that would reach the boundary.
   struct Shot {

@@ -11,7 +11,7 @@
 #define LAGROID_BOUNDARY_SIZES(prefix, ...)                                                                          \
   prefix std::unique_ptr<BoundarySolver<SizedSystem<__VA_ARGS__>>> make_sized_boundary_solver(                       \
       BoundaryMethod, BoundaryOptions, StationaryKind);                                                              \
-  prefix BoundarySolution<SizedSystem<__VA_ARGS__>> carry(                                                           \
+  prefix BoundarySolution<SizedSystem<__VA_ARGS__>> continue_to(                                                     \
       const BoundarySolver<SizedSystem<__VA_ARGS__>>&, const BoundaryStage<SizedSystem<__VA_ARGS__>>&,               \
       const BoundarySolution<SizedSystem<__VA_ARGS__>>&, const Path<SizedSystem<__VA_ARGS__>>&);                     \
   prefix HomotopyResult<SizedSystem<__VA_ARGS__>> follow(                                                            \

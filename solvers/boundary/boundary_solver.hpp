@@ -28,9 +28,9 @@ enum class StationaryKind {
 
 namespace detail {
 
-template <class Sys> constexpr StationaryKind natural_seek_of() {
+template <class Sys> constexpr StationaryKind natural_stationary_kind_of() {
   if constexpr (requires { typename Sys::Untimed; }) {
-    return natural_seek_of<typename Sys::Untimed>();  // the constraint on the step is none on the motion
+    return natural_stationary_kind_of<typename Sys::Untimed>();  // the constraint on the step is none on the motion
   } else {
     return Sys::arrow_constraints > 0 ? StationaryKind::minima : StationaryKind::stationary;
   }
@@ -40,7 +40,8 @@ template <class Sys> constexpr StationaryKind natural_seek_of() {
 
 /// Optimal control, with its arrow constraints, is about minima of the cost. The action of a mechanical system has none
 /// in general: its trajectories are stationary, and minimise only up to the first conjugate point.
-template <DiscreteSystem Sys> inline constexpr StationaryKind natural_seek = detail::natural_seek_of<Sys>();
+template <DiscreteSystem Sys>
+inline constexpr StationaryKind natural_stationary_kind = detail::natural_stationary_kind_of<Sys>();
 
 struct BoundaryOptions {
   int max_iterations = 200;
@@ -55,8 +56,8 @@ template <DiscreteSystem Sys> class BoundarySolverBySizes;
 /// Finds a stationary path near a given one. Virtual: one call per solve.
 template <DiscreteSystem Sys> class BoundarySolver {
  public:
-  explicit BoundarySolver(BoundaryOptions options = {}, StationaryKind seek = natural_seek<Sys>)
-      : options_(options), seek_(seek) {}
+  explicit BoundarySolver(BoundaryOptions options = {}, StationaryKind kind = natural_stationary_kind<Sys>)
+      : options_(options), stationary_kind_(kind) {}
   virtual ~BoundarySolver() = default;
 
   /// Starts from `path`, whose product must be the boundary arrow and whose ends must satisfy the object constraints.
@@ -66,7 +67,7 @@ template <DiscreteSystem Sys> class BoundarySolver {
     if (const auto why = inadmissible_path(problem, path)) throw std::invalid_argument(*why);
     return solve_from(problem, std::move(path), keep_multipliers);
   }
-  StationaryKind seek() const { return seek_; }
+  StationaryKind stationary_kind() const { return stationary_kind_; }
 
  protected:
   /// `solve`, for a path that is admissible.
@@ -83,7 +84,7 @@ template <DiscreteSystem Sys> class BoundarySolver {
   }
 
   BoundaryOptions options_;
-  StationaryKind seek_;
+  StationaryKind stationary_kind_;
 
  private:
   template <DiscreteSystem> friend class BoundarySolverBySizes;  // which has asked for `inadmissible_path`
@@ -97,6 +98,6 @@ enum class BoundaryMethod { newton, shooting, ceres };
 template <DiscreteSystem Sys>
 std::unique_ptr<BoundarySolver<Sys>> make_boundary_solver(BoundaryMethod method = BoundaryMethod::newton,
                                                           BoundaryOptions options = {},
-                                                          StationaryKind seek = natural_seek<Sys>);
+                                                          StationaryKind kind = natural_stationary_kind<Sys>);
 
 }  // namespace lagroid

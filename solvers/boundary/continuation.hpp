@@ -155,10 +155,10 @@ template <DiscreteSystem Sys> Path<Sys> bent(const BoundaryProblem<Sys>& problem
   return displaced(problem, path, sine_modes<Sys>(path.size(), 3, [&] { return normal(generator); }), 1.0);
 }
 
-/// What `carry` below does, of any system.
+/// What `continue_to` below does, of any system.
 template <DiscreteSystem Sys>
-BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage,
-                            const BoundarySolution<Sys>& from, const Path<Sys>& prediction) {
+BoundarySolution<Sys> continue_to(const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage,
+                                  const BoundarySolution<Sys>& from, const Path<Sys>& prediction) {
   const auto& [problem, steps] = stage;
   BoundarySolution<Sys> out;
   const auto based = rebased(problem, prediction);
@@ -186,12 +186,12 @@ BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundarySta
 /// brought to the stage's number of arrows and boundary, and solved from there. At an abnormal extremal the path may
 /// have to bend to reach its ends at all: a few bent ones are tried.
 template <DiscreteSystem Sys>
-BoundarySolution<Sys> carry(const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage,
-                            const BoundarySolution<Sys>& from, const Path<Sys>& prediction) {
+BoundarySolution<Sys> continue_to(const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage,
+                                  const BoundarySolution<Sys>& from, const Path<Sys>& prediction) {
   const Sys& system = stage.problem.system;
   const SizedBoundarySolver<Sys> sized(solver);
   return of_system(system,
-                   detail::carry(*sized, by_sizes(stage), by_sizes(system, from), by_sizes(system, prediction)));
+                   detail::continue_to(*sized, by_sizes(stage), by_sizes(system, from), by_sizes(system, prediction)));
 }
 
 struct HomotopyOptions {
@@ -233,7 +233,7 @@ HomotopyResult<Sys> follow(const BoundarySolver<Sys>& solver, const std::functio
       const double factor = (next - out.reached) / (out.reached - before->first);
       if (auto path = extrapolated(there.problem.system, before->second, prediction, factor)) prediction = *path;
     }
-    auto solution = detail::carry(solver, there, out.solution, prediction);
+    auto solution = detail::continue_to(solver, there, out.solution, prediction);
     ++out.solves;
     out.iterations += solution.iterations;
     if (solution.converged() && solution.path.size() == prediction.size() &&

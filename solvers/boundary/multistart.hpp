@@ -126,14 +126,14 @@ MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::v
       note_failure(result, std::move(solution));
     }
   }
-  const bool minima = solver.seek() == StationaryKind::minima;
+  const bool minima = solver.stationary_kind() == StationaryKind::minima;
   if (minima) descend_from_saddles(solver, stages.front().problem, threads, found, result);
   for (std::size_t s = 1; s < stages.size(); ++s) {
     const BoundaryProblem<Sys>& problem = stages[s].problem;
     std::vector<BoundarySolution<Sys>> carried;
     const auto carried_on = [&](long i) {
       const auto& solution = found[std::size_t(i)];
-      return detail::carry(solver, stages[s], solution, solution.path);
+      return detail::continue_to(solver, stages[s], solution, solution.path);
     };
     for (auto& next : results_of_tasks(long(found.size()), threads, carried_on, [](int) {})) {
       result.iterations += next.iterations;
@@ -156,9 +156,9 @@ MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::v
 
 /// Solves stages[0] from `starts` guesses, then continues each distinct solution through the later stages, resampling
 /// where the number of arrows changes. `solver.solve(problem, path, keep_multipliers)` does one solve, looking for
-/// `solver.seek()`; `guess(i)` is the i-th starting path of the first stage; `report(i)` is called after each start.
-/// Solves go on `threads` threads at once (0: all there are), and so do calls of `guess`; what is found does not depend
-/// on their number.
+/// `solver.stationary_kind()`; `guess(i)` is the i-th starting path of the first stage; `report(i)` is called after
+/// each start. Solves go on `threads` threads at once (0: all there are), and so do calls of `guess`; what is found
+/// does not depend on their number.
 template <DiscreteSystem Sys, class Guess, class Report>
 MultistartResult<Sys> multistart(const BoundarySolver<Sys>& solver, const std::vector<BoundaryStage<Sys>>& stages,
                                  int starts, const Guess& guess, const Report& report, int threads = 0) {

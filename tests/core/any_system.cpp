@@ -279,10 +279,10 @@ TEST(SizedSystem, HasRoomForItsArrows) {
 }
 
 /// The same solve with the system's type and with its sizes alone.
-template <class Sys> void solves_alike(const Known<Sys>& k, StationaryKind seek) {
+template <class Sys> void solves_alike(const Known<Sys>& k, StationaryKind kind) {
   const auto start = geodesic_path(k.problem, k.path.size());
-  const auto typed = BoundaryNewton<Sys>(BoundaryOptions{}, seek).solve(k.problem, start, false);
-  const auto sized = make_boundary_solver<Sys>(BoundaryMethod::newton, {}, seek)->solve(k.problem, start, false);
+  const auto typed = BoundaryNewton<Sys>(BoundaryOptions{}, kind).solve(k.problem, start, false);
+  const auto sized = make_boundary_solver<Sys>(BoundaryMethod::newton, {}, kind)->solve(k.problem, start, false);
   EXPECT_TRUE(typed.converged());
   EXPECT_EQ(typed.status, sized.status);
   if (fused == 0) {

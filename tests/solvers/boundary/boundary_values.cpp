@@ -76,7 +76,7 @@ TEST(Stationary, MotionsPastAConjugatePointAreFoundAndNamed) {
   const std::size_t steps = 90;  // 4.5 s; the first conjugate point lies near pi
   const auto k = known(system, {Vector<double, 1>(0.05), Vector<double, 1>(0.1)}, steps);
   const auto stationary = make_boundary_solver<Pendulum>();
-  EXPECT_EQ(stationary->seek(), StationaryKind::stationary);
+  EXPECT_EQ(stationary->stationary_kind(), StationaryKind::stationary);
   const auto found = stationary->solve(k.problem, geodesic_path(k.problem, steps), false);
   ASSERT_TRUE(found.converged());
   EXPECT_NEAR(found.cost, action(system, k.path), 1e-12);
