@@ -19,7 +19,7 @@ struct Magnet {
   Eigen::VectorXd start(unsigned seed) const {
     return Eigen::VectorXd{{0.5, -0.1, 0.1 * std::cos(seed), 0.1 * std::sin(seed), -1.5}};
   }
-  template <class S, class T> S energy(const Places<S, 1>& q, const T* theta) const {
+  template <class S, class T> S energy(const Positions<S, 1>& q, const T* theta) const {
     using std::sqrt;
     const Vector<S, 3> away = q - Vector<S, 3>(S(theta[2]), S(theta[3]), S(theta[4]));
     return S(theta[0]) * q(2) + S(theta[1]) / sqrt(away.squaredNorm());

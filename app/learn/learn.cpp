@@ -17,7 +17,7 @@ namespace lagroid::app {
 
 namespace {
 
-using learning::Outcome;
+using learning::TrainingStatus;
 
 constexpr double usual_validation = 0.2;
 
@@ -30,13 +30,13 @@ std::string integrator_names() {
   return out;
 }
 
-int exit_code(Outcome outcome) {
+int exit_code(TrainingStatus outcome) {
   switch (outcome) {
-    case Outcome::interrupted:
+    case TrainingStatus::interrupted:
       return exit_interrupted;
-    case Outcome::too_little_data:
+    case TrainingStatus::too_little_data:
       return exit_bad_input;
-    case Outcome::not_finite:
+    case TrainingStatus::not_finite:
       return exit_failed;
     default:
       return 0;
@@ -101,7 +101,7 @@ void measure(TrainingOutcome& outcome) {
 int refuse_untrained(const TrainingOutcome& outcome) {
   const auto& trained = outcome.trained;
   const int code = exit_code(trained.outcome);
-  const bool goes_on = outcome.learned.parameters.size() > 0 && trained.outcome == Outcome::not_finite;
+  const bool goes_on = outcome.learned.parameters.size() > 0 && trained.outcome == TrainingStatus::not_finite;
   return refuse(outcome.options.json, code != 0 ? code : exit_failed, std::string(to_string(trained.outcome)),
                 fmt::format("{}: {}", goes_on ? outcome.options.model : outcome.options.data, trained.message));
 }

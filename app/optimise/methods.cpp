@@ -17,7 +17,7 @@ namespace lagroid::app {
 namespace {
 
 using namespace optimisation;
-using MadeMethod = std::unique_ptr<Method>;
+using MadeMethod = std::unique_ptr<DescentMethod>;
 
 AcceleratedOptions accelerated(const Section& section, std::string name, bool rescale) {
   AcceleratedOptions out{.name = std::move(name)};
@@ -38,11 +38,12 @@ double cap(const Section& section) {
   return capped ? cap : std::numeric_limits<double>::infinity();
 }
 
-Retraction retraction(const Section& section) {
-  const std::vector<Retraction> all{Retraction::qr, Retraction::polar, Retraction::exponential,
-                                    Retraction::orthographic, Retraction::cayley};
+ManifoldRetraction retraction(const Section& section) {
+  const std::vector<ManifoldRetraction> all{ManifoldRetraction::qr, ManifoldRetraction::polar,
+                                            ManifoldRetraction::exponential, ManifoldRetraction::orthographic,
+                                            ManifoldRetraction::cayley};
   std::vector<std::string> names;
-  for (const Retraction each : all) names.emplace_back(to_string(each));
+  for (const ManifoldRetraction each : all) names.emplace_back(to_string(each));
   const std::string name = section.choice_or("retraction", names.front(), names);
   return all[std::size_t(std::find(names.begin(), names.end(), name) - names.begin())];
 }

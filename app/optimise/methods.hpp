@@ -18,13 +18,13 @@ struct OptimiserEntry {
   std::string_view name;
   std::string_view summary;
   std::vector<ListedParameter> keys;
-  std::unique_ptr<optimisation::Method> (*read)(const Section& section);
+  std::unique_ptr<optimisation::DescentMethod> (*read)(const Section& section);
 };
 
 std::span<const OptimiserEntry> optimisers();
 
 /// The one that method.name names, with its keys.
-std::unique_ptr<optimisation::Method> read_optimiser(const Section& method);
+std::unique_ptr<optimisation::DescentMethod> read_optimiser(const Section& method);
 
 /// The weight of the penalty that takes the constraint's place, where method.constraint says so.
 std::optional<double> read_penalty(const Section& method);

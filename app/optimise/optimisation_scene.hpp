@@ -17,7 +17,7 @@ struct OptimisationScene {
   std::string problem;
   optimisation::Instance instance;
   optimisation::Point start;
-  std::unique_ptr<optimisation::Method> method;
+  std::unique_ptr<optimisation::DescentMethod> method;
   optimisation::Stopping stopping;
   std::optional<double> least;    ///< where linear algebra was asked for it
   std::optional<double> penalty;  ///< the weight, with constraint = "penalty"

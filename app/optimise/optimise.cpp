@@ -89,7 +89,7 @@ int run(const OptimiseOptions& options) {
   print(options.json ? json_text(json) + "\n" : text);
   if (result.converged()) return code_after_writing(0, options.scene);
   complain(fmt::format("{}: {}", options.scene, result.message));
-  return result.outcome == optimisation::Outcome::interrupted ? exit_interrupted : exit_failed;
+  return result.outcome == optimisation::MinimisationStatus::interrupted ? exit_interrupted : exit_failed;
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ template <class P, int K, class S = double> class ParametricField {
   std::vector<S> theta_, scratch_;
   Square mass_, inverse_, gram_;
   Vector<S, K> tau_;
-  Places<S, K> place_, gradient_, velocity_;
+  Positions<S, K> place_, gradient_, velocity_;
 };
 
 }  // namespace lagroid::learning

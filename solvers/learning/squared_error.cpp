@@ -31,23 +31,23 @@ double squared_error(const Model& model, const Eigen::VectorXd& theta, const Sch
   return std::isfinite(sum) ? sum : none;
 }
 
-std::string_view to_string(Outcome outcome) {
+std::string_view to_string(TrainingStatus outcome) {
   switch (outcome) {
-    case Outcome::converged:
+    case TrainingStatus::converged:
       return "converged";
-    case Outcome::reached:
+    case TrainingStatus::reached:
       return "reached";
-    case Outcome::early_stopped:
+    case TrainingStatus::early_stopped:
       return "early_stopped";
-    case Outcome::iteration_limit:
+    case TrainingStatus::iteration_limit:
       return "iteration_limit";
-    case Outcome::time_limit:
+    case TrainingStatus::time_limit:
       return "time_limit";
-    case Outcome::interrupted:
+    case TrainingStatus::interrupted:
       return "interrupted";
-    case Outcome::too_little_data:
+    case TrainingStatus::too_little_data:
       return "too_little_data";
-    case Outcome::not_finite:
+    case TrainingStatus::not_finite:
       return "not_finite";
   }
   return "unknown";

@@ -115,7 +115,7 @@ struct Found {
 /// A descent, when it is over.
 struct Descent {
   Found found;
-  Outcome end = Outcome::not_finite;
+  TrainingStatus end = TrainingStatus::not_finite;
   std::vector<Stage> history;
   int iterations = 0;
   bool mass_determined = true;
@@ -133,15 +133,15 @@ class Session {
   /// Whether an interrupt or the time limit has come, and which was first.
   bool halted() {
     const std::lock_guard lock(asking_);
-    if (!halt_ && options_.stop && options_.stop()) halt_ = Outcome::interrupted;
-    if (!halt_ && seconds() > options_.seconds) halt_ = Outcome::time_limit;
+    if (!halt_ && options_.stop && options_.stop()) halt_ = TrainingStatus::interrupted;
+    if (!halt_ && seconds() > options_.seconds) halt_ = TrainingStatus::time_limit;
     return halt_.has_value();
   }
   void tell(const Stage& stage) {
     const std::lock_guard lock(asking_);
-    if (!halt_ && options_.callback && !options_.callback(stage)) halt_ = Outcome::interrupted;
+    if (!halt_ && options_.callback && !options_.callback(stage)) halt_ = TrainingStatus::interrupted;
   }
-  std::optional<Outcome> halt() {
+  std::optional<TrainingStatus> halt() {
     const std::lock_guard lock(asking_);
     return halt_;
   }
@@ -150,7 +150,7 @@ class Session {
   const Training& options_;
   std::atomic<double> spent_ = 0;
   std::mutex asking_;
-  std::optional<Outcome> halt_;
+  std::optional<TrainingStatus> halt_;
 };
 
 /// Carries out one descent, on one thread.
@@ -166,7 +166,7 @@ class Trainer final : public ceres::IterationCallback {
     out_.found = {theta};
     scale_ = 2 / data.total_weight();
     round_off_ = 1e-30 * data.ends.squaredNorm() / double(data.ends.size());
-    out_.end = Outcome::iteration_limit;
+    out_.end = TrainingStatus::iteration_limit;
     TrajectoryCost cost(model_, schedule_, data, [this] { return halted(); });
     cost_ = &cost;
     ceres::Problem::Options ownership;
@@ -174,9 +174,9 @@ class Trainer final : public ceres::IterationCallback {
     ceres::Problem problem(ownership);
     problem.AddResidualBlock(&cost, nullptr, at_.data());
     const auto summary = lagroid::detail::solve_by_ceres(settings(iterations), problem);
-    if (summary.termination_type == ceres::CONVERGENCE) out_.end = Outcome::converged;
+    if (summary.termination_type == ceres::CONVERGENCE) out_.end = TrainingStatus::converged;
     const bool good = summary.IsSolutionUsable() && !cost.failed();
-    if (!good) out_.end = Outcome::not_finite;
+    if (!good) out_.end = TrainingStatus::not_finite;
     if (good && !session_.halt()) {
       const Eigen::Index masses = model_.bodies() * (model_.bodies() + 1) / 2;
       out_.mass_determined = determines_mass(cost.triangle(), data.total_weight(), masses);
@@ -188,7 +188,7 @@ class Trainer final : public ceres::IterationCallback {
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
-    if (cost_->failed()) return stop(Outcome::not_finite);
+    if (cost_->failed()) return stop(TrainingStatus::not_finite);
     Stage stage;
     stage.start = start_;
     stage.iteration = now.iteration;
@@ -205,13 +205,13 @@ class Trainer final : public ceres::IterationCallback {
     if (now.iteration > 0) ++out_.iterations;
     session_.tell(stage);
     if (halted()) return stop(*session_.halt());
-    if (options_.enough > 0 && stage.mse <= options_.enough) return stop(Outcome::reached);
-    if (stage.mse <= round_off_) return stop(Outcome::converged);
-    if (held_out_.count() > 0 && since_ >= options_.patience) return stop(Outcome::early_stopped);
+    if (options_.enough > 0 && stage.mse <= options_.enough) return stop(TrainingStatus::reached);
+    if (stage.mse <= round_off_) return stop(TrainingStatus::converged);
+    if (held_out_.count() > 0 && since_ >= options_.patience) return stop(TrainingStatus::early_stopped);
     constexpr std::size_t window = 10;
     fallen_.push_back(stage.mse);
     if (fallen_.size() > window) {
-      if (stage.mse > fallen_.front() * (1 - options_.least_progress)) return stop(Outcome::converged);
+      if (stage.mse > fallen_.front() * (1 - options_.least_progress)) return stop(TrainingStatus::converged);
       fallen_.pop_front();
     }
     return ceres::SOLVER_CONTINUE;
@@ -242,7 +242,7 @@ class Trainer final : public ceres::IterationCallback {
     out.callbacks.push_back(this);
     return out;
   }
-  ceres::CallbackReturnType stop(Outcome why) {
+  ceres::CallbackReturnType stop(TrainingStatus why) {
     out_.end = why;
     return ceres::SOLVER_TERMINATE_SUCCESSFULLY;  // after SOLVER_ABORT the parameters would be those of the start
   }
@@ -270,17 +270,17 @@ class Trainer final : public ceres::IterationCallback {
   double mse_ = 0;
 };
 
-std::string message_of(Outcome outcome, const Training& options, double mse, bool falls) {
+std::string message_of(TrainingStatus outcome, const Training& options, double mse, bool falls) {
   switch (outcome) {
-    case Outcome::iteration_limit:
+    case TrainingStatus::iteration_limit:
       if (options.iterations == 0) return {};
       return fmt::format("after {} iterations the mean squared error {:.1e} {}", options.iterations, mse,
                          falls ? "still falls; allow more to go on" : "falls no more; try other starts");
-    case Outcome::time_limit:
+    case TrainingStatus::time_limit:
       return fmt::format("{:g} s did not suffice, the mean squared error is {:.1e}; allow more", options.seconds, mse);
-    case Outcome::interrupted:
+    case TrainingStatus::interrupted:
       return fmt::format("interrupted; the best so far has mean squared error {:.1e}", mse);
-    case Outcome::not_finite:
+    case TrainingStatus::not_finite:
       return fmt::format(
           "the error or its derivative was not finite any more; the best so far has mean squared error {:.1e}; take "
           "more substeps, shorter intervals, or another seed",
@@ -291,11 +291,11 @@ std::string message_of(Outcome outcome, const Training& options, double mse, boo
 }
 
 /// Where there are no parameters worth keeping.
-std::string message_of_none(Outcome outcome, const Training& options) {
+std::string message_of_none(TrainingStatus outcome, const Training& options) {
   switch (outcome) {
-    case Outcome::time_limit:
+    case TrainingStatus::time_limit:
       return fmt::format("{:g} s did not suffice to evaluate the error once; allow more", options.seconds);
-    case Outcome::interrupted:
+    case TrainingStatus::interrupted:
       return "interrupted before the error was evaluated once";
     default:
       break;
@@ -357,7 +357,7 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
   out.start = options.seed;
   out.message = too_little(model, all, held_out, options);
   if (!out.message.empty()) {
-    out.outcome = Outcome::too_little_data;
+    out.outcome = TrainingStatus::too_little_data;
     return out;
   }
   const Schedule schedule{options.method, data.interval, data.points - 1, options.substeps};

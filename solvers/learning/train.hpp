@@ -26,7 +26,7 @@
 
 namespace lagroid::learning {
 
-enum class Outcome {
+enum class TrainingStatus {
   converged,        ///< the error falls no more
   reached,          ///< the training error is as small as `enough`
   early_stopped,    ///< the error on held-out trajectories rose while the training error fell
@@ -36,7 +36,7 @@ enum class Outcome {
   too_little_data,  ///< fewer numbers than parameters, or a part without weight
   not_finite,       ///< no start has a finite error and derivative, or further on one has none
 };
-std::string_view to_string(Outcome outcome);
+std::string_view to_string(TrainingStatus outcome);
 
 /// Where a training is, after an iteration.
 struct Stage {
@@ -77,7 +77,7 @@ struct Training {
 };
 
 struct Trained {
-  Outcome outcome = Outcome::not_finite;
+  TrainingStatus outcome = TrainingStatus::not_finite;
   std::string message;         ///< one line where it did not converge, with the remedy
   Eigen::VectorXd parameters;  ///< the best met; empty where nothing could be evaluated
   /// Over all trajectories that were not held out; where an interrupt or the time limit ended the trials, over those of

@@ -9,12 +9,14 @@ namespace lagroid::optimisation {
 namespace {
 
 /// What values near the minimum differ by for rounding alone.
-double rounding_of(const State& state) { return 64 * std::numeric_limits<double>::epsilon() * std::abs(state.value); }
+double rounding_of(const EvaluatedPoint& state) {
+  return 64 * std::numeric_limits<double>::epsilon() * std::abs(state.value);
+}
 
 }  // namespace
 
-double backtrack(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
-                 double first, double decrease, Point& to, Vector& buffer) {
+double backtrack(Problem& problem, ManifoldRetraction retraction, const EvaluatedPoint& state, const Vector& direction,
+                 double slope, double first, double decrease, Point& to, Vector& buffer) {
   constexpr int most = 60;
   const double rounding = rounding_of(state);
   double t = first;
@@ -32,8 +34,9 @@ double backtrack(Problem& problem, Retraction retraction, const State& state, co
   return 0;
 }
 
-double secant_search(Problem& problem, Retraction retraction, const State& state, const Vector& direction, double slope,
-                     double first, double flat, State& to, Vector& buffer) {
+double secant_search(Problem& problem, ManifoldRetraction retraction, const EvaluatedPoint& state,
+                     const Vector& direction, double slope, double first, double flat, EvaluatedPoint& to,
+                     Vector& buffer) {
   constexpr int most = 40;
   constexpr int patience = 8;  // then a point that falls is enough
   constexpr double decrease = 1e-4;

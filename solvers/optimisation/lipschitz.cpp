@@ -5,7 +5,7 @@
 
 namespace lagroid::optimisation {
 
-double largest_curvature(Problem& problem, const State& state, int steps) {
+double largest_curvature(Problem& problem, const EvaluatedPoint& state, int steps) {
   Vector v = state.gradient;
   Vector h(v.size());
   double largest = 0;
@@ -24,7 +24,7 @@ double largest_curvature(Problem& problem, const State& state, int steps) {
   return largest > 0 && std::isfinite(largest) ? largest : std::max(1e-300, state.gradient.norm());
 }
 
-double lipschitz_bound(Problem& problem, const State& state) {
+double lipschitz_bound(Problem& problem, const EvaluatedPoint& state) {
   constexpr int power_steps = 50;
   constexpr double safety = 1.1;  // power steps come from below
   if (const auto declared = problem.objective().lipschitz()) return *declared;

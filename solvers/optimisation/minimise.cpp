@@ -8,33 +8,33 @@
 
 namespace lagroid::optimisation {
 
-std::string_view to_string(Outcome outcome) {
+std::string_view to_string(MinimisationStatus outcome) {
   switch (outcome) {
-    case Outcome::converged:
+    case MinimisationStatus::converged:
       return "converged";
-    case Outcome::stagnated:
+    case MinimisationStatus::stagnated:
       return "stagnated";
-    case Outcome::stationary_start:
+    case MinimisationStatus::stationary_start:
       return "stationary_start";
-    case Outcome::iteration_limit:
+    case MinimisationStatus::iteration_limit:
       return "iteration_limit";
-    case Outcome::time_limit:
+    case MinimisationStatus::time_limit:
       return "time_limit";
-    case Outcome::interrupted:
+    case MinimisationStatus::interrupted:
       return "interrupted";
-    case Outcome::infeasible_start:
+    case MinimisationStatus::infeasible_start:
       return "infeasible_start";
-    case Outcome::off_manifold:
+    case MinimisationStatus::off_manifold:
       return "off_manifold";
-    case Outcome::not_finite:
+    case MinimisationStatus::not_finite:
       return "not_finite";
-    case Outcome::no_step:
+    case MinimisationStatus::no_step:
       return "no_step";
   }
   return "unknown";
 }
 
-void Problem::evaluate(State& state) {
+void Problem::evaluate(EvaluatedPoint& state) {
   ++evaluations_.gradients;
   state.euclidean.resize(state.x.size());
   state.value = objective_.evaluate(state.x, state.euclidean);
@@ -47,7 +47,7 @@ double Problem::value(const Point& x) {
   return objective_.value(x);
 }
 
-void Problem::hessian(const State& state, const Vector& v, Vector& h) {
+void Problem::hessian(const EvaluatedPoint& state, const Vector& v, Vector& h) {
   ++evaluations_.hessians;
   objective_.hessian(state.x, v, h);
   manifold_.hessian(state.x, state.euclidean, v, h);
@@ -55,7 +55,9 @@ void Problem::hessian(const State& state, const Vector& v, Vector& h) {
 
 namespace {
 
-bool finite(const State& state) { return std::isfinite(state.value) && std::isfinite(state.gradient.squaredNorm()); }
+bool finite(const EvaluatedPoint& state) {
+  return std::isfinite(state.value) && std::isfinite(state.gradient.squaredNorm());
+}
 
 /// Whether anything still falls.
 class Progress {
@@ -78,7 +80,7 @@ class Progress {
 
 }  // namespace
 
-Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, Method& method,
+Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, DescentMethod& method,
                 const Stopping& stopping, const Recording& recording) {
   using Clock = std::chrono::steady_clock;
   const auto begun = Clock::now();
@@ -86,7 +88,7 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
   Problem problem(manifold, objective);
   Result out;
   out.x = start;
-  const auto end = [&](Outcome outcome, std::string message = {}) {
+  const auto end = [&](MinimisationStatus outcome, std::string message = {}) {
     out.outcome = outcome;
     out.message = std::move(message);
     out.seconds = seconds();
@@ -98,30 +100,30 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
   const double off = start.size() == manifold.size() ? manifold.residual(start) : INFINITY;
   constexpr double on_it = 1e-8;
   if (start.size() == manifold.size() && !start.allFinite())
-    return end(Outcome::not_finite, "the start is not finite; give numbers");
+    return end(MinimisationStatus::not_finite, "the start is not finite; give numbers");
   if (start.size() != manifold.size()) {
-    out.outcome = Outcome::infeasible_start;
+    out.outcome = MinimisationStatus::infeasible_start;
     out.message = fmt::format("the start has {} numbers, points of the {} have {}", start.size(), manifold.name(),
                               manifold.size());
     return out;
   }
   if (!(off <= on_it))
-    return end(Outcome::infeasible_start,
+    return end(MinimisationStatus::infeasible_start,
                fmt::format("the start is off the {} by {:.1e}; begin at its nearest point", manifold.name(), off));
 
-  State state;
+  EvaluatedPoint state;
   state.x = start;
   problem.evaluate(state);
   if (!finite(state))
-    return end(Outcome::not_finite, "value or gradient at the start are not finite; look at the data");
+    return end(MinimisationStatus::not_finite, "value or gradient at the start are not finite; look at the data");
   out.value = state.value;
   out.gradient = state.gradient.norm();
   // What rounding leaves of a gradient that vanishes.
   const double rounding = 4e-15 * std::sqrt(double(manifold.size())) * state.euclidean.norm();
   if (out.gradient <= rounding)
     return out.value <= stopping.value
-               ? end(Outcome::converged)
-               : end(Outcome::stationary_start,
+               ? end(MinimisationStatus::converged)
+               : end(MinimisationStatus::stationary_start,
                      "the gradient vanishes at the start, which need not be a minimum; begin elsewhere");
 
   Progress progress;
@@ -141,32 +143,34 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
   method.begin(problem, state);
   for (long k = 0;; ++k) {
     if (recording.callback && !recording.callback(now, state.x))
-      return end(Outcome::interrupted, fmt::format("interrupted after {} iterations; go on from the best point", k));
+      return end(MinimisationStatus::interrupted,
+                 fmt::format("interrupted after {} iterations; go on from the best point", k));
     if ((small > 0 && now.gradient <= small) || now.value <= stopping.value) {
       out.x = state.x;
       out.value = now.value;
       out.gradient = now.gradient;
-      return end(Outcome::converged);
+      return end(MinimisationStatus::converged);
     }
     if (progress.stalled(now.value, now.gradient, stopping.patience))
-      return end(Outcome::stagnated,
+      return end(MinimisationStatus::stagnated,
                  fmt::format("neither value nor gradient fell in {} iterations; |grad f| = {:.1e} is "
                              "what rounding or the method leaves",
                              stopping.patience, out.gradient));
     if (k == stopping.iterations)
-      return end(Outcome::iteration_limit,
+      return end(MinimisationStatus::iteration_limit,
                  fmt::format("{} iterations did not suffice, |grad f| = {:.1e}; allow more, or take another method", k,
                              out.gradient));
     if (seconds() > stopping.seconds)
-      return end(Outcome::time_limit,
+      return end(MinimisationStatus::time_limit,
                  fmt::format("{:g} s did not suffice, |grad f| = {:.1e}; allow more, or take another method",
                              stopping.seconds, out.gradient));
-    if (method.advance(problem, state) == Step::none)
-      return end(Outcome::no_step, fmt::format("{} finds no step after {} iterations; take a smaller one or another "
-                                               "method",
-                                               method.name(), k));
+    if (method.advance(problem, state) == StepOutcome::none)
+      return end(MinimisationStatus::no_step,
+                 fmt::format("{} finds no step after {} iterations; take a smaller one or another "
+                             "method",
+                             method.name(), k));
     if (!finite(state))
-      return end(Outcome::not_finite,
+      return end(MinimisationStatus::not_finite,
                  fmt::format("{} left all numbers after {} iterations; take a smaller step", method.name(), k + 1));
     now = record(k + 1);
   }

@@ -23,7 +23,7 @@
 
 namespace lagroid::optimisation {
 
-enum class Outcome {
+enum class MinimisationStatus {
   converged,         ///< the gradient, or the value, is as small as the stopping criteria want it
   stagnated,         ///< neither falls any more: what is left is rounding
   stationary_start,  ///< the gradient vanishes where it starts, which need not be a minimum
@@ -35,7 +35,7 @@ enum class Outcome {
   not_finite,        ///< a NaN or an infinity appeared: in the data, or because the method diverged
   no_step,           ///< the method's step does not exist: the manifold is left, or no step decreases f
 };
-std::string_view to_string(Outcome outcome);
+std::string_view to_string(MinimisationStatus outcome);
 
 /// How much was evaluated.
 struct Evaluations {
@@ -45,7 +45,7 @@ struct Evaluations {
 };
 
 /// A point and what is known there.
-struct State {
+struct EvaluatedPoint {
   Point x;
   double value = 0;
   Vector euclidean;  ///< D f(x)
@@ -60,10 +60,10 @@ class Problem {
   const Manifold& manifold() const { return manifold_; }
   const Objective& objective() const { return objective_; }
   /// Value and gradients at state.x.
-  void evaluate(State& state);
+  void evaluate(EvaluatedPoint& state);
   double value(const Point& x);
   /// The Riemannian Hessian at the state along the tangent vector v.
-  void hessian(const State& state, const Vector& v, Vector& h);
+  void hessian(const EvaluatedPoint& state, const Vector& v, Vector& h);
   const Evaluations& evaluations() const { return evaluations_; }
 
  private:
@@ -73,17 +73,17 @@ class Problem {
 };
 
 /// What a method's step came to.
-enum class Step { taken, none };
+enum class StepOutcome { taken, none };
 
 /// One way to minimise. It keeps what it needs from step to step, and allocates in `begin` alone.
-class Method {
+class DescentMethod {
  public:
-  virtual ~Method() = default;
+  virtual ~DescentMethod() = default;
   virtual std::string name() const = 0;
   /// `state` has been evaluated.
-  virtual void begin(Problem& problem, const State& state) = 0;
+  virtual void begin(Problem& problem, const EvaluatedPoint& state) = 0;
   /// Moves the state and evaluates it. Where it returns `none` the state is as it was.
-  virtual Step advance(Problem& problem, State& state) = 0;
+  virtual StepOutcome advance(Problem& problem, EvaluatedPoint& state) = 0;
 };
 
 /// After an iteration.
@@ -107,7 +107,7 @@ struct Stopping {
 };
 
 struct Result {
-  Outcome outcome = Outcome::not_finite;
+  MinimisationStatus outcome = MinimisationStatus::not_finite;
   Point x;
   /// Not a number where nothing was evaluated.
   double value = std::numeric_limits<double>::quiet_NaN();
@@ -120,7 +120,7 @@ struct Result {
   std::vector<Iterate> history;
   std::string message;  ///< one line where it did not converge, with the remedy
 
-  bool converged() const { return outcome == Outcome::converged; }
+  bool converged() const { return outcome == MinimisationStatus::converged; }
 };
 
 /// Sees every iteration; false interrupts.
@@ -132,8 +132,8 @@ struct Recording {
 };
 
 /// Minimises f from `start`, a point of the manifold. Of methods that do not descend in every step the best point is
-/// what is returned. Numbers never throw: how it ended is an Outcome.
-Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, Method& method,
+/// what is returned. Numbers never throw: how it ended is a MinimisationStatus.
+Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, DescentMethod& method,
                 const Stopping& stopping, const Recording& recording = {});
 
 }  // namespace lagroid::optimisation

@@ -42,6 +42,6 @@ class Penalised final : public Objective {
 /// gradient are f's there, `off_manifold` is what the penalty left. The outcome is `off_manifold` where that is more
 /// than a tenth. Value, gradient and history until then are those of the penalised function.
 Result minimise_penalised(const Manifold& manifold, const Objective& objective, double weight, const Point& start,
-                          Method& method, const Stopping& stopping, const Recording& recording = {});
+                          DescentMethod& method, const Stopping& stopping, const Recording& recording = {});
 
 }  // namespace lagroid::optimisation

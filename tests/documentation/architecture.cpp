@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -92,6 +94,51 @@ TEST(Names, RetiredOnesDoNotComeBack) {
   for (const auto& layer : layers)
     for (const char* ending : {".hpp", ".cpp"}) EXPECT_EQ(retired_names(text_of({layer}, ending)), none);
   EXPECT_EQ(retired_names("std::unique_ptr<March<Sys>> m;"), std::vector<std::string>{"March"});
+}
+
+/// Types and concepts at namespace scope in the headers of these folders, and the namespaces that have each. What is
+/// in a namespace `detail` is not public.
+std::map<std::string, std::set<std::string>> public_types(const std::vector<std::string>& tops) {
+  const std::regex opens("(?:inline )?namespace ?([\\w:]*) ?\\{");
+  const std::regex declares(
+      "(?:template <.*> )?(?:struct|class|enum class|enum|using|concept) (?:alignas\\(.*?\\) )?(\\w+)"
+      "(?: final)?(?: :.*| =.*| \\{.*)?");
+  std::map<std::string, std::set<std::string>> out;
+  for (const auto& top : tops)
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / top)) {
+      if (entry.path().extension() != ".hpp") continue;
+      std::vector<std::string> namespaces;
+      std::istringstream lines(read(entry.path()));
+      for (std::string line; std::getline(lines, line);) {
+        std::smatch found;
+        if (line.starts_with("}  // namespace")) {
+          namespaces.pop_back();
+        } else if (line.empty() || line.front() == ' ' || line.front() == '/') {
+          continue;
+        } else if (std::regex_match(line, found, opens)) {
+          namespaces.push_back(found[1]);
+        } else if (std::regex_match(line, found, declares)) {
+          std::string path;
+          for (const auto& each : namespaces) path += "::" + each;
+          if (path.find("detail") == std::string::npos && !path.ends_with("::")) out[found[1]].insert(path);
+        }
+      }
+    }
+  return out;
+}
+
+TEST(Names, OfPublicTypesAreNotTwo) {
+  const std::map<std::string, std::string> allowed{
+      {"Model", "the field's word for bodies that move together, and for what is learned"},
+      {"Vector", "a vector in both: of a size that its type has, and of one known at run time"}};
+  const auto types = public_types({"core", "groupoids", "solvers", "systems", "run"});
+  EXPECT_GT(types.size(), 400U);
+  std::vector<std::string> twice;
+  for (const auto& [name, namespaces] : types)
+    if (namespaces.size() > 1) twice.push_back(name);
+  std::vector<std::string> excused;
+  for (const auto& [name, reason] : allowed) excused.push_back(name);
+  EXPECT_EQ(twice, excused);
 }
 
 /// Folders of sources with more files of their own than a reader takes in at a glance.

@@ -23,20 +23,20 @@ using namespace optimisation;
 
 struct Maker {
   AcceleratedMethod method;
-  std::unique_ptr<Method> (*make)();
+  std::unique_ptr<DescentMethod> (*make)();
 };
 
-template <Bregman::Kind kind> std::unique_ptr<Method> hamiltonian() {
+template <Bregman::Kind kind> std::unique_ptr<DescentMethod> hamiltonian() {
   return std::make_unique<HamiltonianDescent>(HamiltonianOptions{.bregman = {.kind = kind}}, AcceleratedOptions{});
 }
-std::unique_ptr<Method> uncapped_hamiltonian() {
+std::unique_ptr<DescentMethod> uncapped_hamiltonian() {
   return std::make_unique<HamiltonianDescent>(
       HamiltonianOptions{.bregman = {}, .cap = std::numeric_limits<double>::infinity()}, AcceleratedOptions{});
 }
-template <int version> std::unique_ptr<Method> euler_lagrange() {
+template <int version> std::unique_ptr<DescentMethod> euler_lagrange() {
   return std::make_unique<EulerLagrange>(EulerLagrangeOptions{.version = version});
 }
-template <int version> std::unique_ptr<Method> uncapped_euler_lagrange() {
+template <int version> std::unique_ptr<DescentMethod> uncapped_euler_lagrange() {
   return std::make_unique<EulerLagrange>(
       EulerLagrangeOptions{.version = version, .cap = std::numeric_limits<double>::infinity()});
 }
@@ -48,29 +48,31 @@ const std::vector<Maker>& makers() {
       {{"Algorithm 2 I", "paper"}, euler_lagrange<1>},
       {{"Algorithm 2 II", "paper"}, euler_lagrange<2>},
       {{"gradient descent by h", "paper"},
-       []() -> std::unique_ptr<Method> {
+       []() -> std::unique_ptr<DescentMethod> {
          return std::make_unique<GradientDescent>(GradientDescentOptions{.step = 1e-3});
        }},
       {{"Algorithm 1 adaptive uncapped", "uncapped"}, uncapped_hamiltonian},
       {{"Algorithm 2 I uncapped", "uncapped"}, uncapped_euler_lagrange<1>},
       {{"Algorithm 2 II uncapped", "uncapped"}, uncapped_euler_lagrange<2>},
       {{"robust", "tuned"},
-       []() -> std::unique_ptr<Method> {
+       []() -> std::unique_ptr<DescentMethod> {
          return std::make_unique<RobustDescent>(RobustOptions{}, AcceleratedOptions{.rescale = true});
        }},
       {{"Nesterov with restarts", "tuned"},
-       []() -> std::unique_ptr<Method> {
+       []() -> std::unique_ptr<DescentMethod> {
          return std::make_unique<RobustDescent>(
              RobustOptions{.c = 1, .power = 2},
              AcceleratedOptions{.rescale = true, .restart = true, .look_ahead = true});
        }},
       {{"gradient descent by 1 / L", "tuned"},
-       []() -> std::unique_ptr<Method> { return std::make_unique<GradientDescent>(GradientDescentOptions{.c = 1}); }},
+       []() -> std::unique_ptr<DescentMethod> {
+         return std::make_unique<GradientDescent>(GradientDescentOptions{.c = 1});
+       }},
       {{"gradient descent with line search", "tuned"},
-       []() -> std::unique_ptr<Method> { return std::make_unique<GradientDescent>(GradientDescentOptions{}); }},
+       []() -> std::unique_ptr<DescentMethod> { return std::make_unique<GradientDescent>(GradientDescentOptions{}); }},
       {{"conjugate gradients", "tuned"},
-       []() -> std::unique_ptr<Method> { return std::make_unique<ConjugateGradient>(); }},
-      {{"trust region", "tuned"}, []() -> std::unique_ptr<Method> { return std::make_unique<TrustRegion>(); }}};
+       []() -> std::unique_ptr<DescentMethod> { return std::make_unique<ConjugateGradient>(); }},
+      {{"trust region", "tuned"}, []() -> std::unique_ptr<DescentMethod> { return std::make_unique<TrustRegion>(); }}};
   return all;
 }
 
@@ -130,7 +132,7 @@ IterationCost cost(long n, long m) {
   Vector moved = v;
   RobustDescent ours({}, {.rescale = true});
   GradientDescent descent({.c = 1});
-  const auto run = [&](Method& method) {
+  const auto run = [&](DescentMethod& method) {
     return minimise(manifold, objective, x, method, {.iterations = steps, .patience = 0}).seconds;
   };
 
@@ -148,7 +150,7 @@ IterationCost cost(long n, long m) {
     keep(out.ours, run(ours));
     keep(out.descent, run(descent));
     keep(out.multipliers, repeated([&] { manifold.orthographic(x, v, to, moved); }));
-    keep(out.qr, repeated([&] { manifold.retract(Retraction::qr, x, v, to); }));
+    keep(out.qr, repeated([&] { manifold.retract(ManifoldRetraction::qr, x, v, to); }));
   }
   out.ours -= out.gradient;
   out.descent -= out.gradient;

@@ -2,3 +2,4 @@
 /// Moved to <lagroid/solvers/optimisation/methods/accelerated.hpp>; this goes with version 0.4.
 
 #include <lagroid/solvers/optimisation/methods/accelerated.hpp>
+#include <lagroid/solvers/optimisation/minimise_names.hpp>

@@ -30,7 +30,7 @@ class NetworkPotential {
   /// Random parameters. Inner ones are small, so that V begins near its linear part with all units at work.
   Eigen::VectorXd start(unsigned seed) const;
 
-  template <class S, int K> S gradient(const Places<S, K>& q, const S* theta, S* scratch, Places<S, K>& g) const {
+  template <class S, int K> S gradient(const Positions<S, K>& q, const S* theta, S* scratch, Positions<S, K>& g) const {
     using std::tanh;
     S* a = scratch;            // of all layers
     S* slope = a + units_;     // 1 - a^2

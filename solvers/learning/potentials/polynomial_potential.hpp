@@ -27,7 +27,7 @@ class PolynomialPotential {
   std::vector<int> powers(int a) const;
 
   /// Each monomial is one before it times a coordinate, so that value and gradient are a sweep there and one back.
-  template <class S, int K> S gradient(const Places<S, K>& q, const S* theta, S* scratch, Places<S, K>& g) const {
+  template <class S, int K> S gradient(const Positions<S, K>& q, const S* theta, S* scratch, Positions<S, K>& g) const {
     const int n = size();
     S* value = scratch;
     S* adjoint = scratch + n;

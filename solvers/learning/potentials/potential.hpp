@@ -19,7 +19,7 @@
 namespace lagroid::learning {
 
 /// q_1, ..., q_k, column by column.
-template <class S, int K> using Places = Eigen::Matrix<S, 3, K>;
+template <class S, int K> using Positions = Eigen::Matrix<S, 3, K>;
 
 /// V(q; theta) on (S^2)^k. K is k, or Eigen::Dynamic. Supplied by the user:
 ///
@@ -35,21 +35,22 @@ concept Potential = requires(const P& v) {
 
 /// A potential that writes its own gradient, g <- dV/dq, and returns V; `scratch` has room for v.scratch() scalars.
 template <class P, class S, int K>
-concept GivesGradient = requires(const P& v, const Places<S, K>& q, const S* theta, S* scratch, Places<S, K>& g) {
+concept GivesGradient = requires(const P& v, const Positions<S, K>& q, const S* theta, S* scratch, Positions<S, K>& g) {
   { v.gradient(q, theta, scratch, g) } -> std::convertible_to<S>;
   { v.scratch() } -> std::convertible_to<int>;
 };
 
 /// V and dV/dq, exactly: its own, or that of its energy, direction by direction.
 template <class P, class S, int K>
-S value_and_gradient(const P& v, const Places<S, K>& q, const S* theta, [[maybe_unused]] S* scratch, Places<S, K>& g) {
+S value_and_gradient(const P& v, const Positions<S, K>& q, const S* theta, [[maybe_unused]] S* scratch,
+                     Positions<S, K>& g) {
   if constexpr (GivesGradient<P, S, K>) {
     return v.gradient(q, theta, scratch, g);
   } else {
     using D = Dual<S>;
-    Places<D, K> moved(3, q.cols());
-    return value_and_gradient_of([&](const Places<D, K>& at) { return v.template energy<D, S>(at, theta); }, q, moved,
-                                 g);
+    Positions<D, K> moved(3, q.cols());
+    return value_and_gradient_of([&](const Positions<D, K>& at) { return v.template energy<D, S>(at, theta); }, q,
+                                 moved, g);
   }
 }
 

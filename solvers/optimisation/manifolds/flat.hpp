@@ -20,8 +20,8 @@ class FlatSpace final : public Manifold {
   double penalty(const Point&, double, Vector&) const override { return 0; }
   bool nearest(Point& x) const override { return x.allFinite(); }
   void project(const Point&, Vector&) const override {}
-  bool offers(Retraction) const override { return true; }
-  bool retract(Retraction, const Point& x, const Vector& v, Point& to) const override {
+  bool offers(ManifoldRetraction) const override { return true; }
+  bool retract(ManifoldRetraction, const Point& x, const Vector& v, Point& to) const override {
     to = x + v;
     return true;
   }

@@ -4,17 +4,17 @@
 
 namespace lagroid::optimisation {
 
-std::string_view to_string(Retraction retraction) {
+std::string_view to_string(ManifoldRetraction retraction) {
   switch (retraction) {
-    case Retraction::exponential:
+    case ManifoldRetraction::exponential:
       return "exponential";
-    case Retraction::qr:
+    case ManifoldRetraction::qr:
       return "qr";
-    case Retraction::polar:
+    case ManifoldRetraction::polar:
       return "polar";
-    case Retraction::orthographic:
+    case ManifoldRetraction::orthographic:
       return "orthographic";
-    case Retraction::cayley:
+    case ManifoldRetraction::cayley:
       return "cayley";
   }
   return "unknown";

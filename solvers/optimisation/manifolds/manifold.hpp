@@ -26,14 +26,14 @@ using Point = Eigen::VectorXd;
 using Vector = Eigen::VectorXd;
 
 /// Ways from a tangent vector to a point.
-enum class Retraction {
+enum class ManifoldRetraction {
   exponential,   ///< along the geodesic
   qr,            ///< Q of the QR decomposition of X + V, R with a positive diagonal
   polar,         ///< the nearest point to X + V
   orthographic,  ///< X + V and a normal vector at X: the step with multipliers of a constrained Hamiltonian map
   cayley         ///< by a skew matrix of rank 2 m
 };
-std::string_view to_string(Retraction retraction);
+std::string_view to_string(ManifoldRetraction retraction);
 
 /// Q = C^{-1}(0) in a space of matrices E, with the metric <A, B> = Trace(A^T B) of E ([V] 5.3.2). A subclass writes
 /// all that is pure here; sizes are those of run time.
@@ -61,10 +61,10 @@ class Manifold {
   /// v without its normal part at x.
   virtual void project(const Point& x, Vector& v) const = 0;
 
-  virtual bool offers(Retraction retraction) const = 0;
+  virtual bool offers(ManifoldRetraction retraction) const = 0;
   /// From x along the tangent vector v. False outside the retraction's domain. Throws std::invalid_argument for one
   /// that is not offered. `to` may not be `x`.
-  virtual bool retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const = 0;
+  virtual bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const = 0;
   /// The step with multipliers, x+ = x + z - dC^T lambda with C(x+) = 0, for any vector z at x ([V] (3.19)): `to`, and
   /// `moved` = x+ - x without cancellation. False where |tangent part of z| is too long for it.
   virtual bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const = 0;

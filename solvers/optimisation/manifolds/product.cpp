@@ -86,11 +86,11 @@ void ProductManifold::project(const Point& x, Vector& v) const {
   });
 }
 
-bool ProductManifold::offers(Retraction retraction) const {
+bool ProductManifold::offers(ManifoldRetraction retraction) const {
   return std::all_of(factors_.begin(), factors_.end(), [&](const auto& factor) { return factor->offers(retraction); });
 }
 
-bool ProductManifold::retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const {
+bool ProductManifold::retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const {
   to.resize(size());
   return each([&](const Manifold& factor, Buffers& at, const auto& part) {
     at.x = part(x);

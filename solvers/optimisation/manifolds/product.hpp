@@ -33,8 +33,8 @@ class ProductManifold final : public Manifold {
   bool nearest(Point& x) const override;
   void project(const Point& x, Vector& v) const override;
   /// Those that all factors offer.
-  bool offers(Retraction retraction) const override;
-  bool retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const override;
+  bool offers(ManifoldRetraction retraction) const override;
+  bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const override;
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
   double reach(const Vector& v) const override;
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;

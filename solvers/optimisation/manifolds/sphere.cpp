@@ -35,21 +35,21 @@ void Sphere::project(const Point& x, Vector& v) const {
   v -= normal * x;
 }
 
-bool Sphere::retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const {
+bool Sphere::retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const {
   const double length = v.norm();
   switch (retraction) {
-    case Retraction::exponential:
-    case Retraction::cayley: {
-      const double angle = retraction == Retraction::cayley ? 2 * std::atan(0.5 * length) : length;
+    case ManifoldRetraction::exponential:
+    case ManifoldRetraction::cayley: {
+      const double angle = retraction == ManifoldRetraction::cayley ? 2 * std::atan(0.5 * length) : length;
       const double share = length > 0 ? std::sin(angle) / length : 1;
       to = std::cos(angle) * x + share * v;
       return nearest(to);
     }
-    case Retraction::qr:
-    case Retraction::polar:
+    case ManifoldRetraction::qr:
+    case ManifoldRetraction::polar:
       to = x + v;
       return nearest(to);
-    case Retraction::orthographic:
+    case ManifoldRetraction::orthographic:
       return orthographic(x, v, to, moved_);
   }
   return false;

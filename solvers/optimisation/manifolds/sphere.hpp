@@ -22,8 +22,8 @@ class Sphere final : public Manifold {
   void project(const Point& x, Vector& v) const override;
   /// exponential; qr, polar and cayley (which coincide: x + v to the length one, but for cayley, the exponential of the
   /// angle 2 atan(|v| / 2)); orthographic.
-  bool offers(Retraction) const override { return true; }
-  bool retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const override;
+  bool offers(ManifoldRetraction) const override { return true; }
+  bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const override;
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
   double reach(const Vector& v) const override { return v.norm(); }
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;

@@ -135,19 +135,19 @@ bool Stiefel::qr(Matrix& y) const {
   return true;
 }
 
-bool Stiefel::retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const {
-  if (retraction == Retraction::orthographic) return orthographic(x, v, to, moved_);
+bool Stiefel::retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const {
+  if (retraction == ManifoldRetraction::orthographic) return orthographic(x, v, to, moved_);
   to.resize(size());
   const ConstMap point(x.data(), n_, m_);
   const ConstMap vector(v.data(), n_, m_);
   Map end(to.data(), n_, m_);
   switch (retraction) {
-    case Retraction::qr:
+    case ManifoldRetraction::qr:
       tall_ = point + vector;
       if (!qr(tall_)) return false;
       end = tall_;
       return true;
-    case Retraction::polar: {
+    case ManifoldRetraction::polar: {
       symmetric_product(vector, vector, gram_);
       if (!gram_.allFinite()) return false;
       const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram_);
@@ -158,7 +158,7 @@ bool Stiefel::retract(Retraction retraction, const Point& x, const Vector& v, Po
       end.noalias() = tall_ * square_;
       break;
     }
-    case Retraction::cayley: {
+    case ManifoldRetraction::cayley: {
       product_.noalias() = point.transpose() * vector;
       tall_ = vector;
       tall_.noalias() -= 0.5 * point * product_;  // A = V - X X^T V / 2
@@ -178,7 +178,7 @@ bool Stiefel::retract(Retraction retraction, const Point& x, const Vector& v, Po
       end.noalias() += point * k.bottomRows(m_);
       break;
     }
-    case Retraction::exponential: {
+    case ManifoldRetraction::exponential: {
       // (X, V) exp((C, -V^T V), (I, C)) (I, 0)^T exp(-C), C = X^T V.
       product_.noalias() = point.transpose() * vector;
       symmetric_product(vector, vector, gram_);
@@ -195,7 +195,7 @@ bool Stiefel::retract(Retraction retraction, const Point& x, const Vector& v, Po
       end.noalias() += vector * k.bottomRows(m_);
       break;
     }
-    case Retraction::orthographic:
+    case ManifoldRetraction::orthographic:
       break;
   }
   if (!to.allFinite()) return false;

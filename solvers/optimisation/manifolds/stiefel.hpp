@@ -33,8 +33,8 @@ class Stiefel final : public Manifold {
   /// The polar factor. False where x has no full rank.
   bool nearest(Point& x) const override;
   void project(const Point& x, Vector& v) const override;
-  bool offers(Retraction) const override { return true; }
-  bool retract(Retraction retraction, const Point& x, const Vector& v, Point& to) const override;
+  bool offers(ManifoldRetraction) const override { return true; }
+  bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const override;
   /// X+ = X (S + W) + B with W = skew(X^T Z), B = Z - X X^T Z and S symmetric positive,
   /// S^2 + S W + W^T S = I - B^T B - W^T W: by T <- -(B^T B + W^T W + T^2 + T W + W^T T) / 2, S = I + T, from T = 0,
   /// and where that is slow by Newton's method, a Lyapunov equation each time. The multipliers are lambda = -T (up to

@@ -9,7 +9,7 @@
 
 namespace lagroid::optimisation {
 
-void Accelerated::begin(Problem& problem, const State& state) {
+void Accelerated::begin(Problem& problem, const EvaluatedPoint& state) {
   for (Vector* v : {&displacement_, &v_, &moved_, &before_}) v->setZero(state.x.size());
   to_ = state.x;
   ahead_ = state;
@@ -28,13 +28,13 @@ bool Accelerated::step(Problem& problem, const Point& x) {
   return true;
 }
 
-Step Accelerated::advance(Problem& problem, State& state) {
+StepOutcome Accelerated::advance(Problem& problem, EvaluatedPoint& state) {
   const Manifold& manifold = problem.manifold();
   const Shares shares = next();
   v_ = shares.momentum * displacement_;
-  const State* at = &state;
+  const EvaluatedPoint* at = &state;
   if (options_.look_ahead) {
-    if (!step(problem, state.x)) return Step::none;
+    if (!step(problem, state.x)) return StepOutcome::none;
     ahead_.x = to_;
     problem.evaluate(ahead_);
     at = &ahead_;
@@ -55,11 +55,11 @@ Step Accelerated::advance(Problem& problem, State& state) {
       manifold.project(state.x, v_);
     }
     const double length = manifold.reach(v_);
-    if (!(length > 0) || !std::isfinite(length)) return Step::none;
+    if (!(length > 0) || !std::isfinite(length)) return StepOutcome::none;
     v_ *= longest / length;
     found = step(problem, state.x);
   }
-  if (!found) return Step::none;
+  if (!found) return StepOutcome::none;
   std::swap(displacement_, moved_);
   const bool learns = learning();
   if (learns) before_ = state.gradient;
@@ -75,7 +75,7 @@ Step Accelerated::advance(Problem& problem, State& state) {
     forget();
     displacement_.setZero();
   }
-  return Step::taken;
+  return StepOutcome::taken;
 }
 
 HamiltonianDescent::HamiltonianDescent(HamiltonianOptions hamiltonian, AcceleratedOptions options)
@@ -85,7 +85,7 @@ HamiltonianDescent::HamiltonianDescent(HamiltonianOptions hamiltonian, Accelerat
     throw std::invalid_argument("step, start time and cap are positive");
 }
 
-void HamiltonianDescent::start(Problem& problem, const State& state) {
+void HamiltonianDescent::start(Problem& problem, const EvaluatedPoint& state) {
   largest_ = std::isfinite(hamiltonian_.cap) ? hamiltonian_.cap / lipschitz_bound(problem, state) : hamiltonian_.cap;
   time_ = hamiltonian_.start_time;
   last_alpha_ = 0;
@@ -112,7 +112,7 @@ RobustDescent::RobustDescent(RobustOptions robust, AcceleratedOptions options)
   if (!(robust_.power > 0) || !(robust_.lipschitz >= 0)) throw std::invalid_argument("power and L are positive");
 }
 
-void RobustDescent::start(Problem& problem, const State& state) {
+void RobustDescent::start(Problem& problem, const EvaluatedPoint& state) {
   steps_ = 0;
   known_ = robust_.lipschitz > 0 || problem.objective().lipschitz().has_value();
   lipschitz_ = robust_.lipschitz > 0 ? robust_.lipschitz : lipschitz_bound(problem, state);

@@ -41,13 +41,13 @@ struct AcceleratedOptions {
 /// This is the type II map with r = 0 and multipliers: mu = alpha_k / alpha_(k-1) and s = alpha_k beta_k, since
 /// D = alpha_(k-1) r_k. What P_x takes away and the normal vector belong to the multipliers. Without momenta as
 /// variables, which grow like powers of t, nothing cancels. Subclasses say mu and s.
-class Accelerated : public Method {
+class Accelerated : public DescentMethod {
  public:
   explicit Accelerated(AcceleratedOptions options) : options_(std::move(options)) {}
 
   std::string name() const override { return options_.name; }
-  void begin(Problem& problem, const State& state) override;
-  Step advance(Problem& problem, State& state) override;
+  void begin(Problem& problem, const EvaluatedPoint& state) override;
+  StepOutcome advance(Problem& problem, EvaluatedPoint& state) override;
   /// How often a step was shortened, and the momentum forgotten.
   long shortened() const { return shortened_; }
   long restarts() const { return restarts_; }
@@ -58,7 +58,7 @@ class Accelerated : public Method {
     double gradient;  ///< s
   };
   bool looks_ahead() const { return options_.look_ahead; }
-  virtual void start(Problem& problem, const State& state) = 0;
+  virtual void start(Problem& problem, const EvaluatedPoint& state) = 0;
   /// Of the next step.
   virtual Shares next() = 0;
   /// The momentum was forgotten.
@@ -73,7 +73,7 @@ class Accelerated : public Method {
   AcceleratedOptions options_;
   Vector displacement_, v_, moved_, before_;
   Point to_;
-  State ahead_;
+  EvaluatedPoint ahead_;
   long shortened_ = 0;
   long restarts_ = 0;
 };
@@ -92,7 +92,7 @@ class HamiltonianDescent final : public Accelerated {
   HamiltonianDescent(HamiltonianOptions hamiltonian, AcceleratedOptions options);
 
  private:
-  void start(Problem& problem, const State& state) override;
+  void start(Problem& problem, const EvaluatedPoint& state) override;
   Shares next() override;
   void forget() override;
 
@@ -116,7 +116,7 @@ class RobustDescent final : public Accelerated {
   double lipschitz() const { return lipschitz_; }
 
  private:
-  void start(Problem& problem, const State& state) override;
+  void start(Problem& problem, const EvaluatedPoint& state) override;
   Shares next() override;
   void forget() override { steps_ = 0; }
   bool learning() const override { return !known_; }

@@ -8,7 +8,7 @@
 
 namespace lagroid::optimisation {
 
-void ConjugateGradient::begin(Problem&, const State& state) {
+void ConjugateGradient::begin(Problem&, const EvaluatedPoint& state) {
   direction_ = -state.gradient;
   before_ = v_ = state.gradient;
   to_ = state;
@@ -16,7 +16,7 @@ void ConjugateGradient::begin(Problem&, const State& state) {
   first_ = length > 0 ? 1 / length : 1;
 }
 
-Step ConjugateGradient::advance(Problem& problem, State& state) {
+StepOutcome ConjugateGradient::advance(Problem& problem, EvaluatedPoint& state) {
   constexpr double flat = 0.1;
   double slope = state.gradient.dot(direction_);
   if (!(slope < 0)) {
@@ -28,7 +28,7 @@ Step ConjugateGradient::advance(Problem& problem, State& state) {
     direction_ = -state.gradient;
     slope = -state.gradient.squaredNorm();
     t = secant_search(problem, retraction_, state, direction_, slope, first_, flat, to_, v_);
-    if (!(t > 0)) return Step::none;
+    if (!(t > 0)) return StepOutcome::none;
   }
   before_ = state.gradient;
   std::swap(state, to_);
@@ -45,7 +45,7 @@ Step ConjugateGradient::advance(Problem& problem, State& state) {
   const double scale = square_before / std::max(direction_.squaredNorm(), 1e-300);
   first_ = curved > 0 ? -state.gradient.dot(direction_) * scale * t / curved : 2 * t * std::sqrt(scale);
   if (!(first_ > 0) || !std::isfinite(first_)) first_ = t;
-  return Step::taken;
+  return StepOutcome::taken;
 }
 
 }  // namespace lagroid::optimisation

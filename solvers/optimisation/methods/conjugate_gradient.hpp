@@ -22,18 +22,18 @@ namespace lagroid::optimisation {
 /// Directions d+ = -grad f+ + b T d with the b of Hestenes and Stiefel, not below zero, T the transport by projection;
 /// the steepest descent where d+ does not descend. Steps by secants (`secant_search`) from the minimum along the line
 /// of the parabola with the curvature of the last step.
-class ConjugateGradient final : public Method {
+class ConjugateGradient final : public DescentMethod {
  public:
-  explicit ConjugateGradient(Retraction retraction = Retraction::qr) : retraction_(retraction) {}
+  explicit ConjugateGradient(ManifoldRetraction retraction = ManifoldRetraction::qr) : retraction_(retraction) {}
 
   std::string name() const override { return "conjugate gradients"; }
-  void begin(Problem& problem, const State& state) override;
-  Step advance(Problem& problem, State& state) override;
+  void begin(Problem& problem, const EvaluatedPoint& state) override;
+  StepOutcome advance(Problem& problem, EvaluatedPoint& state) override;
 
  private:
-  Retraction retraction_;
+  ManifoldRetraction retraction_;
   Vector direction_, before_, v_;
-  State to_;
+  EvaluatedPoint to_;
   double first_ = 0;
 };
 

@@ -16,7 +16,7 @@ EulerLagrange::EulerLagrange(EulerLagrangeOptions options) : options_(options) {
 
 std::string EulerLagrange::name() const { return options_.version == 1 ? "Euler-Lagrange I" : "Euler-Lagrange II"; }
 
-void EulerLagrange::begin(Problem& problem, const State& state) {
+void EulerLagrange::begin(Problem& problem, const EvaluatedPoint& state) {
   k_ = 0;
   largest_ = options_.cap;
   if (std::isfinite(largest_)) largest_ /= options_.h * options_.h * lipschitz_bound(problem, state);
@@ -26,7 +26,7 @@ void EulerLagrange::begin(Problem& problem, const State& state) {
   ahead_ = state;
 }
 
-Step EulerLagrange::advance(Problem& problem, State& state) {
+StepOutcome EulerLagrange::advance(Problem& problem, EvaluatedPoint& state) {
   const Manifold& manifold = problem.manifold();
   const double k = double(++k_);
   const double h = options_.h;
@@ -35,7 +35,7 @@ Step EulerLagrange::advance(Problem& problem, State& state) {
   velocity_ *= b;
   if (options_.version == 2) {
     v_ = h * velocity_;
-    if (!manifold.retract(options_.retraction, state.x, v_, ahead_.x)) return Step::none;
+    if (!manifold.retract(options_.retraction, state.x, v_, ahead_.x)) return StepOutcome::none;
     problem.evaluate(ahead_);
     v_ = ahead_.gradient;
     manifold.transport(state.x, v_);
@@ -44,11 +44,11 @@ Step EulerLagrange::advance(Problem& problem, State& state) {
     velocity_ -= h * c * state.gradient;
   }
   v_ = h * velocity_;
-  if (!manifold.retract(options_.retraction, state.x, v_, to_)) return Step::none;
+  if (!manifold.retract(options_.retraction, state.x, v_, to_)) return StepOutcome::none;
   state.x = to_;
   manifold.transport(state.x, velocity_);
   problem.evaluate(state);
-  return Step::taken;
+  return StepOutcome::taken;
 }
 
 }  // namespace lagroid::optimisation

@@ -26,7 +26,7 @@ struct EulerLagrangeOptions {
   int version = 1;    ///< 2: the gradient is taken where the momentum alone would lead
   /// h^2 C p^2 (k h)^(p - 2) <= cap / L; infinite: it grows without end and loses convergence ([V] 5.5).
   double cap = 1;
-  Retraction retraction = Retraction::qr;
+  ManifoldRetraction retraction = ManifoldRetraction::qr;
 };
 
 /// For k = 1, 2, ..., b_k = 1 - (lambda p + 1) / k and c_k = C p^2 (k h)^(p - 2):
@@ -34,14 +34,14 @@ struct EulerLagrangeOptions {
 ///     a = b_k V - h c_k grad f(X),   X+ = R_X(h a),   V+ = a transported,
 ///
 /// version 2 with the gradient at R_X(h b_k V), transported back.
-class EulerLagrange final : public Method {
+class EulerLagrange final : public DescentMethod {
  public:
   /// Throws std::invalid_argument, with the remedy, for options out of range.
   explicit EulerLagrange(EulerLagrangeOptions options);
 
   std::string name() const override;
-  void begin(Problem& problem, const State& state) override;
-  Step advance(Problem& problem, State& state) override;
+  void begin(Problem& problem, const EvaluatedPoint& state) override;
+  StepOutcome advance(Problem& problem, EvaluatedPoint& state) override;
 
  private:
   EulerLagrangeOptions options_;
@@ -49,7 +49,7 @@ class EulerLagrange final : public Method {
   double largest_ = 0;
   Vector velocity_, v_;
   Point to_;
-  State ahead_;
+  EvaluatedPoint ahead_;
 };
 
 }  // namespace lagroid::optimisation

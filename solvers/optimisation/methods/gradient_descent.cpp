@@ -17,17 +17,17 @@ std::string GradientDescent::name() const {
   return options_.step > 0 || options_.c > 0 ? "gradient descent" : "gradient descent, line search";
 }
 
-void GradientDescent::begin(Problem& problem, const State& state) {
+void GradientDescent::begin(Problem& problem, const EvaluatedPoint& state) {
   step_ = options_.c > 0 ? options_.c / lipschitz_bound(problem, state) : options_.step;
   v_.setZero(state.x.size());
   to_ = state.x;
   last_ = state.gradient.norm() > 0 ? 1 / state.gradient.norm() : 1;
 }
 
-Step GradientDescent::advance(Problem& problem, State& state) {
+StepOutcome GradientDescent::advance(Problem& problem, EvaluatedPoint& state) {
   if (step_ > 0) {
     v_ = -step_ * state.gradient;
-    if (!problem.manifold().retract(options_.retraction, state.x, v_, to_)) return Step::none;
+    if (!problem.manifold().retract(options_.retraction, state.x, v_, to_)) return StepOutcome::none;
   } else {
     const double slope = state.gradient.squaredNorm();
     Vector& direction = state.gradient;
@@ -35,12 +35,12 @@ Step GradientDescent::advance(Problem& problem, State& state) {
     last_ = backtrack(problem, options_.retraction, state, direction, -slope, 2 * last_, options_.decrease, to_, v_);
     if (!(last_ > 0)) {
       direction = -direction;
-      return Step::none;
+      return StepOutcome::none;
     }
   }
   state.x = to_;
   problem.evaluate(state);
-  return Step::taken;
+  return StepOutcome::taken;
 }
 
 }  // namespace lagroid::optimisation

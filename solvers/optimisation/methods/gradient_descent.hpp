@@ -21,17 +21,17 @@ struct GradientDescentOptions {
   double step = 0;
   double c = 0;  ///< step = c / L
   double decrease = 1e-4;
-  Retraction retraction = Retraction::qr;
+  ManifoldRetraction retraction = ManifoldRetraction::qr;
 };
 
-class GradientDescent final : public Method {
+class GradientDescent final : public DescentMethod {
  public:
   /// Throws std::invalid_argument, with the remedy, for options out of range.
   explicit GradientDescent(GradientDescentOptions options);
 
   std::string name() const override;
-  void begin(Problem& problem, const State& state) override;
-  Step advance(Problem& problem, State& state) override;
+  void begin(Problem& problem, const EvaluatedPoint& state) override;
+  StepOutcome advance(Problem& problem, EvaluatedPoint& state) override;
 
  private:
   GradientDescentOptions options_;

@@ -6,7 +6,7 @@
 
 namespace lagroid::optimisation {
 
-void TrustRegion::begin(Problem& problem, const State& state) {
+void TrustRegion::begin(Problem& problem, const EvaluatedPoint& state) {
   largest_ = options_.largest_radius > 0 ? options_.largest_radius : std::sqrt(double(problem.manifold().dimension()));
   radius_ = options_.first_radius > 0 ? std::min(options_.first_radius, largest_) : largest_ / 8;
   first_gradient_ = state.gradient.norm();
@@ -15,7 +15,7 @@ void TrustRegion::begin(Problem& problem, const State& state) {
 }
 
 /// step_, and the Hessian along it.
-void TrustRegion::solve_model(Problem& problem, const State& state) {
+void TrustRegion::solve_model(Problem& problem, const EvaluatedPoint& state) {
   const long most = options_.inner_iterations > 0 ? options_.inner_iterations : problem.manifold().dimension();
   step_.setZero();
   curved_step_.setZero();
@@ -51,7 +51,7 @@ void TrustRegion::solve_model(Problem& problem, const State& state) {
   }
 }
 
-Step TrustRegion::advance(Problem& problem, State& state) {
+StepOutcome TrustRegion::advance(Problem& problem, EvaluatedPoint& state) {
   constexpr int most = 60;
   const double rounding = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(state.value);
   for (int k = 0; k < most; ++k) {
@@ -71,11 +71,11 @@ Step TrustRegion::advance(Problem& problem, State& state) {
     if (share > 0.1) {
       state.x = to_;
       problem.evaluate(state);
-      return Step::taken;
+      return StepOutcome::taken;
     }
-    if (!(radius_ > 0)) return Step::none;
+    if (!(radius_ > 0)) return StepOutcome::none;
   }
-  return Step::none;
+  return StepOutcome::none;
 }
 
 }  // namespace lagroid::optimisation

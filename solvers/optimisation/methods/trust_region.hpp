@@ -19,7 +19,7 @@
 namespace lagroid::optimisation {
 
 struct TrustRegionOptions {
-  Retraction retraction = Retraction::qr;
+  ManifoldRetraction retraction = ManifoldRetraction::qr;
   double first_radius = 0;    ///< 0: an eighth of the largest
   double largest_radius = 0;  ///< 0: the square root of the dimension, about the size of the manifold
   int inner_iterations = 0;   ///< 0: the dimension
@@ -28,16 +28,16 @@ struct TrustRegionOptions {
 /// Minimises m(v) = f + <grad f, v> + <v, Hess f v> / 2 within |v| <= radius by truncated conjugate gradients
 /// (Steihaug and Toint), until the residual is |r_0| min(|r_0| / |grad f at the start|, 0.1); f has to fall by a tenth
 /// of what m promises.
-class TrustRegion final : public Method {
+class TrustRegion final : public DescentMethod {
  public:
   explicit TrustRegion(TrustRegionOptions options = {}) : options_(options) {}
 
   std::string name() const override { return "trust region"; }
-  void begin(Problem& problem, const State& state) override;
-  Step advance(Problem& problem, State& state) override;
+  void begin(Problem& problem, const EvaluatedPoint& state) override;
+  StepOutcome advance(Problem& problem, EvaluatedPoint& state) override;
 
  private:
-  void solve_model(Problem& problem, const State& state);
+  void solve_model(Problem& problem, const EvaluatedPoint& state);
 
   TrustRegionOptions options_;
   double radius_ = 0;

@@ -41,7 +41,7 @@ inline optimisation::Vector draw_tangent(const optimisation::Manifold& manifold,
 
 /// What a manifold promises (`optimisation::Manifold`), at random points.
 inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
-  using optimisation::Point, optimisation::Vector, optimisation::Retraction;
+  using optimisation::Point, optimisation::Vector, optimisation::ManifoldRetraction;
   using namespace detail;
   LawReport report{manifold.name(), {}};
   const double numbers = double(manifold.size());
@@ -80,8 +80,9 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
         (manifold.penalty(moved + e * v, 1, unused) - manifold.penalty(moved - e * v, 1, unused)) / (2 * e);
     return worst({-penalty, std::abs(slope - pull.dot(v)) / (1 + v.squaredNorm() * v.norm())});
   });
-  for (const Retraction retraction :
-       {Retraction::exponential, Retraction::qr, Retraction::polar, Retraction::orthographic, Retraction::cayley}) {
+  for (const ManifoldRetraction retraction :
+       {ManifoldRetraction::exponential, ManifoldRetraction::qr, ManifoldRetraction::polar,
+        ManifoldRetraction::orthographic, ManifoldRetraction::cayley}) {
     if (!manifold.offers(retraction)) continue;
     const std::string name(to_string(retraction));
     law("retraction " + name + " lands on it", 1e-15 * numbers, [&] {
@@ -117,13 +118,13 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
     manifold.project(x, normal);
     return worst({normal.norm(), (to - x - moved).norm()});
   });
-  if (manifold.offers(Retraction::exponential)) {
+  if (manifold.offers(ManifoldRetraction::exponential)) {
     law("the logarithm inverts the exponential", 1e-11, [&] {
       const Point x = draw_point(manifold);
       const Vector v = draw_tangent(manifold, x, 1);
       Point to;
       Vector back;
-      if (!manifold.retract(Retraction::exponential, x, v, to)) return 1.0;
+      if (!manifold.retract(ManifoldRetraction::exponential, x, v, to)) return 1.0;
       if (!manifold.logarithm(x, to, back)) throw NotSampled("the logarithm is not known in closed form");
       return (back - v).norm();
     });
@@ -134,8 +135,9 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
       const Vector d = draw_ambient(manifold);
       const auto f = [&](double t) {
         Point to;
-        return manifold.retract(Retraction::exponential, x, t * v, to) ? b.dot(to) + 0.5 * to.dot(d.cwiseProduct(to))
-                                                                       : std::nan("");
+        return manifold.retract(ManifoldRetraction::exponential, x, t * v, to)
+                   ? b.dot(to) + 0.5 * to.dot(d.cwiseProduct(to))
+                   : std::nan("");
       };
       constexpr double e = 1e-3;
       const double second = (16 * (f(e) + f(-e)) - f(2 * e) - f(-2 * e) - 30 * f(0)) / (12 * e * e);
@@ -150,11 +152,11 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold) {
 /// "the gradient is that of the value", "the Hessian is that of the gradient", and where a Lipschitz constant of the
 /// Riemannian gradient is declared, "curvatures stay below the Lipschitz constant": at random points of the manifold.
 inline LawReport objective_laws(const optimisation::Manifold& manifold, const optimisation::Objective& objective) {
-  using optimisation::Problem, optimisation::State, optimisation::Vector;
+  using optimisation::Problem, optimisation::EvaluatedPoint, optimisation::Vector;
   using namespace detail;
   LawReport report{objective.name(), {}};
   const auto at = [&] {
-    State state;
+    EvaluatedPoint state;
     state.x = draw_point(manifold);
     Problem problem(manifold, objective);
     problem.evaluate(state);
@@ -162,14 +164,14 @@ inline LawReport objective_laws(const optimisation::Manifold& manifold, const op
   };
   report.laws.push_back(check_law("the gradient is that of the value", 1e-7, [&] {
     constexpr double e = 1e-5;
-    const State state = at();
+    const EvaluatedPoint state = at();
     const Vector v = draw_ambient(manifold);
     const double slope = (objective.value(state.x + e * v) - objective.value(state.x - e * v)) / (2 * e);
     return std::abs(slope - state.euclidean.dot(v)) / (v.norm() * state.euclidean.norm() + std::abs(state.value));
   }));
   report.laws.push_back(check_law("the Hessian is that of the gradient", 1e-6, [&] {
     constexpr double e = 1e-5;
-    const State state = at();
+    const EvaluatedPoint state = at();
     const Vector v = draw_ambient(manifold);
     Vector h(v.size());
     Vector there(v.size());
@@ -181,7 +183,7 @@ inline LawReport objective_laws(const optimisation::Manifold& manifold, const op
   }));
   if (const auto lipschitz = objective.lipschitz())
     report.laws.push_back(check_law("curvatures stay below the Lipschitz constant", 1, [&] {
-      const State state = at();
+      const EvaluatedPoint state = at();
       Problem problem(manifold, objective);
       const Vector v = draw_tangent(manifold, state.x, 1);
       Vector h(v.size());

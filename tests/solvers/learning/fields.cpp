@@ -119,7 +119,7 @@ TEST(Polynomials, HaveEveryMonomialOnce) {
   const VectorXd theta = random_vector(v.size(), 1);
   const Eigen::Vector3d q = random_vector(3, 2);
   std::vector<double> scratch(std::size_t(v.scratch()));
-  Places<double, 1> g;
+  Positions<double, 1> g;
   double sum = 0;
   for (int a = 0; a < v.size(); ++a)
     sum += theta(a) * std::pow(q(0), all[std::size_t(a)][0]) * std::pow(q(1), all[std::size_t(a)][1]) *

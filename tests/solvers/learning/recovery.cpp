@@ -21,14 +21,14 @@ TEST(Recovery, ByPolynomialsIsAsGoodAsTheIntegrator) {
   for (int degree : {1, 2}) {
     const auto model = polynomial_model(1, degree);
     const Trained trained = train(*model, training_data(1), {});
-    EXPECT_EQ(trained.outcome, Outcome::converged) << trained.message;
+    EXPECT_EQ(trained.outcome, TrainingStatus::converged) << trained.message;
     EXPECT_LT(trained.mse, 1e-20);
     EXPECT_LT(test_error(*model, trained, 1), 1e-19);
     EXPECT_NEAR(model->mass(trained.parameters)(0, 0), 1, 1e-9);
   }
   const auto two = polynomial_model(2, 2);
   const Trained trained = train(*two, training_data(2), {});
-  EXPECT_EQ(trained.outcome, Outcome::converged) << trained.message;
+  EXPECT_EQ(trained.outcome, TrainingStatus::converged) << trained.message;
   EXPECT_LT(test_error(*two, trained, 2), 1e-15);
   MatrixXd mass(2, 2);
   mass << 2, 1, 1, 1;
@@ -44,7 +44,7 @@ TEST(Recovery, ThroughEveryIntegratorReachesItsOwnError) {
   std::vector<double> errors;
   for (const LieGroupMethod& method : lie_group_methods::all) {
     const Trained trained = train(*model, data, {.method = method, .starts = 1});
-    EXPECT_EQ(trained.outcome, Outcome::converged) << method.name << trained.message;
+    EXPECT_EQ(trained.outcome, TrainingStatus::converged) << method.name << trained.message;
     const double error = test_error(*model, trained, 1);
     if (method.order == 1) {
       EXPECT_GT(error, 1e-8) << method.name;
@@ -120,7 +120,7 @@ TEST(Noise, OfFewDataIsNotLearnedByHeart) {
   const Trained heard = train(*model, data, {.starts = 1, .iterations = 400, .least_progress = 1e-9});
   const Trained stopped =
       train(*model, data, {.starts = 1, .iterations = 400, .validation = 0.25, .least_progress = 1e-9});
-  EXPECT_EQ(stopped.outcome, Outcome::early_stopped) << to_string(stopped.outcome);
+  EXPECT_EQ(stopped.outcome, TrainingStatus::early_stopped) << to_string(stopped.outcome);
   EXPECT_LT(stopped.iterations, heard.iterations);
   double least = std::numeric_limits<double>::infinity();
   for (const Stage& stage : stopped.history) least = std::min(least, stage.validation);

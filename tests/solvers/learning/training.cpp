@@ -24,7 +24,7 @@ TEST(Training, EndsAsItSays) {
   const Trajectories data = training_data(1, 50);
   const auto network = network_model(1, {8});
   const Trained few = train(*network, data, {.starts = 1, .iterations = 3});
-  EXPECT_EQ(few.outcome, Outcome::iteration_limit);
+  EXPECT_EQ(few.outcome, TrainingStatus::iteration_limit);
   EXPECT_NE(few.message.find("allow more"), std::string::npos);
   EXPECT_EQ(few.history.size(), 4U);
   EXPECT_NEAR(few.history.back().mse, few.mse, 1e-12 * few.mse);
@@ -34,13 +34,13 @@ TEST(Training, EndsAsItSays) {
   EXPECT_EQ(train(*network, data, {.iterations = 0, .begin = few.parameters}).parameters, few.parameters);
   EXPECT_THROW(train(*network, data, {.begin = VectorXd::Zero(3)}), std::invalid_argument);
   const Trained enough = train(*network, data, {.starts = 1, .enough = 1e-6});
-  EXPECT_EQ(enough.outcome, Outcome::reached);
+  EXPECT_EQ(enough.outcome, TrainingStatus::reached);
   EXPECT_LE(enough.mse, 1e-6);
   const Trained late = train(*network, data, {.seconds = 0});
-  EXPECT_EQ(late.outcome, Outcome::time_limit);
+  EXPECT_EQ(late.outcome, TrainingStatus::time_limit);
   int seen = 0;
   const Trained stopped = train(*network, data, {.threads = 1, .callback = [&](const Stage&) { return ++seen < 6; }});
-  EXPECT_EQ(stopped.outcome, Outcome::interrupted);
+  EXPECT_EQ(stopped.outcome, TrainingStatus::interrupted);
   EXPECT_EQ(seen, 6);
   EXPECT_TRUE(stopped.usable());
   EXPECT_LT(stopped.mse, stopped.history.front().mse);
@@ -58,13 +58,13 @@ TEST(Training, EndsAsItSays) {
     EXPECT_EQ(one.history[i].mse, three.history[i].mse);
   }
   const Trained small = train(*network, data.part(0, 2), {});
-  EXPECT_EQ(small.outcome, Outcome::too_little_data);
+  EXPECT_EQ(small.outcome, TrainingStatus::too_little_data);
   EXPECT_FALSE(small.usable());
   EXPECT_NE(small.message.find("41 parameters"), std::string::npos) << small.message;
   // Steps so long that nothing is finite.
   Trajectories wild = data;
   wild.interval = 1e200;
-  EXPECT_EQ(train(*network, wild, {}).outcome, Outcome::not_finite);
+  EXPECT_EQ(train(*network, wild, {}).outcome, TrainingStatus::not_finite);
   EXPECT_THROW(train(*network, data, {.substeps = 0}), std::invalid_argument);
   EXPECT_THROW(train(*network, training_data(2, 3), {}), std::invalid_argument);
 }
@@ -104,7 +104,7 @@ TEST(Training, TellsWhatCannotBeDifferentiated) {
   VectorXd theta = VectorXd::Zero(4);
   theta << 0, 1e300, 1e300, 1e300;
   const Trained wild = train(*model, data, {.begin = theta});
-  EXPECT_EQ(wild.outcome, Outcome::not_finite) << to_string(wild.outcome);
+  EXPECT_EQ(wild.outcome, TrainingStatus::not_finite) << to_string(wild.outcome);
   EXPECT_NE(wild.message.find("go on from"), std::string::npos) << wild.message;
   EXPECT_FALSE(wild.usable());
   EXPECT_THROW(train(*model, data, {.damping_floor = 11}), std::invalid_argument);
@@ -115,7 +115,7 @@ TEST(Training, TellsWhatCannotBeDifferentiated) {
 /// A potential whose derivative with respect to its parameter is not finite after a while.
 struct Brittle {
   int size() const { return 1; }
-  template <class S, class T> S energy(const Places<S, 1>& q, const T* theta) const {
+  template <class S, class T> S energy(const Positions<S, 1>& q, const T* theta) const {
     using std::sqrt;
     return q(2) * sqrt(S(theta[0]) * S(theta[0]));
   }
@@ -124,7 +124,7 @@ struct Brittle {
 TEST(Training, OfARootOfZeroIsNotFinite) {
   const ParametricModel<Brittle, 1> model("brittle", Brittle{});
   const Trained trained = train(model, training_data(1, 20), {.starts = 1});
-  EXPECT_EQ(trained.outcome, Outcome::not_finite) << to_string(trained.outcome);
+  EXPECT_EQ(trained.outcome, TrainingStatus::not_finite) << to_string(trained.outcome);
   EXPECT_FALSE(trained.usable());
 }
 
@@ -159,10 +159,10 @@ TEST(Training, DividesByTheWeightsOfThePart) {
   // One trajectory of weight is 16 free numbers, whatever stands beside it.
   for (Observation& row : rows) row.weight = row.trajectory == 1 ? 1 : 0;
   const Trained few = train(*polynomial_model(1, 3), assemble(rows, 0.01), {});
-  EXPECT_EQ(few.outcome, Outcome::too_little_data);
+  EXPECT_EQ(few.outcome, TrainingStatus::too_little_data);
   EXPECT_NE(few.message.find("are 16 free numbers"), std::string::npos) << few.message;
   const Trained none = train(*model, assemble(rows, 0.01), {.validation = 0.01});
-  EXPECT_EQ(none.outcome, Outcome::too_little_data);
+  EXPECT_EQ(none.outcome, TrainingStatus::too_little_data);
   EXPECT_NE(none.message.find("held out are zero"), std::string::npos) << none.message;
 }
 
@@ -171,15 +171,15 @@ TEST(Training, IsStoppedWithinAnEvaluation) {
   const auto model = network_model(1, {4});
   int asked = 0;
   const Trained early = train(*model, data, {.stop = [&] { return ++asked > 2; }});
-  EXPECT_EQ(early.outcome, Outcome::interrupted);
+  EXPECT_EQ(early.outcome, TrainingStatus::interrupted);
   EXPECT_FALSE(early.usable());
   EXPECT_TRUE(early.history.empty());
   asked = 0;
   const Trained later = train(*model, data, {.starts = 1, .stop = [&] { return ++asked > 300; }});
-  EXPECT_EQ(later.outcome, Outcome::interrupted);
+  EXPECT_EQ(later.outcome, TrainingStatus::interrupted);
   ASSERT_TRUE(later.usable());
   EXPECT_EQ(later.mse, later.history.back().mse);
-  EXPECT_EQ(train(*model, data, {.seconds = 0.001}).outcome, Outcome::time_limit);
+  EXPECT_EQ(train(*model, data, {.seconds = 0.001}).outcome, TrainingStatus::time_limit);
   EXPECT_FALSE(measure(*model, later.parameters, data, 1e-12, [] { return true; }).complete);
 }
 
@@ -190,7 +190,7 @@ TEST(Training, SaysWhatTheDataDoNotDetermine) {
     for (int j = 0; j < 3; ++j) rows.push_back({long(rows.size()) + 1, n, 0.1 * j, VectorXd{{0, 0, -1, 0, 0, 0}}, 1});
   const auto model = polynomial_model(1, 1);
   const Trained rest = train(*model, assemble(rows), {});
-  EXPECT_EQ(rest.outcome, Outcome::converged) << to_string(rest.outcome);
+  EXPECT_EQ(rest.outcome, TrainingStatus::converged) << to_string(rest.outcome);
   EXPECT_FALSE(rest.mass_determined);
   const Trained moving = train(*model, training_data(1, 50), {});
   EXPECT_TRUE(moving.mass_determined);
@@ -198,7 +198,7 @@ TEST(Training, SaysWhatTheDataDoNotDetermine) {
   // Measured only, as few data as one likes.
   const Trained measured = train(*model, training_data(1, 1).part(0, 1), {.iterations = 0, .begin = moving.parameters});
   EXPECT_EQ(train(*network_model(1, {8}), training_data(1, 1), {.iterations = 0, .begin = VectorXd::Zero(41)}).outcome,
-            Outcome::iteration_limit);
+            TrainingStatus::iteration_limit);
   EXPECT_LT(measured.mse, 1e-15);
 }
 

@@ -27,7 +27,7 @@ struct Counts {
 };
 
 inline Counts count(const Manifold& manifold, const Objective& objective, const Point& start, double least,
-                    Method& method, long iterations, const std::function<double(const Point&)>& gap = nullptr) {
+                    DescentMethod& method, long iterations, const std::function<double(const Point&)>& gap = nullptr) {
   Counts out;
   Stopping stopping;
   stopping.iterations = iterations;

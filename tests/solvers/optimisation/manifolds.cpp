@@ -54,8 +54,8 @@ class BrokenSphere : public Manifold {
   }
   bool nearest(Point& x) const override { return sphere_.nearest(x); }
   void project(const Point& x, Vector& v) const override { v -= 0.9 * x.dot(v) * x; }
-  bool offers(Retraction) const override { return true; }
-  bool retract(Retraction, const Point& x, const Vector& v, Point& to) const override {
+  bool offers(ManifoldRetraction) const override { return true; }
+  bool retract(ManifoldRetraction, const Point& x, const Vector& v, Point& to) const override {
     to = x + 1.1 * v;
     return true;
   }

@@ -88,7 +88,7 @@ TEST(Accelerated, AdaptiveBeatsDirectWhichIsNoWorseThanEulerLagrange) {
     HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive);
     HamiltonianDescent direct = hamiltonian(Bregman::Kind::direct);
     EulerLagrange euler_lagrange({});
-    const auto to_8 = [&](Method& method) {
+    const auto to_8 = [&](DescentMethod& method) {
       return count(*problem.manifold, *problem.objective, problem.start, problem.minimum, method, 30000).to_8;
     };
     const long a = to_8(adaptive);
@@ -105,7 +105,7 @@ TEST(EulerLagrange, LosesConvergenceWithoutACap) {
   const RandomInstance problem = rayleigh(1);
   EulerLagrange uncapped({.cap = std::numeric_limits<double>::infinity()});
   EulerLagrange capped({});
-  const auto last = [&](Method& method) {
+  const auto last = [&](DescentMethod& method) {
     return minimise(*problem.manifold, *problem.objective, problem.start, method, {.iterations = 20000, .patience = 0},
                     {.history = true})
                .history.back()
@@ -143,7 +143,8 @@ TEST(Methods, StayOnTheManifoldToRoundOff) {
     GradientDescent descent({.c = 1});
     ConjugateGradient conjugate;
     TrustRegion trust;
-    for (Method* method : std::vector<Method*>{&ours, &adaptive, &euler_lagrange, &descent, &conjugate, &trust}) {
+    for (DescentMethod* method :
+         std::vector<DescentMethod*>{&ours, &adaptive, &euler_lagrange, &descent, &conjugate, &trust}) {
       long seen = 0;
       const Result r = minimise(*problem.manifold, *problem.objective, problem.start, *method, {.iterations = 500},
                                 {.callback = [&](const Iterate&, const Point& x) {
@@ -166,7 +167,7 @@ TEST(Methods, FindTheMinimumFromManyStarts) {
     ConjugateGradient conjugate;
     TrustRegion trust;
     RobustDescent ours = robust();
-    for (Method* method : std::vector<Method*>{&conjugate, &trust, &ours}) {
+    for (DescentMethod* method : std::vector<DescentMethod*>{&conjugate, &trust, &ours}) {
       const Result r =
           minimise(*problem.manifold, *problem.objective, problem.start, *method, {.relative_gradient = 1e-7});
       EXPECT_TRUE(r.converged()) << method->name() << ", seed " << seed << ": " << r.message;
@@ -193,7 +194,7 @@ TEST(Methods, FindTheMinimum) {
     ConjugateGradient conjugate;
     TrustRegion trust;
     RobustDescent ours = robust();
-    for (Method* method : std::vector<Method*>{&search, &conjugate, &trust, &ours}) {
+    for (DescentMethod* method : std::vector<DescentMethod*>{&search, &conjugate, &trust, &ours}) {
       const Result r = minimise(*problem.manifold, *problem.objective, problem.start, *method,
                                 {.value = problem.minimum + 1e-7, .iterations = 40000});
       EXPECT_TRUE(r.converged()) << method->name() << ": " << r.message;

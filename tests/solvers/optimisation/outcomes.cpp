@@ -78,22 +78,23 @@ TEST(Outcomes, AreTyped) {
   const auto outcome = [&](const Point& x, const Stopping& stopping, const Callback& callback = nullptr) {
     return minimise(sphere, objective, x, method, stopping, {.callback = callback}).outcome;
   };
-  EXPECT_EQ(outcome(start, {.gradient = 1e-9}), Outcome::converged);
-  EXPECT_EQ(outcome(start, {.gradient = 0}), Outcome::stagnated);
-  EXPECT_EQ(outcome(start, {.iterations = 3}), Outcome::iteration_limit);
-  EXPECT_EQ(outcome(start, {.seconds = 0}), Outcome::time_limit);
+  EXPECT_EQ(outcome(start, {.gradient = 1e-9}), MinimisationStatus::converged);
+  EXPECT_EQ(outcome(start, {.gradient = 0}), MinimisationStatus::stagnated);
+  EXPECT_EQ(outcome(start, {.iterations = 3}), MinimisationStatus::iteration_limit);
+  EXPECT_EQ(outcome(start, {.seconds = 0}), MinimisationStatus::time_limit);
   EXPECT_EQ(outcome(start, {}, [](const Iterate& now, const Point&) { return now.iteration < 2; }),
-            Outcome::interrupted);
-  EXPECT_EQ(outcome(1.01 * start, {}), Outcome::infeasible_start);
-  EXPECT_EQ(outcome(Point::Zero(5), {}), Outcome::infeasible_start);
-  EXPECT_EQ(outcome(Point::Constant(6, std::nan("")), {}), Outcome::not_finite);
-  EXPECT_EQ(outcome(Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvectors().col(2), {}), Outcome::stationary_start);
+            MinimisationStatus::interrupted);
+  EXPECT_EQ(outcome(1.01 * start, {}), MinimisationStatus::infeasible_start);
+  EXPECT_EQ(outcome(Point::Zero(5), {}), MinimisationStatus::infeasible_start);
+  EXPECT_EQ(outcome(Point::Constant(6, std::nan("")), {}), MinimisationStatus::not_finite);
+  EXPECT_EQ(outcome(Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvectors().col(2), {}),
+            MinimisationStatus::stationary_start);
 
   MatrixXd holed = a;
   holed(2, 3) = std::nan("");
   const Rayleigh no_numbers(SymmetricOperator::of(holed));
   const Result r = minimise(sphere, no_numbers, start, method, {});
-  EXPECT_EQ(r.outcome, Outcome::not_finite);
+  EXPECT_EQ(r.outcome, MinimisationStatus::not_finite);
   EXPECT_NE(r.message.find("data"), std::string::npos);
 
   // Without a cap the step of Algorithm 1 leaves the sphere's shadow, and none is invented.
@@ -101,7 +102,7 @@ TEST(Outcomes, AreTyped) {
   const RandomInstance problem = rayleigh(1);
   const Result lost =
       minimise(*problem.manifold, *problem.objective, problem.start, uncapped, {.iterations = 100000, .patience = 0});
-  EXPECT_EQ(lost.outcome, Outcome::no_step);
+  EXPECT_EQ(lost.outcome, MinimisationStatus::no_step);
   EXPECT_NE(lost.message.find("smaller"), std::string::npos);
 
   EXPECT_THROW(Sphere(1), std::invalid_argument);
@@ -126,7 +127,7 @@ TEST(Outcomes, OfLargeProblemsWithClustersAreTyped) {
   EXPECT_NEAR(least, 3 * 1e-8 + 2 * 2e-8 + 0.1, 1e-13);
   RobustDescent ours = robust();
   ConjugateGradient conjugate;
-  for (Method* method : std::vector<Method*>{&ours, &conjugate}) {
+  for (DescentMethod* method : std::vector<DescentMethod*>{&ours, &conjugate}) {
     const Result r = minimise(*problem.manifold, *problem.objective, start, *method,
                               {.relative_gradient = 1e-7, .iterations = 3000});
     EXPECT_TRUE(r.converged()) << method->name() << r.message;
@@ -156,7 +157,7 @@ TEST(Costs, AStepCostsNoMoreThanOneOfGradientDescentByQr) {
       n, [&](const Eigen::Ref<const MatrixXd>& x, Eigen::Ref<MatrixXd> y) { y = w.asDiagonal() * x; }};
   const Instance problem = brockett_instance(a, VectorXd::LinSpaced(20, 1, 20));
   const Point start = random_start(*problem.manifold, 1);
-  const auto run = [&](Method& method) {
+  const auto run = [&](DescentMethod& method) {
     minimise(*problem.manifold, *problem.objective, start, method, {.iterations = 40, .patience = 0});
   };
   Vector gradient(start.size());
@@ -179,7 +180,7 @@ TEST(Costs, MultipliersCostNoMoreThanQr) {
     Point to = x;
     Vector moved = v;
     const auto seconds = least_seconds(
-        {[&] { manifold.orthographic(x, v, to, moved); }, [&] { manifold.retract(Retraction::qr, x, v, to); }});
+        {[&] { manifold.orthographic(x, v, to, moved); }, [&] { manifold.retract(ManifoldRetraction::qr, x, v, to); }});
     EXPECT_LT(seconds[0], 1.3 * seconds[1]) << m;
   }
 }
@@ -195,7 +196,8 @@ TEST(Outcomes, OfIllConditionedProblemsAreTyped) {
     const Rayleigh objective(SymmetricOperator::of(MatrixXd(w.asDiagonal())));
     RobustDescent method = robust();
     const Result r = minimise(sphere, objective, random_start(sphere, 4), method, {.iterations = 20000});
-    EXPECT_TRUE(r.outcome == Outcome::stagnated || r.outcome == Outcome::iteration_limit) << to_string(r.outcome);
+    EXPECT_TRUE(r.outcome == MinimisationStatus::stagnated || r.outcome == MinimisationStatus::iteration_limit)
+        << to_string(r.outcome);
     EXPECT_TRUE(std::isfinite(r.value));
     EXPECT_LT(r.gradient, 1e-6 * scale);
     EXPECT_LT(-scale * (1 + 1e-8) - r.value, 1e-7 * scale);
