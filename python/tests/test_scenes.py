@@ -170,6 +170,10 @@ class Scenes(unittest.TestCase):
         self.assertIsNotNone(run.cost)
         self.assertGreaterEqual(len(run.stationary_paths), 1)
         self.assertEqual(run.stationary_paths[0].momentum.shape, (2,))
+        with self.assertWarns(DeprecationWarning):
+            self.assertEqual(len(run.minima), len(run.stationary_paths))
+        with self.assertWarns(DeprecationWarning):
+            self.assertIs(lagroid.Minimum, lagroid.StationaryPath)
 
     def test_systems_are_those_of_the_listing(self) -> None:
         systems = lagroid.systems()

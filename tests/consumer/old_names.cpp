@@ -1,11 +1,18 @@
 // Paths and names of version 0.2, which compat/ still has.
 #include <lagroid/core/tape.hpp>
 #include <lagroid/solvers/march.hpp>
+#include <lagroid/solvers/optimisation/accelerated.hpp>
+#include <lagroid/solvers/optimisation/manifold.hpp>
 #include <lagroid/systems/rigid_body.hpp>
 
 #include <memory>
+#include <type_traits>
 
 using namespace lagroid;
+
+static_assert(std::is_base_of_v<optimisation::Method, optimisation::HamiltonianDescent>);
+static_assert(std::is_same_v<optimisation::State, optimisation::EvaluatedPoint>);
+static_assert(std::is_enum_v<optimisation::Outcome> && std::is_enum_v<optimisation::Retraction>);
 
 int main() {
   RigidBody body;
