@@ -63,7 +63,7 @@ struct SceneBodies {
   std::vector<Shape> scenery;  ///< what stands around: a plate
   bool projects = false;       ///< velocities are brought to what the joints allow
   bool nonholonomic = false;
-  bool deflected = false;   ///< by magnetic fields or the frame: momenta are not the canonical ones
+  bool gyroscopic = false;  ///< by magnetic fields or the frame: momenta are not the canonical ones
   bool dissipates = false;  ///< damping takes energy
   bool driven = false;      ///< forces that are not derived from a potential
   bool timed = false;       ///< forces and motions that time gives: energy is not kept
@@ -114,7 +114,7 @@ inline bool is_variational(const SceneBodies& bodies) {
   return !bodies.dissipates && !bodies.driven && !bodies.nonholonomic;
 }
 /// Whether it is symplectic in its own momenta.
-inline bool is_symplectic(const SceneBodies& bodies) { return is_variational(bodies) && !bodies.deflected; }
+inline bool is_symplectic(const SceneBodies& bodies) { return is_variational(bodies) && !bodies.gyroscopic; }
 /// Whether it goes back where these change their signs.
 inline bool is_reversible(const SceneBodies& bodies) { return is_symplectic(bodies) && !bodies.timed; }
 

@@ -194,7 +194,7 @@ void read_rotating_frame(SceneBodies& bodies, const Section& table) {
     bodies.scene.gyroscopic_force(body.body, 2 * body.mass * rate);
     if (centrifugal) bodies.scene.add(multibody::Centrifugal{{body.body.centre}, body.mass, rate});
   }
-  bodies.deflected = true;
+  bodies.gyroscopic = true;
   bodies.isolated = false;
 }
 
@@ -204,7 +204,7 @@ void read_magnetic(SceneBodies& bodies, const Section& table) {
   const auto charges = table.numbers("charges", charged.size(), "of the bodies, in their order, C");
   for (std::size_t i = 0; i < charged.size(); ++i)
     bodies.scene.gyroscopic_force(require_point(table, charged[i], "a magnetic field").body, charges[i] * field);
-  bodies.deflected = true;
+  bodies.gyroscopic = true;
   bodies.isolated = false;
 }
 
