@@ -55,12 +55,14 @@ inside /tests/installed_package.sh /usr /tmp/consumer whole || fail "the consume
 say "the consumer project runs"
 
 if inside sh -c 'ls /packages/python3-lagroid_*.deb' >/dev/null 2>&1; then
-  install "$(inside sh -c 'ls /packages/python3-lagroid_*.deb')" python3-matplotlib
+  install "$(inside sh -c 'ls /packages/python3-lagroid_*.deb')" python3-matplotlib python3-nbclient python3-ipykernel
   inside python3 -c 'import lagroid; print(lagroid.__version__)' || fail "the Python module is not imported"
-  for example in "$root"/usr/share/lagroid/python/notebooks/*.py; do
-    inside python3 "${example#"$root"}" >"$work/python.log" 2>&1 || fail "${example#"$root"}: $(tail -n 5 "$work/python.log")"
+  cp "$tests/../python/notebooks/run.py" "$root/tests/run_notebook.py"
+  for example in "$root"/usr/share/lagroid/python/notebooks/*.ipynb; do
+    inside python3 /tests/run_notebook.py "${example#"$root"}" >"$work/python.log" 2>&1 ||
+      fail "${example#"$root"}: $(tail -n 5 "$work/python.log")"
   done
-  say "the Python examples run"
+  say "the notebooks run"
 else
   say "there is no Python package; nothing is asked of one"
 fi

@@ -12,8 +12,8 @@ release = re.search(r"^## ([\d.]+)", (root / "CHANGELOG.md").read_text(), re.M)[
 version = release
 language = "en"
 
-extensions = ["myst_parser", "api", "links", "mathml"]
-include_patterns = ["*.md", "docs/**.md"]
+extensions = ["myst_parser", "api", "links", "mathml", "notebooks"]
+include_patterns = ["*.md", "docs/**.md", "python/notebooks/*.ipynb"]
 exclude_patterns = ["build", "out", ".git"]
 root_doc = "docs/index"
 

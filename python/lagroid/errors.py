@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Optional
 
 if TYPE_CHECKING:
-    from ._lagroid import Trajectory, Run
+    from ._lagroid import Run, Trajectory
+    from .prototype import PrototypeTrajectory
 
 __all__ = ["DataError", "Error", "Interrupted", "OutputError", "ProgramError", "SceneError", "SolveError"]
 
@@ -34,7 +35,12 @@ class SolveError(Error, RuntimeError):
     """A step or a boundary value that was not solved: its `status` (docs/scenes.md), and the `result` as far as it
     came, where there is one."""
 
-    def __init__(self, message: str, status: str = "not_converged", result: Optional[Run | Trajectory] = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        status: str = "not_converged",
+        result: Optional[Run | Trajectory | PrototypeTrajectory] = None,
+    ) -> None:
         super().__init__(message)
         self.status = status
         self.result = result

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Optional, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 
 import numpy as np
 
@@ -13,8 +13,11 @@ from . import _lagroid
 from ._lagroid import Trajectory, Run
 from .errors import Interrupted, SceneError, SolveError
 
+if TYPE_CHECKING:
+    from .prototype import PrototypeTrajectory
+
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
-_Result = TypeVar("_Result", bound=Union[Run, Trajectory])
+_Result = TypeVar("_Result", bound=Union[Run, Trajectory, "PrototypeTrajectory"])
 
 __all__ = ["SceneLike", "require", "resume", "run", "scene_text", "systems"]
 
