@@ -43,7 +43,7 @@ struct Rows {
   }
 };
 
-/// A stationary path between two ends.
+/// A stationary path between two ends: what Python's BoundarySolution shows of the one in C++.
 struct BoundaryPath {
   double cost = 0;  ///< sum of the Lagrangian over the arrows
   int starts = 0;   ///< that led to it

@@ -437,7 +437,7 @@ template <DiscreteSystem Sys> void bind_boundary(py::class_<Sys>& made) {
   made.def(
       "boundary",
       [](const Sys& self, const Array& arrow, long steps, const std::string& method, int starts, std::uint64_t seed) {
-        detail::class_of_lagroid("BoundaryPath");  // known from here on
+        detail::class_of_lagroid("BoundarySolution");  // known from here on
         std::string failure;
         auto paths = stationary_paths(self, arrow, steps, method, starts, seed, failure);
         if (paths.empty()) {

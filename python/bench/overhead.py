@@ -1,6 +1,6 @@
 """What Python adds to a run: ratios, printed, held to a bound (--most), or written into a page (--page).
 
-A run's seconds are those of the C++ loop (Run.seconds, Trajectory.seconds); the wall clock in Python holds reading the
+A run's seconds are those of the C++ loop (RunResult.seconds, Trajectory.seconds); the wall clock in Python holds reading the
 scene, the arrays and the call besides. Repetitions are interleaved, medians compared."""
 
 import argparse
@@ -39,7 +39,7 @@ def scenes() -> dict[str, dict[str, object]]:
     }
 
 
-def timed(call: Callable[[], lagroid.Run | lagroid.Trajectory]) -> tuple[float, float]:
+def timed(call: Callable[[], lagroid.RunResult | lagroid.Trajectory]) -> tuple[float, float]:
     """Seconds by the wall, and those that the result says of itself. It is let go when the clock has stopped."""
     start = time.perf_counter()
     result = call()
@@ -69,29 +69,29 @@ def advanced(count: int) -> float:
     return (time.perf_counter() - start) / count
 
 
-class Pendulum(lagroid.DiscreteLagrangian):
+class Pendulum(lagroid.System):
     """As lagroid.Pendulum."""
 
-    groupoid = lagroid.Pairs(1)
+    groupoid = lagroid.Pair(1)
 
     def lagrangian(self, q0: Any, q1: Any) -> Any:
         return (q1 - q0) @ (q1 - q0) / (2 * self.h) + self.h * np.cos((q0 + q1)[0] / 2)
 
 
-class Kepler(lagroid.DiscreteLagrangian):
+class Kepler(lagroid.System):
     """As lagroid.Kepler."""
 
-    groupoid = lagroid.Pairs(2)
+    groupoid = lagroid.Pair(2)
 
     def lagrangian(self, q0: Any, q1: Any) -> Any:
         middle = (q0 + q1) / 2
         return (q1 - q0) @ (q1 - q0) / (2 * self.h) + self.h / np.sqrt(middle @ middle)
 
 
-class SphericalPendulum(lagroid.DiscreteLagrangian):
+class SphericalPendulum(lagroid.System):
     """As lagroid.SphericalPendulum."""
 
-    groupoid = lagroid.Pairs(3)
+    groupoid = lagroid.Pair(3)
 
     def lagrangian(self, q0: Any, q1: Any) -> Any:
         return (q1 - q0) @ (q1 - q0) / (2 * self.h) - self.h * (q0[2] + q1[2]) / 2
@@ -100,7 +100,7 @@ class SphericalPendulum(lagroid.DiscreteLagrangian):
         return np.array([(q @ q - 1) / 2])
 
 
-class RigidBody(lagroid.DiscreteLagrangian):
+class RigidBody(lagroid.System):
     """As lagroid.RigidBody, by Cayley's map."""
 
     groupoid = lagroid.SO3()
@@ -140,7 +140,7 @@ def main() -> int:
     parser.add_argument("--most", type=float, help="fail where a run takes longer than this share beyond its C++ loop")
     parser.add_argument("--page", type=Path, help="write the numbers between the marks of this page")
     options = parser.parse_args()
-    subjects: dict[str, Callable[[], lagroid.Run | lagroid.Trajectory]] = {
+    subjects: dict[str, Callable[[], lagroid.RunResult | lagroid.Trajectory]] = {
         f"`lagroid.run` of {name}": partial(lagroid.run, scene) for name, scene in scenes().items()
     }
     subjects["`Integrator.integrate` of Kepler"] = integrated

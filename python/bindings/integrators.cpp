@@ -280,7 +280,7 @@ void bind_integrators(py::module_& module) {
       });
   bind_fields(integrated, true);
 
-  py::class_<BoundaryPath> path(module, "BoundaryPath", "A stationary path between two ends.");
+  py::class_<BoundaryPath> path(module, "BoundarySolution", "A stationary path between two ends.");
   path.def_readonly("cost", &BoundaryPath::cost, "The sum of the Lagrangian over its arrows.")
       .def_readonly("starts", &BoundaryPath::starts,
                     "How many starts led to it; none where a way down from a saddle did.")
@@ -309,14 +309,6 @@ void bind_integrators(py::module_& module) {
       .def("advance", &Integrator::advance, "One step. Raises SolveError, with its status.")
       .def("integrate", &Integrator::steps, py::arg("steps"), py::arg("every") = 1,
            "So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status.")
-      .def(
-          "march",
-          [](Integrator& self, long steps, long every) {
-            if (PyErr_WarnEx(PyExc_DeprecationWarning, "Integrator.march is Integrator.integrate", 1) != 0)
-              throw py::error_already_set();
-            return self.steps(steps, every);
-          },
-          py::arg("steps"), py::arg("every") = 1, "What integrate was called in version 0.2.")
       .def_property_readonly("index", &Integrator::index, "Steps made.")
       .def_property_readonly("time", &Integrator::time, "s")
       .def_property_readonly(

@@ -210,7 +210,7 @@ void bind_optimisation(py::module_& module) {
       },
       py::arg("n"), py::arg("m"), "The n x m matrices with orthonormal columns; points (n, m). O(n) for m = n.");
   module.def(
-      "Product",
+      "ProductManifold",
       [](const std::vector<ManifoldMaker>& factors) {
         const auto make = [factors]() -> std::unique_ptr<Manifold> {
           std::vector<std::unique_ptr<Manifold>> made;

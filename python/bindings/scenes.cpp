@@ -168,7 +168,7 @@ void bind_scenes(py::module_& module) {
       .def_readonly("equal_axes", &lagroid::Panel::equal_axes, "Whether both have one scale.");
 
   py::class_<RunResult, std::shared_ptr<RunResult>>(
-      module, "Run", "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
+      module, "RunResult", "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
       .def_readonly("system", &RunResult::system, "Its name.")
       .def_readonly("method", &RunResult::method, "Of an initial value, and what it declares of itself.")
       .def_readonly("status", &RunResult::status, "converged, interrupted or why not.")
@@ -199,7 +199,7 @@ void bind_scenes(py::module_& module) {
       .def_property_readonly(
           "minima",
           [](const RunResult& r) {
-            if (PyErr_WarnEx(PyExc_DeprecationWarning, "Run.minima is Run.stationary_paths", 1) != 0)
+            if (PyErr_WarnEx(PyExc_DeprecationWarning, "RunResult.minima is RunResult.stationary_paths", 1) != 0)
               throw py::error_already_set();
             return r.stationary_paths;
           },

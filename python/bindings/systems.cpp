@@ -24,7 +24,8 @@ void add_static(const py::object& made, const char* name, F f, const Extra&... e
 }  // namespace
 
 void bind_systems(py::module_& module) {
-  module.attr("system_classes") = bind_library_systems(module);
+  // What `from lagroid._lagroid import *` takes.
+  module.attr("__all__") = bind_library_systems(module);
   add_static(
       module.attr("HeavyTop"), "arrow",
       [](const Attitude& attitude) {

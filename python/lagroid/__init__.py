@@ -5,63 +5,40 @@
     run["x"], run["drift energy"], run.ledger
 """
 
-import warnings
+from typing import TYPE_CHECKING
 
-from . import _lagroid, plot
+from . import _lagroid, compat, plot
+from ._lagroid import *  # the systems, a class each
 from ._lagroid import (
-    AttitudeControl,
-    BoundaryPath,
-    ChaplyginSleigh,
+    BoundarySolution,
     Columns,
-    DampedPendulum,
-    DrivenBody,
-    DrivenPendulum,
     Endpoint,
-    Gyrostat,
-    HeavyTop,
     Integrator,
-    Kepler,
     LedgerEntry,
     Panel,
-    Pendulum,
-    PlateBall,
-    RigidBody,
-    RollingBall,
-    RollingDisk,
-    Run,
-    SphericalPendulum,
+    RunResult,
     StationaryPath,
     Trajectory,
-    Unicycle,
     __version__,
 )
 from .errors import DataError, Error, Interrupted, OutputError, ProgramError, SceneError, SolveError
-from .groupoids import SE2, SE3, SO3, Groupoid, MatrixGroup, Pairs
+from .groupoids import SE2, SE3, SO3, Groupoid, MatrixGroup, Pair
 from .learning import LearnedHamiltonian, Measures, Trajectories, learn, trajectories
-from .optimisation import Manifold, Optimum, Product, Sphere, Stiefel, minimise, optimize
-from .prototype import DiscreteLagrangian, PrototypeIntegrator, PrototypeTrajectory
+from .optimisation import Manifold, Optimum, ProductManifold, Sphere, Stiefel, minimise, optimize
+from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
 from .scenes import require, resume, run, scene_text, systems
 from .studies import Method, check, methods, study
 from .sweeps import Sweep, sweep
 
 __all__ = [
-    "AttitudeControl",
-    "BoundaryPath",
-    "ChaplyginSleigh",
+    "BoundarySolution",
     "Columns",
-    "DampedPendulum",
     "DataError",
-    "DiscreteLagrangian",
-    "DrivenBody",
-    "DrivenPendulum",
     "Endpoint",
     "Error",
     "Groupoid",
-    "Gyrostat",
-    "HeavyTop",
     "Integrator",
     "Interrupted",
-    "Kepler",
     "LearnedHamiltonian",
     "LedgerEntry",
     "Manifold",
@@ -70,31 +47,25 @@ __all__ = [
     "Method",
     "Optimum",
     "OutputError",
-    "Pairs",
+    "Pair",
     "Panel",
-    "Pendulum",
-    "PlateBall",
-    "Product",
+    "ProductManifold",
     "ProgramError",
     "PrototypeIntegrator",
     "PrototypeTrajectory",
-    "RigidBody",
-    "RollingBall",
-    "RollingDisk",
-    "Run",
+    "RunResult",
     "SE2",
     "SE3",
     "SO3",
     "SceneError",
     "SolveError",
     "Sphere",
-    "SphericalPendulum",
     "StationaryPath",
     "Stiefel",
     "Sweep",
+    "System",
     "Trajectories",
     "Trajectory",
-    "Unicycle",
     "__version__",
     "check",
     "learn",
@@ -112,18 +83,11 @@ __all__ = [
     "trajectories",
 ]
 
-# Systems that are not named above, each a class.
-for _name in _lagroid.system_classes:
-    globals()[_name] = getattr(_lagroid, _name)
-    if _name not in __all__:
-        __all__.append(_name)
+__all__ += _lagroid.__all__
 
-# Names of version 0.2, which go with 0.4.
-_renamed = {"March": "Trajectory", "Minimum": "StationaryPath", "PrototypeMarch": "PrototypeTrajectory"}
+compat.keep_march(Integrator, PrototypeIntegrator)
 
+if not TYPE_CHECKING:  # which would believe that everything is there
 
-def __getattr__(name: str) -> object:
-    if name in _renamed:
-        warnings.warn(f"lagroid.{name} is lagroid.{_renamed[name]}", DeprecationWarning, stacklevel=2)
-        return globals()[_renamed[name]]
-    raise AttributeError(f"module 'lagroid' has no attribute '{name}'")
+    def __getattr__(name: str) -> object:
+        return compat.attribute(name, globals())

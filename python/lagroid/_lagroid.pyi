@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from typing import Any, Optional, final
+from typing import Any, Literal, Optional, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,8 +11,6 @@ _Array = NDArray[np.float64]
 _Path = str | os.PathLike[str]
 
 __version__: str
-
-system_classes: tuple[str, ...]
 
 def listing() -> str: ...
 def read_hdf5(file: _Path, dataset: str) -> _Array: ...
@@ -113,7 +111,7 @@ class Panel:
     def equal_axes(self) -> bool: ...
 
 @final
-class Run:
+class RunResult:
     @property
     def system(self) -> str: ...
     @property
@@ -176,8 +174,8 @@ class Run:
     def json(self) -> str: ...
     def write(self, folder: _Path) -> list[os.PathLike[str]]: ...
 
-def run(scene: Scene, record: bool, folder: Optional[_Path]) -> Run: ...
-def resume(folder: _Path, steps: Optional[int], other_build: bool) -> Run: ...
+def run(scene: Scene, record: bool, folder: Optional[_Path]) -> RunResult: ...
+def resume(folder: _Path, steps: Optional[int], other_build: bool) -> RunResult: ...
 
 # Integrators of systems.
 
@@ -245,7 +243,7 @@ class Integrator:
     def step_size(self) -> _Array: ...
 
 @final
-class BoundaryPath:
+class BoundarySolution:
     @property
     def cost(self) -> float: ...
     @property
@@ -269,7 +267,6 @@ class BoundaryPath:
 
 class _System:
     h: float
-    def __init__(self, **parameters: Any) -> None: ...
     @property
     def groupoid(self) -> str: ...
     def integrator(
@@ -291,13 +288,65 @@ class _System:
 class _WithBoundary(_System):
     def boundary(
         self, arrow: ArrayLike, steps: int, *, method: str = "newton", starts: int = 40, seed: int = 1
-    ) -> list[BoundaryPath]: ...
+    ) -> list[BoundarySolution]: ...
+
+# Systems: written by ./lagroid pages stubs
+
+__all__ = [
+    "PlateBall",
+    "Unicycle",
+    "AttitudeControl",
+    "RigidBody",
+    "HeavyTop",
+    "Pendulum",
+    "Kepler",
+    "SphericalPendulum",
+    "Gyrostat",
+    "RollingBall",
+    "RollingDisk",
+    "ChaplyginSleigh",
+    "DampedPendulum",
+    "DrivenPendulum",
+    "DrivenBody",
+]
+
+class PlateBall(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        radius: float = ...,  # of the ball, m
+        plate_rate: float = ...,  # angular velocity of the plate, rad/s
+        spin: float = ...,  # prescribed rate about the vertical, rad/s
+        rotation: Literal["trace", "exp", "cayley"] = ...,  # form of the constraints
+    ) -> None: ...
+    radius: float
+    plate_rate: float
+    spin: float
+    rotation: Literal["trace", "exp", "cayley"]
+    @staticmethod
+    def arrow(start: ArrayLike, end: ArrayLike, turn: ArrayLike) -> _Array: ...
 
 class Unicycle(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        speed: float = ...,  # forward speed, m/s
+        map: Literal["exp", "cayley"] = ...,  # how a motion becomes a velocity
+    ) -> None: ...
     speed: float
-    map: str
+    map: Literal["exp", "cayley"]
 
 class AttitudeControl(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        weights: ArrayLike = ...,  # three weights of the cost w.W w / 2
+        forbidden: ArrayLike = ...,  # the forbidden axis in the body
+        rotation: Literal["exp", "cayley"] = ...,  # how a rotation becomes an angular velocity
+    ) -> None: ...
     @property
     def weights(self) -> _Array: ...
     @weights.setter
@@ -306,88 +355,31 @@ class AttitudeControl(_WithBoundary):
     def forbidden(self) -> _Array: ...
     @forbidden.setter
     def forbidden(self, value: ArrayLike) -> None: ...
-    rotation: str
-
-class Gyrostat(_WithBoundary):
-    @property
-    def inertia(self) -> _Array: ...
-    @inertia.setter
-    def inertia(self, value: ArrayLike) -> None: ...
-    @property
-    def rotors(self) -> _Array: ...
-    @rotors.setter
-    def rotors(self, value: ArrayLike) -> None: ...
-    rotation: str
-
-class RollingBall(_System):
-    mass: float
-    radius: float
-    inertia_factor: float
-    plate_rate: float
-
-class RollingDisk(_System):
-    mass: float
-    radius: float
-    rolling_inertia: float
-    turning_inertia: float
-
-class ChaplyginSleigh(_System):
-    mass: float
-    inertia: float
-    offset: float
-    map: str
-
-class DampedPendulum(_System):
-    mass: float
-    length: float
-    gravity: float
-    damping: float
-    quadrature: str
-
-class DrivenPendulum(_System):
-    mass: float
-    length: float
-    gravity: float
-    frequency: float
-    torque: float
-    amplitude: float
-
-class DrivenBody(_System):
-    @property
-    def inertia(self) -> _Array: ...
-    @inertia.setter
-    def inertia(self, value: ArrayLike) -> None: ...
-    @property
-    def torque(self) -> _Array: ...
-    @torque.setter
-    def torque(self, value: ArrayLike) -> None: ...
-    drag: float
-    rotation: str
-
-class Kepler(_WithBoundary):
-    strength: float
-    quadrature: str
-
-class Pendulum(_WithBoundary):
-    mass: float
-    length: float
-    gravity: float
-    quadrature: str
-
-class SphericalPendulum(_WithBoundary):
-    mass: float
-    length: float
-    gravity: float
-    quadrature: str
+    rotation: Literal["exp", "cayley"]
 
 class RigidBody(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        inertia: ArrayLike = ...,  # principal moments, kg m^2
+        rotation: Literal["exp", "cayley"] = ...,  # how a rotation becomes an angular velocity
+    ) -> None: ...
     @property
     def inertia(self) -> _Array: ...
     @inertia.setter
     def inertia(self, value: ArrayLike) -> None: ...
-    rotation: str
+    rotation: Literal["exp", "cayley"]
 
 class HeavyTop(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        inertia: ArrayLike = ...,  # principal moments, kg m^2
+        weight: ArrayLike = ...,  # weight times the vector to the centre of mass, N m
+        rotation: Literal["exp", "cayley"] = ...,  # how a rotation becomes an angular velocity
+    ) -> None: ...
     @property
     def inertia(self) -> _Array: ...
     @inertia.setter
@@ -396,17 +388,173 @@ class HeavyTop(_WithBoundary):
     def weight(self) -> _Array: ...
     @weight.setter
     def weight(self, value: ArrayLike) -> None: ...
-    rotation: str
+    rotation: Literal["exp", "cayley"]
     @staticmethod
     def arrow(attitude: ArrayLike) -> _Array: ...
 
-class PlateBall(_WithBoundary):
+class Pendulum(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        mass: float = ...,  # of the bob, kg
+        length: float = ...,  # of the rod, m
+        gravity: float = ...,  # acceleration, m/s^2
+        quadrature: Literal["midpoint", "trapezoid"] = ...,  # of the potential over a step
+    ) -> None: ...
+    mass: float
+    length: float
+    gravity: float
+    quadrature: Literal["midpoint", "trapezoid"]
+
+class Kepler(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        strength: float = ...,  # of the attraction, m^3/s^2
+        quadrature: Literal["midpoint", "trapezoid"] = ...,  # of the potential over a step
+    ) -> None: ...
+    strength: float
+    quadrature: Literal["midpoint", "trapezoid"]
+
+class SphericalPendulum(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        mass: float = ...,  # of the bob, kg
+        length: float = ...,  # of the rod, m
+        gravity: float = ...,  # acceleration, m/s^2
+        quadrature: Literal["midpoint", "trapezoid"] = ...,  # of the potential over a step
+    ) -> None: ...
+    mass: float
+    length: float
+    gravity: float
+    quadrature: Literal["midpoint", "trapezoid"]
+
+class Gyrostat(_WithBoundary):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        inertia: ArrayLike = ...,  # principal moments, kg m^2
+        rotors: ArrayLike = ...,  # moments of the three rotors about their axes, kg m^2
+        rotation: Literal["exp", "cayley"] = ...,  # how a rotation becomes an angular velocity
+    ) -> None: ...
+    @property
+    def inertia(self) -> _Array: ...
+    @inertia.setter
+    def inertia(self, value: ArrayLike) -> None: ...
+    @property
+    def rotors(self) -> _Array: ...
+    @rotors.setter
+    def rotors(self, value: ArrayLike) -> None: ...
+    rotation: Literal["exp", "cayley"]
+
+class RollingBall(_System):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        mass: float = ...,  # of the ball, kg
+        radius: float = ...,  # of the ball, m
+        inertia_factor: float = ...,  # moment of inertia over mass times radius squared
+        plate_rate: float = ...,  # angular velocity of the plate, rad/s
+    ) -> None: ...
+    mass: float
     radius: float
+    inertia_factor: float
     plate_rate: float
-    spin: float
-    rotation: str
-    @staticmethod
-    def arrow(start: ArrayLike, end: ArrayLike, turn: ArrayLike) -> _Array: ...
+
+class RollingDisk(_System):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        mass: float = ...,  # of the disk, kg
+        radius: float = ...,  # of the disk, m
+        rolling_inertia: float = ...,  # about its axis, kg m^2
+        turning_inertia: float = ...,  # about the vertical, kg m^2
+    ) -> None: ...
+    mass: float
+    radius: float
+    rolling_inertia: float
+    turning_inertia: float
+
+class ChaplyginSleigh(_System):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        mass: float = ...,  # of the body, kg
+        inertia: float = ...,  # about its centre of mass, kg m^2
+        offset: float = ...,  # from the blade ahead to the centre of mass, m
+        map: Literal["exp", "cayley"] = ...,  # how a motion becomes a velocity
+    ) -> None: ...
+    mass: float
+    inertia: float
+    offset: float
+    map: Literal["exp", "cayley"]
+
+class DampedPendulum(_System):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        mass: float = ...,  # of the bob, kg
+        length: float = ...,  # of the rod, m
+        gravity: float = ...,  # acceleration, m/s^2
+        quadrature: Literal["midpoint", "trapezoid"] = ...,  # of the potential over a step
+        damping: float = ...,  # torque over angular velocity, N m s
+    ) -> None: ...
+    mass: float
+    length: float
+    gravity: float
+    quadrature: Literal["midpoint", "trapezoid"]
+    damping: float
+
+class DrivenPendulum(_System):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        mass: float = ...,  # of the bob, kg
+        length: float = ...,  # of the rod, m
+        gravity: float = ...,  # acceleration, m/s^2
+        frequency: float = ...,  # of the drive, rad/s
+        torque: float = ...,  # amplitude of the torque, N m
+        amplitude: float = ...,  # of the support's motion up and down, m
+    ) -> None: ...
+    mass: float
+    length: float
+    gravity: float
+    frequency: float
+    torque: float
+    amplitude: float
+
+class DrivenBody(_System):
+    def __init__(
+        self,
+        *,
+        h: float = ...,
+        inertia: ArrayLike = ...,  # principal moments, kg m^2
+        rotation: Literal["exp", "cayley"] = ...,  # how a rotation becomes an angular velocity
+        torque: ArrayLike = ...,  # of a thruster, fixed in the body, N m
+        drag: float = ...,  # torque over angular velocity, N m s
+    ) -> None: ...
+    @property
+    def inertia(self) -> _Array: ...
+    @inertia.setter
+    def inertia(self, value: ArrayLike) -> None: ...
+    rotation: Literal["exp", "cayley"]
+    @property
+    def torque(self) -> _Array: ...
+    @torque.setter
+    def torque(self, value: ArrayLike) -> None: ...
+    drag: float
+
+# End of what is written.
 
 # Studies.
 
@@ -437,7 +585,7 @@ class Manifold:
 
 def Sphere(n: int) -> Manifold: ...
 def Stiefel(n: int, m: int) -> Manifold: ...
-def Product(factors: Sequence[Manifold]) -> Manifold: ...
+def ProductManifold(factors: Sequence[Manifold]) -> Manifold: ...
 
 @final
 class Optimum:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Optional
 
 if TYPE_CHECKING:
-    from ._lagroid import Run, Trajectory
+    from ._lagroid import RunResult, Trajectory
     from .prototype import PrototypeTrajectory
 
 __all__ = ["DataError", "Error", "Interrupted", "OutputError", "ProgramError", "SceneError", "SolveError"]
@@ -39,7 +39,7 @@ class SolveError(Error, RuntimeError):
         self,
         message: str,
         status: str = "not_converged",
-        result: Optional[Run | Trajectory | PrototypeTrajectory] = None,
+        result: Optional[RunResult | Trajectory | PrototypeTrajectory] = None,
     ) -> None:
         super().__init__(message)
         self.status = status
@@ -49,6 +49,6 @@ class SolveError(Error, RuntimeError):
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C during a run: `result` holds what was computed."""
 
-    def __init__(self, result: Run) -> None:
+    def __init__(self, result: RunResult) -> None:
         super().__init__(result.message)
         self.result = result

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SE2", "SE3", "SO3", "Array", "Arrow", "Groupoid", "MatrixGroup", "Pairs"]
+__all__ = ["SE2", "SE3", "SO3", "Array", "Arrow", "Groupoid", "MatrixGroup", "Pair"]
 
 Array = NDArray[Any]
 Arrow = tuple[Array, ...]
@@ -30,12 +30,12 @@ class Groupoid(Protocol):
     def multiply(self, g: Arrow, h: Arrow) -> Arrow:
         """g h, of composable arrows."""
 
-    def displaced(self, g: Arrow, v: Array, w: Array) -> Arrow:
+    def translate(self, v: Array, g: Arrow, w: Array) -> Arrow:
         """tau(v)^{-1} g tau(w), also for complex v, w of vanishing size."""
 
 
 @dataclass(frozen=True)
-class Pairs:
+class Pair:
     """R^n x R^n: arrows (q0, q1), arrays (n,)."""
 
     n: int
@@ -53,7 +53,7 @@ class Pairs:
     def multiply(self, g: Arrow, h: Arrow) -> Arrow:
         return (g[0], h[1])
 
-    def displaced(self, g: Arrow, v: Array, w: Array) -> Arrow:
+    def translate(self, v: Array, g: Arrow, w: Array) -> Arrow:
         return (g[0] + v, g[1] + w)
 
 
@@ -101,7 +101,7 @@ class MatrixGroup:
     def multiply(self, g: Arrow, h: Arrow) -> Arrow:
         return (g[0] @ h[0],)
 
-    def displaced(self, g: Arrow, v: Array, w: Array) -> Arrow:
+    def translate(self, v: Array, g: Arrow, w: Array) -> Arrow:
         moved = g[0]
         if v.any():
             moved = self._near_unit(-v) @ moved

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _lagroid
-from ._lagroid import Manifold, Optimum, Product, Sphere, Stiefel
+from ._lagroid import Manifold, Optimum, ProductManifold, Sphere, Stiefel
 from .scenes import SceneLike, made, scene_text
 
-__all__ = ["Manifold", "Optimum", "Product", "Sphere", "Stiefel", "minimise", "optimize"]
+__all__ = ["Manifold", "Optimum", "ProductManifold", "Sphere", "Stiefel", "minimise", "optimize"]
 
 Array = NDArray[np.float64]
 

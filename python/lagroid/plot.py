@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from ._lagroid import Integrator, LedgerEntry, Trajectory, Run
+from ._lagroid import Integrator, LedgerEntry, RunResult, Trajectory
 from .prototype import PrototypeTrajectory
 
 if TYPE_CHECKING:
@@ -26,13 +26,15 @@ def _figure(width: float, height: float) -> Figure:
     return figure
 
 
-def trajectory(run: Union[Run, Trajectory, PrototypeTrajectory], columns: Optional[Sequence[str]] = None) -> Figure:
+def trajectory(
+    run: Union[RunResult, Trajectory, PrototypeTrajectory], columns: Optional[Sequence[str]] = None
+) -> Figure:
     """Of a run its panels, as in its plot.svg, or the given columns against time; of a trajectory its objects, momenta and
     quantities, or those of the given names. Raises ValueError where nothing was recorded."""
     if isinstance(run, (Trajectory, PrototypeTrajectory)):
         return _integrated(run, columns)
-    if not isinstance(run, Run):
-        raise TypeError(f"trajectory: draws a Run, Trajectory or PrototypeTrajectory, not {type(run).__name__}")
+    if not isinstance(run, RunResult):
+        raise TypeError(f"trajectory: draws a RunResult, Trajectory or PrototypeTrajectory, not {type(run).__name__}")
     if len(run.time) < 2:
         raise ValueError("nothing was recorded; run the scene with record=True")
     if columns is not None:
@@ -86,9 +88,9 @@ def _integrated(trajectory: Union[Trajectory, PrototypeTrajectory], names: Optio
     return figure
 
 
-def ledger(entries: Union[Run, Integrator, Sequence[LedgerEntry]]) -> Figure:
+def ledger(entries: Union[RunResult, Integrator, Sequence[LedgerEntry]]) -> Figure:
     """What was promised and found: the drift of each entry beside its bound, where one is promised."""
-    entries = entries.ledger if isinstance(entries, (Run, Integrator)) else entries
+    entries = entries.ledger if isinstance(entries, (RunResult, Integrator)) else entries
     watched = [e for e in entries if e.promise != "counted"]
     figure = _figure(8, 1 + 0.5 * max(1, len(watched)))
     axes = figure.add_subplot()

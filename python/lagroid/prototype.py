@@ -15,18 +15,20 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from . import compat
 from .errors import SolveError
-from .groupoids import Array, Arrow, Groupoid, MatrixGroup, Pairs
+from .groupoids import Array, Arrow, Groupoid, MatrixGroup, Pair
 from .members import Members, principles, refuse_unread
 
-__all__ = ["DiscreteLagrangian", "PrototypeIntegrator", "PrototypeTrajectory"]
+__all__ = ["PrototypeIntegrator", "PrototypeTrajectory", "System"]
 
 
-class DiscreteLagrangian:
-    """A discrete Lagrangian on a groupoid, written in Python::
+class System:
+    """A discrete Lagrangian on a groupoid with what else moves it, written in Python, with the members that a System of
+    C++ has::
 
-        class MyPendulum(lagroid.DiscreteLagrangian):
-            groupoid = lagroid.Pairs(1)
+        class MyPendulum(lagroid.System):
+            groupoid = lagroid.Pair(1)
             h = 0.05
             def lagrangian(self, q0, q1):
                 return (q1 - q0) @ (q1 - q0) / (2 * self.h) + self.h * np.cos((q0 + q1) / 2)[0]
@@ -131,7 +133,7 @@ class _Derivatives:
 
     def _displaced(self, g: Arrow, by: Array) -> Array:
         n = self.groupoid.dimension
-        return self.value(self.groupoid.displaced(g, by[:n], by[n:]))
+        return self.value(self.groupoid.translate(by[:n], g, by[n:]))
 
     def _complex_steps(self, g: Arrow) -> Array:
         tiny = 1e-100
@@ -156,7 +158,7 @@ class _Derivatives:
         """Whether the function is analytic as it is written, seen at a generic arrow near g."""
         n = self.groupoid.dimension
         off = 1e-3 * np.sin(1.0 + np.arange(2 * n))
-        near = self.groupoid.displaced(g, off[:n], off[n:])
+        near = self.groupoid.translate(off[:n], g, off[n:])
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
@@ -173,15 +175,15 @@ class PrototypeIntegrator:
     be, and goes on with the same bits."""
 
     def __init__(
-        self, system: DiscreteLagrangian, *, momentum: Any, object: Any = None, configuration: Any = None
+        self, system: System, *, momentum: Any, object: Any = None, configuration: Any = None
     ) -> None:
-        refuse_unread(system, DiscreteLagrangian)
+        refuse_unread(system, System)
         if system.principle not in principles:
             raise ValueError(f"principle: {system.principle!r} is none of {', '.join(principles)}")
         if not np.isfinite(system.h) or system.h == 0:
             raise ValueError("h: the step must be finite and not zero")
         self.system = copy.copy(system)
-        self.groupoid = system.groupoid
+        self.groupoid = compat.groupoid(system.groupoid)
         self.index = 0
         if configuration is not None:
             if object is not None:
@@ -197,7 +199,7 @@ class PrototypeIntegrator:
             if not np.isfinite(numbers).all():
                 raise ValueError(f"{name}: must be finite")
         self.arrow = self.groupoid.unit(self.object)
-        self._members = Members(self.system, DiscreteLagrangian, self.arrow)
+        self._members = Members(self.system, System, self.arrow)
         self._derivatives = _Derivatives(self.groupoid, self._members.varied)
         self.multipliers: Array = np.zeros(self._members.arrow_constraints + self._members.object_constraints)
         off = float(np.abs(self._members.object_constraint(self.object)).max(initial=0.0))
@@ -207,7 +209,7 @@ class PrototypeIntegrator:
     def _object(self, given: Any) -> Array:
         """The coordinates of an object, of the number that the groupoid asks for, where that is known."""
         q = np.array([] if given is None else given, dtype=float).reshape(-1)
-        if isinstance(self.groupoid, Pairs):
+        if isinstance(self.groupoid, Pair):
             if given is None:
                 raise ValueError("give object, or configuration, the arrow that ends there")
             if len(q) != self.groupoid.n:
@@ -219,7 +221,7 @@ class PrototypeIntegrator:
     def _arrow(self, given: Any) -> Arrow:
         arrow = tuple(np.array(each, dtype=float) for each in (given if isinstance(given, tuple) else (given,)))
         shapes = [each.shape for each in arrow]
-        if isinstance(self.groupoid, Pairs):
+        if isinstance(self.groupoid, Pair):
             if shapes != [(self.groupoid.n,)] * 2:
                 raise ValueError(f"configuration: expected the tuple of two arrays ({self.groupoid.n},), got {shapes}")
         if isinstance(self.groupoid, MatrixGroup):
@@ -274,7 +276,7 @@ class PrototypeIntegrator:
         n = self.groupoid.dimension
 
         def target_gradient(v: Array) -> Array:
-            return np.asarray(self._derivatives(self.groupoid.displaced(g, v, np.zeros(n)))[n:, 0])
+            return np.asarray(self._derivatives(self.groupoid.translate(v, g, np.zeros(n)))[n:, 0])
 
         return _gradient(target_gradient, n)
 
@@ -293,7 +295,7 @@ class PrototypeIntegrator:
         if self._members.object_constraints:
 
             def at(w: Array) -> Array:
-                moved = self.groupoid.displaced(unit, np.zeros(n), w)
+                moved = self.groupoid.translate(np.zeros(n), unit, w)
                 return self._members.object_constraint(self.groupoid.target(moved))
 
             out[:, k:] = _gradient(at, n)
@@ -315,7 +317,7 @@ class PrototypeIntegrator:
         columns = []
         for d in np.eye(n):
             ends = [
-                self._equations(self.groupoid.displaced(g, np.zeros(n), s * d), multipliers, reaction)[0]
+                self._equations(self.groupoid.translate(np.zeros(n), g, s * d), multipliers, reaction)[0]
                 for s in (step, -step)
             ]
             columns.append((ends[0] - ends[1]) / (2 * step))
@@ -354,7 +356,7 @@ class PrototypeIntegrator:
                 ) from None
             fraction = 1.0
             while True:
-                to = self.groupoid.displaced(g, np.zeros(n), fraction * correction[:n])
+                to = self.groupoid.translate(np.zeros(n), g, fraction * correction[:n])
                 with np.errstate(all="ignore"):
                     found, found_plus = self._equations(to, multipliers + fraction * correction[n:], reaction)
                 if np.linalg.norm(found) < (1 - 0.1 * fraction) * size:
@@ -389,7 +391,7 @@ class PrototypeIntegrator:
     def _carried(self, start: Array) -> Arrow:
         if self.index == 0:
             return self.groupoid.unit(start)
-        if isinstance(self.groupoid, Pairs):
+        if isinstance(self.groupoid, Pair):
             return (start, 2 * start - self.arrow[0])
         if isinstance(self.groupoid, MatrixGroup):
             return self.arrow
@@ -401,11 +403,6 @@ class PrototypeIntegrator:
         coordinates = max([1.0, *(float(np.abs(each).max(initial=0.0)) for each in g)])
         own = 4 * eps * (float(np.abs(matrix).max()) * coordinates + float(np.abs(self._momentum).max(initial=0.0)))
         return own if self._derivatives.complex else own + 10 * float(eps**0.8) * self._derivatives.size
-
-    def march(self, steps: int, every: int = 1) -> PrototypeTrajectory:
-        """What `integrate` was called in version 0.2."""
-        warnings.warn("PrototypeIntegrator.march is integrate", DeprecationWarning, stacklevel=2)
-        return self.integrate(steps, every)
 
     def integrate(self, steps: int, every: int = 1) -> PrototypeTrajectory:
         """So many steps; every n-th node is recorded, and the last. A step that fails ends it: see the status."""

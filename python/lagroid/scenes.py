@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 import numpy as np
 
 from . import _lagroid
-from ._lagroid import Trajectory, Run
+from ._lagroid import RunResult, Trajectory
 from .errors import Interrupted, SceneError, SolveError
 
 if TYPE_CHECKING:
     from .prototype import PrototypeTrajectory
 
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
-_Result = TypeVar("_Result", bound=Union[Run, Trajectory, "PrototypeTrajectory"])
+_Result = TypeVar("_Result", bound=Union[RunResult, Trajectory, "PrototypeTrajectory"])
 
 __all__ = ["SceneLike", "require", "resume", "run", "scene_text", "systems"]
 
@@ -81,7 +81,7 @@ def run(
     set: Optional[Mapping[str, Any]] = None,
     record: bool = True,
     out: Optional[str | os.PathLike[str]] = None,
-) -> Run:
+) -> RunResult:
     """Runs a scene (docs/scenes.md): a file, a TOML text (a str with more than one line) or a dict.
 
     `set` holds other values by dotted keys, as in {"time.steps": 100}. Without `record` only the ledger and the end
@@ -92,13 +92,13 @@ def run(
     return _finished(_lagroid.run(made(scene, set), record, out))
 
 
-def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None, other_build: bool = False) -> Run:
+def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None, other_build: bool = False) -> RunResult:
     """Goes on with a run that was broken off, or with a finished one to more steps. Raises OutputError where the folder
     holds none, or one by another build of lagroid, unless `other_build`: the same bits are not promised then."""
     return _finished(_lagroid.resume(folder, steps, other_build))
 
 
-def _finished(result: Run) -> Run:
+def _finished(result: RunResult) -> RunResult:
     if result.interrupted:
         raise Interrupted(result)
     return result

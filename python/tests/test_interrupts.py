@@ -41,7 +41,7 @@ class Interrupts(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             time.sleep(20)
 
-    def test_a_march_keeps_its_place(self) -> None:
+    def test_a_trajectory_keeps_its_place(self) -> None:
         integrator = lagroid.Pendulum(h=0.01).integrator(momentum=[1], object=[0])
         interrupt(0.2)
         with self.assertRaises(KeyboardInterrupt):

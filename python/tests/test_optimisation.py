@@ -64,7 +64,7 @@ class Optimisation(unittest.TestCase):
 
     def test_product(self) -> None:
         """Thomson's problem for two: opposite points."""
-        manifold = lagroid.Product([lagroid.Sphere(3), lagroid.Sphere(3)])
+        manifold = lagroid.ProductManifold([lagroid.Sphere(3), lagroid.Sphere(3)])
         self.assertEqual((manifold.size, manifold.dimension), (6, 4))
 
         def energy(x: Any) -> tuple[float, Any]:

@@ -19,7 +19,7 @@ class OwnSystems(unittest.TestCase):
         again = pickle.loads(pickle.dumps(bead))
         self.assertEqual((again.mass, again.bend, again.gravity, again.h), (2.0, 0.5, 1.0, 0.02))
 
-    def test_marches_with_a_ledger(self) -> None:
+    def test_integrates_with_a_ledger(self) -> None:
         integrator = my_system.Bead(h=0.05).integrator(momentum=[0.0], object=[1.0])
         self.assertIsInstance(integrator, lagroid.Integrator)
         trajectory = lagroid.require(integrator.integrate(2000))
@@ -56,8 +56,8 @@ class OwnSystems(unittest.TestCase):
         np.testing.assert_allclose(bead.object, same.object, atol=1e-9)
 
     def test_is_the_prototype(self) -> None:
-        class Bead(lagroid.DiscreteLagrangian):
-            groupoid = lagroid.Pairs(1)
+        class Bead(lagroid.System):
+            groupoid = lagroid.Pair(1)
             h = 0.05
 
             def lagrangian(self, q0, q1):  # type: ignore[no-untyped-def]

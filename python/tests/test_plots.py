@@ -31,7 +31,7 @@ class Plots(unittest.TestCase):
         with self.assertRaises(ValueError):
             lagroid.plot.trajectory(lagroid.run(EXAMPLES / "kepler.toml", record=False))
 
-    def test_marches(self) -> None:
+    def test_trajectories(self) -> None:
         trajectory = lagroid.SphericalPendulum(h=0.02).integrator(momentum=[0.1, 0.5, 0], object=[1, 0, 0]).integrate(20)
         figure = lagroid.plot.trajectory(trajectory)
         self.assertEqual([axes.get_ylabel() for axes in figure.axes], ["object", "momentum", *trajectory.quantities])
@@ -41,8 +41,8 @@ class Plots(unittest.TestCase):
         body = lagroid.RigidBody(h=0.1).integrator(momentum=[1, 2, 3]).integrate(5)
         self.assertNotIn("object", [axes.get_ylabel() for axes in lagroid.plot.trajectory(body).axes])
 
-        class Free(lagroid.DiscreteLagrangian):
-            groupoid = lagroid.Pairs(2)
+        class Free(lagroid.System):
+            groupoid = lagroid.Pair(2)
 
             def lagrangian(self, q0, q1):  # type: ignore[no-untyped-def]
                 return (q1 - q0) @ (q1 - q0) / (2 * self.h)
@@ -51,7 +51,7 @@ class Plots(unittest.TestCase):
         self.assertEqual([len(axes.lines) for axes in lagroid.plot.trajectory(prototype).axes], [2, 2])
         with self.assertRaisesRegex(ValueError, "^trajectory: energi is none of object, momentum"):
             lagroid.plot.trajectory(trajectory, ["energi"])
-        with self.assertRaisesRegex(TypeError, "^trajectory: draws a Run, Trajectory or PrototypeTrajectory, not Kepler$"):
+        with self.assertRaisesRegex(TypeError, "^trajectory: draws a RunResult, Trajectory or PrototypeTrajectory, not Kepler$"):
             lagroid.plot.trajectory(lagroid.Kepler())  # type: ignore[arg-type]
 
     def test_ledger(self) -> None:

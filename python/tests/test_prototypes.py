@@ -8,8 +8,8 @@ import lagroid
 import numpy as np
 
 
-class Pendulum(lagroid.DiscreteLagrangian):
-    groupoid = lagroid.Pairs(1)
+class Pendulum(lagroid.System):
+    groupoid = lagroid.Pair(1)
     h = 0.1
 
     def lagrangian(self, q0: Any, q1: Any) -> Any:
@@ -30,7 +30,7 @@ class SilentPendulum(Pendulum):
         return np.abs(q1 - q0)[0] ** 2 / (2 * self.h) + self.h * np.cos((q0 + q1) / 2)[0]
 
 
-class Body(lagroid.DiscreteLagrangian):
+class Body(lagroid.System):
     groupoid = lagroid.SO3()
     h = 0.05
     inertia = np.array([1.0, 2.0, 3.0])
@@ -40,8 +40,8 @@ class Body(lagroid.DiscreteLagrangian):
         return (w * self.inertia) @ w / (2 * self.h)
 
 
-class Bob(lagroid.DiscreteLagrangian):
-    groupoid = lagroid.Pairs(3)
+class Bob(lagroid.System):
+    groupoid = lagroid.Pair(3)
     h = 0.05
 
     def lagrangian(self, q0: Any, q1: Any) -> Any:
@@ -51,7 +51,7 @@ class Bob(lagroid.DiscreteLagrangian):
         return np.array([(q @ q - 1) / 2])
 
 
-class Steering(lagroid.DiscreteLagrangian):
+class Steering(lagroid.System):
     """Optimal control of a rotation with one axis forbidden, w3 = 0."""
 
     groupoid = lagroid.SO3()
@@ -78,20 +78,20 @@ class Damped(Pendulum):
         return half, half
 
 
-class Driven(lagroid.DiscreteLagrangian):
+class Driven(lagroid.System):
     """x'' = cos t, for every step size and start."""
 
-    groupoid = lagroid.Pairs(1)
+    groupoid = lagroid.Pair(1)
     h = 0.1
 
     def lagrangian(self, x0: Any, x1: Any, start: float, step: float) -> Any:
         return (x1 - x0) @ (x1 - x0) / (2 * step) + step * np.cos(start + step / 2) * (x0 + x1)[0] / 2
 
 
-class Blade(lagroid.DiscreteLagrangian):
+class Blade(lagroid.System):
     """A knife edge on a slope, (x, y, heading): it slides along its edge, unit mass and inertia."""
 
-    groupoid = lagroid.Pairs(3)
+    groupoid = lagroid.Pair(3)
     h = 0.05
     pull = 1.0
     principle = "nonholonomic"
@@ -115,7 +115,7 @@ class Blade(lagroid.DiscreteLagrangian):
         return q, np.stack([np.sin(t) * np.cos(t), np.sin(t) ** 2, np.ones_like(t)], axis=1)
 
 
-class Sleigh(lagroid.DiscreteLagrangian):
+class Sleigh(lagroid.System):
     """Chaplygin's, on SE(2), by Cayley's map."""
 
     groupoid = lagroid.SE2()
@@ -368,7 +368,7 @@ class Prototypes(unittest.TestCase):
             with self.assertRaises(ValueError):
                 Pendulum().integrator(momentum=[1.0], object=[0.5]).integrate(steps, every)
         with self.assertRaises(NotImplementedError):
-            lagroid.DiscreteLagrangian.lagrangian(Pendulum(), 0)
+            lagroid.System.lagrangian(Pendulum(), 0)
 
     def test_a_lagrangian_that_is_no_number(self) -> None:
         for value, message in (

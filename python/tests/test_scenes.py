@@ -140,7 +140,7 @@ class Scenes(unittest.TestCase):
 
     def test_threads_run_at_once(self) -> None:
         expected = lagroid.run(PENDULUM)["q"].copy()
-        found: list[lagroid.Run] = []
+        found: list[lagroid.RunResult] = []
         threads = [threading.Thread(target=lambda: found.append(lagroid.run(PENDULUM))) for _ in range(8)]
         for thread in threads:
             thread.start()

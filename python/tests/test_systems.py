@@ -37,7 +37,7 @@ class Stiff(lagroid.Pendulum):
 
 
 class Systems(unittest.TestCase):
-    def test_a_march_is_the_run_of_the_scene(self) -> None:
+    def test_a_trajectory_is_the_run_of_the_scene(self) -> None:
         run = lagroid.run(
             {
                 "system": "kepler",
@@ -114,7 +114,7 @@ class Systems(unittest.TestCase):
         self.assertEqual(trajectory.arrow.shape, (3, 2))
         self.assertEqual(trajectory.quantities["energy"].shape, (4, 1))
 
-    def test_arrays_are_the_marchs_own_numbers(self) -> None:
+    def test_arrays_are_the_trajectorys_own_numbers(self) -> None:
         trajectory = lagroid.Pendulum().integrator(momentum=[1], object=[0]).integrate(10)
         self.assertTrue(np.shares_memory(trajectory.object, trajectory.object))
         self.assertFalse(trajectory.object.flags.writeable)
@@ -155,7 +155,7 @@ class Systems(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "quadrature"):
             lagroid.Kepler(quadrature="simpson")
 
-    def test_a_march_must_be_given(self) -> None:
+    def test_a_start_must_be_given(self) -> None:
         with self.assertRaises(TypeError):
             lagroid.Integrator(None)  # type: ignore[arg-type]
 
