@@ -55,8 +55,10 @@ struct StabiliserQuotient : Morphism<StabiliserQuotient<Group, Space>, PairOf<Gr
 
   template <class P> auto over(const P& v) const requires requires { Space::carrying(fixed, v); }
   { return Space::carrying(fixed, v); }
-  template <class E, class P> auto representative(const ActionArrow<E, P>& g) const
-      requires requires { Space::carrying(fixed, g.point); } {
+  template <class E, class P> auto representative(const ActionArrow<E, P>& g) const requires requires {
+    Space::carrying(fixed, g.point);
+  }
+  {
     const E a = over(g.point);
     return ElementStep<E>{{a, this->from.group.multiply(a, g.element)}, g.element};
   }
@@ -79,8 +81,8 @@ struct Projection : Morphism<Projection<I, Gs...>, Product<Gs...>, std::tuple_el
 
 /// The product of morphisms, of a product to a product.
 template <class... Phis>
-struct ProductMorphism : Morphism<ProductMorphism<Phis...>, Product<typename Phis::Domain...>,
-                                  Product<typename Phis::Codomain...>> {
+struct ProductMorphism
+    : Morphism<ProductMorphism<Phis...>, Product<typename Phis::Domain...>, Product<typename Phis::Codomain...>> {
   static constexpr bool keeps_basis = (Phis::keeps_basis && ...);
   [[no_unique_address]] std::tuple<Phis...> factor;
 
@@ -93,18 +95,17 @@ struct ProductMorphism : Morphism<ProductMorphism<Phis...>, Product<typename Phi
   template <class... As> auto representative(const std::tuple<As...>& g) const requires(RepresentsArrows<Phis>&&...) {
     return each([](const auto& phi, const auto& gi) { return representative_of(phi, gi); }, g);
   }
-  template <class... Qs>
-  bool free_at(const std::tuple<Qs...>& m) const requires(FreeInPart<Phis> || ...) {
-    return std::apply(
-        [](const auto&... free) { return (free && ...); }, each(
-                                                               [](const auto& phi, const auto& mi) {
-                                                                 if constexpr (requires { phi.free_at(mi); }) {
-                                                                   return phi.free_at(mi);
-                                                                 } else {
-                                                                   return true;
-                                                                 }
-                                                               },
-                                                               m));
+  template <class... Qs> bool free_at(const std::tuple<Qs...>& m) const requires(FreeInPart<Phis> || ...) {
+    return std::apply([](const auto&... free) { return (free && ...); },
+                      each(
+                          [](const auto& phi, const auto& mi) {
+                            if constexpr (requires { phi.free_at(mi); }) {
+                              return phi.free_at(mi);
+                            } else {
+                              return true;
+                            }
+                          },
+                          m));
   }
 
  private:
@@ -115,7 +116,8 @@ struct ProductMorphism : Morphism<ProductMorphism<Phis...>, Product<typename Phi
     };
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
       return std::make_tuple(at(std::integral_constant<std::size_t, I>{})...);
-    }(std::index_sequence_for<Phis...>{});
+    }
+    (std::index_sequence_for<Phis...>{});
   }
 };
 

@@ -17,9 +17,7 @@ template <class Element> struct ElementPair {
 
 /// Such an arrow that knows a^{-1} b: what stands for an element of the group where a system on pairs is reduced
 /// (LeftQuotient). Lagrangians that ask the groupoid for `quotient` then cost no product of elements.
-template <class Element> struct ElementStep : ElementPair<Element> {
-  Element quotient;
-};
+template <class Element> struct ElementStep : ElementPair<Element> { Element quotient; };
 
 /// Arrows: pairs (a, b) of elements of `Group`; (a, b)(b, c) = (a, c). Algebroid: TG, left-trivialised, so that
 /// constant sections are the group's left-invariant fields; anchor x -> a hat(x). Retraction tau_a(v) = (a, a tau(v)).

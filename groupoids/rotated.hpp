@@ -45,7 +45,8 @@ struct RotatedDirections {
     at_m << tangent_basis(m), m;
     Matrix<S, 3, 3> out;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) out(i, j) = at_v(j, 0) * at_m(i, 0) + at_v(j, 1) * at_m(i, 1) + at_v(j, 2) * at_m(i, 2);
+      for (int j = 0; j < 3; ++j)
+        out(i, j) = at_v(j, 0) * at_m(i, 0) + at_v(j, 1) * at_m(i, 1) + at_v(j, 2) * at_m(i, 2);
     return out;
   }
   static std::string name() { return "S^2"; }

@@ -12,8 +12,8 @@
 ///     if (trained.usable()) std::cout << to_string(trained.outcome) << ' ' << trained.mse << '\n';
 ///
 /// Requires data from `assemble`, of as many bodies as the model, and options in range (std::invalid_argument).
-/// Whatever numbers do is an Outcome with a message that names the remedy. Throws MissingLibrary in a build without
-/// Ceres. [H]
+/// Whatever numbers do is a TrainingStatus with a message that names the remedy. Throws MissingLibrary in a build
+/// without Ceres. [H]
 
 #include <lagroid/solvers/learning/model.hpp>
 #include <lagroid/solvers/learning/trajectories.hpp>
@@ -101,8 +101,8 @@ double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, cons
                           const Trajectories& data);
 
 /// Minimises the mean squared error of the integrator's trajectories by Ceres' Levenberg-Marquardt method with exact
-/// derivatives (ParametricModel), from several starts. Numbers never throw: how it ended is an Outcome. Equal data and
-/// options give equal bits, whatever the threads, unless the time limit or the callback ends it.
+/// derivatives (ParametricModel), from several starts. Numbers never throw: how it ended is a TrainingStatus. Equal
+/// data and options give equal bits, whatever the threads, unless the time limit or the callback ends it.
 Trained train(const Model& model, const Trajectories& data, const Training& options);
 
 }  // namespace lagroid::learning

@@ -9,7 +9,7 @@
 ///     std::cout << to_string(found.outcome) << ' ' << found.value << ' ' << found.message << '\n';
 ///
 /// (`Height` stands in objective.hpp.) Requires a start on the manifold. Returns the best point with value, gradient
-/// and effort. Numbers never throw: how it ended is an Outcome, with a message that names the remedy.
+/// and effort. Numbers never throw: how it ended is a MinimisationStatus, with a message that names the remedy.
 
 #include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
 #include <lagroid/solvers/optimisation/objective.hpp>

@@ -3,7 +3,7 @@
 ///
 ///     struct Weight {
 ///       int size() const { return 1; }
-///       template <class S, class T> S energy(const learning::Places<S, 1>& q, const T* theta) const {
+///       template <class S, class T> S energy(const learning::Positions<S, 1>& q, const T* theta) const {
 ///         return S(theta[0]) * q(2);
 ///       }
 ///     };

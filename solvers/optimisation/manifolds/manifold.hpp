@@ -9,7 +9,7 @@
 ///
 ///     const optimisation::Sphere sphere(3);
 ///     optimisation::Point to(3);
-///     sphere.retract(optimisation::Retraction::qr, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), to);
+///     sphere.retract(optimisation::ManifoldRetraction::qr, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), to);
 ///
 /// A retraction that is not offered throws std::invalid_argument; what does not exist at a point returns false. [V]
 /// 5.3.2
