@@ -6,8 +6,9 @@
 /// A reduced system computes with one arrow g' for each image (ReducedSystem). Were the system not invariant, it would
 /// be that of another problem, without a word; so the claim is examined at sampled arrows before it is used.
 ///
-///     const DescentReport report = examine_descent(ReducedSystem(phi, system), arrows);
-///     if (!report.descends()) std::cout << report.sentence();
+///     const auto reduced = reduce(LeftQuotient<SO3>{}, body, arrows_about(body.groupoid, attitude));
+///
+/// or, to see what was found, `examine_descent(ReducedSystem(body, phi), arrows).sentence()`.
 ///
 /// Required: arrows that are many and generic, for a system that passes at them is believed. They need not satisfy
 /// constraints: of those the zeros alone need to be invariant, and near each sample one is looked for. Errors: none;
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -116,6 +118,25 @@ template <class Reduced, class A> A on_the_constraint(const Reduced& reduced, A 
 }
 
 }  // namespace detail
+
+/// Arrows to examine a system at: `count` generic ones from objects about q, displacements of up to `reach` in each
+/// direction; the same every time.
+template <class G>
+std::vector<ArrowOf<G>> arrows_about(const G& groupoid, const ObjectOf<G>& q, double reach = 0.4, int count = 50) {
+  std::mt19937 bits(7);
+  std::uniform_real_distribution<double> uniform(-reach, reach);
+  const auto displacement = [&] {
+    AlgebroidVector<G> v;
+    for (auto& x : v) x = uniform(bits);
+    return v;
+  };
+  std::vector<ArrowOf<G>> out;
+  for (int i = 0; i < count; ++i) {
+    const auto from = groupoid.target(groupoid.tau(q, displacement()));
+    out.push_back(groupoid.tau(from, displacement()));
+  }
+  return out;
+}
 
 /// Examines each ingredient at the given arrows of the full system.
 template <class Phi, class Sys>

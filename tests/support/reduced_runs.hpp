@@ -10,9 +10,7 @@
 
 #include <algorithm>
 #include <memory>
-#include <random>
 #include <stdexcept>
-#include <vector>
 
 namespace lagroid {
 
@@ -77,23 +75,6 @@ inline testing::AssertionResult agree(const ReducedRunDefects& run) {
   if (run.worst() <= run.allowed()) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "reduced " << run.reduced << ", objects " << run.object << ", momenta "
                                      << run.momentum << ", where round-off explains " << run.allowed();
-}
-
-/// Arrows about the given object: near ones, from objects near it.
-template <class G> std::vector<ArrowOf<G>> arrows_about(const G& groupoid, const ObjectOf<G>& q, double reach = 0.4) {
-  std::mt19937 bits(7);
-  std::uniform_real_distribution<double> uniform(-reach, reach);
-  const auto vector = [&] {
-    AlgebroidVector<G> v;
-    for (auto& x : v) x = uniform(bits);
-    return v;
-  };
-  std::vector<ArrowOf<G>> out;
-  for (int i = 0; i < 50; ++i) {
-    const auto from = groupoid.target(groupoid.tau(q, vector()));
-    out.push_back(groupoid.tau(from, vector()));
-  }
-  return out;
 }
 
 }  // namespace lagroid
