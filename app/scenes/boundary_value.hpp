@@ -6,8 +6,8 @@
 ///     const RunResult result = prepared.run(nullptr);
 ///
 /// Requires a variational system that does not depend on time. Returns the cheapest minimum found, or stationary path
-/// where the scene wants one, and all others in RunResult::minima; where there is none, a status and the best path as
-/// far as it came. Errors: SceneError for a mistake in the scene, before anything is computed.
+/// where the scene wants one, and all others in RunResult::stationary_paths; where there is none, a status and the best
+/// path as far as it came. Errors: SceneError for a mistake in the scene, before anything is computed.
 ///
 /// Source: [G] section 5.
 
