@@ -3,7 +3,7 @@
 #include <lagroid/solvers/step/step_methods.hpp>
 #include <lagroid/solvers/testing/solver_laws.hpp>
 
-#include "../../support/groupoid_motion.hpp"
+#include "groupoid_motion.hpp"
 
 #include <gtest/gtest.h>
 

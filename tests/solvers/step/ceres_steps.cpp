@@ -13,8 +13,8 @@
 #include <lagroid/systems/rotations/heavy_top.hpp>
 
 #include "../../support/affine.hpp"
-#include "../../support/groupoid_motion.hpp"
 #include "../../support/hasty_solver.hpp"
+#include "groupoid_motion.hpp"
 
 #include <ceres/cost_function.h>
 #include <glog/logging.h>

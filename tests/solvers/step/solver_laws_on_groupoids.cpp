@@ -15,7 +15,7 @@
 #include <lagroid/solvers/step/ceres_step.hpp>
 #include <lagroid/solvers/testing/solver_laws.hpp>
 
-#include "../../support/groupoid_motion.hpp"
+#include "groupoid_motion.hpp"
 
 #include <gtest/gtest.h>
 
