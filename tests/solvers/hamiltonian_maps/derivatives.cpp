@@ -21,7 +21,8 @@ template <class F> double series_defect(const F& f, double x, double t) {
 }
 
 TEST(PowerSeries, OfElementaryFunctionsSumToThem) {
-  using namespace std;
+  using std::exp, std::log, std::pow, std::sqrt;
+  using std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh, std::tanh;
   const double t = 0.06;
   const auto defect = [&](const auto& f) { return series_defect(f, 0.4, t); };
   EXPECT_LT(defect([](auto x) { return sqrt(x); }), 1e-15);

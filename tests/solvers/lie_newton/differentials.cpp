@@ -82,6 +82,7 @@ TEST(LieNewton, AutomaticDifferentialsAreTheClosedForms) {
   EXPECT_LT((field.dg(y) - step.field().dg(y)).norm(), 1e-14);
   const GroupoidFibre<SO3> fixed(SO3::exp(Vector<double, 3>(0.2, 0.1, -0.4)));
   const auto spin = [](const auto& r) {
+    using std::sin;
     using S = typename std::decay_t<decltype(r)>::Scalar;
     return Vector<S, 3>(r(0, 1) * r(2, 2), sin(r(1, 0)), r(2, 1));
   };
