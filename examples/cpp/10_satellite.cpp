@@ -6,7 +6,7 @@
 //
 //     (d, j)(d', j') = (d + d', j + j' - d x d'),    j = 0 along a step         [G] Def. 4.1, Example 4.3
 //
-// to which the system on (P, a) is reduced. Asked there ([G] section 5), at least cost: all as it was, the satellite
+// and there the system on (P, a), reduced, is posed. Asked ([G] section 5), at least cost: all as it was, the satellite
 // turned by a right angle. The weight goes round a regular polygon; lifted, it moves in space ([G] Corollary 4.6).
 //
 // Run: ninja -C build/release 10_satellite && build/release/bin/10_satellite
