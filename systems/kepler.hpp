@@ -48,6 +48,14 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
     return 1.5 * s.object.dot(s.momentum) / s.object.squaredNorm();
   }
 
+  /// The same at the middle of an arrow (HasTimeScaleOfArrows).
+  template <class S> S time_scale(const PairArrow<S, 2>& g) const {
+    using std::sqrt;
+    const Vector<S, 2> middle = (g.source + g.target) * 0.5;
+    const S r = sqrt(middle.squaredNorm());
+    return r * sqrt(r);
+  }
+
   /// Revolutions about the centre.
   static constexpr int loops = 1;
   static PairArrow<double, 2> loop(const Vector<double, 2>& q, const Vector<double, 2>&,
