@@ -116,6 +116,8 @@ template <Timed Sys> class FreeStepsNewton {
  private:
   using Columns = typename BoundaryKkt<Extended>::Columns;
   static constexpr double residual_tolerance = 1e-10;
+  /// Of the held steps the last follows from the others, so that their multipliers are determined up to a constant.
+  static constexpr double redundancy_shift = 1e-10;
 
   static double step(const ArrowOf<typename Extended::GroupoidType>& g) { return Extended::step(std::get<0>(g)); }
 
@@ -170,7 +172,7 @@ template <Timed Sys> class FreeStepsNewton {
       held_kkt_.choose_scale();
       if (!std::isfinite(held_kkt_.residual_norm())) return false;
       held_kkt_.newton_side(held_side_);
-      held_kkt_.factor(0, 0);
+      held_kkt_.factor(0, redundancy_shift);
       held_kkt_.solve_in_place(held_side_);
       held_kkt_.unscale(held_side_, held_variation_);
       double reach = 0;
@@ -266,13 +268,14 @@ TimedSolution<Sys> solve_free_steps(const Sys& system, const ArrowOf<typename Sy
         "the discrete energy does not depend on the step: every sequence of steps is stationary, to round-off";
   } else {
     out.status = newton.solve();
-    if (out.converged() && newton.largest_ratio() > options.largest_change) {
-      out.status = SolveStatus::no_step;
-      out.message = "no steps near equal ones keep the discrete energy";
-    } else if (!out.converged() && lowered > 0 && lowered < times) {
+    const bool found = out.converged() && newton.largest_ratio() <= options.largest_change;
+    if (!found && lowered > 0 && lowered < times) {
       out.status = SolveStatus::no_step;
       out.message =
           "no steps keep the discrete energy: the error of the discretisation changes its sign along the path";
+    } else if (!found && out.converged()) {
+      out.status = SolveStatus::no_step;
+      out.message = "no steps keep the discrete energy that change gradually along the path";
     }
   }
   out.iterations = newton.iterations();

@@ -104,7 +104,9 @@ TimedSolution<Sys> with_times(const BoundaryStage<EqualSteps<Sys>>& stage,
   const auto& system = stage.problem.system;
   if constexpr (TimeDependent<Sys>) {
     detail::put_times<Sys>(solution.path, system.origin, out);
-    out.step_multipliers.clear();  // of a constant step they say nothing
+    // Of a constant step they say nothing; and as the last step follows from the others, neither does their rank.
+    out.step_multipliers.clear();
+    out.kind.normal = true;
   } else {
     out.path = solution.path;
     out.times = equal_times(0, time_step(system), solution.path.size());

@@ -1,0 +1,411 @@
+// Boundary values whose step sizes are part of the path: [G] Example 6.1 with the energy equation that has the
+// multiplier's term, against a transcription and a solve of our own.
+#include <lagroid/solvers/boundary/times/free_steps.hpp>
+
+#include <lagroid/core/capabilities/discrete_energy.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/solvers/boundary/boundary_values.hpp>
+#include <lagroid/solvers/boundary/times/prescribed_steps.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
+#include <lagroid/systems/control/group_control.hpp>
+#include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulums/driven_pendulum.hpp>
+#include <lagroid/systems/pendulums/pendulum.hpp>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+using namespace lagroid;
+
+namespace {
+
+using Vector3 = Vector<double, 3>;
+using Vector4 = Vector<double, 4>;
+using Matrix3 = Matrix<double, 3, 3>;
+
+/// [G] Example 6.1 on SO(3): l = (w1^2 + 2 w2^2) / 2 and w3 = spin, so that psi is not homogeneous.
+struct SpinningControl : GroupControl<SpinningControl, SO3, 1> {
+  double spin = 0.7;
+  template <class S> S l(const Vector<S, 3>& w) const { return (w(0) * w(0) + w(1) * w(1) * 2.0) * 0.5; }
+  template <class S> Vector<S, 1> psi(const Vector<S, 3>& w) const { return Vector<S, 1>(w(2) - spin); }
+};
+const Vector3 turn(0.9, 0.6, 0.8);  // from end to end, in unit time
+
+SpinningControl control(std::size_t steps, double duration, Retraction map) {
+  SpinningControl system;
+  system.map = map;
+  system.h = duration / double(steps);
+  return system;
+}
+
+/// The best path of equal steps.
+template <class Sys>
+TimedSolution<Sys> equal_steps(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary,
+                               std::size_t steps) {
+  const auto stage = equal_steps_stage(system, boundary, steps);
+  const auto found = solve_boundary(*make_boundary_solver<Sys>(), stage.problem, steps, {.starts = 4});
+  EXPECT_FALSE(found.solutions.empty());
+  return with_times<Sys>(stage, found.solutions.front());
+}
+template <class Sys>
+TimedSolution<Sys> free_steps(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary,
+                              std::size_t steps) {
+  return solve_free_steps(system, boundary, equal_steps(system, boundary, steps));
+}
+TimedSolution<SpinningControl> free_control(std::size_t steps, Retraction map = Retraction::exponential,
+                                            double duration = 1) {
+  return free_steps(control(steps, duration, map), SO3::retract(Retraction::exponential, turn), steps);
+}
+
+/// The largest difference of E_d between arrows, and its largest size.
+template <class Sys> std::array<double, 2> energy_spread(const Sys& system, const TimedSolution<Sys>& path) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (std::size_t k = 0; k < path.path.size(); ++k) {
+    const double energy = discrete_energy(system, path.path[k], path.times[k], path.times[k + 1] - path.times[k]);
+    least = std::min(least, energy);
+    most = std::max(most, energy);
+  }
+  return {most - least, std::max(std::abs(least), std::abs(most))};
+}
+template <class Sys> void expect_one_energy(const Sys& system, const TimedSolution<Sys>& path) {
+  ASSERT_TRUE(path.converged()) << to_string(path.status) << " " << path.message;
+  const auto [spread, size] = energy_spread(system, path);
+  EXPECT_LE(spread, 1e-12 * size);
+  EXPECT_NEAR(path.energy, discrete_energy(system, path.path[0], path.times[0], path.times[1] - path.times[0]),
+              1e-12 * size);
+}
+
+/// Newton's method for F(x) = 0 with a Jacobian by differences.
+template <int N>
+Vector<double, N> root(const std::function<Vector<double, N>(const Vector<double, N>&)>& f, Vector<double, N> x) {
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const Vector<double, N> at = f(x);
+    Matrix<double, N, N> jacobian;
+    for (int i = 0; i < N; ++i) {
+      constexpr double by = 1e-6;
+      Vector<double, N> up = x;
+      Vector<double, N> down = x;
+      up(i) += by;
+      down(i) -= by;
+      jacobian.col(i) = (f(up) - f(down)) / (2 * by);
+    }
+    const Vector<double, N> change = jacobian.fullPivLu().solve(at);
+    x -= change;
+    if (change.norm() < 1e-13 * (1 + x.norm())) break;
+  }
+  return x;
+}
+
+/// Transcription of the same problem that shares nothing with the library: unit quaternions by the implicit midpoint
+/// rule, controls constant on each of `count` equal intervals, and the conditions of a stationary cost. With Omega(w) p
+/// = p (0, w) the defects q' - q = (h / 2) Omega(w) m, m = (q + q') / 2, have costates lambda, and with r the costates
+/// of the nodes lambda = (1 - h Omega / 4)^{-1} r, r' = (1 + h Omega / 4) lambda, W_i w_i = lambda.Omega_i m / 2.
+struct Transcription {
+  static Vector4 omega(const Vector3& w, const Vector4& p) {
+    Vector4 out;
+    out(0) = -p.tail<3>().dot(w);
+    out.tail<3>() = p(0) * w + p.tail<3>().cross(w);
+    return out;
+  }
+  static Vector4 half(const Vector3& w, double h, const Vector4& p) {  // (1 - h Omega / 4)^{-1} p: Omega^2 = -|w|^2
+    const double a = h / 4;
+    return (p + a * omega(w, p)) / (1 + a * a * w.squaredNorm());
+  }
+
+  /// Cost and energy, -d(cost)/dT.
+  static Vector<double, 2> solve(int count) {
+    const double h = 1.0 / count;
+    const Vector3 weights(1, 2, 0);
+    const Eigen::Quaterniond goal(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    double cost = 0;
+    double energy = 0;
+    const auto miss = [&](const Vector3& costate) -> Vector3 {
+      Vector4 q(1, 0, 0, 0);
+      Vector4 r(0, 2 * costate(0), 2 * costate(1), 2 * costate(2));
+      Vector3 w(costate(0), costate(1) / 2, 0.7);
+      cost = energy = 0;
+      for (int k = 0; k < count; ++k) {
+        Vector4 m;
+        Vector4 lambda;
+        for (int iteration = 0; iteration < 8; ++iteration) {
+          m = half(w, h, q);
+          lambda = half(w, h, r);
+          for (int i = 0; i < 2; ++i) w(i) = lambda.dot(omega(Vector3::Unit(i), m)) / 2 / weights(i);
+        }
+        const double l = 0.5 * w.dot(weights.cwiseProduct(w));
+        cost += h * l;
+        energy += h * (lambda.dot(omega(w, m)) / 2 - l);
+        q = 2 * half(w, h, q) - q;
+        r = 2 * half(w, h, r) - r;
+      }
+      return (goal.conjugate() * Eigen::Quaterniond(q(0), q(1), q(2), q(3))).vec();
+    };
+    const Vector3 costate = root<3>(miss, Vector3(0.9, 1.2, 0.5));
+    EXPECT_LT(miss(costate).norm(), 1e-13);
+    return {cost, energy};
+  }
+};
+
+// Against forty times as many nodes and more, extrapolated.
+TEST(FreeSteps, CostAndEnergyAreThoseOfAnIndependentTranscriptionToOrderTwo) {
+  const Vector<double, 2> coarse = Transcription::solve(400);
+  const Vector<double, 2> fine = Transcription::solve(1600);
+  const Vector<double, 2> exact = fine + (fine - coarse) / 15;
+  ASSERT_LT((fine - coarse).norm(), 1e-4);
+  for (const auto map : {Retraction::exponential, Retraction::cayley}) {
+    std::vector<Vector<double, 2>> errors;
+    for (const std::size_t steps : {10, 20, 40}) {
+      const auto path = free_control(steps, map);
+      ASSERT_TRUE(path.converged()) << path.message;
+      errors.push_back((Vector<double, 2>(path.cost, path.energy) - exact).cwiseAbs());
+    }
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_LT(errors[2](i), 3e-3);
+      EXPECT_NEAR(std::log2(errors[0](i) / errors[1](i)), 2, 0.1);
+      EXPECT_NEAR(std::log2(errors[1](i) / errors[2](i)), 2, 0.05);
+    }
+  }
+}
+
+/// The discrete equations of the Cayley map by hand: F-+ = mu +- (h / 2) w x mu + (h^2 / 4) (w.mu) w with
+/// mu = W w + lambda e3, and E_d = l(w) + lambda spin. From a momentum and E_d, arrow by arrow.
+struct ByHand {
+  struct Arrow {
+    Vector3 w;
+    double lambda;
+    double h;
+  };
+  static Vector3 momentum(const Arrow& a, double sign) {
+    const Vector3 mu(a.w(0), 2 * a.w(1), a.lambda);
+    return mu + sign * a.h / 2 * a.w.cross(mu) + a.h * a.h / 4 * a.w.dot(mu) * a.w;
+  }
+  static Matrix3 hat(const Vector3& w) {
+    Matrix3 out;
+    out << 0, -w(2), w(1), w(2), 0, -w(0), -w(1), w(0), 0;
+    return out;
+  }
+
+  /// The arrows that start with this momentum and have this energy; the steps are near `h`.
+  static std::vector<Arrow> march(const Vector4& from, std::size_t steps, double h) {
+    Vector3 m = from.head<3>();
+    Vector4 x(m(0), m(1) / 2, m(2), h);
+    std::vector<Arrow> out;
+    for (std::size_t k = 0; k < steps; ++k) {
+      x = root<4>(
+          [&](const Vector4& y) {
+            const Arrow a{{y(0), y(1), 0.7}, y(2), y(3)};
+            Vector4 off;
+            off.head<3>() = momentum(a, 1) - m;
+            off(3) = 0.5 * (a.w(0) * a.w(0) + 2 * a.w(1) * a.w(1)) + 0.7 * a.lambda - from(3);
+            return off;
+          },
+          x);
+      out.push_back({{x(0), x(1), 0.7}, x(2), x(3)});
+      m = momentum(out.back(), -1);
+    }
+    return out;
+  }
+  /// What the end of the march misses of the rotation and of the time.
+  static Vector4 miss(const std::vector<Arrow>& arrows) {
+    Matrix3 at = Matrix3::Identity();
+    double time = 0;
+    for (const auto& a : arrows) {
+      const Matrix3 x = a.h / 2 * hat(a.w);
+      at = at * (Matrix3::Identity() - x).inverse() * (Matrix3::Identity() + x);
+      time += a.h;
+    }
+    const Matrix3 off = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix().transpose() * at;
+    return {off(2, 1) - off(1, 2), off(0, 2) - off(2, 0), off(1, 0) - off(0, 1), time - 1};
+  }
+};
+
+TEST(FreeSteps, AreThoseOfAnIndependentSolveOfAsManyArrows) {
+  constexpr std::size_t steps = 8;
+  const auto path = free_control(steps, Retraction::cayley);
+  ASSERT_TRUE(path.converged()) << path.message;
+  const SpinningControl system = control(steps, path.times[1] * double(steps), Retraction::cayley);
+  Vector4 start;
+  start << legendre_minus(system, path.path.front()).momentum, path.energy;
+  const Vector4 near = start + 1e-4 * Vector4(1, -1, 1, 1);
+  const auto march = [&](const Vector4& from) { return ByHand::march(from, steps, path.times[1]); };
+  const auto found = march(root<4>([&](const Vector4& from) { return ByHand::miss(march(from)); }, near));
+  EXPECT_LT(ByHand::miss(found).norm(), 1e-12);
+  EXPECT_GT(ByHand::miss(march(near)).norm(), 1e-6);
+  double unequal = 0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    EXPECT_NEAR(path.times[k + 1] - path.times[k], found[k].h, 1e-9);
+    EXPECT_NEAR(path.path[k].multipliers(0), found[k].lambda, 1e-9);
+    unequal = std::max(unequal, std::abs(found[k].h - 1.0 / steps));
+  }
+  EXPECT_GT(unequal, 1e-3);
+}
+
+TEST(FreeSteps, HaveTheSameEnergyOnAllArrows) {
+  const ArrowOf<SO3> goal = SO3::retract(Retraction::exponential, turn);
+  for (const auto map : {Retraction::exponential, Retraction::cayley})
+    for (const std::size_t steps : {10, 100}) {
+      const SpinningControl system = control(steps, 1, map);
+      const auto equal = equal_steps(system, goal, steps);
+      const auto free = solve_free_steps(system, goal, equal);
+      expect_one_energy(system, free);
+      EXPECT_TRUE(free.kind.is_minimum);
+      EXPECT_NEAR(free.times.back(), 1, 1e-14);
+      // Equal steps have not, and the energy as the paper prints it, without <lambda, d phi / dh>, is not kept either.
+      const auto [spread, size] = energy_spread(system, equal);
+      EXPECT_GT(spread, 1e-6 * size);
+      double least = std::numeric_limits<double>::infinity();
+      double most = -least;
+      for (const auto& step : free.path) {
+        least = std::min(least, step.multipliers(0));
+        most = std::max(most, step.multipliers(0));
+      }
+      EXPECT_GT(0.7 * (most - least), 1e-2);
+    }
+  Pendulum pendulum;
+  pendulum.h = 2.0 / 50;
+  const PairArrow<double, 1> swing{Vector<double, 1>(-0.8), Vector<double, 1>(1.0)};
+  expect_one_energy(pendulum, free_steps(pendulum, swing, 50));
+}
+
+TEST(FreeSteps, EnergyIsTheCostateOfTheEndTime) {
+  constexpr double by = 1e-3;
+  const auto cost = [](double duration) { return free_control(16, Retraction::exponential, duration).cost; };
+  const double energy = free_control(16).energy;
+  EXPECT_NEAR((cost(1 + by) - cost(1 - by)) / (2 * by), -energy, 1e-4);
+  EXPECT_NEAR((8 * (cost(1 + by) - cost(1 - by)) - (cost(1 + 2 * by) - cost(1 - 2 * by))) / (12 * by), -energy, 1e-8);
+}
+
+// The same arrows as an initial value, with the step as an unknown.
+TEST(FreeSteps, SurviveTheirInitialValueProblem) {
+  Pendulum system;
+  constexpr std::size_t steps = 20;
+  system.h = 2.0 / steps;
+  const PairArrow<double, 1> swing{Vector<double, 1>(-0.8), Vector<double, 1>(1.0)};
+  const auto path = free_steps(system, swing, steps);
+  ASSERT_TRUE(path.converged()) << path.message;
+  system.h = path.times[1];
+  const auto run = make_integrator(system, legendre_minus(system, path.path[0]), {swing.source, swing.source},
+                                   {.mode = TimeMode::adaptive});
+  for (std::size_t k = 1; k <= steps; ++k) {
+    ASSERT_TRUE(run->advance().converged()) << k;
+    EXPECT_NEAR(run->point().time, path.times[k], 1e-7);
+    EXPECT_NEAR(run->point().step.arrow.target(0), path.path[k - 1].arrow.target(0), 1e-7);
+  }
+}
+
+TEST(FreeSteps, SaySoWhereThereAreNone) {
+  Pendulum system;
+  constexpr std::size_t steps = 20;
+  system.h = 2.0 / steps;
+  system.quadrature = Quadrature::trapezoid;
+  const PairArrow<double, 1> swing{Vector<double, 1>(-0.8), Vector<double, 1>(1.0)};
+  const auto none = free_steps(system, swing, steps);
+  EXPECT_EQ(none.status, SolveStatus::no_step) << none.message;
+  EXPECT_NE(none.message.find("changes its sign along the path"), std::string::npos) << none.message;
+  // Uniform motion: any steps will do.
+  system.gravity = 0;
+  EXPECT_EQ(free_steps(system, swing, steps).status, SolveStatus::degenerate);
+}
+
+// Where the Lagrangian depends on time the energy changes as time itself makes it.
+TEST(FreeSteps, BalanceTheEnergyOfADrivenMotion) {
+  DrivenPendulum system;
+  system.torque = 0.2;
+  system.frequency = 1.3;
+  system.time = 0.7;
+  constexpr std::size_t steps = 40;
+  system.h = 2.0 / steps;
+  const auto motion = [&](double h, std::size_t count) {
+    DrivenPendulum of = system;
+    of.h = h;
+    FixedStepIntegrator<DrivenPendulum> run(of, {Vector<double, 1>(-0.8), Vector<double, 1>(0.9)},
+                                            {Vector<double, 1>(-0.8), Vector<double, 1>(-0.8)},
+                                            std::make_unique<NewtonStep<DrivenPendulum>>());
+    Path<DrivenPendulum> path;
+    for (std::size_t k = 0; k < count; ++k) {
+      EXPECT_TRUE(run.advance().converged());
+      path.push_back(run.point().step);
+    }
+    return path;
+  };
+  TimedSolution<DrivenPendulum> equal;
+  equal.path = motion(system.h, steps);
+  equal.times = equal_times(system.time, system.h, steps);
+  const PairArrow<double, 1> ends{equal.path.front().arrow.source, equal.path.back().arrow.target};
+  const auto free = solve_free_steps(system, ends, equal);
+  ASSERT_TRUE(free.converged()) << to_string(free.status) << " " << free.message;
+  EXPECT_EQ(free.times.front(), 0.7);
+  using D = Dual<double>;
+  double changed = 0;
+  double off = 0;
+  double unequal = 0;
+  const auto energy = [&](std::size_t k) {
+    return discrete_energy(system, free.path[k], free.times[k], free.times[k + 1] - free.times[k]);
+  };
+  for (std::size_t k = 1; k < steps; ++k) {
+    // p_t = -E_d at the end of an arrow; at its start dL/dt is wanting.
+    const double h = free.times[k + 1] - free.times[k];
+    const double by_time =
+        system.lagrangian(system.groupoid.cast<D>(free.path[k].arrow), D(free.times[k], 1.0), D(h)).derivative;
+    off = std::max(off, std::abs(energy(k - 1) - energy(k) - by_time));
+    changed = std::max(changed, std::abs(by_time));
+    unequal = std::max(unequal, std::abs(h / system.h - 1));
+  }
+  EXPECT_LT(off, 1e-12);
+  EXPECT_GT(changed, 1e-3);
+  EXPECT_GT(unequal, 1e-2);
+}
+
+// Lambert's problem with steps as |q|^(3/2).
+TEST(PrescribedSteps, AreOfOrderTwoAndTheirMultipliersSmall) {
+  const PairArrow<double, 2> ends{{1, 0}, {-0.3, 0.8}};
+  std::vector<double> costs;
+  std::vector<double> multipliers;
+  for (const std::size_t steps : {20, 40, 80}) {
+    Kepler system;
+    system.h = 2.0 / double(steps);
+    const auto path = solve_prescribed_steps(system, ends, equal_steps(system, ends, steps));
+    ASSERT_TRUE(path.converged()) << to_string(path.status) << " " << path.message;
+    costs.push_back(path.cost);
+    double largest = 0;
+    double mean = 0;
+    double off = 0;
+    double unequal = 0;
+    double drift = 0;
+    const double epsilon = path.times[1] / system.time_scale(path.path[0].arrow);
+    const auto turning = [](const PairArrow<double, 2>& g, const Vector<double, 2>& p) {
+      return g.target(0) * p(1) - g.target(1) * p(0);
+    };
+    for (std::size_t k = 0; k < steps; ++k) {
+      const double h = path.times[k + 1] - path.times[k];
+      const double nu = path.step_multipliers[k];
+      largest = std::max(largest, std::abs(nu));
+      mean += nu * h;
+      off = std::max(off, std::abs(h - epsilon * system.time_scale(path.path[k].arrow)));
+      off = std::max(off, std::abs(nu - discrete_energy(system, path.path[k], 0, h) + path.energy));
+      unequal = std::max(unequal, std::abs(h / system.h - 1));
+      drift = std::max(drift, std::abs(turning(path.path[k].arrow, path.momenta[k + 1]) -
+                                       turning(path.path[0].arrow, path.momenta[1])));
+    }
+    multipliers.push_back(largest);
+    EXPECT_NEAR(path.times.back(), 2, 1e-13);
+    EXPECT_LT(off, 1e-11);
+    EXPECT_LT(std::abs(mean), 1e-10);
+    EXPECT_LT(drift, 1e-12);
+    EXPECT_GT(unequal, 0.1);
+  }
+  EXPECT_NEAR(std::log2((costs[0] - costs[1]) / (costs[1] - costs[2])), 2, 0.1);
+  EXPECT_NEAR(std::log2(multipliers[0] / multipliers[1]), 2, 0.3);
+  EXPECT_LT(multipliers[2], 1e-2);
+}
+
+}  // namespace
