@@ -25,7 +25,7 @@ template <DiscreteSystem Sys> BoundaryScene<Sys> read_ends(const Section& scene)
   const auto start = read_configuration(system, boundary.section("start", "a configuration"));
   const auto end = read_configuration(system, boundary.section("end", "a configuration"));
   const SceneArrow<typename Sys::GroupoidType> spoken{system.groupoid};
-  return {{{system, spoken.between(start, end)}, std::size_t(read_time(scene).steps)}, start};
+  return {equal_steps_stage(system, spoken.between(start, end), std::size_t(read_time(scene).steps)), start};
 }
 
 /// Reads a scene of any system; `ends` takes the place of `read_ends`.
@@ -34,7 +34,7 @@ PreparedScene<Sys> read_any_system(const Section& scene, const RunContext& conte
                                    Dress<Sys> dress, BoundaryScene<Sys> (*ends)(const Section&) = nullptr) {
   const Sys system = read_system<Sys>(scene);
   const Presentation<Sys> presentation = dressed(system, name, dress);
-  if constexpr (Variational<Sys> && !TimeDependent<Sys>) {
+  if constexpr (Variational<Sys>) {
     if (is_boundary_value(scene, "configuration and momentum"))
       return boundary_value<Sys>(scene, context, presentation, ends ? ends : read_ends<Sys>);
   } else {

@@ -12,6 +12,7 @@
 /// Source: [G] section 5.
 
 #include "../reading/scene_reader.hpp"
+#include "boundary_times.hpp"
 #include "simulation.hpp"
 
 #include <lagroid/run/files/checkpoint.hpp>
@@ -65,7 +66,7 @@ bool is_boundary_value(const Section& scene, const std::string& initial);
 
 /// A boundary-value problem as a scene states it: the configuration at the start, and the arrow from there to the end.
 template <DiscreteSystem Sys> struct BoundaryScene {
-  BoundaryStage<Sys> stage;
+  BoundaryStage<EqualSteps<Sys>> stage;
   ArrowOf<typename Sys::GroupoidType> start;
 };
 
@@ -90,12 +91,40 @@ double evaluation_noise(const Sys& system, const Step<Sys>& step, const State<ty
   return round_off_level(system, state, step, jacobian).template head<Sys::dimension>().maxCoeff() / size;
 }
 
+/// The system on the k-th arrow of a path of such steps.
+template <DiscreteSystem Sys> Sys on_arrow(Sys system, TimeMode mode, const TimedPath<Sys>& timed, std::size_t k) {
+  if (mode == TimeMode::fixed) {
+    set_time(system, timed.times[k]);
+  } else {
+    set_arrow(system, timed.times[k], timed.times[k + 1] - timed.times[k]);
+  }
+  return system;
+}
+
+/// The state at the k-th node of a path, by the momentum of the arrow before or after it.
+template <DiscreteSystem Sys>
+State<typename Sys::GroupoidType> node_of(State<typename Sys::GroupoidType> by_arrow, const TimedSolution<Sys>& timed,
+                                          std::size_t k) {
+  if (!timed.momenta.empty()) by_arrow.momentum = timed.momenta[k];
+  return by_arrow;
+}
+
 /// Records and judges a solved path, of whose nodes each `every`-th is recorded, and the last; 0: none.
 template <DiscreteSystem Sys>
-void record_path(const Sys& system, const Presentation<Sys>& presentation, const Path<Sys>& path,
-                 const ArrowOf<typename Sys::GroupoidType>& start, long every, const Observer<Sys>& observer,
-                 RunResult& result) {
-  SystemNode<Sys> node(system, presentation, quantities_of(system));
+void record_path(const Sys& system, const Presentation<Sys>& presentation, const TimedSolution<Sys>& timed,
+                 const ArrowOf<typename Sys::GroupoidType>& start, TimeMode mode, long every,
+                 const Observer<Sys>& observer, RunResult& result) {
+  const Path<Sys>& path = timed.path;
+  const IntegratorOptions steps{.mode = mode};
+  Presentation<Sys> shown = with_step_sizes(presentation, steps);
+  if (!timed.step_multipliers.empty()) {
+    shown.extras.push_back({{"step_multiplier", {"nu"}, "unit of the energy", "of t1 - t0 = h(g)", true, {}},
+                            [&timed](const TrajectoryPoint<Sys>& point, double* out) {
+                              *out = timed.step_multipliers[std::size_t(point.index - 1)];
+                            }});
+    shown.panels.push_back({"multiplier of the step", "t", "nu", "t", {"nu"}});
+  }
+  SystemNode<Sys> node(system, shown, mode == TimeMode::fixed ? quantities_of(system) : watched(system, steps));
   Judge judge(node);
   Recorder recorder(node);
   TrajectoryPoint<Sys> point;
@@ -106,19 +135,22 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
     if (every > 0 && (point.index % every == 0 || point.index == std::ssize(path))) recorder.record(node, &judge);
   };
   point.configuration = start;
-  point.state = legendre_minus(system, path.front());
+  if constexpr (HasTimeStep<Sys>) point.time = timed.times.front();
+  point.state = node_of(legendre_minus(on_arrow(system, mode, timed, 0), path.front()), timed, 0);
   see(0);
   result.initial = node.endpoint();
-  for (const auto& step : path) {
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const Step<Sys>& step = path[k];
+    const Sys there = on_arrow(system, mode, timed, k);
     ++point.index;
     if constexpr (HasTimeStep<Sys>) {
-      point.time = double(point.index) * system.h;
-      point.step_size = system.h;
+      point.time = timed.times[k + 1];
+      point.step_size = there.h;
     }
     point.step = step;
     point.configuration = system.groupoid.project(system.groupoid.compose(point.configuration, step.arrow));
-    point.state = legendre_plus(system, step);
-    see(evaluation_noise(system, step, point.state));
+    point.state = node_of(legendre_plus(there, step), timed, k + 1);
+    see(evaluation_noise(there, step, point.state));
   }
   judge.report(result.ledger);
   if (every > 0) result.trajectory = std::move(recorder.trajectory());
@@ -127,7 +159,7 @@ void record_path(const Sys& system, const Presentation<Sys>& presentation, const
   const auto list = [](const auto& v) { return std::vector<double>(v.begin(), v.end()); };
   result.first_multipliers = list(path.front().multipliers);
   result.last_multipliers = list(path.back().multipliers);
-  present(presentation, result);
+  present(shown, result);
 }
 
 /// Follows every solution found at the beginning of a continuation to its end. Returns the largest s that one reached.
@@ -144,7 +176,7 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
   const std::size_t count = found.solutions.size();
   std::size_t arrivals = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    auto followed = follow(solver, stage, std::move(found.solutions[i]), options);
+    auto followed = lagroid::follow(solver, stage, std::move(found.solutions[i]), options);
     found.iterations += followed.iterations;
     if (followed.converged()) {
       ++arrivals;
@@ -177,11 +209,20 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
 
 /// Chooses a path and records it, with a note on the choice; or writes why there is none.
 template <DiscreteSystem Sys>
+<<<<<<< HEAD
 void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind kind,
                       const MultistartResult<Sys>& found, long every, const Observer<Sys>& observer,
+=======
+void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind seek,
+                      const FoundPaths<Sys>& found, TimeMode mode, long every, const Observer<Sys>& observer,
+>>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
                       RunResult& result) {
-  const Sys& system = problem.stage.problem.system;
+  const Sys& system = untimed<Sys>(problem.stage.problem.system);
+  const auto record = [&](const TimedSolution<Sys>& path) {
+    record_path(system, presentation, path, problem.start, mode, every, observer, result);
+  };
   for (const auto& s : found.solutions) {
+<<<<<<< HEAD
     const auto momentum = tangent_momentum(system, legendre_minus(system, s.path.front()));
     result.stationary_paths.push_back({s.cost,
                                        s.starts,
@@ -190,16 +231,29 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
                                        s.kind.isolated,
                                        s.kind.normal,
                                        s.kind.negative_directions});
+=======
+    const auto by_arrow = legendre_minus(on_arrow(system, mode, s, 0), s.path.front());
+    const auto momentum = tangent_momentum(system, node_of(by_arrow, s, 0));
+    result.minima.push_back({s.cost,
+                             s.starts,
+                             {momentum.data(), momentum.data() + momentum.size()},
+                             s.kind.is_minimum,
+                             s.kind.isolated,
+                             s.kind.normal,
+                             s.kind.negative_directions});
+>>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
   }
   const auto best = std::find_if(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
     return kind == StationaryKind::stationary || s.kind.is_minimum;
   });
   if (best != found.solutions.end()) {
-    record_path(system, presentation, best->path, problem.start, every, observer, result);
+    record(*best);
     result.cost = best->cost;
     result.steps = long(best->path.size());
     result.notes.push_back(
         fmt::format("the cheapest of those found: {} of {} starts led to it", best->starts, found.starts));
+    if constexpr (Timed<Sys>)
+      if (mode != TimeMode::fixed) result.notes.push_back(words_of_steps(*best));
     if (best != found.solutions.begin())
       result.notes.push_back(
           fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
@@ -235,9 +289,9 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
                          : fmt::format("boundary value: none of {} starts converged; the best of them: {}",
                                        found.starts, failure.message);
   }
-  const auto& path = found.solutions.empty() ? failure.path : found.solutions.front().path;
-  if (!path.empty()) {
-    record_path(system, presentation, path, problem.start, every, observer, result);
+  const TimedSolution<Sys>& path = found.solutions.empty() ? failure : found.solutions.front();
+  if (!path.path.empty()) {
+    record(path);
     for (auto& entry : result.ledger.entries) {
       entry.verdict = "unjudged";
       entry.reason = "the path is no solution";
@@ -250,22 +304,29 @@ template <DiscreteSystem Sys> struct BoundaryRun {
   Section scene;
   Presentation<Sys> presentation;
   BoundaryScene<Sys> problem;
-  BoundaryStage<Sys> first;  ///< where the continuation begins; the problem itself without one
+  BoundaryStage<EqualSteps<Sys>> first;  ///< where the continuation begins; the problem itself without one
   BoundaryChoice choice;
   std::optional<ContinuationChoice> along;
+  TimeMode mode = TimeMode::fixed;
   long every = 0;
 };
 
-/// Searches, continues, reports. `search(solver, stage, options)` is the multistart.
+/// Searches, continues, varies the steps, reports. `search(solver, stage, options)` is the multistart.
 template <DiscreteSystem Sys, class Read, class Search>
 RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& context, const Read& read,
                                const Search& search, const Observer<Sys>& observer) {
-  const auto& [scene, presentation, problem, first, choice, along, every] = run;
+  const auto& [scene, presentation, problem, first, choice, along, mode, every] = run;
+  using Equal = EqualSteps<Sys>;
   const auto clock = std::chrono::steady_clock::now();
+<<<<<<< HEAD
   const auto solver = make_boundary_solver<Sys>(choice.method, choice.options,
                                                 choice.stationary_kind.value_or(natural_stationary_kind<Sys>));
+=======
+  const auto solver =
+      make_boundary_solver<Equal>(choice.method, choice.options, choice.seek.value_or(natural_seek<Equal>));
+>>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
   MultistartOptions multistart = choice.multistart;
-  MultistartResult<Sys> found;
+  MultistartResult<Equal> found;
   {
     Progress progress("starts", multistart.starts, context.progress);
     multistart.report = [&](int done) { progress.update(done); };
@@ -285,10 +346,20 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
   double reached = 1;
   if (along && !found.solutions.empty())
     reached = continue_solutions(*solver, scene, *along, read, context, found, result);
-  result.iterations = found.iterations;
   // Where nothing arrived, the farthest path is one of the problem it was solved for.
+<<<<<<< HEAD
   report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation,
                    solver->stationary_kind(), found, every, observer, result);
+=======
+  const BoundaryScene<Sys> solved = reached < 1 ? read_along(scene, *along, reached, read) : problem;
+  FoundPaths<Sys> paths(solved.stage, found);
+  if constexpr (Timed<Sys>)
+    if (mode != TimeMode::fixed && !paths.solutions.empty())
+      vary_steps(mode, untimed<Sys>(solved.stage.problem.system), untimed_boundary<Sys>(solved.stage.problem),
+                 solver->seek(), paths, result);
+  result.iterations = paths.iterations;
+  report_solutions(solved, presentation, solver->seek(), paths, mode, every, observer, result);
+>>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
   result.ledger.mean_iterations = double(found.start_iterations) / double(found.starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
@@ -299,22 +370,23 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
 template <DiscreteSystem Sys, class Read, class Search>
 PreparedScene<Sys> boundary_value(const Section& scene, const RunContext& context,
                                   const Presentation<Sys>& presentation, const Read& read, const Search& search) {
+  const BoundaryScene<Sys> stated = read(scene);
   BoundaryRun<Sys> run{scene,
                        presentation,
-                       read(scene),
-                       {},
+                       stated,
+                       stated.stage,
                        read_boundary_solver(scene.section_or_empty("solver")),
                        read_continuation(scene),
+                       read_boundary_mode<Sys>(scene),
                        context.record ? read_every(scene) : 0};
   refuse_accuracy(scene);
-  scene.section_or_empty("time").choice_or("mode", "fixed", {"fixed"});
   scene.finish();
   const auto& problem = run.problem.stage;
   if (const auto why = inadmissible_ends(problem.problem)) scene.section_or_empty("boundary").fail("", *why);
   if (problem.steps < 2) scene.section_or_empty("time").fail("steps", "a boundary value needs at least 2 steps");
-  run.first = run.along ? read_along(scene, *run.along, 0, read).stage : problem;
+  if (run.along) run.first = read_along(scene, *run.along, 0, read).stage;
   if (const auto why = inadmissible_ends(run.first.problem)) scene.section("continuation", "").fail("from", *why);
-  return {problem.problem.system,
+  return {untimed<Sys>(problem.problem.system),
           [=](const Observer<Sys>& observer) {
             std::optional<Checkpoint> folder;
             if (!context.folder.empty()) folder.emplace(context.folder, 0).remove();
@@ -327,11 +399,11 @@ PreparedScene<Sys> boundary_value(const Section& scene, const RunContext& contex
 template <DiscreteSystem Sys, class Read>
 PreparedScene<Sys> boundary_value(const Section& scene, const RunContext& context,
                                   const Presentation<Sys>& presentation, const Read& read) {
-  return boundary_value<Sys>(
-      scene, context, presentation, read,
-      [](const BoundarySolver<Sys>& solver, const BoundaryStage<Sys>& stage, const MultistartOptions& options) {
-        return solve_boundary(solver, stage.problem, stage.steps, options);
-      });
+  return boundary_value<Sys>(scene, context, presentation, read,
+                             [](const BoundarySolver<EqualSteps<Sys>>& solver,
+                                const BoundaryStage<EqualSteps<Sys>>& stage, const MultistartOptions& options) {
+                               return lagroid::solve_boundary(solver, stage.problem, stage.steps, options);
+                             });
 }
 
 }  // namespace lagroid::app

@@ -38,9 +38,7 @@ void refuse_accuracy(const Section& scene);
 /// Refuses [boundary] of a system that has no boundary values.
 template <DiscreteSystem Sys> void refuse_boundary(const Section& scene) {
   if (!scene.has("boundary")) return;
-  scene.fail("boundary", TimeDependent<Sys> ? "the equal steps of a boundary value have no time of their own, on which "
-                                              "this system depends (from C++ take FixedStep); give [initial]"
-                         : Forced<Sys>
+  scene.fail("boundary", Forced<Sys>
                              ? "the motions of a forced system make no action stationary; give [initial]"
                              : "the motions of a nonholonomic system make no action stationary; give [initial]");
 }

@@ -1,6 +1,7 @@
 #include "../../scenes/any_system.hpp"
 #include "swinging.hpp"
 
+#include <lagroid/solvers/boundary/boundary_methods.hpp>
 #include <lagroid/systems/pendulums/driven_pendulum.hpp>
 
 namespace lagroid::app {
