@@ -61,11 +61,11 @@ TimedSolution<Sys> with_steps(TimeMode mode, const Sys& system, const ArrowOf<ty
 /// Gives all paths the steps of that mode, or says why none of those sought has them.
 template <Timed Sys>
 void vary_steps(TimeMode mode, const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary,
-                StationaryKind seek, FoundPaths<Sys>& found, RunResult& result) {
+                StationaryKind kind, FoundPaths<Sys>& found, RunResult& result) {
   std::vector<TimedSolution<Sys>> varied;
   std::optional<TimedSolution<Sys>> failure;
   const auto is_sought = [&](const TimedSolution<Sys>& path) {
-    return seek == StationaryKind::stationary || path.kind.is_minimum;
+    return kind == StationaryKind::stationary || path.kind.is_minimum;
   };
   const std::size_t count = found.solutions.size();
   for (auto& equal : found.solutions) {

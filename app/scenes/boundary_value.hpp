@@ -209,21 +209,16 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
 
 /// Chooses a path and records it, with a note on the choice; or writes why there is none.
 template <DiscreteSystem Sys>
-<<<<<<< HEAD
 void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind kind,
-                      const MultistartResult<Sys>& found, long every, const Observer<Sys>& observer,
-=======
-void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind seek,
                       const FoundPaths<Sys>& found, TimeMode mode, long every, const Observer<Sys>& observer,
->>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
                       RunResult& result) {
   const Sys& system = untimed<Sys>(problem.stage.problem.system);
   const auto record = [&](const TimedSolution<Sys>& path) {
     record_path(system, presentation, path, problem.start, mode, every, observer, result);
   };
   for (const auto& s : found.solutions) {
-<<<<<<< HEAD
-    const auto momentum = tangent_momentum(system, legendre_minus(system, s.path.front()));
+    const auto by_arrow = legendre_minus(on_arrow(system, mode, s, 0), s.path.front());
+    const auto momentum = tangent_momentum(system, node_of(by_arrow, s, 0));
     result.stationary_paths.push_back({s.cost,
                                        s.starts,
                                        {momentum.data(), momentum.data() + momentum.size()},
@@ -231,17 +226,6 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
                                        s.kind.isolated,
                                        s.kind.normal,
                                        s.kind.negative_directions});
-=======
-    const auto by_arrow = legendre_minus(on_arrow(system, mode, s, 0), s.path.front());
-    const auto momentum = tangent_momentum(system, node_of(by_arrow, s, 0));
-    result.minima.push_back({s.cost,
-                             s.starts,
-                             {momentum.data(), momentum.data() + momentum.size()},
-                             s.kind.is_minimum,
-                             s.kind.isolated,
-                             s.kind.normal,
-                             s.kind.negative_directions});
->>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
   }
   const auto best = std::find_if(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
     return kind == StationaryKind::stationary || s.kind.is_minimum;
@@ -318,13 +302,8 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
   const auto& [scene, presentation, problem, first, choice, along, mode, every] = run;
   using Equal = EqualSteps<Sys>;
   const auto clock = std::chrono::steady_clock::now();
-<<<<<<< HEAD
-  const auto solver = make_boundary_solver<Sys>(choice.method, choice.options,
-                                                choice.stationary_kind.value_or(natural_stationary_kind<Sys>));
-=======
-  const auto solver =
-      make_boundary_solver<Equal>(choice.method, choice.options, choice.seek.value_or(natural_seek<Equal>));
->>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
+  const auto solver = make_boundary_solver<Equal>(choice.method, choice.options,
+                                                  choice.stationary_kind.value_or(natural_stationary_kind<Equal>));
   MultistartOptions multistart = choice.multistart;
   MultistartResult<Equal> found;
   {
@@ -347,19 +326,14 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
   if (along && !found.solutions.empty())
     reached = continue_solutions(*solver, scene, *along, read, context, found, result);
   // Where nothing arrived, the farthest path is one of the problem it was solved for.
-<<<<<<< HEAD
-  report_solutions(reached < 1 ? read_along(scene, *along, reached, read) : problem, presentation,
-                   solver->stationary_kind(), found, every, observer, result);
-=======
   const BoundaryScene<Sys> solved = reached < 1 ? read_along(scene, *along, reached, read) : problem;
   FoundPaths<Sys> paths(solved.stage, found);
   if constexpr (Timed<Sys>)
     if (mode != TimeMode::fixed && !paths.solutions.empty())
       vary_steps(mode, untimed<Sys>(solved.stage.problem.system), untimed_boundary<Sys>(solved.stage.problem),
-                 solver->seek(), paths, result);
+                 solver->stationary_kind(), paths, result);
   result.iterations = paths.iterations;
-  report_solutions(solved, presentation, solver->seek(), paths, mode, every, observer, result);
->>>>>>> e4f9238 (Scenes: boundary values whose steps vary, and of driven_pendulum; example, pages)
+  report_solutions(solved, presentation, solver->stationary_kind(), paths, mode, every, observer, result);
   result.ledger.mean_iterations = double(found.start_iterations) / double(found.starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
