@@ -74,6 +74,7 @@ void vary_steps(TimeMode mode, const Sys& system, const ArrowOf<typename Sys::Gr
     if (solution.converged()) {
       varied.push_back(std::move(solution));
     } else if (!failure || (is_sought(equal) && !is_sought(*failure))) {
+      solution.kind = equal.kind;
       static_cast<TimedPath<Sys>&>(solution) = std::move(equal);
       failure = std::move(solution);
     }
