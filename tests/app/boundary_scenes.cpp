@@ -49,7 +49,7 @@ TEST(ContinuationNote, SolutionsThatMeetAreNotLost) {
 
 RunResult run_example(const std::string& name, std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), {"solver.starts=4", "time.steps=40"});
-  return run_scene(read_scene(std::string(LAGROID_EXAMPLES) + "/" + name + ".toml", overrides), {});
+  return run_scene(read_scene(std::string(LAGROID_EXAMPLES) + "/" + name + ".toml", overrides), {.record = true});
 }
 const LedgerEntry* entry_of(const RunResult& result, const std::string& name) {
   for (const auto& entry : result.ledger.entries)

@@ -39,6 +39,20 @@ TEST(Quotients, ByRotationsOfThePlane) {
   EXPECT_TRUE(plate.holds()) << plate;
 }
 
+/// What it says for reduction downward is wrong.
+struct Careless : PolarQuotient {
+  template <class S> PairArrow<S, 2> representative(const Polar<S>& g) const {
+    const auto stands = PolarQuotient::representative(g);
+    return {stands.source, stands.target * 1.01};
+  }
+  template <class S> Vector<S, 2> reduced_momentum(const Vector<S, 2>&, const Vector<S, 2>& mu) const { return mu; }
+};
+TEST(BrokenQuotient, IsFoundOut) {
+  const auto report = laws::morphism_laws(Careless{}, draw_place, small());
+  for (const auto* law : {"representatives", "momenta go down and up"})
+    EXPECT_TRUE(laws::seen_broken(report.law(law))) << law << '\n' << report;
+}
+
 TEST(Quotients, ByTheStabiliserOfADirection) {
   const auto draw_attitude = [] {
     return Matrix<double, 3, 3>(SO3::exp(Vector<double, 3>(laws::draw_vector<3>(2.0))));

@@ -11,17 +11,15 @@ namespace {
 
 constexpr int steps = 1000;
 
-struct TopLevel : testing::Test {
-  HeavyTop full = [] {
-    HeavyTop top;
-    top.h = 0.02;
-    return top;
-  }();
-  State<HeavyTop::GroupoidType> z{Vector<double, 3>(0.6, 0, 0.8), Vector<double, 3>(0.4, 0.3, 2)};
-};
+HeavyTop top() {
+  HeavyTop out;
+  out.h = 0.02;
+  return out;
+}
+const State<HeavyTop::GroupoidType> z{Vector<double, 3>(0.6, 0, 0.8), Vector<double, 3>(0.4, 0.3, 2)};
 
-TEST_F(TopLevel, DerivativesAreThoseOfTheRouthianAndItsForces) {
-  const auto level = level_through(ShortestRotation{}, full, z);
+TEST(TopLevel, DerivativesAreThoseOfTheRouthianAndItsForces) {
+  const auto level = level_through(ShortestRotation{}, top(), z);
   const auto b = level.groupoid.tau(z.object, Vector<double, 2>(0.03, -0.02));
   const auto d = level.two_sided(b, {});
   const auto f = level.forces(b);
@@ -46,15 +44,15 @@ TEST_F(TopLevel, DerivativesAreThoseOfTheRouthianAndItsForces) {
   }
 }
 
-TEST_F(TopLevel, IsTheTopOnTheSphereWithItsMagneticTerm) {
-  const auto level = level_through(ShortestRotation{}, full, z);
+TEST(TopLevel, IsTheTopOnTheSphereWithItsMagneticTerm) {
+  const auto level = level_through(ShortestRotation{}, top(), z);
   EXPECT_NEAR(level.level(0), z.momentum.dot(z.object), 1e-15);
   EXPECT_TRUE(agree(run_level_beside(level, z, steps)));
 }
 
-TEST_F(TopLevel, HasTheAreaAsItsMagneticTerm) {
+TEST(TopLevel, HasTheAreaAsItsMagneticTerm) {
   // The holonomy round a small triangle of directions is its area: f+ along one side for a displacement along another.
-  const MomentumLevel<ShortestRotation, HeavyTop> level({}, full, Vector<double, 1>(1));
+  const MomentumLevel<ShortestRotation, HeavyTop> level({}, top(), Vector<double, 1>(1));
   const Vector<double, 3> m = Vector<double, 3>(0.3, -0.5, 0.7).normalized();
   const double side = 1e-3;
   const auto along = level.groupoid.tau(m, Vector<double, 2>(side, 0));
@@ -66,8 +64,8 @@ TEST_F(TopLevel, HasTheAreaAsItsMagneticTerm) {
   EXPECT_LT(unit.source.norm() + unit.target.norm(), 1e-15);
 }
 
-TEST_F(TopLevel, OfAnotherMomentumIsSeen) {
-  auto level = level_through(ShortestRotation{}, full, z);
+TEST(TopLevel, OfAnotherMomentumIsSeen) {
+  auto level = level_through(ShortestRotation{}, top(), z);
   level.level(0) += 1e-6;
   EXPECT_FALSE(agree(run_level_beside(level, z, 20)));
 }
