@@ -13,7 +13,7 @@ namespace lagroid::app {
 
 namespace {
 
-std::vector<ListedSystem> listed() {
+std::vector<ListedSystem> listed_systems() {
   std::vector<ListedSystem> out;
   for (const SceneFamily* family : families())
     for (ListedSystem& system : family->systems()) out.push_back(std::move(system));
@@ -24,12 +24,10 @@ std::vector<ListedSystem> listed() {
 
 std::string text_listing() {
   std::string out;
-  for (const auto& s : listed()) {
+  for (const auto& s : listed_systems()) {
     out += fmt::format("{:<20} {}\n", s.name, s.summary);
     out += fmt::format("  groupoid           {}\n", s.groupoid);
-    for (const auto& p : s.parameters)
-      out += fmt::format("  {:<18} {}{}{}\n", p.name, p.meaning, p.unit.empty() ? "" : fmt::format(" [{}]", p.unit),
-                         p.fallback.empty() ? "" : fmt::format(", default {}", p.fallback));
+    for (const Key& p : s.parameters) out += fmt::format("  {:<18} {}\n", p.name, listed(p));
     if (!s.symmetries.empty()) out += fmt::format("  symmetries         {}\n", fmt::join(s.symmetries, "; "));
     if (!s.conserved.empty()) out += fmt::format("  conserved          {}\n", fmt::join(s.conserved, "; "));
   }
@@ -38,11 +36,11 @@ std::string text_listing() {
 
 std::string json_listing() {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const auto& s : listed()) {
+  for (const auto& s : listed_systems()) {
     auto parameters = nlohmann::ordered_json::array();
-    for (const auto& p : s.parameters) {
-      parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"meaning", p.meaning}});
-      if (!p.fallback.empty()) parameters.back()["default"] = p.fallback;
+    for (const Key& p : s.parameters) {
+      parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"meaning", meaning_of(p)}});
+      if (const std::string fallback = fallback_of(p); !fallback.empty()) parameters.back()["default"] = fallback;
     }
     out.push_back({{"name", s.name},
                    {"summary", s.summary},

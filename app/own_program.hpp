@@ -72,7 +72,7 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
 #endif
 }
 
-/// Serves a command line of lagroid for these systems: run, resume, view, plot, study, sweep, list, cite and, where
+/// Serves a command line of lagroid for these systems: run, resume, view, plot, study, sweep, list, schema, cite and, where
 /// the program beside it with the laws is built, check. Returns the exit code.
 inline int program(int argc, char** argv, std::vector<Module> modules) {
   std::vector<const app::SystemModule*> systems;

@@ -3,6 +3,7 @@
 #include "cite/cite.hpp"
 #include "command/written.hpp"
 #include "listing.hpp"
+#include "schema/schema.hpp"
 #include "study/run_scene.hpp"
 #include "study/study.hpp"
 #include "view.hpp"
@@ -150,6 +151,10 @@ int program(int argc, char** argv, ProgramParts parts) {
   check_command->prefix_command();
   CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
   list_command->add_flag("--json", options.json, "print one JSON array and nothing else on standard output");
+  SchemaOptions schema_options;
+  CLI::App* schema_command =
+      app.add_subcommand("schema", "print a JSON Schema of scenes, for editors (see docs/scenes.md)");
+  add_schema_options(*schema_command, schema_options);
   StudyOptions study_options;
   CLI::App* study_command = app.add_subcommand(
       "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
@@ -165,6 +170,7 @@ int program(int argc, char** argv, ProgramParts parts) {
       print(options.json ? json_listing() : text_listing());
       return 0;
     }
+    if (schema_command->parsed()) return schema(schema_options);
     if (check_command->parsed()) return check(options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options, false, commands);
     if (resume_command->parsed()) return run(options, true, commands);
@@ -185,7 +191,7 @@ int program(int argc, char** argv, ProgramParts parts) {
     }
     return refuse(
         options.json, exit_bad_input, "invalid_command_line",
-        fmt::format("name a command: run, resume, view, plot, study, check, list{} or cite; see lagroid --help",
+        fmt::format("name a command: run, resume, view, plot, study, check, list, schema{} or cite; see lagroid --help",
                     names));
   });
 }

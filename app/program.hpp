@@ -14,7 +14,7 @@
 
 namespace lagroid::app {
 
-/// What a program is made of, beside the commands run, resume, view, plot, study, check, list and cite.
+/// What a program is made of, beside the commands run, resume, view, plot, study, check, list, schema and cite.
 struct ProgramParts {
   std::vector<const SceneFamily*> families;  ///< in the order in which their systems are listed
   std::vector<const SystemModule*> systems;

@@ -27,6 +27,16 @@ grep -q 'discrete energy E_d' first.json || fail "no energy in its ledger"
 "$lagroid" run spring_bob/spring_bob.cpp resume out --set time.steps=2100 >/dev/null || fail "its run is not taken up"
 "$lagroid" run spring_bob/spring_bob.cpp list >list.log
 grep -q 'stiffness' list.log || fail "its parameters are not listed"
+"$lagroid" run spring_bob/spring_bob.cpp schema spring_bob >schema.json || fail "it has no schema"
+/usr/bin/python3 - <<'PYTHON' || fail "its scene is not what its schema says"
+import json, tomllib
+import jsonschema
+scene = tomllib.load(open("spring_bob/spring_bob.toml", "rb"))
+validator = jsonschema.Draft202012Validator(json.load(open("schema.json")))
+validator.validate(scene)
+scene["parameters"]["stifness"] = 2
+assert not validator.is_valid(scene)
+PYTHON
 sed -i 's/time.step/time.step/; s/return twice \* 0.5/return twice * 0.25/' spring_bob/spring_bob.cpp
 "$lagroid" run spring_bob/spring_bob.cpp >/dev/null 2>&1 || fail "a change does not compile"
 [ "$(programs)" -eq 2 ] || fail "a change was not compiled"

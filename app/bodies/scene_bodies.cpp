@@ -1,7 +1,5 @@
 #include "scene_bodies.hpp"
 
-#include "../reading/parameter.hpp"
-
 #include <lagroid/systems/multibody/joints.hpp>
 
 #include <fmt/format.h>
@@ -11,6 +9,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 namespace lagroid::app {
 
@@ -18,20 +17,69 @@ using multibody::Mat;
 using multibody::Quaternion;
 using multibody::Vec;
 
-Vec vector_of(const Section& table, std::string_view key, std::string_view meaning) {
-  const auto v = table.numbers(key, 3, meaning);
-  return {v[0], v[1], v[2]};
+KeyOf<NumberArray> vector_key(std::string name, std::string unit, std::string meaning, std::optional<Vec> fallback) {
+  KeyOf<NumberArray> key{std::move(name), {3}, std::move(unit), std::move(meaning)};
+  if (fallback) key.fallback = {fallback->data(), fallback->data() + 3};
+  return key;
 }
 
-Vec vector_or(const Section& table, std::string_view key, std::string_view meaning, const Vec& fallback) {
-  return table.has(key) ? vector_of(table, key, meaning) : fallback;
+Vec vector_at(const Section& table, const KeyOf<NumberArray>& key) {
+  return Eigen::Map<const Vec>(read_key(table, key).data());
 }
 
 namespace {
 
-Vec read_moments(const Section& table) {
-  Vec inertia;
-  reading::read_vector(table, "inertia", "principal moments", positive, true, false, inertia.data(), 3);
+const KeyOf<Text> name_key{"name", {}, "", "a name for the body, of letters, digits, - and _"};
+const KeyOf<Number> mass{"mass", {positive}, "kg", "of the body"};
+const KeyOf<NumberArray> moments{"inertia", {3, positive}, "kg m^2", "three principal moments"};
+const KeyOf<AnyAttitude> attitude{
+    "attitude", {}, "", "a unit quaternion w, x, y, z, or a rotation vector (rad)", {{1, 0, 0, 0}}};
+const KeyOf<NumberArray> velocity = vector_key("velocity", "m/s", "of the centre of mass", Vec::Zero());
+const KeyOf<NumberArray> angular_velocity = vector_key("angular_velocity", "rad/s", "in the body's frame", Vec::Zero());
+const KeyOf<NumberArray> position = vector_key("position", "m", "x, y, z of the centre of mass");
+
+const KeyOf<Number> pivoted_mass{"mass", {nonnegative}, "kg", "of the body", 0.0};
+const KeyOf<NumberArray> pivot = vector_key("pivot", "m", "x, y, z of the fixed point", Vec::Zero());
+const KeyOf<NumberArray> pivoted_moments{"inertia", {3, positive}, "kg m^2", "three principal moments about the pivot"};
+const KeyOf<NumberArray> centre =
+    vector_key("centre", "m", "from the pivot to the centre of mass, in the body's frame", Vec::Zero());
+
+const KeyOf<Number> planar_inertia{"inertia", {positive}, "kg m^2", "about the centre of mass"};
+const KeyOf<NumberArray> planar_position{"position", {2}, "m", "x, y of the centre of mass"};
+const KeyOf<Number> angle{"angle", {}, "rad", "by which the body is turned", 0.0};
+const KeyOf<NumberArray> planar_velocity{"velocity", {2}, "m/s", "of the centre of mass", {{0, 0}}};
+const KeyOf<Number> planar_turning{"angular_velocity", {}, "rad/s", "of the body", 0.0};
+
+const KeyOf<Whole> links{"links", {1, 100'000}, "", "how many"};
+const KeyOf<Number> chain_mass{"mass", {positive}, "kg", "of the whole: each of n links has an n-th"};
+const KeyOf<Number> chain_length{"length", {positive}, "m", "of the whole: each of n links has an n-th"};
+const KeyOf<NumberArray> direction = vector_key("direction", "", "from link to link", Vec(0, 0, -1));
+const KeyOf<NumberArray> chain_turning = vector_key("angular_velocity", "rad/s", "of the whole, in space", Vec::Zero());
+const KeyOf<Text> hangs_on{"on", {}, "", "the body it hangs on, or \"ground\"", "ground"};
+const KeyOf<NumberArray> hangs_at =
+    vector_key("at", "m", "where: in the frame of the body it hangs on, of the ground in space", Vec::Zero());
+
+const KeyOf<Texts> between{"between", {}, "", "two names of bodies, or \"ground\" for one of them"};
+const KeyOf<SpacePoints> points{
+    "points", {2}, "m", "a point of each, in its body's frame, of the ground in space", {}, "[[0, 0, 0], [0, 0, 0]]"};
+const KeyOf<NumberArray> ground_amplitude{"ground_amplitude",
+                                      {3},
+                                      "m",
+                                      "the ground's point is at point + amplitude (1 - cos(rate t))",
+                                      {},
+                                      "the ground rests"};
+const KeyOf<Number> ground_rate{"ground_rate", {}, "rad/s", "of that motion", {}, "the ground rests"};
+
+const KeyOf<OneOf> rotation{"rotation", {{"exp", "cayley"}}, "", "how a turn becomes an angular velocity", "exp"};
+const KeyOf<Flag> project_velocities{"project_velocities",
+                                     {},
+                                     "",
+                                     "true: of velocities that the joints do not allow, take the part that they do; "
+                                     "else they are refused",
+                                     false};
+
+Vec read_moments(const Section& table, const KeyOf<NumberArray>& key) {
+  const Vec inertia = vector_at(table, key);
   for (int i = 0; i < 3; ++i) {
     const double others = inertia((i + 1) % 3) + inertia((i + 2) % 3);
     if (inertia(i) > others * (1 + 1e-12))
@@ -42,13 +90,12 @@ Vec read_moments(const Section& table) {
 }
 
 Quaternion read_attitude(const Section& table) {
-  if (!table.has("attitude")) return {1, 0, 0, 0};
-  const auto q = table.attitude("attitude");
+  const auto q = read_key(table, attitude);
   return {q[0], q[1], q[2], q[3]};
 }
 
 std::string read_name(const SceneBodies& bodies, const Section& table) {
-  const std::string name = table.text("name", "a name for the body");
+  const std::string name = read_key(table, name_key);
   const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), allowed))
     table.fail("name", fmt::format("\"{}\": use letters, digits, - and _", name));
@@ -69,9 +116,9 @@ void keep(SceneBodies& bodies, NamedBody body) {
 void read_point(SceneBodies& bodies, const Section& table) {
   NamedBody b;
   b.name = read_name(bodies, table);
-  b.mass = table.number("mass", positive);
-  b.place = vector_of(table, "position", "x, y, z in m");
-  b.body = bodies.scene.point_mass(b.mass, b.place, vector_or(table, "velocity", "m/s"));
+  b.mass = read_key(table, mass);
+  b.place = vector_at(table, position);
+  b.body = bodies.scene.point_mass(b.mass, b.place, vector_at(table, velocity));
   b.mass_centre = b.body.centre;
   keep(bodies, b);
 }
@@ -79,13 +126,13 @@ void read_point(SceneBodies& bodies, const Section& table) {
 void read_rigid(SceneBodies& bodies, const Section& table) {
   NamedBody b;
   b.name = read_name(bodies, table);
-  b.mass = table.number("mass", positive);
-  b.inertia = read_moments(table);
-  b.place = vector_of(table, "position", "x, y, z of the centre of mass in m");
+  b.mass = read_key(table, mass);
+  b.inertia = read_moments(table, moments);
+  b.place = vector_at(table, position);
   const Quaternion q = read_attitude(table);
   b.attitude = SO3::from_quaternion(q);
-  const Vec w = vector_or(table, "angular_velocity", "in the body's frame, rad/s");
-  b.velocity = vector_or(table, "velocity", "m/s");
+  const Vec w = vector_at(table, angular_velocity);
+  b.velocity = vector_at(table, velocity);
   b.angular_velocity = b.attitude * w;
   b.body = bodies.scene.rigid_body(b.mass, b.inertia, b.place, q, b.velocity, w);
   b.mass_centre = b.body.centre;
@@ -95,10 +142,10 @@ void read_rigid(SceneBodies& bodies, const Section& table) {
 void read_pivoted(SceneBodies& bodies, const Section& table) {
   NamedBody b;
   b.name = read_name(bodies, table);
-  b.mass = table.number_or("mass", 0, nonnegative);
-  b.inertia = read_moments(table);
-  b.place = vector_or(table, "pivot", "x, y, z of the fixed point in m");
-  b.to_centre = vector_or(table, "centre", "from the pivot to the centre of mass, in the body's frame, m");
+  b.mass = read_key(table, pivoted_mass);
+  b.inertia = read_moments(table, pivoted_moments);
+  b.place = vector_at(table, pivot);
+  b.to_centre = vector_at(table, centre);
   for (int i = 0; i < 3; ++i) {
     const Vec& c = b.to_centre;
     const double least = b.mass * (c.squaredNorm() - c(i) * c(i));
@@ -110,7 +157,7 @@ void read_pivoted(SceneBodies& bodies, const Section& table) {
   }
   const Quaternion q = read_attitude(table);
   b.attitude = SO3::from_quaternion(q);
-  const Vec w = vector_or(table, "angular_velocity", "in the body's frame, rad/s");
+  const Vec w = vector_at(table, angular_velocity);
   b.angular_velocity = b.attitude * w;
   b.body = bodies.scene.pivoted_body(b.inertia, b.place, q, w);
   b.mass_centre = bodies.scene.point_of(b.body, b.to_centre);
@@ -122,18 +169,17 @@ void read_planar(SceneBodies& bodies, const Section& table) {
   NamedBody b;
   b.name = read_name(bodies, table);
   b.planar = true;
-  b.mass = table.number("mass", positive);
-  const double inertia = table.number("inertia", positive);
+  b.mass = read_key(table, mass);
+  const double inertia = read_key(table, planar_inertia);
   b.inertia = {0, 0, inertia};
-  const auto at = table.numbers("position", 2, "x, y of the centre of mass in m");
-  const double angle = table.number_or("angle", 0);
-  const auto v = table.has("velocity") ? table.numbers("velocity", 2, "m/s") : std::vector<double>{0, 0};
+  const auto at = read_key(table, planar_position);
+  b.angle = read_key(table, angle);
+  const auto v = read_key(table, planar_velocity);
   b.place = {at[0], at[1], 0};
-  b.attitude = SO3::exp(Vec(0, 0, angle));
-  b.angle = angle;
+  b.attitude = SO3::exp(Vec(0, 0, b.angle));
   b.velocity = {v[0], v[1], 0};
-  b.angular_velocity = {0, 0, table.number_or("angular_velocity", 0)};
-  b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], angle}, {v[0], v[1], b.angular_velocity(2)});
+  b.angular_velocity = {0, 0, read_key(table, planar_turning)};
+  b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], b.angle}, {v[0], v[1], b.angular_velocity(2)});
   b.mass_centre = b.body.centre;
   keep(bodies, b);
 }
@@ -141,28 +187,28 @@ void read_planar(SceneBodies& bodies, const Section& table) {
 /// Links of equal length, each a point mass on a massless rod, in a straight line at first.
 void read_chain(SceneBodies& bodies, const Section& table) {
   const std::string name = read_name(bodies, table);
-  const long links = table.integer("links", 1, 100'000);
-  const double mass = table.number("mass", positive) / double(links);
-  const double length = table.number("length", positive) / double(links);
-  const Vec direction = vector_or(table, "direction", "from link to link", {0, 0, -1});
-  if (!(direction.norm() > 0)) table.fail("direction", "must not vanish");
-  const Vec turning = vector_or(table, "angular_velocity", "of the whole, in space, rad/s");
-  const std::string on = table.has("on") ? table.text("on", "the body it hangs on, or \"ground\"") : "ground";
-  const Vec arm = vector_or(table, "at", "where: in the frame of the body it hangs on, of the ground in space");
+  const long count = read_key(table, links);
+  const double each_mass = read_key(table, chain_mass) / double(count);
+  const double each_length = read_key(table, chain_length) / double(count);
+  const Vec along = vector_at(table, direction);
+  if (!(along.norm() > 0)) table.fail(direction.name, "must not vanish");
+  const Vec turning = vector_at(table, chain_turning);
+  const std::string on = read_key(table, hangs_on);
+  const Vec arm = vector_at(table, hangs_at);
   const NamedBody* holder = on == "ground" ? nullptr : &bodies.named(table, "on", on);
   End last = holder ? bodies.end_of(table, "at", holder, arm) : bodies.ground_of(table, arm);
   if (!holder) bodies.isolated = false;
   const Vec origin = last.place;
-  for (long k = 1; k <= links; ++k) {
+  for (long k = 1; k <= count; ++k) {
     NamedBody b;
     b.name = fmt::format("{}.{}", name, k);
-    b.mass = mass;
-    b.place = origin + (double(k) * length) * direction.stableNormalized();
-    b.body = bodies.scene.point_mass(mass, b.place, turning.cross(Vec(b.place - origin)));
+    b.mass = each_mass;
+    b.place = origin + (double(k) * each_length) * along.stableNormalized();
+    b.body = bodies.scene.point_mass(each_mass, b.place, turning.cross(Vec(b.place - origin)));
     b.mass_centre = b.body.centre;
     keep(bodies, b);
     const End here = bodies.end_of(table, "name", &bodies.bodies.back(), Vec::Zero());
-    bodies.scene.add(multibody::Rod{{last.site, here.site}, length});
+    bodies.scene.add(multibody::Rod{{last.site, here.site}, each_length});
     bodies.lines.push_back({last, here, 0.008});
     last = here;
   }
@@ -181,13 +227,14 @@ const NamedBody& SceneBodies::named(const Section& table, std::string_view key, 
                               bodies.size() > names.size() ? ", ..." : ""));
 }
 
-std::vector<const NamedBody*> SceneBodies::chosen(const Section& table, std::string_view key) const {
+std::vector<const NamedBody*> SceneBodies::chosen(const Section& table) const {
+  const std::string& key = chosen_bodies.name;
   std::vector<const NamedBody*> out;
   if (!table.has(key)) {
     for (const auto& body : bodies) out.push_back(&body);
     return out;
   }
-  for (const std::string& name : table.texts_or_none(key, "names of bodies")) {
+  for (const std::string& name : read_key(table, chosen_bodies)) {
     const std::size_t before = out.size();
     for (const auto& body : bodies)
       if (body.name == name || body.name.starts_with(name + ".")) {
@@ -216,9 +263,9 @@ End SceneBodies::end_of(const Section& table, std::string_view key, const NamedB
 
 End SceneBodies::ground_of(const Section& table, const Vec& place) {
   End end = end_of(table, "", nullptr, place);
-  if (!table.has("ground_amplitude") && !table.has("ground_rate")) return end;
-  const Vec amplitude = vector_of(table, "ground_amplitude", "of the motion amplitude (1 - cos(rate t)), m");
-  const double rate = table.number("ground_rate");
+  if (!table.has(ground_amplitude.name) && !table.has(ground_rate.name)) return end;
+  const Vec amplitude = vector_at(table, ground_amplitude);
+  const double rate = read_key(table, ground_rate);
   if (amplitude.isZero(0) || rate == 0)
     table.fail("ground_amplitude", "a ground that moves has an amplitude and a rate; leave both out for one at rest");
   end.site = scene.moving_ground(place, amplitude, rate);
@@ -228,17 +275,16 @@ End SceneBodies::ground_of(const Section& table, const Vec& place) {
 }
 
 std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
-  const auto names = table.texts_or_none("between", "two names of bodies, or \"ground\"");
+  const auto names = read_key(table, between);
   if (names.size() != 2)
     table.fail(table.has("between") ? "between" : "",
                "give in between the two names of the bodies that it ties, or \"ground\" for one of them");
   if (names[0] == names[1]) table.fail("between", fmt::format("\"{}\" is tied to itself", names[0]));
-  std::vector<std::vector<double>> points(2, {0, 0, 0});
-  if (with_points && table.has("points"))
-    points = table.points("points", 2, 3, "a point of each, in its body's frame, of the ground in space");
+  std::vector<std::vector<double>> arms(2, {0, 0, 0});
+  if (with_points && table.has(points.name)) arms = table.points(points.name, *points.value.count, 3, points.meaning);
   std::array<End, 2> out;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Vec arm(points[i][0], points[i][1], points[i][2]);
+    const Vec arm(arms[i][0], arms[i][1], arms[i][2]);
     if (names[i] != "ground") {
       out[i] = end_of(table, "points", &named(table, "between", names[i]), arm);
     } else {
@@ -246,30 +292,78 @@ std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
       isolated = false;
       const std::string& other = names[1 - i];
       if (out[i].moved && other != "ground" && named(table, "between", other).planar &&
-          vector_of(table, "ground_amplitude", "")(2) != 0)
+          vector_at(table, ground_amplitude)(2) != 0)
         table.fail("ground_amplitude", fmt::format("\"{}\" moves in the plane: give a third part of 0", other));
     }
   }
   return out;
 }
 
-void read_body(SceneBodies& bodies, const Section& table) {
-  constexpr std::array<SceneKind, 5> kinds{{{"point", read_point},
-                                            {"rigid", read_rigid},
-                                            {"pivoted", read_pivoted},
-                                            {"planar", read_planar},
-                                            {"chain", read_chain}}};
-  read_kind(kinds, bodies, table);
+std::vector<Key> ground_keys() { return {ground_amplitude, ground_rate}; }
+std::vector<Key> end_keys() { return {between, points, ground_amplitude, ground_rate}; }
+
+namespace {
+
+KeyOf<OneOf> kind_key(const std::vector<SceneKind>& kinds) {
+  KeyOf<OneOf> key{"kind"};
+  for (const SceneKind& kind : kinds) key.value.words.emplace_back(kind.name);
+  return key;
+}
+
+}  // namespace
+
+void read_kind(const std::vector<SceneKind>& kinds, SceneBodies& bodies, const Section& table) {
+  const std::string name = read_key(table, kind_key(kinds));
+  for (const SceneKind& kind : kinds)
+    if (kind.name == name) kind.read(bodies, table);
+}
+
+Table table_of(const std::vector<SceneKind>& kinds) {
+  Table out;
+  for (const SceneKind& kind : kinds) {
+    Table& each = out.kinds.emplace_back(Table{{kind_key({kind})}, {}, kind.about});
+    each.keys.insert(each.keys.end(), kind.keys.begin(), kind.keys.end());
+  }
+  return out;
+}
+
+const std::vector<SceneKind>& body_kinds() {
+  static const std::vector<SceneKind> all{
+      {"point", "a point mass", read_point, {name_key, mass, position, velocity}},
+      {"rigid",
+       "moves and turns in space",
+       read_rigid,
+       {name_key, mass, moments, position, attitude, velocity, angular_velocity}},
+      {"pivoted",
+       "turns about a fixed point",
+       read_pivoted,
+       {name_key, pivoted_moments, pivot, pivoted_mass, centre, attitude, angular_velocity}},
+      {"planar",
+       "moves in the plane of x and y",
+       read_planar,
+       {name_key, mass, planar_inertia, planar_position, angle, planar_velocity, planar_turning}},
+      {"chain",
+       "point masses on massless rods, NAME.1, NAME.2, ...",
+       read_chain,
+       {name_key, links, chain_mass, chain_length, direction, chain_turning, hangs_on, hangs_at, ground_amplitude,
+        ground_rate}}};
+  return all;
+}
+
+Table bodies_table() {
+  return {{rotation, project_velocities, KeyOf<Tables>{"body", {table_of(body_kinds())}, "", "what moves"},
+           KeyOf<Tables>{"joint", {table_of(joint_kinds())}, "", "what ties bodies, or holds their velocities", {}, "none"},
+           KeyOf<Tables>{"effect", {table_of(effect_kinds())}, "", "what acts on bodies", {}, "none"}}};
 }
 
 SceneBodies read_scene_bodies(const Section& scene) {
   SceneBodies out;
   out.scene.rotation =
-      scene.choice_or("rotation", "exp", {"exp", "cayley"}) == "exp" ? Retraction::exponential : Retraction::cayley;
-  out.projects = scene.flag_or("project_velocities", false);
-  for (const auto& table : scene.tables("body")) read_body(out, table);
-  for (const auto& table : scene.tables("joint")) read_joint(out, table);
-  for (const auto& table : scene.tables("effect")) read_effect(out, table);
+      read_key(scene, rotation) == *rotation.fallback ? Retraction::exponential : Retraction::cayley;
+  out.projects = read_key(scene, project_velocities);
+  for (const auto& table : scene.tables("body")) read_kind(body_kinds(), out, table);
+  for (const auto& table : scene.tables("joint")) read_kind(joint_kinds(), out, table);
+  for (const auto& table : scene.tables("effect")) read_kind(effect_kinds(), out, table);
   // The plane of planar bodies holds what is tied to bodies in space.
   const auto planar = [](const NamedBody& body) { return body.planar; };
   if (std::any_of(out.bodies.begin(), out.bodies.end(), planar) &&

@@ -1,13 +1,14 @@
 #pragma once
 /// A scene of bodies while it is read: its bodies by name, and where they are at the start.
 
-#include "../reading/scene_reader.hpp"
+#include "../reading/key.hpp"
 
 #include <lagroid/run/motion/shape.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <array>
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,41 +74,51 @@ struct SceneBodies {
   bool isolated = true;      ///< nothing acts from outside: momenta are conserved
   double extent = 0;         ///< size of the scene at the start, m
 
-  /// The ends of a table: `between`, two names, and `points`, in the bodies' frames (of the ground: in space).
+  /// The ends of a table, by `end_keys`; without points, by the first of these.
   std::array<End, 2> ends(const Section& table, bool with_points = true);
-  /// The bodies named under `key`, each once, a chain by its own name too; all of them where it is missing.
-  std::vector<const NamedBody*> chosen(const Section& table, std::string_view key) const;
+  /// The bodies named under `chosen_bodies`, each once, a chain by its own name too; all of them where it is missing.
+  std::vector<const NamedBody*> chosen(const Section& table) const;
   const NamedBody& named(const Section& table, std::string_view key, const std::string& name) const;
   NamedBody& named(const Section& table, std::string_view key, const std::string& name) {
     return const_cast<NamedBody&>(std::as_const(*this).named(table, key, name));
   }
   /// The point of a body (null: the ground) that `key` of the table gives.
   End end_of(const Section& table, std::string_view key, const NamedBody* body, const multibody::Vec& arm);
-  /// A point of the ground, which `ground_amplitude` and `ground_rate` of the table may move.
+  /// A point of the ground, which `ground_keys` of the table may move.
   End ground_of(const Section& table, const multibody::Vec& place);
 };
 
 /// Of dampers.
 inline constexpr NumberRule damping_rule{"positive, and below 1e100", [](double x) { return x > 1e-100 && x < 1e100; }};
 
-/// Three numbers; `fallback` where the key is missing.
-multibody::Vec vector_or(const Section& table, std::string_view key, std::string_view meaning,
-                         const multibody::Vec& fallback = multibody::Vec::Zero());
-multibody::Vec vector_of(const Section& table, std::string_view key, std::string_view meaning);
+/// A vector of space; without a fallback it must be given.
+KeyOf<NumberArray> vector_key(std::string name, std::string unit, std::string meaning,
+                          std::optional<multibody::Vec> fallback = {});
+multibody::Vec vector_at(const Section& table, const KeyOf<NumberArray>& key);
+
+inline const KeyOf<Text> body_key{"body", {}, "", "the name of a body"};
+inline const KeyOf<Texts> chosen_bodies{"bodies", {}, "", "names of bodies", {}, "all of them"};
+/// What moves a point of the ground, and the ends of what ties two bodies.
+std::vector<Key> ground_keys();
+std::vector<Key> end_keys();
 
 /// What a table's `kind` stands for.
 struct SceneKind {
   const char* name;
+  const char* about;
   void (*read)(SceneBodies& bodies, const Section& table);
+  std::vector<Key> keys = {};  ///< besides `kind`
 };
 /// Reads a table by its `kind`.
-template <class Kinds> void read_kind(const Kinds& kinds, SceneBodies& bodies, const Section& table) {
-  std::vector<std::string> names;
-  for (const SceneKind& kind : kinds) names.emplace_back(kind.name);
-  const std::string name = table.choice("kind", names);
-  for (const SceneKind& kind : kinds)
-    if (kind.name == name) kind.read(bodies, table);
-}
+void read_kind(const std::vector<SceneKind>& kinds, SceneBodies& bodies, const Section& table);
+/// The keys of all of them.
+Table table_of(const std::vector<SceneKind>& kinds);
+/// The kinds of [[body]], [[joint]] and [[effect]], as they are listed to users.
+const std::vector<SceneKind>& body_kinds();
+const std::vector<SceneKind>& joint_kinds();
+const std::vector<SceneKind>& effect_kinds();
+/// The keys of a scene of bodies.
+Table bodies_table();
 
 /// Whether the step of the scene is that of an action principle, and so symplectic in the canonical momenta.
 inline bool is_variational(const SceneBodies& bodies) {
@@ -125,8 +136,5 @@ inline bool is_composable(const SceneBodies& bodies) {
 
 /// Reads [[body]], [[joint]] and [[effect]].
 SceneBodies read_scene_bodies(const Section& scene);
-void read_body(SceneBodies& bodies, const Section& table);
-void read_joint(SceneBodies& bodies, const Section& table);
-void read_effect(SceneBodies& bodies, const Section& table);
 
 }  // namespace lagroid::app

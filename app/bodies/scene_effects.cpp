@@ -11,12 +11,43 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 namespace lagroid::app {
 
 using multibody::Vec;
 
 namespace {
+
+const KeyOf<Number> drive_rate{"rate", {}, "rad/s", "then times cos(rate t + phase)", 0.0};
+const KeyOf<Number> phase{"phase", {}, "rad", "then times cos(rate t + phase)", 0.0};
+const KeyOf<NumberArray> acceleration = vector_key("acceleration", "m/s^2", "of all bodies", Vec(0, 0, -9.81));
+const KeyOf<Number> strength{"strength", {}, "m^3/s^2", "of the centre"};
+const KeyOf<NumberArray> centre = vector_key("centre", "m", "x, y, z", Vec::Zero());
+const KeyOf<Number> gravitation{"constant", {}, "m^3/(kg s^2)", "of gravitation", 6.6743e-11};
+const KeyOf<Number> softening{
+    "softening", {nonnegative}, "m", "e in distances sqrt(r^2 + e^2), which do not vanish where bodies meet", 0.0};
+const KeyOf<Number> coulomb{"constant", {}, "N m^2/C^2", "Coulomb's", 8.9875517923e9};
+/// As many as bodies are chosen.
+KeyOf<NumberArray> charges(std::size_t count) { return {"charges", {count}, "C", "of the bodies, in their order"}; }
+const KeyOf<NumberList> any_charges{"charges", {}, charges(1).unit, charges(1).meaning};
+const KeyOf<Number> stiffness{"stiffness", {nonnegative}, "N/m", "of the spring"};
+const KeyOf<Number> rest_length{"length", {nonnegative}, "m", "at which it does not act", {}, "that at the start"};
+const KeyOf<Number> torsion_stiffness{
+    "stiffness", {nonnegative}, "N m", "k of the energy k (1 - cos angle), the angle from that at the start"};
+const KeyOf<NumberArray> torsion_direction{
+    "direction", {3}, "", "in space at the start, fixed in both bodies", {}, "of planar bodies none"};
+const KeyOf<Number> damping{"damping", {damping_rule}, "N s/m", "force over the rate at which the distance changes"};
+const KeyOf<Number> motion_drag{"motion", {nonnegative}, "kg/s", "force over velocity of the centre", 0.0};
+const KeyOf<Number> turning_drag{"turning", {nonnegative}, "N m s", "torque over angular velocity", 0.0};
+const KeyOf<NumberArray> acts_at = vector_key("at", "m", "where it acts, in the body's frame", Vec::Zero());
+const KeyOf<NumberArray> force_key = vector_key("force", "N", "in space");
+const KeyOf<NumberArray> torque_key = vector_key("torque", "N m", "in the body's frame; of a planar body [0, 0, T]");
+const KeyOf<NumberArray> motor_torque = vector_key(
+    "torque", "N m", "on the second, in space at the start, fixed in the first; of planar bodies [0, 0, T]");
+const KeyOf<NumberArray> field_key = vector_key("field", "T", "of induction");
+const KeyOf<NumberArray> frame_rate = vector_key("rate", "rad/s", "angular velocity of the frame");
+const KeyOf<Flag> centrifugal_key{"centrifugal", {}, "", "false: a weight holds that force", true};
 
 /// How a force or a torque follows time: constant, or as cos(rate t + phase).
 struct Drive {
@@ -26,13 +57,13 @@ struct Drive {
 };
 
 Drive read_drive(const Section& table) {
-  const double rate = table.number_or("rate", 0);
-  return {rate != 0 || table.has("phase"), rate, table.number_or("phase", 0)};
+  const double rate = read_key(table, drive_rate);
+  return {rate != 0 || table.has(phase.name), rate, read_key(table, phase)};
 }
 
 void read_gravity(SceneBodies& bodies, const Section& table) {
-  const Vec g = vector_or(table, "acceleration", "m/s^2", {0, 0, -9.81});
-  const auto heavy = bodies.chosen(table, "bodies");
+  const Vec g = vector_at(table, acceleration);
+  const auto heavy = bodies.chosen(table);
   const auto planar = [](const NamedBody* body) { return body->planar; };
   const bool across = g(0) == 0 && g(1) == 0;
   if (across && (table.has("bodies") ? std::any_of(heavy.begin(), heavy.end(), planar)
@@ -46,44 +77,44 @@ void read_gravity(SceneBodies& bodies, const Section& table) {
 }
 
 void read_central(SceneBodies& bodies, const Section& table) {
-  const Vec centre = vector_or(table, "centre", "x, y, z in m");
-  const double strength = table.number("strength", any_number);
-  for (const NamedBody* body : bodies.chosen(table, "bodies")) {
+  const Vec origin = vector_at(table, centre);
+  const double s = read_key(table, strength);
+  for (const NamedBody* body : bodies.chosen(table)) {
     if (body->mass == 0) continue;
-    if ((body->place + body->attitude * body->to_centre - centre).isZero(0))
+    if ((body->place + body->attitude * body->to_centre - origin).isZero(0))
       table.fail("centre", fmt::format("is where \"{}\" is at the start", body->name));
-    bodies.scene.add(multibody::CentralGravity{{body->mass_centre}, centre, strength * body->mass});
+    bodies.scene.add(multibody::CentralGravity{{body->mass_centre}, origin, s * body->mass});
   }
   bodies.isolated = false;
 }
 
 void read_mutual(SceneBodies& bodies, const Section& table) {
-  auto gravity = std::make_unique<multibody::MutualGravity>(table.number_or("constant", 6.6743e-11),
-                                                            table.number_or("softening", 0, nonnegative));
-  for (const NamedBody* body : bodies.chosen(table, "bodies"))
+  auto gravity =
+      std::make_unique<multibody::MutualGravity>(read_key(table, gravitation), read_key(table, softening));
+  for (const NamedBody* body : bodies.chosen(table))
     if (body->mass > 0) gravity->add(body->mass_centre, body->mass);
   bodies.scene.add_effects(std::move(gravity));
 }
 
 void read_charges(SceneBodies& bodies, const Section& table) {
-  const auto charged = bodies.chosen(table, "bodies");
-  const auto charges = table.numbers("charges", charged.size(), "of the bodies, in their order, C");
-  const double constant = table.number_or("constant", 8.9875517923e9);
-  const double softening = table.number_or("softening", 0, nonnegative);
+  const auto charged = bodies.chosen(table);
+  const auto q = read_key(table, charges(charged.size()));
+  const double constant = read_key(table, coulomb);
+  const double e = read_key(table, softening);
   for (std::size_t i = 0; i < charged.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (charges[i] * charges[j] != 0)
+      if (q[i] * q[j] != 0)
         bodies.scene.add(multibody::InverseSquare{
-            {charged[j]->mass_centre, charged[i]->mass_centre}, -constant * charges[i] * charges[j], softening});
+            {charged[j]->mass_centre, charged[i]->mass_centre}, -constant * q[i] * q[j], e});
 }
 
 void read_spring(SceneBodies& bodies, const Section& table) {
   const auto ends = bodies.ends(table);
   const double apart = (ends[1].place - ends[0].place).norm();
-  const double length = table.number_or("length", apart, nonnegative);
+  const double length = read_key_or(table, rest_length, apart);
   if (apart == 0 && length > 0)
     table.fail("points", "the ends of the spring meet at the start: its force has no direction");
-  bodies.scene.add(multibody::Spring{{ends[0].site, ends[1].site}, table.number("stiffness", nonnegative), length});
+  bodies.scene.add(multibody::Spring{{ends[0].site, ends[1].site}, read_key(table, stiffness), length});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
 }
 
@@ -131,26 +162,26 @@ void read_torsion(SceneBodies& bodies, const Section& table) {
   if (turn_in_plane(ends)) {
     const auto angle = [](const End& end) { return end.body ? end.body->angle : 0.0; };
     bodies.scene.add(multibody::PlanarTorsionSpring{{planar_place(bodies, ends[0]), planar_place(bodies, ends[1])},
-                                                    table.number("stiffness", nonnegative),
+                                                    read_key(table, torsion_stiffness),
                                                     angle(ends[1]) - angle(ends[0])});
     return;
   }
-  const Vec axis = vector_of(table, "direction", "in space at the start, fixed in both bodies");
+  const Vec axis = vector_at(table, torsion_direction);
   if (!(axis.norm() > 0)) table.fail("direction", "must not vanish");
   const Vec unit = axis.stableNormalized();
   bodies.scene.add(multibody::TorsionSpring{{},
                                             {ends[0].attitude(), ends[1].attitude()},
                                             ends[0].seen(unit),
                                             ends[1].seen(unit),
-                                            table.number("stiffness", nonnegative)});
+                                            read_key(table, torsion_stiffness)});
 }
 
 void read_drag(SceneBodies& bodies, const Section& table) {
-  const double motion = table.number_or("motion", 0, nonnegative);
-  const double turning = table.number_or("turning", 0, nonnegative);
+  const double motion = read_key(table, motion_drag);
+  const double turning = read_key(table, turning_drag);
   if (motion == 0 && turning == 0)
     table.fail("", "give motion (force over velocity, kg/s) or turning (torque over angular velocity, N m s)");
-  const auto damped = bodies.chosen(table, "bodies");
+  const auto damped = bodies.chosen(table);
   const auto turns = [](const NamedBody* body) { return body->planar || body->body.attitude.index >= 0; };
   const auto moves = [](const NamedBody* body) { return body->linear >= 0; };
   if (turning > 0 && std::none_of(damped.begin(), damped.end(), turns))
@@ -171,8 +202,7 @@ void read_damper(SceneBodies& bodies, const Section& table) {
   const auto ends = bodies.ends(table);
   if ((ends[1].place - ends[0].place).norm() == 0)
     table.fail("points", "the ends of the damper meet at the start: its force has no direction");
-  bodies.scene.add(
-      multibody::Damper<multibody::Length>{{{ends[0].site, ends[1].site}}, table.number("damping", damping_rule)});
+  bodies.scene.add(multibody::Damper<multibody::Length>{{{ends[0].site, ends[1].site}}, read_key(table, damping)});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
   bodies.dissipates = true;
 }
@@ -187,9 +217,9 @@ const NamedBody& require_point(const Section& table, const NamedBody* body, std:
 }
 
 void read_rotating_frame(SceneBodies& bodies, const Section& table) {
-  const Vec rate = vector_of(table, "rate", "angular velocity of the frame, rad/s");
-  const bool centrifugal = table.flag_or("centrifugal", true);
-  for (const NamedBody* chosen : bodies.chosen(table, "bodies")) {
+  const Vec rate = vector_at(table, frame_rate);
+  const bool centrifugal = read_key(table, centrifugal_key);
+  for (const NamedBody* chosen : bodies.chosen(table)) {
     const NamedBody& body = require_point(table, chosen, "a rotating frame");
     bodies.scene.gyroscopic_force(body.body, 2 * body.mass * rate);
     if (centrifugal) bodies.scene.add(multibody::Centrifugal{{body.body.centre}, body.mass, rate});
@@ -199,19 +229,19 @@ void read_rotating_frame(SceneBodies& bodies, const Section& table) {
 }
 
 void read_magnetic(SceneBodies& bodies, const Section& table) {
-  const Vec field = vector_of(table, "field", "T");
-  const auto charged = bodies.chosen(table, "bodies");
-  const auto charges = table.numbers("charges", charged.size(), "of the bodies, in their order, C");
+  const Vec field = vector_at(table, field_key);
+  const auto charged = bodies.chosen(table);
+  const auto q = read_key(table, charges(charged.size()));
   for (std::size_t i = 0; i < charged.size(); ++i)
-    bodies.scene.gyroscopic_force(require_point(table, charged[i], "a magnetic field").body, charges[i] * field);
+    bodies.scene.gyroscopic_force(require_point(table, charged[i], "a magnetic field").body, q[i] * field);
   bodies.gyroscopic = true;
   bodies.isolated = false;
 }
 
 void read_force(SceneBodies& bodies, const Section& table) {
-  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
-  const Vec arm = vector_or(table, "at", "where it acts, in the body's frame, m");
-  const Vec force = vector_of(table, "force", "in space, N");
+  const NamedBody& body = bodies.named(table, body_key.name, read_key(table, body_key));
+  const Vec arm = vector_at(table, acts_at);
+  const Vec force = vector_at(table, force_key);
   const Drive drive = read_drive(table);
   if (body.planar && force(2) != 0)
     table.fail("force", fmt::format("\"{}\" moves in the plane: give a third part of 0", body.name));
@@ -226,10 +256,10 @@ void read_force(SceneBodies& bodies, const Section& table) {
 }
 
 void read_torque(SceneBodies& bodies, const Section& table) {
-  const NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  const NamedBody& body = bodies.named(table, body_key.name, read_key(table, body_key));
   if (!body.planar && body.body.attitude.index < 0)
     table.fail("body", fmt::format("\"{}\" does not turn: a torque acts on bodies that do", body.name));
-  const Vec torque = vector_of(table, "torque", "in the body's frame, N m");
+  const Vec torque = vector_at(table, torque_key);
   bodies.isolated = false;
   if (body.planar) {
     require_across_plane(table, body.name, torque);
@@ -244,7 +274,7 @@ void read_torque(SceneBodies& bodies, const Section& table) {
 
 void read_motor(SceneBodies& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a motor");
-  const Vec torque = vector_of(table, "torque", "on the second, in space at the start, fixed in the first, N m");
+  const Vec torque = vector_at(table, motor_torque);
   const Drive drive = read_drive(table);
   if (turn_in_plane(ends)) {
     require_across_plane(table, ends[ends[0].body ? 0 : 1].name(), torque);
@@ -257,24 +287,39 @@ void read_motor(SceneBodies& bodies, const Section& table) {
   bodies.driven = true;
 }
 
-/// The kinds of [[effect]], as they are listed to users.
-constexpr std::array<SceneKind, 14> kinds{{{"gravity", read_gravity},
-                                           {"central_gravity", read_central},
-                                           {"mutual_gravity", read_mutual},
-                                           {"spring", read_spring},
-                                           {"torsion_spring", read_torsion},
-                                           {"drag", read_drag},
-                                           {"damper", read_damper},
-                                           {"control_cost", read_cost},
-                                           {"force", read_force},
-                                           {"torque", read_torque},
-                                           {"motor", read_motor},
-                                           {"charges", read_charges},
-                                           {"magnetic_field", read_magnetic},
-                                           {"rotating_frame", read_rotating_frame}}};
-
 }  // namespace
 
-void read_effect(SceneBodies& bodies, const Section& table) { read_kind(kinds, bodies, table); }
+const std::vector<SceneKind>& effect_kinds() {
+  const std::vector<Key> ends = end_keys();
+  const Key between = ends.front();
+  const auto tie = [&](const Key& more, const std::vector<Key>& last = {}) {
+    std::vector<Key> keys = ends;
+    keys.push_back(more);
+    keys.insert(keys.end(), last.begin(), last.end());
+    return keys;
+  };
+  static const std::vector<SceneKind> all{
+      {"gravity", "a uniform one", read_gravity, {acceleration, chosen_bodies}},
+      {"central_gravity", "of a centre that rests", read_central, {strength, centre, chosen_bodies}},
+      {"mutual_gravity", "of the bodies on each other", read_mutual, {gravitation, softening, chosen_bodies}},
+      {"spring", "between two points", read_spring, tie(stiffness, {rest_length})},
+      {"torsion_spring", "between two bodies that turn", read_torsion, {between, torsion_direction, torsion_stiffness}},
+      {"drag", "of a medium that rests", read_drag, {motion_drag, turning_drag, chosen_bodies}},
+      {"damper", "between two points that do not meet", read_damper, tie(damping)},
+      {"control_cost", "counts the kinetic terms, summed over the steps: a column, and a line of the report", read_cost},
+      {"force", "on a point of a body", read_force, {body_key, acts_at, force_key, drive_rate, phase}},
+      {"torque", "on a body", read_torque, {body_key, torque_key}},
+      {"motor", "between two bodies that turn", read_motor, {between, motor_torque, drive_rate, phase}},
+      {"charges",
+       "of the bodies on each other",
+       read_charges,
+       {any_charges, coulomb, softening, chosen_bodies}},
+      {"magnetic_field", "a uniform one; point masses alone", read_magnetic, {field_key, any_charges, chosen_bodies}},
+      {"rotating_frame",
+       "in which the bodies are seen; point masses alone",
+       read_rotating_frame,
+       {frame_rate, centrifugal_key, chosen_bodies}}};
+  return all;
+}
 
 }  // namespace lagroid::app

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -21,11 +22,33 @@ using multibody::Vec;
 
 namespace {
 
+const KeyOf<Number> length{"length", {positive}, "m", "of the rod", {}, "that at the start"};
+const KeyOf<Number> turning_damping{"damping", {damping_rule}, "N m s", "torque over turning rate", {}, "none"};
+const KeyOf<Number> sliding_damping{"damping", {damping_rule}, "N s/m", "force over sliding rate", {}, "none"};
+const KeyOf<NumberArray> axis = vector_key("axis", "", "in space at the start");
+const KeyOf<Number> hinge_rate{
+    "rate", {}, "rad/s", "at which the second turns against the first, as it must at the start", {}, "free"};
+const KeyOf<NumberArray> normal = vector_key("normal", "", "of the plane, in space at the start, fixed in the first");
+
+const KeyOf<OneOf> principle{
+    "principle", {{"nonholonomic", "vakonomic"}}, "", "friction holds, or an optimal control does", "nonholonomic"};
+KeyOf<NumberArray> multipliers(int rows) {
+  return {"multipliers", {std::size_t(rows)}, "", "of its equations, at the start, if it is vakonomic", {}, "0"};
+}
+const KeyOf<Number> radius{"radius", {positive}, "m", "of the ball"};
+const KeyOf<Number> plate_rate{"plate_rate", {}, "rad/s", "at which the plate turns about the origin", 0.0};
+const KeyOf<NumberArray> spin_axis = vector_key("axis", "", "in space, or in the body");
+const KeyOf<OneOf> fixed_in{"fixed_in", {{"space", "body"}}, "", "where the axis is fixed", "space"};
+const KeyOf<Number> spin_rate{"rate", {}, "rad/s", "of turning about the axis", 0.0};
+const KeyOf<Number> blade_direction{"direction", {}, "rad", "angle of the blade in the body", 0.0};
+const KeyOf<Number> ahead{"ahead", {}, "m", "of the blade before the centre of mass, along the blade", 0.0};
+const KeyOf<Number> blade_rate{"rate", {}, "m/s", "of moving across the blade", 0.0};
+
 /// Unit vectors: the direction under `key`, and two that complete it.
-Mat frame_along(const Section& table, std::string_view key, std::string_view meaning) {
-  const Vec axis = vector_of(table, key, meaning);
-  if (!(axis.norm() > 0)) table.fail(key, "must not vanish");
-  const Vec third = axis.stableNormalized();
+Mat frame_along(const Section& table, const KeyOf<NumberArray>& key) {
+  const Vec given = vector_at(table, key);
+  if (!(given.norm() > 0)) table.fail(key.name, "must not vanish");
+  const Vec third = given.stableNormalized();
   int least = 0;
   third.cwiseAbs().minCoeff(&least);
   const Vec first = Vec(Vec::Unit(least)).cross(third).normalized();
@@ -65,12 +88,12 @@ void keep_attitude(SceneBodies& bodies, const std::array<End, 2>& ends) {
 }
 
 /// The second point stays in the plane with this normal, fixed in the first body, through the first point.
-void keep_in_plane(SceneBodies& bodies, const std::array<End, 2>& ends, const Vec& normal) {
-  bodies.scene.add(InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(normal)});
+void keep_in_plane(SceneBodies& bodies, const std::array<End, 2>& ends, const Vec& across) {
+  bodies.scene.add(InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(across)});
 }
 
-void require_in_plane(const Section& table, const std::array<End, 2>& ends, const Vec& normal) {
-  const double off = normal.dot(ends[1].place - ends[0].place);
+void require_in_plane(const Section& table, const std::array<End, 2>& ends, const Vec& across) {
+  const double off = across.dot(ends[1].place - ends[0].place);
   if (std::abs(off) > 1e-9 * (1 + ends[0].place.norm() + ends[1].place.norm()))
     table.fail("points", fmt::format("the point of \"{}\" is {:.6g} m off where the joint lets it go, at the start",
                                      ends[1].name(), off));
@@ -94,20 +117,21 @@ std::array<End, 2> joined_ends(SceneBodies& bodies, const Section& table, const 
 void read_rod(SceneBodies& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   const double apart = (ends[1].place - ends[0].place).stableNorm();
-  const double length = table.number_or("length", apart, positive);
-  if (!(length > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
-  if (std::abs(length - apart) > 1e-9 * length)
+  const double given = read_key_or(table, length, apart);
+  if (!(given > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
+  if (std::abs(given - apart) > 1e-9 * given)
     table.fail("length", fmt::format("is {:.10g} m, but its ends are {:.10g} m apart at the start; leave it out to "
                                      "take that",
-                                     length, apart));
-  bodies.scene.add(Rod{{ends[0].site, ends[1].site}, length});
+                                     given, apart));
+  bodies.scene.add(Rod{{ends[0].site, ends[1].site}, given});
   bodies.lines.push_back({ends[0], ends[1], 0.008});
 }
 
 /// Adds the damper that a joint with a key `damping` is, too.
-template <class J> void read_damping(SceneBodies& bodies, const Section& table, const J& measure) {
-  if (!table.has("damping")) return;
-  bodies.scene.add(multibody::Damper<J>{measure, table.number("damping", damping_rule)});
+template <class J>
+void read_damping(SceneBodies& bodies, const Section& table, const KeyOf<Number>& damping, const J& measure) {
+  if (!table.has(damping.name)) return;
+  bodies.scene.add(multibody::Damper<J>{measure, read_key(table, damping)});
   bodies.dissipates = true;
 }
 
@@ -115,20 +139,20 @@ void read_ball(SceneBodies& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   require_together(table, ends);
   bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
-  if (table.has("damping")) require_turning(table, ends, "joint that rubs");
-  read_damping(bodies, table, multibody::RelativeTurn{{}, {ends[0].attitude(), ends[1].attitude()}});
+  if (table.has(turning_damping.name)) require_turning(table, ends, "joint that rubs");
+  read_damping(bodies, table, turning_damping, multibody::RelativeTurn{{}, {ends[0].attitude(), ends[1].attitude()}});
 }
 
 void read_hinge(SceneBodies& bodies, const Section& table) {
   const auto ends = joined_ends(bodies, table, "hinge");
-  const Mat frame = frame_along(table, "axis", "in space at the start");
+  const Mat frame = frame_along(table, axis);
   for (int i = 0; i < 2; ++i) keep_right_angle(bodies, ends, frame.col(i), frame.col(2));
-  const Vec axis = frame.col(2);
-  multibody::HingeTurn turn{{}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(axis), ends[1].seen(axis), 0};
-  read_damping(bodies, table, turn);
-  if (!table.has("rate")) return;
-  turn.rate = table.number("rate");
-  const auto turning = [&](const End& end) { return end.body ? axis.dot(end.body->angular_velocity) : 0.0; };
+  const Vec along = frame.col(2);
+  multibody::HingeTurn turn{{}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(along), ends[1].seen(along), 0};
+  read_damping(bodies, table, turning_damping, turn);
+  if (!table.has(hinge_rate.name)) return;
+  turn.rate = read_key(table, hinge_rate);
+  const auto turning = [&](const End& end) { return end.body ? along.dot(end.body->angular_velocity) : 0.0; };
   const double has = turning(ends[1]) - turning(ends[0]);
   if (!bodies.projects && std::abs(has - turn.rate) > 1e-9 * (1 + std::abs(turn.rate)))
     table.fail("rate", fmt::format("the second body turns against the first at {:.10g} rad/s at the start: give it an "
@@ -144,26 +168,27 @@ void read_weld(SceneBodies& bodies, const Section& table) { keep_attitude(bodies
 void read_slider(SceneBodies& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   require_turning(table, ends, "slider");
-  const Mat frame = frame_along(table, "axis", "in space at the start");
+  const Mat frame = frame_along(table, axis);
   for (int i = 0; i < 2; ++i) {
     require_in_plane(table, ends, frame.col(i));
     keep_in_plane(bodies, ends, frame.col(i));
   }
   keep_attitude(bodies, ends);
-  read_damping(bodies, table, InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(frame.col(2))});
+  read_damping(bodies, table, sliding_damping,
+               InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(frame.col(2))});
 }
 
 void read_plane(SceneBodies& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   if (!ends[0].turns_in_space())
     table.fail("between", "the first holds the plane: it must be a body that turns in space, or the ground");
-  const Vec normal = frame_along(table, "normal", "of the plane, in space at the start").col(2);
-  require_in_plane(table, ends, normal);
-  keep_in_plane(bodies, ends, normal);
+  const Vec across = frame_along(table, normal).col(2);
+  require_in_plane(table, ends, across);
+  keep_in_plane(bodies, ends, across);
 }
 
 NamedBody& turning_body(SceneBodies& bodies, const Section& table) {
-  NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  NamedBody& body = bodies.named(table, body_key.name, read_key(table, body_key));
   if (body.body.attitude.index < 0) table.fail("body", fmt::format("\"{}\" does not turn in space", body.name));
   return body;
 }
@@ -180,12 +205,12 @@ void require_spin(const SceneBodies& bodies, const Section& table, const NamedBo
 
 /// A constraint on arrows, under the principle that the table names.
 template <class J> void add_on_arrows(SceneBodies& bodies, const Section& table, NamedBody& body, const J& joint) {
-  const std::string principle = table.choice_or("principle", "nonholonomic", {"nonholonomic", "vakonomic"});
-  if (!body.principle.empty() && body.principle != principle)
+  const std::string given = read_key(table, principle);
+  if (!body.principle.empty() && body.principle != given)
     table.fail("principle",
                fmt::format("another joint of \"{}\" is {}: one principle moves a body", body.name, body.principle));
-  body.principle = principle;
-  const bool vakonomic = principle == "vakonomic";
+  body.principle = given;
+  const bool vakonomic = given != *principle.fallback;
   bodies.isolated = false;
   if (!vakonomic) {
     if (table.has("multipliers")) table.fail("multipliers", "go with principle = \"vakonomic\"");
@@ -195,7 +220,7 @@ template <class J> void add_on_arrows(SceneBodies& bodies, const Section& table,
   }
   multibody::Vakonomic<J> optimal{joint, {}};
   if (table.has("multipliers")) {
-    const auto start = table.numbers("multipliers", std::size_t(J::rows), "of its equations, at the start");
+    const auto start = read_key(table, multipliers(J::rows));
     std::copy(start.begin(), start.end(), optimal.multipliers.begin());
   }
   bodies.scene.add(optimal);
@@ -205,47 +230,47 @@ template <class J> void add_on_arrows(SceneBodies& bodies, const Section& table,
 void read_rolling(SceneBodies& bodies, const Section& table) {
   NamedBody& ball = turning_body(bodies, table);
   if (ball.linear < 0) table.fail("body", fmt::format("\"{}\" turns about a fixed point and cannot roll", ball.name));
-  const double radius = table.number("radius", positive);
-  const double rate = table.number_or("plate_rate", 0);
+  const double r = read_key(table, radius);
+  const double rate = read_key(table, plate_rate);
   const Vec& v = ball.velocity;
   if (v(2) != 0 && !bodies.projects)
     table.fail("body", fmt::format("\"{}\" rolls on a level plate: its velocity has no third part", ball.name));
   const Vec slip = v - rate * Vec(Vec::UnitZ()).cross(ball.place);
-  require_spin(bodies, table, ball, {-slip(1) / radius, slip(0) / radius, ball.angular_velocity(2)});
-  add_on_arrows(bodies, table, ball, multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, radius, rate});
+  require_spin(bodies, table, ball, {-slip(1) / r, slip(0) / r, ball.angular_velocity(2)});
+  add_on_arrows(bodies, table, ball, multibody::Rolling{{ball.body.centre}, {ball.body.attitude}, r, rate});
   bodies.scene.add(InPlane{{bodies.scene.ground(ball.place), ball.body.centre}, {multibody::Attitude{}}, Vec::UnitZ()});
   if (rate != 0) bodies.timed = true;
   Shape plate = turning_plate(rate);
-  plate.position = {0.0, 0.0, ball.place(2) - radius};
+  plate.position = {0.0, 0.0, ball.place(2) - r};
   if (bodies.scenery.empty()) bodies.scenery.push_back(plate);
-  ball.radius = radius;
+  ball.radius = r;
 }
 
 void read_spin(SceneBodies& bodies, const Section& table) {
   NamedBody& body = turning_body(bodies, table);
-  const Vec axis = frame_along(table, "axis", "in space, or in the body").col(2);
-  const bool in_body = table.choice_or("fixed_in", "space", {"space", "body"}) == "body";
-  const double rate = table.number_or("rate", 0);
-  const Vec in_space = in_body ? Vec(body.attitude * axis) : axis;
+  const Vec along = frame_along(table, spin_axis).col(2);
+  const bool in_body = read_key(table, fixed_in) != *fixed_in.fallback;
+  const double rate = read_key(table, spin_rate);
+  const Vec in_space = in_body ? Vec(body.attitude * along) : along;
   require_spin(bodies, table, body, body.angular_velocity + (rate - in_space.dot(body.angular_velocity)) * in_space);
   if (in_body) {
-    add_on_arrows(bodies, table, body, multibody::BodySpin{{}, {body.body.attitude}, axis, rate});
+    add_on_arrows(bodies, table, body, multibody::BodySpin{{}, {body.body.attitude}, along, rate});
   } else {
-    add_on_arrows(bodies, table, body, multibody::PrescribedSpin{{}, {body.body.attitude}, axis, rate});
+    add_on_arrows(bodies, table, body, multibody::PrescribedSpin{{}, {body.body.attitude}, along, rate});
   }
   if (rate != 0) bodies.timed = true;
 }
 
 void read_blade(SceneBodies& bodies, const Section& table) {
-  NamedBody& body = bodies.named(table, "body", table.text("body", "the name of a body"));
+  NamedBody& body = bodies.named(table, body_key.name, read_key(table, body_key));
   if (!body.planar)
     table.fail("body", fmt::format("\"{}\" does not move in the plane: a blade needs a body of kind "
                                    "\"planar\"",
                                    body.name));
   multibody::Blade blade{{bodies.scene.planar_place(body.body)},
-                         table.number_or("direction", 0),
-                         table.number_or("ahead", 0),
-                         table.number_or("rate", 0)};
+                         read_key(table, blade_direction),
+                         read_key(table, ahead),
+                         read_key(table, blade_rate)};
   const Vec along = body.attitude * Vec(std::cos(blade.direction), std::sin(blade.direction), 0);
   const double slip = Vec(Vec::UnitZ()).cross(along).dot(body.velocity) + blade.arm * body.angular_velocity(2);
   if (!bodies.projects && std::abs(slip - blade.rate) > 1e-9 * (1 + body.velocity.norm() + std::abs(slip)))
@@ -256,19 +281,46 @@ void read_blade(SceneBodies& bodies, const Section& table) {
   if (blade.rate != 0) bodies.timed = true;
 }
 
-/// The kinds of [[joint]], as they are listed to users.
-constexpr std::array<SceneKind, 9> kinds{{{"rod", read_rod},
-                                          {"ball", read_ball},
-                                          {"hinge", read_hinge},
-                                          {"weld", read_weld},
-                                          {"slider", read_slider},
-                                          {"plane", read_plane},
-                                          {"rolling", read_rolling},
-                                          {"spin", read_spin},
-                                          {"blade", read_blade}}};
+/// The keys of what ties two bodies, and these.
+std::vector<Key> tie(const std::vector<Key>& more) {
+  std::vector<Key> keys = end_keys();
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+/// The keys of what holds velocities by so many equations, and these.
+std::vector<Key> hold(int rows, const std::vector<Key>& more) {
+  std::vector<Key> keys{body_key};
+  keys.insert(keys.end(), more.begin(), more.end());
+  keys.insert(keys.end(), {principle, multipliers(rows)});
+  return keys;
+}
 
 }  // namespace
 
-void read_joint(SceneBodies& bodies, const Section& table) { read_kind(kinds, bodies, table); }
+const std::vector<SceneKind>& joint_kinds() {
+  static const std::vector<SceneKind> all{
+      {"rod", "keeps the distance of the points", read_rod, tie({length})},
+      {"ball", "makes the points one; between planar bodies a pin", read_ball, tie({turning_damping})},
+      {"hinge", "makes the points one and keeps an axis", read_hinge, tie({axis, turning_damping, hinge_rate})},
+      {"weld", "makes the points one and keeps the attitude", read_weld, tie({})},
+      {"slider",
+       "the second moves along an axis fixed in the first, without turning",
+       read_slider,
+       tie({axis, sliding_damping})},
+      {"plane", "the second's point stays in the plane through the first's", read_plane, tie({normal})},
+      {"rolling",
+       "a ball rolls without slipping on a level plate; one that is tilted is one under a gravity that is",
+       read_rolling,
+       hold(multibody::Rolling::rows, {radius, plate_rate})},
+      {"spin",
+       "the body turns about an axis at a rate",
+       read_spin,
+       hold(multibody::BodySpin::rows, {spin_axis, fixed_in, spin_rate})},
+      {"blade",
+       "a planar body moves across a blade at a rate alone: a wheel, the edge of a sleigh",
+       read_blade,
+       hold(multibody::Blade::rows, {blade_direction, ahead, blade_rate})}};
+  return all;
+}
 
 }  // namespace lagroid::app

@@ -1,5 +1,6 @@
 #include "scene_run.hpp"
 
+#include "../scenes/scene_keys.hpp"
 #include "../scenes/simulation.hpp"
 #include "scene_bodies.hpp"
 #include "scene_node.hpp"
@@ -23,14 +24,28 @@ using multibody::Vec;
 
 namespace {
 
+const KeyOf<Text> name_of_scene{"name", {}, "", "what reports call the scene", "scene"};
+const KeyOf<Whole> max_iterations{
+    "max_iterations", {1, most_iterations}, "", "of a step", multibody::Options().max_iterations};
+const KeyOf<Number> tolerance{"tolerance",
+                              {{"between 0 and 0.001", [](double x) { return x >= 0 && x <= 1e-3; }}},
+                              "",
+                              solver_keys::tolerance.meaning,
+                              0.0};
+
+/// The words of [time] mode and method; the first are the defaults.
+std::vector<std::string> modes() {
+  return {std::string(mode_of_equal_steps), std::string(integration_method({.mode = TimeMode::controlled}).name)};
+}
+std::vector<std::string> methods() { return {std::string(integration_method(IntegratorOptions{}).name)}; }
+
 /// [time] and [solver]: how the scene is stepped.
 multibody::Options read_options(const Section& scene, const SceneBodies& bodies) {
   refuse_accuracy(scene);
   const Section solver = scene.section_or_empty("solver");
   multibody::Options options;
-  options.max_iterations = int(solver.integer_or("max_iterations", options.max_iterations, 1, most_iterations));
-  options.tolerance =
-      solver.number_or("tolerance", 0, {"between 0 and 0.001", [](double x) { return x >= 0 && x <= 1e-3; }});
+  options.max_iterations = int(read_key(solver, max_iterations));
+  options.tolerance = read_key(solver, tolerance);
   const Section time = scene.section("time", "step and steps, or duration and steps");
   options.controlled = !read_bodies_method(time).equal_steps();
   if (options.controlled) refuse_duration(time);
@@ -187,23 +202,37 @@ class BodiesMotion final : public Motion {
 const IntegrationMethod& read_bodies_method(const Section& time) {
   const IntegrationMethod& equal = integration_method(IntegratorOptions{});
   const IntegrationMethod& controlled = integration_method({.mode = TimeMode::controlled});
-  const std::string fixed(mode_of_equal_steps);
-  const std::string mode = time.choice_or("mode", fixed, {fixed, std::string(controlled.name)});
-  time.choice_or("method", std::string(equal.name), {std::string(equal.name)});
-  return mode == fixed ? equal : controlled;
+  const std::string mode = read_key(time, time_keys::mode(modes()));
+  read_key(time, time_keys::method(methods()));
+  return mode == mode_of_equal_steps ? equal : controlled;
+}
+
+Table scene_of_bodies_table() {
+  Table output = output_table();
+  output.keys.push_back(chosen_bodies);
+  Table time{grid_keys()};
+  time.keys.insert(time.keys.end(), {time_keys::mode(modes()), time_keys::method(methods()), time_keys::order(),
+                                     time_keys::composition(compositions::all)});
+  Table table = bodies_table();
+  table.keys.insert(table.keys.begin(), name_of_scene);
+  table.keys.push_back(optional_table("output", output, "what is recorded"));
+  table.kinds =
+      initial_values({optional_table("solver", {{max_iterations, tolerance}}, "of the equations of a step")}, time);
+  table.about = "bodies, what ties them and what acts on them";
+  return table;
 }
 
 BodiesScene read_bodies(const Section& scene, const RunContext& context) {
   SceneBodies bodies = read_scene_bodies(scene);
   if (bodies.bodies.empty()) scene.fail("body", "there is no body in it");
-  const std::string name = scene.has("name") ? scene.text("name", "what the scene shows") : "scene";
+  const std::string name = read_key(scene, name_of_scene);
   const double step = read_time(scene).step;
   const multibody::Options options = read_options(scene, bodies);
   const Section output = scene.section_or_empty("output");
   BodiesScene out;
   out.extent = read_extent(scene, context);
   std::set<std::string> chosen;
-  for (const NamedBody* body : bodies.chosen(output, "bodies"))
+  for (const NamedBody* body : bodies.chosen(output))
     if (output.has("bodies")) chosen.insert(body->name);
   scene.finish();
   out.methods = composed_methods(integration_method(IntegratorOptions{}).name, steps_composed(is_composable(bodies)));

@@ -1,6 +1,7 @@
 #pragma once
 /// Scenes of bodies as motions.
 
+#include "../reading/key.hpp"
 #include "../scenes/motion_scene.hpp"
 
 #include <lagroid/solvers/methods/declared_methods.hpp>
@@ -10,8 +11,6 @@
 #include <string>
 
 namespace lagroid::app {
-
-class Section;
 
 /// A scene of bodies whose step is to be asked its laws.
 struct BodiesToCheck {
@@ -28,6 +27,7 @@ struct BodiesScene : MotionScene {
 };
 /// The method that [time] names: equal steps of a variational method, or controlled ones.
 const IntegrationMethod& read_bodies_method(const Section& time);
+Table scene_of_bodies_table();
 BodiesScene read_bodies(const Section& scene, const RunContext& context);
 
 }  // namespace lagroid::app

@@ -25,6 +25,7 @@ class Bodies final : public SceneFamily {
       uses.push_back({&reference("iglesias2008"), "nonholonomic constraints on Lie groupoids"});
     return uses;
   }
+  std::vector<SceneKeys> keys_of_scenes() const override { return {{"bodies", scene_of_bodies_table()}}; }
 };
 
 }  // namespace

@@ -14,6 +14,12 @@
 
 namespace lagroid::app {
 
+/// The keys of scenes of a kind, and how the kind is called: by a system, or by the family where there is none.
+struct SceneKeys {
+  std::string name;
+  Table table;
+};
+
 /// A kind of scene. Commands know no other way to a scene than this.
 class SceneFamily {
  public:
@@ -39,6 +45,8 @@ class SceneFamily {
   virtual std::vector<ListedSystem> systems() const { return {}; }
   /// Their names.
   virtual std::vector<std::string> names() const { return {}; }
+  /// What its scenes may hold, as they are read.
+  virtual std::vector<SceneKeys> keys_of_scenes() const = 0;
 
  protected:
   /// Throws the SceneError for a scene that is no motion.

@@ -1,10 +1,12 @@
 #include "../reading/kinds.hpp"
 #include "family.hpp"
 
+#include "../scenes/scene_keys.hpp"
 #include "../scenes/simulation.hpp"
 #include "../spheres/learned/learned_scene.hpp"
 #include "../spheres/learned/model_file.hpp"
 #include "../spheres/sphere_run.hpp"
+#include "../spheres/sphere_start.hpp"
 #include "../spheres/sphere_system.hpp"
 #include "../spheres/sphere_time.hpp"
 
@@ -45,6 +47,20 @@ class Spheres final : public SceneFamily {
     for (const SphereEntry& entry : sphere_systems())
       all.push_back({std::string(entry.name), std::string(entry.summary), std::string(entry.groupoid), entry.parameters,
                      entry.symmetries, entry.conserved});
+    return all;
+  }
+  std::vector<SceneKeys> keys_of_scenes() const override {
+    std::vector<SceneKeys> all;
+    for (const SphereEntry& entry : sphere_systems()) {
+      Table table{{KeyOf<OneOf>{std::string(keys::system), {{std::string(entry.name)}}, "", std::string(entry.summary)},
+                   KeyOf<Table>{"parameters", {entry.parameters}, "", "of the system"},
+                   optional_table("output", output_table(), "what is recorded")}};
+      table.kinds = initial_values(
+          {KeyOf<Table>{"initial", sphere_start_table(entry.forms), "", "the state to start from"}},
+          sphere_time_table(entry));
+      table.about = entry.summary;
+      all.push_back({std::string(entry.name), std::move(table)});
+    }
     return all;
   }
   std::vector<std::string> names() const override {

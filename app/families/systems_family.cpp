@@ -1,17 +1,47 @@
 #include "../reading/kinds.hpp"
 #include "family.hpp"
 
+#include "../scenes/boundary_value.hpp"
+#include "../scenes/scene_keys.hpp"
 #include "../scenes/system_module.hpp"
 
 #include <lagroid/solvers/boundary/boundary_words.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace lagroid::app {
 
 namespace {
+
+KeyOf<Table> parameters_key(const std::vector<Key>& keys) {
+  if (std::any_of(keys.begin(), keys.end(), [](const Key& key) { return key.required(); }))
+    return {"parameters", {keys}, "", "of the system"};
+  return optional_table("parameters", {keys}, "of the system");
+}
+
+/// The keys of a system's scenes: of initial and of boundary values.
+Table scene_table(const SystemModule& module) {
+  const SystemKeys own = module.keys();
+  Table solver = step_solver_table();
+  solver.keys.insert(solver.keys.end(), own.solver.begin(), own.solver.end());
+  Table table{{KeyOf<OneOf>{std::string(keys::system), {{module.name()}}, "", module.summary()},
+               optional_table("output", output_table(), "what is recorded")}};
+  if (!own.parameters.empty()) table.keys.push_back(parameters_key(own.parameters));
+  table.kinds = initial_values({KeyOf<Table>{"initial", {own.initial}, "", "the state to start from"},
+                                optional_table("solver", solver, "of the implicit equations of a step")},
+                               time_table(module.own_methods(), own.depends_on_time));
+  if (!own.end.empty())
+    table.kinds.push_back({{KeyOf<Table>{"boundary", boundary_table({own.end}), "", "the two ends"},
+                            KeyOf<Table>{"time", boundary_time_table(own.boundary_modes, own.depends_on_time), "", "how long it takes, in how many steps"},
+                            optional_table("solver", boundary_solver_table(), "of the boundary value"),
+                            optional_table("continuation", continuation_table(),
+                                           "carries the solutions of an easier problem to this one")}});
+  table.about = module.summary();
+  return table;
+}
 
 class Systems final : public SceneFamily {
  public:
@@ -47,6 +77,11 @@ class Systems final : public SceneFamily {
   std::vector<std::string> names() const override {
     std::vector<std::string> all;
     for (const SystemModule* module : system_modules()) all.push_back(module->name());
+    return all;
+  }
+  std::vector<SceneKeys> keys_of_scenes() const override {
+    std::vector<SceneKeys> all;
+    for (const SystemModule* module : system_modules()) all.push_back({module->name(), scene_table(*module)});
     return all;
   }
 };

@@ -1,8 +1,7 @@
 #pragma once
 /// The methods that a scene can ask to minimise by.
 
-#include "../reading/parameter.hpp"
-#include "../reading/scene_reader.hpp"
+#include "../reading/key.hpp"
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
@@ -17,11 +16,16 @@ namespace lagroid::app {
 struct OptimiserEntry {
   std::string_view name;
   std::string_view summary;
-  std::vector<ListedParameter> keys;
+  std::vector<Key> keys;  ///< besides `name`
   std::unique_ptr<optimisation::DescentMethod> (*read)(const Section& section);
 };
 
 std::span<const OptimiserEntry> optimisers();
+
+/// `name` of [method]; the first is what there is without it.
+KeyOf<OneOf> optimiser_key();
+/// The keys of [method].
+Table optimisers_table();
 
 /// The one that method.name names, with its keys.
 std::unique_ptr<optimisation::DescentMethod> read_optimiser(const Section& method);

@@ -1,5 +1,6 @@
 #include "optimisation_scene.hpp"
 
+#include "../reading/kinds.hpp"
 #include "matrices.hpp"
 #include "methods.hpp"
 #include "problems.hpp"
@@ -9,6 +10,8 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace lagroid::app {
 
@@ -16,15 +19,38 @@ namespace {
 
 using optimisation::Instance, optimisation::Point, optimisation::Stopping;
 
+const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of a random start", 1};
+const KeyOf<Text> file_key{"file", {}, "", "the name of a file", {}, "a random start"};
+const KeyOf<Flag> nearest{"nearest", {}, "", "true: the point of the manifold that is nearest to the file's", false};
+const KeyOf<Whole> component_key{
+    "component", {-1, 1}, "", "of O(n): 1 or -1, the sign of the determinant", {}, "as it comes"};
+
+const KeyOf<Number> gradient{"gradient", {nonnegative}, "", "stop at this norm of it", 0.0};
+const KeyOf<Number> relative_gradient{"relative_gradient",
+                                      {{"from 0 to below 1", [](double x) { return x >= 0 && x < 1; }}},
+                                      "",
+                                      "stop at this norm of it over that at the start",
+                                      {},
+                                      "1e-8 where nothing else stops, else 0"};
+const KeyOf<Number> gap_key{"gap", {positive}, "", "stop so far above the least value, found by linear algebra", {}, "none"};
+const KeyOf<Number> value{"value", {}, "", "stop at this value", {}, "none"};
+const KeyOf<Whole> iterations{
+    "iterations", {1, 1'000'000'000}, "", "at most", long(Stopping().iterations)};
+const KeyOf<Number> seconds{"seconds", {positive}, "s", "at most", {}, "any number"};
+const KeyOf<Whole> patience{
+    "patience", {0, 1'000'000'000}, "", "iterations without progress, at most; 0: any number", long(Stopping().patience)};
+const KeyOf<Flag> reference_key{
+    "reference", {}, "", "ask linear algebra for the least value", {}, "true with `gap` of [stop]"};
+
 /// Start: a file, or else a random point; of O(n), in the component that is asked for.
 Point read_start(const Section& scene, const Instance& instance, const std::filesystem::path& folder) {
   const Section start = scene.section_or_empty("start");
-  const auto seed = unsigned(start.integer_or("seed", 1, 0, 4294967295));
+  const auto seed = unsigned(read_key(start, seed_key));
   Point x;
   if (start.has("file")) {
     Eigen::MatrixXd matrix;
     try {
-      matrix = dense(read_matrix(start.text("file", "the name of a file"), folder));
+      matrix = dense(read_matrix(read_key(start, file_key), folder));
     } catch (const DataError& error) {
       start.fail("file", error.what());
     }
@@ -32,7 +58,7 @@ Point read_start(const Section& scene, const Instance& instance, const std::file
       start.fail("file", fmt::format("{} x {} numbers, points of the {} have {} x {}", matrix.rows(), matrix.cols(),
                                      instance.manifold->name(), instance.rows, instance.columns));
     x = matrix.reshaped();
-    if (start.flag_or("nearest", false) && !instance.manifold->nearest(x))
+    if (read_key(start, nearest) && !instance.manifold->nearest(x))
       start.fail("file", fmt::format("no point of the {} is nearest to it", instance.manifold->name()));
     constexpr double on_it = 1e-8;
     if (const double off = instance.manifold->residual(x); off > on_it)
@@ -43,7 +69,7 @@ Point read_start(const Section& scene, const Instance& instance, const std::file
   }
   if (start.has("component")) {
     if (instance.rows != instance.columns) start.fail("component", "only O(n) has two components");
-    const long component = start.integer("component", -1, 1);
+    const long component = read_key(start, component_key);
     Eigen::Map<Eigen::MatrixXd> matrix(x.data(), instance.rows, instance.columns);
     if (component == 0) start.fail("component", "1 or -1, the sign of the determinant");
     if (optimisation::component(matrix) != component) matrix.col(0) *= -1;
@@ -54,18 +80,35 @@ Point read_start(const Section& scene, const Instance& instance, const std::file
 Stopping read_stopping(const Section& scene) {
   const Section stop = scene.section_or_empty("stop");
   Stopping out;
-  out.gradient = stop.number_or("gradient", 0, nonnegative);
+  out.gradient = read_key(stop, gradient);
   const bool other = stop.has("gradient") || stop.has("gap") || stop.has("value");
-  constexpr NumberRule share{"from 0 to below 1", [](double x) { return x >= 0 && x < 1; }};
-  out.relative_gradient = stop.number_or("relative_gradient", other ? 0 : 1e-8, share);
-  out.iterations = stop.integer_or("iterations", out.iterations, 1, 1'000'000'000);
-  if (stop.has("seconds")) out.seconds = stop.number("seconds", positive);
-  out.patience = stop.integer_or("patience", out.patience, 0, 1'000'000'000);
-  if (stop.has("value")) out.value = stop.number("value");
+  out.relative_gradient = read_key_or(stop, relative_gradient, other ? 0 : 1e-8);
+  out.iterations = read_key(stop, iterations);
+  out.seconds = read_key_or(stop, seconds, out.seconds);
+  out.patience = read_key(stop, patience);
+  out.value = read_key_or(stop, value, out.value);
   return out;
 }
 
 }  // namespace
+
+Table optimisation_table() {
+  Table table{{optional_table("method", optimisers_table(), "by which it is minimised"),
+               optional_table("start", {{file_key, nearest, component_key, seed_key}}, "where it begins"),
+               optional_table(
+                   "stop", {{relative_gradient, gradient, gap_key, value, iterations, seconds, patience}}, "when it ends"),
+               reference_key}};
+  for (const auto& entry : problems()) {
+    Table kind{{KeyOf<OneOf>{std::string(keys::optimisation), {{std::string(entry.name)}}, "", std::string(entry.summary)},
+                KeyOf<Table>{"data", {entry.data}, "", "the matrices of the problem"}},
+               {},
+               std::string(entry.summary)};
+    if (!entry.parameters.empty())
+      kind.keys.push_back(KeyOf<Table>{"parameters", {entry.parameters}, "", "of the problem"});
+    table.kinds.push_back(std::move(kind));
+  }
+  return table;
+}
 
 OptimisationScene read_optimisation(const Section& scene, const std::filesystem::path& file) {
   const std::filesystem::path folder = file.parent_path();
@@ -79,8 +122,8 @@ OptimisationScene read_optimisation(const Section& scene, const std::filesystem:
   out.stopping = read_stopping(scene);
   const Section stop = scene.section_or_empty("stop");
   const bool wants_gap = stop.has("gap");
-  const double gap = stop.number_or("gap", 0, positive);
-  const bool reference = scene.flag_or("reference", wants_gap);
+  const double gap = read_key_or(stop, gap_key, 0);
+  const bool reference = read_key_or(scene, reference_key, wants_gap);
   scene.finish();
   if (out.penalty && (reference || wants_gap))
     scene.fail(wants_gap ? "stop" : "reference", "a penalty goes below the minimum; stop by the gradient");

@@ -1,7 +1,7 @@
 #pragma once
 /// What a scene of `lagroid optimize` says.
 
-#include "../reading/scene_reader.hpp"
+#include "../reading/key.hpp"
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 #include <lagroid/systems/optimisation/instances.hpp>
@@ -22,6 +22,9 @@ struct OptimisationScene {
   std::optional<double> least;    ///< where linear algebra was asked for it
   std::optional<double> penalty;  ///< the weight, with constraint = "penalty"
 };
+
+/// The keys of such a scene.
+Table optimisation_table();
 
 /// Reads all of it; files are seen from the folder of `file`. Throws SceneError.
 OptimisationScene read_optimisation(const Section& scene, const std::filesystem::path& file);

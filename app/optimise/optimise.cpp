@@ -21,18 +21,20 @@ namespace {
 
 std::string listing() {
   std::string out;
-  const auto list = [&](const auto& entries, const char* title) {
-    out += fmt::format("{}\n", title);
-    for (const auto& entry : entries) {
-      out += fmt::format("  {:<20} {}\n", entry.name, entry.summary);
-      for (const auto& key : entry.keys)
-        out += fmt::format("    {:<18} {}{}{}\n", key.name, key.meaning,
-                           key.unit.empty() ? "" : fmt::format(" [{}]", key.unit),
-                           key.fallback.empty() ? "" : fmt::format(", default {}", key.fallback));
-    }
+  const auto list = [&](const std::vector<Key>& keys, const char* table = "") {
+    for (const Key& key : keys) out += fmt::format("    {:<18} {}\n", table + key.name, listed(key));
   };
-  list(problems(), "problems");
-  list(optimisers(), "methods");
+  out += "problems\n";
+  for (const auto& entry : problems()) {
+    out += fmt::format("  {:<20} {}\n", entry.name, entry.summary);
+    list(entry.data, "data.");
+    list(entry.parameters, "parameters.");
+  }
+  out += "methods\n";
+  for (const auto& entry : optimisers()) {
+    out += fmt::format("  {:<20} {}\n", entry.name, entry.summary);
+    list(entry.keys);
+  }
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "problems.hpp"
 
+#include "../reading/kinds.hpp"
 #include "matrices.hpp"
 
 #include <lagroid/systems/optimisation/random.hpp>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <exception>
 #include <string>
+#include <utility>
 
 namespace lagroid::app {
 
@@ -17,28 +19,46 @@ namespace {
 namespace fs = std::filesystem;
 using optimisation::Instance;
 
-/// data.`key`: a file, or a table {random = "symmetric" or "gaussian", rows, columns, seed}.
-AnyMatrix read_data(const Section& scene, const char* key, const fs::path& folder) {
-  constexpr long most = 20000;
+const std::string symmetric = "symmetric";
+const std::string gaussian = "gaussian";
+KeyOf<OneOf> random_key(std::vector<std::string> words) { return {"random", {std::move(words)}, "", "how it is drawn"}; }
+const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of what is drawn", 1};
+const KeyOf<Whole> rows_key{"rows", {1, 20000}, "", "how many"};
+const KeyOf<Whole> columns_key{"columns", {1, 20000}, "", "how many"};
+
+/// A file, or a table that says how a matrix is drawn.
+KeyOf<Either> matrix_key(std::string name, std::string meaning) {
+  const Table drawn{{seed_key, rows_key},
+                    {Table{{random_key({symmetric})}}, Table{{random_key({gaussian}), columns_key}}}};
+  return {std::move(name), {{{Text{}}, {drawn}}}, "", std::move(meaning)};
+}
+const KeyOf<Either> symmetric_a =
+    matrix_key("A", "a symmetric matrix: a file, or {random = \"symmetric\", rows, seed}");
+const KeyOf<Either> any_a = matrix_key("A", "a file, or {random = \"gaussian\", rows, columns, seed}");
+const KeyOf<Either> any_b = matrix_key("B", "as many rows as A, no more columns");
+const KeyOf<NumberList> weights_key{
+    "weights", {}, "", "one for each eigenvalue sought, increasing from zero or more: the diagonal entries of N"};
+
+AnyMatrix read_data(const Section& scene, const KeyOf<Either>& key, const fs::path& folder) {
   const Section data = scene.section("data", "the matrices of the problem");
-  if (data.is_table(key)) {
-    const Section table = data.section(key, "a random matrix");
-    const bool symmetric = table.choice("random", {"symmetric", "gaussian"}) == "symmetric";
-    const auto seed = unsigned(table.integer_or("seed", 1, 0, 4294967295));
-    const long size = table.integer("rows", 1, most);
-    if (symmetric) return optimisation::random_symmetric(size, seed);
-    return optimisation::random_matrix(size, table.integer("columns", 1, most), seed);
+  if (data.is_table(key.name)) {
+    const Section table = data.section(key.name, "a random matrix");
+    const bool is_symmetric = read_key(table, random_key({symmetric, gaussian})) == symmetric;
+    const auto seed = unsigned(read_key(table, seed_key));
+    const long size = read_key(table, rows_key);
+    if (is_symmetric) return optimisation::random_symmetric(size, seed);
+    return optimisation::random_matrix(size, read_key(table, columns_key), seed);
   }
   try {
-    return read_matrix(data.text(key, "the name of a file, or a table with the key random"), folder);
+    return read_matrix(data.text(key.name, "the name of a file, or a table with the key random"), folder);
   } catch (const DataError& error) {
-    data.fail(key, error.what());
+    data.fail(key.name, error.what());
   }
 }
 
 optimisation::SymmetricOperator read_symmetric(const Section& scene, const fs::path& folder) {
   constexpr double rounding = 1e-12;
-  const AnyMatrix a = read_data(scene, "A", folder);
+  const AnyMatrix a = read_data(scene, symmetric_a, folder);
   const Section data = scene.section("data", "the matrices of the problem");
   if (rows(a) != columns(a))
     data.fail("A", fmt::format("a matrix of {} x {}; give a symmetric one", rows(a), columns(a)));
@@ -64,8 +84,7 @@ Instance read_rayleigh(const Section& scene, const fs::path& folder) {
 
 Instance read_brockett(const Section& scene, const fs::path& folder) {
   const auto a = read_symmetric(scene, folder);
-  const auto weights = scene.section("parameters", "the weights")
-                           .list("weights", "one for each eigenvalue, increasing from zero or more");
+  const auto weights = read_key(scene.section("parameters", "the weights"), weights_key);
   return made(scene, "parameters", "weights", [&] {
     return optimisation::brockett_instance(
         a, Eigen::Map<const Eigen::VectorXd>(weights.data(), Eigen::Index(weights.size())));
@@ -73,34 +92,33 @@ Instance read_brockett(const Section& scene, const fs::path& folder) {
 }
 
 Instance read_procrustes(const Section& scene, const fs::path& folder) {
-  const Eigen::MatrixXd a = dense(read_data(scene, "A", folder));
-  const Eigen::MatrixXd b = dense(read_data(scene, "B", folder));
+  const Eigen::MatrixXd a = dense(read_data(scene, any_a, folder));
+  const Eigen::MatrixXd b = dense(read_data(scene, any_b, folder));
   return made(scene, "data", "B", [&] { return optimisation::procrustes_instance(a, b); });
 }
-
-const ListedParameter data_a{"data.A", "", "", "a symmetric matrix: a file, or {random = \"symmetric\", rows, seed}"};
 
 }  // namespace
 
 std::span<const ProblemEntry> problems() {
   static const std::vector<ProblemEntry> all{
-      {"rayleigh", "-v^T A v on the sphere: the largest eigenvalue", {data_a}, read_rayleigh},
+      {"rayleigh", "-v^T A v on the sphere: the largest eigenvalue", {symmetric_a}, {}, read_rayleigh},
       {"brockett",
        "Trace(X^T A X N) on the Stiefel manifold: the m smallest eigenvalues",
-       {data_a, {"parameters.weights", "", "", "the m diagonal entries of N, increasing from zero or more"}},
+       {symmetric_a},
+       {weights_key},
        read_brockett},
       {"procrustes",
        "|A X - B|^2 on the Stiefel manifold; balanced, on O(n), where B has as many columns as A",
-       {{"data.A", "", "", "a file, or {random = \"gaussian\", rows, columns, seed}"},
-        {"data.B", "", "", "as many rows as A, no more columns"}},
+       {any_a, any_b},
+       {},
        read_procrustes}};
   return all;
 }
 
 Instance read_problem(const Section& scene, const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : problems()) names.emplace_back(entry.name);
-  const std::string name = scene.choice("problem", names);
+  KeyOf<OneOf> key{std::string(keys::optimisation)};
+  for (const auto& entry : problems()) key.value.words.emplace_back(entry.name);
+  const std::string name = read_key(scene, key);
   return std::find_if(problems().begin(), problems().end(), [&](const auto& e) { return e.name == name; })
       ->read(scene, folder);
 }

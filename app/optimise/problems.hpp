@@ -1,8 +1,7 @@
 #pragma once
 /// The functions that a scene can ask to minimise.
 
-#include "../reading/parameter.hpp"
-#include "../reading/scene_reader.hpp"
+#include "../reading/key.hpp"
 
 #include <lagroid/systems/optimisation/instances.hpp>
 
@@ -16,7 +15,8 @@ namespace lagroid::app {
 struct ProblemEntry {
   std::string_view name;
   std::string_view summary;
-  std::vector<ListedParameter> keys;
+  std::vector<Key> data;        ///< keys of [data]
+  std::vector<Key> parameters;  ///< keys of [parameters]
   /// Reads [data] and [parameters] of `scene`; files are seen from `folder`.
   optimisation::Instance (*read)(const Section& scene, const std::filesystem::path& folder);
 };

@@ -9,7 +9,6 @@
 ///
 /// Errors: NeedsAllMethods where the scene names another method or a boundary value; SceneError where it has a mistake.
 
-#include "../scenes/system_module.hpp"
 #include "../scenes/system_scene.hpp"
 #include "own_parts.hpp"
 
@@ -30,6 +29,7 @@ template <DiscreteSystem Sys> class StepsModule final : public SystemModule {
   bool nonholonomic() const override { return Nonholonomic<Sys>; }
   std::span<const DeclaredMethod> own_methods() const override { return {}; }
   ListedSystem listed() const override { return listed_system<Sys>(name(), summary()); }
+  SystemKeys keys() const override { return with_times<Sys>(keys_of<Sys>(name(), dress_)); }
   MotionScene read(const Section&, const RunContext&) const override { throw NeedsAllMethods{}; }
   RunResult run(const Section& scene, const RunContext& context) const override {
     if (scene.has("boundary")) throw NeedsAllMethods{};

@@ -32,14 +32,6 @@ std::size_t read_word(const Section& parameters, std::string_view name, std::spa
   return std::size_t(std::find(all.begin(), all.end(), word) - all.begin());
 }
 
-std::string listed_numbers(const double* values, std::size_t size) {
-  return fmt::format("{:g}", fmt::join(values, values + size, ", "));
-}
-
-std::string listed_words(std::span<const std::string_view> words) {
-  return fmt::format("{} or {}", fmt::join(words.first(words.size() - 1), ", "), words.back());
-}
-
 void blame(const Section& parameters, const Refusal& refusal) {
   const auto given = std::find_if(refusal.parameters.begin(), refusal.parameters.end(),
                                   [&](std::string_view name) { return parameters.has(name); });

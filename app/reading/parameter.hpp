@@ -6,12 +6,11 @@
 /// Returns the system that its constructor makes, with the numbers of the scene. Errors: SceneError for a key that is
 /// missing, a number that its rule refuses, or a combination that the system refuses.
 
-#include "scene_reader.hpp"
+#include "key.hpp"
 
 #include <lagroid/core/parameter.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cstddef>
 #include <span>
@@ -22,14 +21,6 @@
 
 namespace lagroid::app {
 
-/// A key of a scene, as listings show it.
-struct ListedParameter {
-  std::string name;
-  std::string unit;
-  std::string fallback;  ///< empty where the key must be given
-  std::string meaning;
-};
-
 namespace reading {
 
 void read_number(const Section& parameters, std::string_view name, const NumberRule& rule, bool required,
@@ -39,9 +30,6 @@ void read_vector(const Section& parameters, std::string_view name, std::string_v
                  bool required, bool direction, double* values, std::size_t size);
 std::size_t read_word(const Section& parameters, std::string_view name, std::span<const std::string_view> words,
                       std::size_t fallback);
-std::string listed_numbers(const double* values, std::size_t size);
-/// "a, b or c".
-std::string listed_words(std::span<const std::string_view> words);
 
 template <class Sys, class Owner, class Member>
 void read(const Section& parameters, const Parameter<Owner, Member>& p, Sys& system) {
@@ -60,22 +48,26 @@ void read(const Section& parameters, const Choice<Owner, Enum, N>& p, Sys& syste
   system.*p.member = Enum(read_word(parameters, p.name, p.words, std::size_t(system.*p.member)));
 }
 
-template <class Sys, class Owner, class Member>
-ListedParameter listed(const Parameter<Owner, Member>& p, const Sys& system) {
-  ListedParameter out{std::string(p.name), std::string(p.unit), "", std::string(p.meaning)};
-  if (p.required) return out;
+template <class Sys, class Owner, class Member> Key key_of(const Parameter<Owner, Member>& p, const Sys& system) {
+  const auto of = [&]<class V>(const V& value, typename V::Read fallback) -> Key {
+    KeyOf<V> key{std::string(p.name), value, std::string(p.unit), std::string(p.meaning)};
+    if (!p.required) key.fallback = std::move(fallback);
+    return key;
+  };
   if constexpr (std::is_arithmetic_v<Member>) {
-    const auto value = double(system.*p.member);
-    out.fallback = listed_numbers(&value, 1);
+    return of(Number{p.rule}, double(system.*p.member));
   } else {
-    out.fallback = listed_numbers((system.*p.member).data(), std::size_t((system.*p.member).size()));
+    const auto& vector = system.*p.member;
+    return of(NumberArray{std::size_t(vector.size()), p.rule}, {vector.data(), vector.data() + vector.size()});
   }
-  return out;
 }
 template <class Sys, class Owner, class Enum, std::size_t N>
-ListedParameter listed(const Choice<Owner, Enum, N>& p, const Sys& system) {
-  return {std::string(p.name), "", std::string(p.words[std::size_t(system.*p.member)]),
-          fmt::format("{}: {}", p.meaning, listed_words(p.words))};
+Key key_of(const Choice<Owner, Enum, N>& p, const Sys& system) {
+  return KeyOf<OneOf>{std::string(p.name),
+                      {{p.words.begin(), p.words.end()}},
+                      "",
+                      std::string(p.meaning),
+                      std::string(p.words[std::size_t(system.*p.member)])};
 }
 
 /// Blames the first of its parameters that stands there.
@@ -98,10 +90,10 @@ template <class Sys> Sys read_parameters(const Section& scene) {
   return system;
 }
 
-/// `system` is as its constructor makes it.
-template <class Sys> std::vector<ListedParameter> listed_parameters(const Sys& system = {}) {
-  std::vector<ListedParameter> all;
-  for_each_parameter<Sys>([&](const auto& p) { all.push_back(reading::listed(p, system)); });
+/// The same as keys; `system` is as its constructor makes it.
+template <class Sys> std::vector<Key> parameter_keys(const Sys& system = {}) {
+  std::vector<Key> all;
+  for_each_parameter<Sys>([&](const auto& p) { all.push_back(reading::key_of(p, system)); });
   return all;
 }
 

@@ -10,7 +10,6 @@
 /// Requires a system with a default constructor. Errors: SceneError for a mistake in a scene.
 
 #include "boundary_value.hpp"
-#include "system_module.hpp"
 #include "system_scene.hpp"
 
 #include <string>
@@ -47,9 +46,11 @@ PreparedScene<Sys> read_any_system(const Section& scene, const RunContext& conte
 /// The module of a system that has no code of its own for scenes; `dress` may add words and pictures.
 template <DiscreteSystem Sys>
 ModuleOf<Sys> any_module(const std::string& name, const std::string& summary, Dress<Sys> dress = nullptr) {
-  return {name, summary, [name, dress](const Section& scene, const RunContext& context) {
+  return {name, summary,
+          [name, dress](const Section& scene, const RunContext& context) {
             return read_any_system<Sys>(scene, context, name, dress);
-          }};
+          },
+          [name, dress] { return keys_of<Sys>(name, dress); }};
 }
 
 }  // namespace lagroid::app

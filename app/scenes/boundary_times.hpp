@@ -1,7 +1,8 @@
 #pragma once
 /// The times of boundary values: equal steps, or steps that vary.
 
-#include "../reading/scene_reader.hpp"
+#include "scene_keys.hpp"
+#include "system_module.hpp"
 
 #include <lagroid/run/run_result.hpp>
 #include <lagroid/solvers/boundary/multistart.hpp>
@@ -39,14 +40,11 @@ template <DiscreteSystem Sys> TimeMode read_boundary_mode(const Section& scene) 
                 "time_scale(g) is there but does not fit: a const template of an arrow's scalar, which returns it, of "
                 "a system that takes the step as an argument (see HasTimeScaleOfArrows)");
   const auto word = [](TimeMode mode) { return std::string(integration_method({.mode = mode}).name); };
-  const std::string fixed(mode_of_equal_steps);
-  const std::string adaptive = word(TimeMode::adaptive);
-  const std::string controlled = word(TimeMode::controlled);
-  std::vector<std::string> modes{fixed};
-  if (Timed<Sys>) modes.push_back(adaptive);
-  if (HasTimeScaleOfArrows<Sys>) modes.push_back(controlled);
-  const std::string chosen = scene.section_or_empty("time").choice_or("mode", fixed, modes);
-  return chosen == adaptive ? TimeMode::adaptive : chosen == controlled ? TimeMode::controlled : TimeMode::fixed;
+  const std::string chosen =
+      read_key(scene.section_or_empty("time"), time_keys::boundary_mode(boundary_modes<Sys>()));
+  for (const TimeMode mode : {TimeMode::adaptive, TimeMode::controlled})
+    if (chosen == word(mode)) return mode;
+  return TimeMode::fixed;
 }
 
 /// The path with steps of that mode beside one of equal steps.

@@ -1,5 +1,7 @@
 #include "boundary_value.hpp"
 
+#include "scene_keys.hpp"
+
 #include <lagroid/solvers/boundary/boundary_words.hpp>
 
 #include <fmt/ranges.h>
@@ -8,24 +10,93 @@
 
 namespace lagroid::app {
 
+namespace {
+
+const KeyOf<Whole> starts{"starts",
+                          {1, 100000},
+                          "",
+                          "guesses of the multistart: the straight line, then straight lines that wind (headings and "
+                          "attitudes by whole turns, orbits by revolutions) and are bent by random sine modes",
+                          MultistartOptions().starts};
+const KeyOf<Whole> seed{"seed",
+                        {0, std::numeric_limits<long>::max()},
+                        "",
+                        "of the random guesses; the result is reproducible",
+                        long(MultistartOptions().seed)};
+const KeyOf<Number> amplitude{"amplitude",
+                              {nonnegative},
+                              "",
+                              "size of the sine modes, in coordinates of AG, from an eighth of it to twice; 0: the "
+                              "distance of the ends, or one where they meet",
+                              0.0};
+constexpr std::string_view minima = "minima";
+const KeyOf<OneOf> seek{"seek",
+                        {{std::string(minima), "stationary"}},
+                        "",
+                        "what to look for: a mechanical motion need not be a minimum of its action",
+                        {},
+                        "`minima` of optimal control, else `stationary`"};
+const KeyOf<Number> tolerance{"tolerance",
+                              {positive},
+                              "",
+                              "on the scaled residual of the boundary-value equations",
+                              BoundaryOptions().tolerance};
+const KeyOf<Whole> max_iterations{
+    "max_iterations", {1, 1000000}, "", "of a start", BoundaryOptions().max_iterations};
+
+KeyOf<OneOf> method() {
+  const auto words = words_of(boundary_words);
+  return {"method",
+          {words},
+          "",
+          "on the whole path; on the initial momentum; by least squares",
+          words.front()};
+}
+
+const KeyOf<Text> parameter{"parameter",
+                            {},
+                            "",
+                            "a number or an array of numbers of [parameters] or [boundary], `time.step` or "
+                            "`time.duration`, as in \"parameters.plate_rate\"; between its ends a position is brought "
+                            "back to the sphere, a quaternion to unit norm"};
+const KeyOf<Either> from{"from", {{{Number{}}, {NumberList{}}}}, "", "number or array to begin with"};
+const KeyOf<Whole> steps{"steps", {1, 100000}, "", "to begin with, of equal size", ContinuationChoice().steps};
+
+}  // namespace
+
+std::vector<Key> multistart_keys() { return {starts, seed}; }
+
+Table boundary_table(const Table& end) {
+  return {{KeyOf<Table>{"start", end, "", "the configuration at the start"},
+           KeyOf<Table>{"end", end, "", "the configuration at the end"}}};
+}
+Table boundary_time_table(const std::vector<std::string>& modes, bool depends_on_time) {
+  Table table{grid_keys()};
+  table.keys.push_back(time_keys::boundary_mode(modes));
+  if (depends_on_time) table.keys.push_back(time_keys::start);
+  return table;
+}
+Table boundary_solver_table() {
+  return {{method(), seek, starts, seed, amplitude, tolerance, max_iterations}};
+}
+Table continuation_table() { return {{parameter, from, steps}}; }
+
 MultistartOptions read_multistart(const Section& solver) {
   MultistartOptions options;
-  options.starts = int(solver.integer_or("starts", options.starts, 1, 100000));
-  options.seed = std::uint64_t(solver.integer_or("seed", long(options.seed), 0, std::numeric_limits<long>::max()));
+  options.starts = int(read_key(solver, starts));
+  options.seed = std::uint64_t(read_key(solver, seed));
   return options;
 }
 
 BoundaryChoice read_boundary_solver(const Section& solver) {
   BoundaryChoice choice;
-  const auto words = words_of(boundary_words);
-  choice.method = choice_of(boundary_words, solver.choice_or("method", words.front(), words));
-  if (solver.has("seek"))
-    choice.stationary_kind = solver.choice("seek", {"minima", "stationary"}) == "minima" ? StationaryKind::minima
-                                                                                         : StationaryKind::stationary;
+  choice.method = choice_of(boundary_words, read_key(solver, method()));
+  if (solver.has(seek.name))
+    choice.stationary_kind = read_key(solver, seek) == minima ? StationaryKind::minima : StationaryKind::stationary;
   choice.multistart = read_multistart(solver);
-  choice.multistart.amplitude = solver.number_or("amplitude", 0, nonnegative);
-  choice.options.tolerance = solver.number_or("tolerance", choice.options.tolerance, positive);
-  choice.options.max_iterations = int(solver.integer_or("max_iterations", choice.options.max_iterations, 1, 1000000));
+  choice.multistart.amplitude = read_key(solver, amplitude);
+  choice.options.tolerance = read_key(solver, tolerance);
+  choice.options.max_iterations = int(read_key(solver, max_iterations));
   return choice;
 }
 
@@ -48,7 +119,7 @@ std::optional<ContinuationChoice> read_continuation(const Section& scene) {
   if (!scene.has("continuation")) return std::nullopt;
   const Section section = scene.section("continuation", "parameter, from and steps");
   ContinuationChoice choice;
-  choice.parameter = section.text("parameter", "a key of this scene, as in \"parameters.plate_rate\"");
+  choice.parameter = read_key(section, parameter);
   const bool continuable = choice.parameter.starts_with("parameters.") || choice.parameter.starts_with("boundary.") ||
                            choice.parameter == "time.step" || choice.parameter == "time.duration";
   if (!continuable)
@@ -60,10 +131,10 @@ std::optional<ContinuationChoice> read_continuation(const Section& scene) {
     section.fail("parameter", fmt::format("\"{}\" is no number or array of numbers in this scene; give it its final "
                                           "value there",
                                           choice.parameter));
-  choice.from = choice.to.size() == 1 && section.is_number("from")
-                    ? std::vector{section.number("from")}
-                    : section.numbers("from", choice.to.size(), "as many as the parameter has");
-  choice.steps = section.integer_or("steps", choice.steps, 1, 100000);
+  choice.from = choice.to.size() == 1 && section.is_number(from.name)
+                    ? std::vector{section.number(from.name)}
+                    : section.numbers(from.name, choice.to.size(), "as many as the parameter has");
+  choice.steps = read_key(section, steps);
   return choice;
 }
 

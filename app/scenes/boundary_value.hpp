@@ -11,7 +11,7 @@
 ///
 /// Source: [G] section 5.
 
-#include "../reading/scene_reader.hpp"
+#include "../reading/key.hpp"
 #include "boundary_times.hpp"
 #include "simulation.hpp"
 
@@ -34,6 +34,12 @@
 
 namespace lagroid::app {
 
+/// The tables of a boundary value; both ends hold the keys of `end`.
+Table boundary_table(const Table& end);
+Table boundary_time_table(const std::vector<std::string>& modes, bool depends_on_time);
+Table boundary_solver_table();
+Table continuation_table();
+
 /// [solver] of a boundary-value run.
 struct BoundaryChoice {
   BoundaryMethod method = BoundaryMethod::newton;
@@ -43,7 +49,9 @@ struct BoundaryChoice {
 };
 BoundaryChoice read_boundary_solver(const Section& solver);
 
-/// [solver] starts and seed. Initial-value runs read them too, so that a scene may switch between the two.
+/// [solver] starts and seed. Scenes of the plate-ball read them from initial values too, so that they may switch between
+/// the two.
+std::vector<Key> multistart_keys();
 MultistartOptions read_multistart(const Section& solver);
 
 /// [continuation]: a parameter of the scene that goes from other numbers (`from`, at s = 0) to the scene's own (`to`,
@@ -345,6 +353,7 @@ template <DiscreteSystem Sys, class Read, class Search>
 PreparedScene<Sys> boundary_value(const Section& scene, const RunContext& context,
                                   const Presentation<Sys>& presentation, const Read& read, const Search& search) {
   const BoundaryScene<Sys> stated = read(scene);
+  const long every = read_every(scene);
   BoundaryRun<Sys> run{scene,
                        presentation,
                        stated,
@@ -352,7 +361,7 @@ PreparedScene<Sys> boundary_value(const Section& scene, const RunContext& contex
                        read_boundary_solver(scene.section_or_empty("solver")),
                        read_continuation(scene),
                        read_boundary_mode<Sys>(scene),
-                       context.record ? read_every(scene) : 0};
+                       context.record ? every : 0};
   refuse_accuracy(scene);
   scene.finish();
   const auto& problem = run.problem.stage;

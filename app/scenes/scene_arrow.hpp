@@ -9,7 +9,7 @@
 ///
 /// Errors: SceneError where the numbers are no arrow.
 
-#include "../reading/scene_reader.hpp"
+#include "../reading/key.hpp"
 
 #include <lagroid/groupoids/groups/se2.hpp>
 #include <lagroid/groupoids/groups/so2.hpp>
@@ -41,6 +41,7 @@ inline std::array<double, 4> quaternion_of(const Matrix<double, 3, 3>& rotation)
 /// How a scene writes the arrows of a groupoid G that end at a node:
 ///
 ///     static constexpr std::string_view key                    of [initial] and of the ends in [boundary]
+///     static KeyOf<...> declared(key)                          what may stand there
 ///     Arrow read(section, key) const                           the arrow that the key gives, or that is there without
 ///     Arrow between(start, end) const                          from the node where one ends to that of the other
 ///     coordinates(arrow, object) const                         numbers of the node for reports, attitudes apart
@@ -52,10 +53,12 @@ template <class G> struct SceneArrow {
   static constexpr std::string_view key = "configuration";
   G groupoid;
 
+  static KeyOf<NumberArray> declared(std::string_view name) {
+    return {std::string(name), {std::size_t(G::arrow_coordinate_count())}, "", "coordinates of the arrow that ends there"};
+  }
   ArrowOf<G> read(const Section& section, std::string_view name) const {
-    constexpr int size = G::arrow_coordinate_count();
-    const auto given = section.numbers(name, size, "coordinates of the arrow that ends there");
-    using V = Vector<double, size>;
+    const auto given = read_key(section, declared(name));
+    using V = Vector<double, G::arrow_coordinate_count()>;
     const V x = Eigen::Map<const V>(given.data());
     const ArrowOf<G> arrow = groupoid.template arrow_at<double>(x);
     const ArrowOf<G> projected = groupoid.project(arrow);
@@ -84,8 +87,11 @@ template <int N> struct SceneArrow<Pair<N>> {
   static constexpr std::string_view key = "position";
   Pair<N> groupoid;
 
+  static KeyOf<NumberArray> declared(std::string_view name) {
+    return {std::string(name), {std::size_t(N)}, "", "a position"};
+  }
   static PairArrow<double, N> read(const Section& section, std::string_view name) {
-    const auto q = section.numbers(name, N, "a position");
+    const auto q = read_key(section, declared(name));
     const Vector<double, N> at = Eigen::Map<const Vector<double, N>>(q.data());
     return {at, at};
   }
@@ -109,9 +115,12 @@ template <> struct SceneArrow<SO3> {
   static constexpr std::string_view key = "attitude";
   SO3 groupoid;
 
+  static KeyOf<AnyAttitude> declared(std::string_view name) {
+    return {std::string(name), {}, "", "a unit quaternion w, x, y, z, or a rotation vector (rad)", {{1, 0, 0, 0}}};
+  }
   static Matrix<double, 3, 3> read(const Section& section, std::string_view name) {
     if (!section.has(name)) return Matrix<double, 3, 3>::Identity();
-    const auto q = section.attitude(name);
+    const auto q = read_key(section, declared(name));
     return SO3::from_quaternion({q[0], q[1], q[2], q[3]});
   }
   static Matrix<double, 3, 3> between(const Matrix<double, 3, 3>& start, const Matrix<double, 3, 3>& end) {
@@ -127,8 +136,9 @@ template <> struct SceneArrow<SO2> {
   static constexpr std::string_view key = "angle";
   SO2 groupoid;
 
+  static KeyOf<Number> declared(std::string_view name) { return {std::string(name), {}, "rad", "an angle", 0.0}; }
   static Matrix<double, 2, 2> read(const Section& section, std::string_view name) {
-    return SO2::exp(Vector<double, 1>(section.number_or(name, 0)));
+    return SO2::exp(Vector<double, 1>(read_key(section, declared(name))));
   }
   static Matrix<double, 2, 2> between(const Matrix<double, 2, 2>& start, const Matrix<double, 2, 2>& end) {
     return SO2::project(Matrix<double, 2, 2>(start.transpose() * end));
@@ -145,8 +155,9 @@ template <> struct SceneArrow<SE2> {
   static constexpr std::string_view key = "position";
   SE2 groupoid;
 
+  static KeyOf<NumberArray> declared(std::string_view name) { return {std::string(name), {3}, "", "x, y, heading"}; }
   static Matrix<double, 3, 3> read(const Section& section, std::string_view name) {
-    const auto pose = section.numbers(name, 3, "x, y, heading");
+    const auto pose = read_key(section, declared(name));
     return SE2::homogeneous<double>(SO2::exp(Vector<double, 1>(pose[2])), {pose[0], pose[1]});
   }
   static Matrix<double, 3, 3> between(const Matrix<double, 3, 3>& start, const Matrix<double, 3, 3>& end) {
@@ -167,9 +178,11 @@ template <int N> struct SceneArrow<VectorGroup<N>> {
   static constexpr std::string_view key = "position";
   VectorGroup<N> groupoid;
 
+  static KeyOf<NumberArray> declared(std::string_view name) {
+    return {std::string(name), {std::size_t(N)}, "", "a position", std::vector<double>(std::size_t(N), 0.0)};
+  }
   static Vector<double, N> read(const Section& section, std::string_view name) {
-    if (!section.has(name)) return Vector<double, N>::Zero();
-    return Eigen::Map<const Vector<double, N>>(section.numbers(name, N, "a position").data());
+    return Eigen::Map<const Vector<double, N>>(read_key(section, declared(name)).data());
   }
   static Vector<double, N> between(const Vector<double, N>& start, const Vector<double, N>& end) { return end - start; }
   static std::vector<std::string> labels(std::string_view name) { return SceneArrow<Pair<N>>::labels(name); }
@@ -178,6 +191,9 @@ template <int N> struct SceneArrow<VectorGroup<N>> {
   }
   static std::optional<std::array<double, 4>> attitude(const Vector<double, N>&) { return std::nullopt; }
 };
+
+template <class V> std::vector<Key> as_keys(const KeyOf<V>& key) { return {key}; }
+inline std::vector<Key> as_keys(std::vector<Key> keys) { return keys; }
 
 /// Factor by factor. A key that several factors have is numbered: angle1, angle2. The attitude is the first factor's
 /// that has one.
@@ -199,6 +215,14 @@ template <class... Gs> struct SceneArrow<Product<Gs...>> {
       out.push_back(same > 1 ? fmt::format("{}{}", plain[i], before + 1) : std::string(plain[i]));
     }
     return out;
+  }
+  static std::vector<Key> declared(std::string_view) {
+    std::vector<Key> all;
+    std::size_t i = 0;
+    const auto add = [&](const std::vector<Key>& each) { all.insert(all.end(), each.begin(), each.end()); };
+    const std::vector<std::string> names = keys();
+    (add(as_keys(SceneArrow<Gs>::declared(names[i++]))), ...);
+    return all;
   }
   Arrow read(const Section& section, std::string_view) const {
     return indexed([&]<std::size_t I>(const auto& of, const std::string& name) { return of.read(section, name); });
@@ -239,5 +263,8 @@ template <class... Gs> struct SceneArrow<Product<Gs...>> {
     return all;
   }
 };
+
+/// The keys of an arrow.
+template <class G> std::vector<Key> arrow_keys() { return as_keys(SceneArrow<G>::declared(SceneArrow<G>::key)); }
 
 }  // namespace lagroid::app

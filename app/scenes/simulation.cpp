@@ -1,29 +1,25 @@
 #include "simulation.hpp"
 
+#include "scene_keys.hpp"
+
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lagroid::app {
 
-namespace {
-
-constexpr long most_apart = 1'000'000'000;  // rows, checkpoints
-
-}  // namespace
-
 TimeGrid read_time(const Section& scene) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
-  constexpr long most = 2'000'000'000;
   TimeGrid grid;
-  const bool has_duration = time.has("duration");
-  const bool has_step = time.has("step");
+  const bool has_duration = time.has(time_keys::duration.name);
+  const bool has_step = time.has(time_keys::step.name);
   constexpr double first_tried = 0.01;
   if (has_step && time.has("accuracy")) time.fail("accuracy", "finds the first step: leave out step or accuracy");
   if (has_duration && has_step) time.fail("duration", "give step or duration, not both (steps goes with either)");
-  grid.steps = time.integer("steps", 1, most);
-  grid.step = has_duration                        ? time.number("duration", positive) / double(grid.steps)
+  grid.steps = read_key(time, time_keys::steps);
+  grid.step = has_duration                        ? read_key(time, time_keys::duration) / double(grid.steps)
               : !has_step && time.has("accuracy") ? first_tried
-                                                  : time.number("step", positive);
+                                                  : read_key(time, time_keys::step);
   const char* const key = has_duration ? "duration" : "step";
   if (grid.step < std::numeric_limits<double>::min())
     time.fail(key, fmt::format("makes steps of {:g} s, too short to keep their digits", grid.step));
@@ -34,7 +30,7 @@ TimeGrid read_time(const Section& scene) {
 
 double read_start(const Section& scene) {
   const Section time = scene.section_or_empty("time");
-  const double start = time.number_or("start", 0);
+  const double start = read_key(time, time_keys::start);
   if (start + 0.5 * read_time(scene).step == start)
     time.fail("start", "is so late that a step is lost in its rounding; begin earlier");
   return start;
@@ -47,12 +43,10 @@ void refuse_accuracy(const Section& scene) {
 }
 
 Composition read_composition(const Section& time, std::span<const Composition> offered) {
-  const long order = time.integer_or("order", 2, 2, usual_compositions.back().order);
+  const long order = read_key(time, time_keys::order());
   const Composition* const usual = usual_composition(order);
   if (usual == nullptr) time.fail("order", fmt::format("must be {}, got {}", usual_orders(), order));
-  std::vector<std::string> names;
-  for (const auto& composition : offered) names.emplace_back(composition.name);
-  const std::string name = time.choice_or("composition", std::string(usual->name), names);
+  const std::string name = read_key(time, time_keys::composition(offered, usual->name));
   const Composition* const named = composition_named(offered, name);
   if (named == nullptr) return *usual;
   if (time.has("order") && named->order != order)
@@ -63,10 +57,7 @@ Composition read_composition(const Section& time, std::span<const Composition> o
 
 namespace {
 
-std::string read_mode_word(const Section& time) {
-  const auto words = mode_words();
-  return time.choice_or("mode", words.front(), words);
-}
+std::string read_mode_word(const Section& time) { return read_key(time, time_keys::mode()); }
 
 /// Refuses a key that asks for what the system lacks.
 void need(const Section& time, std::string_view key, std::span<const Requirement> requirements,
@@ -88,12 +79,11 @@ void read_options(const Section& time, const IntegrationMethod& method, const Ca
     if (time.has("composition"))
       time.fail("composition",
                 fmt::format("goes with steps that are composed, which \"{}\" ones are not; leave it out", method.name));
-    if (time.integer_or("order", method.order, 2, usual_compositions.back().order) != method.order)
+    if (read_key(time, time_keys::order(method.order)) != method.order)
       time.fail("order", fmt::format("of \"{}\" is {}", method.name, method.order));
   }
   if (options.mode == TimeMode::adaptive) {
-    const auto words = words_of(without_root_words);
-    options.without_root = choice_of(without_root_words, time.choice_or("without_root", words.front(), words));
+    options.without_root = choice_of(without_root_words, read_key(time, time_keys::without_root()));
     if (options.without_root == WithoutRoot::controlled) need(time, "without_root", requirements::of_controlled, able);
   } else if (time.has("without_root")) {
     time.fail("without_root",
@@ -102,11 +92,9 @@ void read_options(const Section& time, const IntegrationMethod& method, const Ca
 }
 
 void read_solver(const Section& solver, IntegratorOptions& options) {
-  const auto words = words_of(solver_words);
-  options.method = choice_of(solver_words, solver.choice_or("method", words.front(), words));
-  if (solver.has("max_iterations"))
-    options.step.max_iterations = int(solver.integer("max_iterations", 1, most_iterations));
-  options.step.tolerance = solver.number_or("tolerance", 0, nonnegative);
+  options.method = choice_of(solver_words, read_key(solver, solver_keys::method()));
+  options.step.max_iterations = int(read_key_or(solver, solver_keys::max_iterations, options.step.max_iterations));
+  options.step.tolerance = read_key(solver, solver_keys::tolerance);
 }
 
 }  // namespace
@@ -114,7 +102,7 @@ void read_solver(const Section& solver, IntegratorOptions& options) {
 std::string read_method_word(const Section& time, std::span<const DeclaredMethod> own) {
   std::vector<std::string> words = method_words();
   for (const DeclaredMethod& each : own) words.emplace_back(each.name);
-  const std::string word = time.choice_or("method", words.front(), words);
+  const std::string word = read_key(time, time_keys::method(std::move(words)));
   if (time.has("method") && read_mode_word(time) != mode_of_equal_steps)
     time.fail("method", fmt::format("goes with mode = \"{}\"", mode_of_equal_steps));
   return word;
@@ -137,7 +125,7 @@ IntegratorChoice read_integrator(const Section& scene, const Capabilities& able)
   read_options(time, method, able, options);
   if (!method.equal_steps()) refuse_duration(time);
   if (time.has("accuracy")) {
-    choice.accuracy = time.number("accuracy", positive);
+    choice.accuracy = read_key(time, time_keys::accuracy);
     if (time.has("duration")) time.fail("accuracy", "chooses the step: leave out duration");
     if (options.fixed != StepKind::variational || options.composition.stages() > 1)
       time.fail("accuracy", "chooses steps of order 2; give step, or leave out order, method and composition");
@@ -178,7 +166,7 @@ std::vector<Method> integration_methods(const Capabilities& able) {
   return all;
 }
 
-long read_every(const Section& scene) { return scene.section_or_empty("output").integer_or("every", 1, 1, most_apart); }
+long read_every(const Section& scene) { return read_key(scene.section_or_empty("output"), output_keys::every); }
 
 void refuse_duration(const Section& time) {
   if (time.has("duration"))
@@ -199,7 +187,7 @@ RunExtent read_extent(const Section& scene, const RunContext& context) {
   RunExtent extent;
   extent.steps = read_time(scene).steps;
   extent.every = read_every(scene);
-  extent.checkpoint = scene.section_or_empty("output").integer_or("checkpoint", 0, 1, most_apart);
+  extent.checkpoint = read_key_or(scene.section_or_empty("output"), output_keys::checkpoint, 0);
   if (!context.folder.empty() && !context.resume) extent.scene = kept_scene(scene);
   return extent;
 }

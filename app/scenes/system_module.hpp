@@ -12,6 +12,7 @@
 #include "prepared_scene.hpp"
 #include "simulation.hpp"
 
+#include <lagroid/core/capabilities/time_scale_of_arrows.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
 
@@ -28,10 +29,35 @@ struct ListedSystem {
   std::string name;
   std::string summary;
   std::string groupoid;
-  std::vector<ListedParameter> parameters;
+  std::vector<Key> parameters;
   std::vector<std::string> symmetries;  ///< declared by the system with its default parameters
   std::vector<std::string> conserved;   ///< quantities promised as conserved
 };
+
+/// The keys of a system's own tables, as its reader reads them.
+struct SystemKeys {
+  std::vector<Key> parameters;
+  std::vector<Key> initial;
+  std::vector<Key> end = {};     ///< of start and end in [boundary]; none where it has no boundary values
+  std::vector<Key> solver = {};  ///< of [solver] beside an initial value, besides those of every system
+  bool depends_on_time = false;
+  std::vector<std::string> boundary_modes = {};  ///< of [time] beside a boundary value
+};
+
+/// The words of [time] mode of a boundary value.
+template <DiscreteSystem Sys> std::vector<std::string> boundary_modes() {
+  std::vector<std::string> modes{std::string(mode_of_equal_steps)};
+  const auto add = [&](TimeMode mode) { modes.emplace_back(integration_method({.mode = mode}).name); };
+  if (Timed<Sys>) add(TimeMode::adaptive);
+  if (HasTimeScaleOfArrows<Sys>) add(TimeMode::controlled);
+  return modes;
+}
+/// With what the system's type says of time.
+template <DiscreteSystem Sys> SystemKeys with_times(SystemKeys keys) {
+  keys.depends_on_time = TimeDependent<Sys>;
+  keys.boundary_modes = boundary_modes<Sys>();
+  return keys;
+}
 
 /// A system that scenes can name, with all that a program does with it.
 class SystemModule {
@@ -45,6 +71,7 @@ class SystemModule {
   /// Its methods beside those declared for every system.
   virtual std::span<const DeclaredMethod> own_methods() const = 0;
   virtual ListedSystem listed() const = 0;
+  virtual SystemKeys keys() const = 0;
 
   /// Runs an initial or a boundary value.
   virtual RunResult run(const Section& scene, const RunContext& context) const = 0;
@@ -58,7 +85,7 @@ class SystemModule {
 
 /// What `list` shows of a system with its default parameters.
 template <DiscreteSystem Sys> ListedSystem listed_system(const std::string& name, const std::string& summary) {
-  ListedSystem out{name, summary, Sys::GroupoidType::name(), listed_parameters<Sys>(), {}, {}};
+  ListedSystem out{name, summary, Sys::GroupoidType::name(), parameter_keys<Sys>(), {}, {}};
   const Sys system;
   if constexpr (HasSymmetries<Sys>)
     for (const auto& symmetry : system.symmetries()) out.symmetries.push_back(symmetry.name);
@@ -71,8 +98,13 @@ template <DiscreteSystem Sys> ListedSystem listed_system(const std::string& name
 template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
  public:
   using Read = std::function<PreparedScene<Sys>(const Section& scene, const RunContext& context)>;
-  ModuleOf(std::string name, std::string summary, Read read, std::span<const DeclaredMethod> own_methods = {})
-      : SystemModule(std::move(name), std::move(summary)), read_(std::move(read)), own_methods_(own_methods) {}
+  /// `keys` are made when they are asked for.
+  using Keys = std::function<SystemKeys()>;
+  ModuleOf(std::string name, std::string summary, Read read, Keys keys, std::span<const DeclaredMethod> own_methods = {})
+      : SystemModule(std::move(name), std::move(summary)),
+        read_(std::move(read)),
+        keys_(std::move(keys)),
+        own_methods_(own_methods) {}
 
   PreparedScene<Sys> prepare(const Section& scene, const RunContext& context) const { return read_(scene, context); }
 
@@ -88,9 +120,11 @@ template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
     return {read.begin(), read_extent(scene, context), read.methods};
   }
   ListedSystem listed() const override { return listed_system<Sys>(name(), summary()); }
+  SystemKeys keys() const override { return with_times<Sys>(keys_()); }
 
  private:
   Read read_;
+  Keys keys_;
   std::span<const DeclaredMethod> own_methods_;
 };
 

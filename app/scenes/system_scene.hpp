@@ -12,6 +12,7 @@
 #include "attitude.hpp"
 #include "scene_arrow.hpp"
 #include "simulation.hpp"
+#include "system_module.hpp"
 
 #include <lagroid/run/run.hpp>
 
@@ -59,6 +60,20 @@ template <DiscreteSystem Sys> Presentation<Sys> dressed(const Sys& system, std::
   return p;
 }
 
+/// `momentum` of [initial], of which these are the names.
+template <DiscreteSystem Sys> KeyOf<NumberArray> momentum_key(const std::vector<std::string>& labels) {
+  return {"momentum", {std::size_t(Sys::GroupoidType::dimension)}, "", fmt::format("{}", fmt::join(labels, ", "))};
+}
+
+/// The keys of any system, read as below and by `read_ends` (any_system.hpp).
+template <DiscreteSystem Sys> SystemKeys keys_of(std::string_view name, Dress<Sys> dress) {
+  using G = typename Sys::GroupoidType;
+  SystemKeys keys{.parameters = parameter_keys<Sys>(), .initial = arrow_keys<G>()};
+  keys.initial.push_back(momentum_key<Sys>(dressed(Sys{}, name, dress).momentum));
+  if constexpr (Variational<Sys>) keys.end = arrow_keys<G>();
+  return keys;
+}
+
 /// The system of a scene: its [parameters], its step and, where it depends on time, when it starts.
 template <DiscreteSystem Sys> Sys read_system(const Section& scene) {
   auto system = read_parameters<Sys>(scene);
@@ -86,7 +101,7 @@ template <DiscreteSystem Sys> struct InitialValue {
   State<typename Sys::GroupoidType> state;
   ArrowOf<typename Sys::GroupoidType> configuration;
 };
-/// [initial]: a configuration and `momentum`, of which `labels` are the names.
+/// [initial]: a configuration and `momentum`.
 template <DiscreteSystem Sys>
 InitialValue<Sys> read_initial(const Sys& system, const Section& scene, const std::vector<std::string>& labels) {
   using G = typename Sys::GroupoidType;
@@ -94,7 +109,7 @@ InitialValue<Sys> read_initial(const Sys& system, const Section& scene, const st
   InitialValue<Sys> value;
   value.configuration = read_configuration(system, initial);
   value.state.object = system.groupoid.target(value.configuration);
-  const auto momentum = initial.numbers("momentum", G::dimension, fmt::format("{}", fmt::join(labels, ", ")));
+  const auto momentum = read_key(initial, momentum_key<Sys>(labels));
   value.state.momentum = Eigen::Map<const AlgebroidVector<G>>(momentum.data());
   return value;
 }

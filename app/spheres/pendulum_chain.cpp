@@ -22,7 +22,7 @@ class ChainSystem final : public SphereSystem {
   explicit ChainSystem(Chain chain) : chain_(std::move(chain)) {}
 
   std::string_view name() const override { return keys::pendulum_chain; }
-  std::vector<SphereForm> forms() const override { return {SphereForm::velocities, SphereForm::momenta}; }
+  std::vector<SphereForm> forms() const override { return pendulum_chain_forms; }
   Points in_form(const Points& z, SphereForm from, SphereForm to) const override {
     if (from == to) return z;
     return to == SphereForm::momenta ? chain_.to_momenta(z) : chain_.to_velocities(z);
@@ -70,18 +70,26 @@ template <class P> inline constexpr bool is_for_each_link = std::is_same_v<P, co
 
 Chain one_link() { return {Numbers::Ones(1), Numbers::Ones(1)}; }
 
+const KeyOf<Whole> links_key{
+    "links", {1, 100'000}, "1", "how many, where neither masses nor lengths says it", {}, "as many as these"};
+
 }  // namespace
 
-std::vector<ListedParameter> pendulum_chain_parameters() {
-  auto all = listed_parameters(one_link());
-  all.push_back({"links", "1", "", "how many, where neither masses nor lengths says it"});
+std::vector<Key> pendulum_chain_parameters() {
+  std::vector<Key> all = parameter_keys(one_link());
+  auto key = all.begin();
+  for_each_parameter<Chain>([&](const auto& p) {
+    if constexpr (is_for_each_link<decltype(p)>) key->value = {Either{{{Number{p.rule}}, {NumberList{p.rule}}}}};
+    ++key;
+  });
+  all.push_back(links_key);
   return all;
 }
 
 std::unique_ptr<SphereSystem> read_pendulum_chain(const Section& scene) {
   const Section parameters = scene.section("parameters", "masses and lengths of the chain");
-  constexpr long most = 100'000;
-  long links = parameters.integer_or("links", 0, 1, most);
+  const long most = links_key.value.most;
+  long links = read_key_or(parameters, links_key, 0);
   Chain given = one_link();
   for_each_parameter<Chain>([&](const auto& p) {
     if constexpr (is_for_each_link<decltype(p)>) {
@@ -97,7 +105,7 @@ std::unique_ptr<SphereSystem> read_pendulum_chain(const Section& scene) {
       reading::read(parameters, p, given);
     }
   });
-  if (links == 0) links = parameters.integer("links", 1, most);
+  if (links == 0) links = read_key(parameters, links_key);
   if (links > most) parameters.fail("masses", fmt::format("are of {} links; a chain has {} at most", links, most));
   for_each_parameter<Chain>([&](const auto& p) {
     if constexpr (is_for_each_link<decltype(p)>)

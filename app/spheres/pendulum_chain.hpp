@@ -7,7 +7,9 @@
 
 namespace lagroid::app {
 
-std::vector<ListedParameter> pendulum_chain_parameters();
+std::vector<Key> pendulum_chain_parameters();
+/// The usual one first.
+inline const std::vector<SphereForm> pendulum_chain_forms{SphereForm::velocities, SphereForm::momenta};
 std::unique_ptr<SphereSystem> read_pendulum_chain(const Section& scene);
 
 }  // namespace lagroid::app

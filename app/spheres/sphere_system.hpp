@@ -64,9 +64,11 @@ struct SphereEntry {
   std::string_view name;
   std::string_view summary;
   std::string_view groupoid;
-  std::vector<ListedParameter> parameters;
+  std::vector<Key> parameters;
   std::vector<std::string> symmetries;
   std::vector<std::string> conserved;
+  /// Those of its systems, the usual one first.
+  std::vector<SphereForm> forms;
   /// Methods beside those for Lie groups, made for the system. The first is what scenes get.
   std::vector<DeclaredMethod> own_methods;
   /// The paper that the system itself is from, if there is one.

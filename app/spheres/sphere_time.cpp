@@ -1,5 +1,6 @@
 #include "sphere_time.hpp"
 
+#include "../scenes/scene_keys.hpp"
 #include "../scenes/simulation.hpp"
 
 #include <lagroid/run/interrupt.hpp>
@@ -8,12 +9,27 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace lagroid::app {
 
 namespace {
 
 const char* word(SphereForm form) { return form == SphereForm::velocities ? "velocities" : "momenta"; }
+
+KeyOf<OneOf> form_key(const std::vector<SphereForm>& forms) {
+  KeyOf<OneOf> key{"form", {}, "", "of states: (q, w) in (TS^2)^k, or (q, p) in (T*S^2)^k", word(forms.front())};
+  for (const SphereForm form : forms) key.value.words.emplace_back(word(form));
+  return key;
+}
+
+const KeyOf<Number> tolerance{"tolerance",
+                              {{"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }}},
+                              "",
+                              "of a method that estimates its error: inner steps of the size that the estimate asks for "
+                              "lead from node to node; `step` is then the distance of the nodes",
+                              {},
+                              "steps are as long as `step`"};
 
 std::string usual_method(const SphereEntry& entry) {
   return std::string(entry.own_methods.empty() ? lie_group_methods::commutator_free_4.name
@@ -28,11 +44,29 @@ const DeclaredMethod* own_method(const SphereEntry& entry, std::string_view name
   return nullptr;
 }
 
-std::string read_sphere_method(const Section& time, const SphereEntry& entry) {
+namespace {
+
+KeyOf<OneOf> method_key(const SphereEntry& entry) {
   std::vector<std::string> names;
   for (const DeclaredMethod& own : entry.own_methods) names.emplace_back(own.name);
   for (const LieGroupMethod& method : lie_group_methods::all) names.emplace_back(method.name);
-  return time.choice_or("method", usual_method(entry), names);
+  KeyOf<OneOf> key = time_keys::method(std::move(names));
+  key.fallback = usual_method(entry);
+  return key;
+}
+
+}  // namespace
+
+Table sphere_time_table(const SphereEntry& entry) {
+  Table table{grid_keys()};
+  table.keys.insert(table.keys.end(), {method_key(entry), form_key(entry.forms), tolerance});
+  if (!entry.own_methods.empty())
+    table.keys.insert(table.keys.end(), {time_keys::order(), time_keys::composition(compositions::all)});
+  return table;
+}
+
+std::string read_sphere_method(const Section& time, const SphereEntry& entry) {
+  return read_key(time, method_key(entry));
 }
 
 SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry& entry, const SphereSystem& system) {
@@ -42,9 +76,7 @@ SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry
   refuse_accuracy(scene);
   options.method = read_sphere_method(time, entry);
   const auto forms = system.forms();
-  std::vector<std::string> words;
-  for (const SphereForm form : forms) words.emplace_back(word(form));
-  const std::string chosen = time.choice_or("form", words.front(), words);
+  const std::string chosen = read_key(time, form_key(forms));
   for (const SphereForm form : forms)
     if (word(form) == chosen) options.form = form;
   if (own_method(entry, options.method) != nullptr) {
@@ -59,7 +91,7 @@ SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry
     time.fail("tolerance", fmt::format("goes with a method that estimates its error: method = \"{}\"",
                                        lie_group_methods::munthe_kaas_54.name));
   options.stop = InterruptGuard::interrupted;
-  options.tolerance = time.number("tolerance", {"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }});
+  options.tolerance = read_key(time, tolerance);
   return options;
 }
 

@@ -11,6 +11,8 @@
 
 namespace lagroid::app {
 
+/// The keys of [time].
+Table sphere_time_table(const SphereEntry& entry);
 /// `method` of [time]: one of the system's own, or a Lie group method.
 std::string read_sphere_method(const Section& time, const SphereEntry& entry);
 /// The system's own method of that name; null where it is one for Lie groups.

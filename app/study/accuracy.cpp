@@ -2,6 +2,7 @@
 
 #include <lagroid/run/study/measure.hpp>
 #include <lagroid/run/study/methods.hpp>
+#include "../scenes/scene_keys.hpp"
 #include "scene_experiment.hpp"
 
 #include <lagroid/run/reports/clock.hpp>
@@ -33,11 +34,9 @@ struct Goal {
 Goal read_goal(const Section& scene) {
   const Section accuracy = scene.section("accuracy", "the target");
   Goal goal;
-  goal.target = accuracy.number("target", {"between 1e-14 and 0.5", [](double x) { return x >= 1e-14 && x <= 0.5; }});
-  goal.pilot =
-      accuracy.number_or("pilot", 2, {"between 0.01 and 100000", [](double x) { return x >= 0.01 && x <= 1e5; }});
-  if (accuracy.has("methods"))
-    goal.methods = accuracy.text("methods", "patterns of names, as lagroid study takes them");
+  goal.target = read_key(accuracy, accuracy_keys::target);
+  goal.pilot = read_key(accuracy, accuracy_keys::pilot);
+  goal.methods = read_key_or(accuracy, accuracy_keys::methods, "");
   accuracy.finish();
   const Section time = scene.section("time", "duration");
   for (const char* key : {"mode", "method", "form", "order", "composition", "tolerance", "accuracy", "without_root"})

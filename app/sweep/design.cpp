@@ -19,7 +19,30 @@ namespace lagroid::app {
 namespace {
 
 constexpr long most_members = 100'000'000;
-constexpr long largest_seed = 2147483647;
+
+const KeyOf<Text> path_key{"key", {}, "", "a number of the scene, as in \"initial.momentum.0\""};
+const KeyOf<OneOf> scale{"scale", {{"linear", "log"}}, "", "in which the range is evenly filled", "linear"};
+const KeyOf<Number> from_key{"from", {}, "", "the first of the range; positive where the scale is log"};
+const KeyOf<Number> to_key{"to", {}, "", "the last of the range; positive where the scale is log"};
+const KeyOf<Whole> count_on_grid{"count", {1, most_members}, "", "numbers on the grid"};
+const KeyOf<NumberList> values_key{"values", {}, "", "the numbers that it takes"};
+const KeyOf<Number> mean{"mean", {}, "", "of a normal distribution"};
+const KeyOf<Number> deviation{"deviation", {positive}, "", "of a normal distribution"};
+const std::string sphere = "sphere";
+const std::string attitude = "attitude";
+KeyOf<OneOf> distribution_key(std::vector<std::string> words) {
+  return {"distribution", {std::move(words)}, "", "uniform: a vector on a sphere, or a unit quaternion"};
+}
+const KeyOf<Number> radius_key{"radius", {positive}, "", "of the sphere", 1.0};
+
+const std::string grid_design = "grid";
+const std::string latin_hypercube = "latin-hypercube";
+const std::string list_of_members = "list";
+KeyOf<OneOf> kind_key(std::vector<std::string> words) {
+  return {"kind", {std::move(words)}, "", "how members are laid out"};
+}
+const KeyOf<Whole> member_count{"count", {1, most_members}, "", "members"};
+const KeyOf<Whole> seed_key{"seed", {0, 2147483647}, "", "of what is drawn", 1};
 
 /// How one key varies: which numbers it has at points of the unit cube, and on a grid.
 struct Variation {
@@ -64,16 +87,16 @@ double whole_if_near(double x) {
 }
 
 void read_range(const Section& vary, Variation& v, bool on_grid) {
-  const bool logarithmic = vary.choice_or("scale", "linear", {"linear", "log"}) == "log";
+  const bool logarithmic = read_key(vary, scale) != *scale.fallback;
   const NumberRule& rule = logarithmic ? positive : any_number;
-  const double from = vary.number("from", rule);
-  const double to = vary.number("to", rule);
+  const double from = vary.number(from_key.name, rule);
+  const double to = vary.number(to_key.name, rule);
   v.at = [=](const double* u, double* out) {
     *out = logarithmic ? from * std::pow(to / from, *u) : from + (to - from) * *u;
   };
   v.key.logarithmic = logarithmic;
   if (!on_grid) return;
-  const long count = vary.integer("count", 1, most_members);
+  const long count = read_key(vary, count_on_grid);
   v.key.equally_spaced = !logarithmic && count > 1;
   v.count = count;
   // Both ends are met, and whole numbers stay whole.
@@ -86,7 +109,7 @@ void read_range(const Section& vary, Variation& v, bool on_grid) {
 }
 
 void read_values(const Section& vary, Variation& v) {
-  const std::vector<double> values = vary.list("values", "the numbers that it takes");
+  const std::vector<double> values = read_key(vary, values_key);
   v.count = long(values.size());
   v.on_grid = [values](long i) { return values[std::size_t(i)]; };
   v.at = [values](const double* u, double* out) {
@@ -95,13 +118,13 @@ void read_values(const Section& vary, Variation& v) {
 }
 
 void read_normal(const Section& vary, Variation& v) {
-  const boost::math::normal_distribution<double> normal(vary.number("mean"), vary.number("deviation", positive));
+  const boost::math::normal_distribution<double> normal(read_key(vary, mean), read_key(vary, deviation));
   v.at = [normal](const double* u, double* out) { *out = quantile(normal, *u); };
 }
 
 void read_sphere(const Section& vary, Variation& v) {
   v.dimensions = 2;
-  v.at = [radius = vary.number_or("radius", 1, positive)](const double* u, double* out) {
+  v.at = [radius = read_key(vary, radius_key)](const double* u, double* out) {
     const double z = 1 - 2 * u[0];
     const double ring = std::sqrt((1 - z) * (1 + z));
     const double angle = 2 * std::numbers::pi * u[1];
@@ -129,11 +152,11 @@ void read_attitude(Variation& v) {
 Variation read_variation(const Section& vary, bool on_grid, const Section& scene) {
   Variation v;
   v.section = vary;
-  const std::string path = vary.text("key", "a number of the scene, as in \"initial.momentum.0\"");
+  const std::string path = read_key(vary, path_key);
   std::size_t size = 1;
   if (vary.has("distribution")) {
     if (on_grid) vary.fail("distribution", "has no grid; give from, to and count, or values, or another design.kind");
-    size = vary.choice("distribution", {"sphere", "attitude"}) == "sphere" ? 3 : 4;
+    size = read_key(vary, distribution_key({sphere, attitude})) == sphere ? 3 : 4;
     if (size == 3) read_sphere(vary, v);
     if (size == 4) read_attitude(v);
   } else if (vary.has("values")) {
@@ -257,23 +280,42 @@ std::vector<Change> Design::member(long i) const {
   return out;
 }
 
+std::vector<Table> design_tables() {
+  const Table range{{path_key, from_key, to_key, scale}};
+  Table counted = range;
+  counted.keys.push_back(count_on_grid);
+  const Table values{{path_key, values_key}};
+  const auto sweep = [](const Table& design, std::vector<Table> vary) -> Table {
+    return {{KeyOf<Table>{"design", design, "", "which members there are"},
+             KeyOf<Tables>{"vary", {{{}, std::move(vary)}}, "", "what of the scene the members change"}}};
+  };
+  return {sweep({{kind_key({grid_design})}}, {counted, values}),
+          sweep({{kind_key({"random", latin_hypercube}), member_count, seed_key}},
+                {range,
+                 values,
+                 {{path_key, mean, deviation}},
+                 {{path_key, distribution_key({sphere}), radius_key}},
+                 {{path_key, distribution_key({attitude})}}}),
+          {{KeyOf<Table>{"design", {{kind_key({list_of_members}), member_file}}, "", "which members there are"}}}};
+}
+
 Design read_design(const Section& sweep, const Section& scene) {
   const Section section = sweep.section("design", "which members there are");
   Design design;
-  design.kind = section.choice("kind", {"grid", "random", "latin-hypercube", "list"});
-  if (design.kind == "list") {
+  design.kind = read_key(section, kind_key({grid_design, "random", latin_hypercube, list_of_members}));
+  if (design.kind == list_of_members) {
     read_list(sweep, section, scene, design);
     return design;
   }
-  const bool on_grid = design.kind == "grid";
+  const bool on_grid = design.kind == grid_design;
   const std::vector<Variation> variations = read_variations(sweep, on_grid, scene);
   for (const Variation& v : variations) design.keys.push_back(v.key);
   if (on_grid) {
     fill_grid(sweep, variations, design);
   } else {
-    const long count = section.integer("count", 1, most_members);
-    const long seed = section.integer_or("seed", 1, 0, largest_seed);
-    fill_random(variations, count, seed, design.kind == "latin-hypercube", design);
+    const long count = read_key(section, member_count);
+    const long seed = read_key(section, seed_key);
+    fill_random(variations, count, seed, design.kind == latin_hypercube, design);
   }
   const std::vector<std::string> columns = design.columns();
   for (std::size_t i = 0; i < design.values.size(); ++i)

@@ -1,7 +1,7 @@
 #pragma once
 /// The members of a sweep: which numbers of a scene each of them has in place of others.
 
-#include "../reading/scene_reader.hpp"
+#include "../reading/key.hpp"
 
 #include <cstddef>
 #include <string>
@@ -29,6 +29,9 @@ struct Design {
   /// What member i changes.
   std::vector<Change> member(long i) const;
 };
+
+/// The keys of [design] and [[vary]], by the kinds of designs.
+std::vector<Table> design_tables();
 
 /// [design] and [[vary]] of a sweep over `scene`. Throws SceneError, also for keys that are not numbers of the scene.
 ///

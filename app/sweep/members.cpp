@@ -1,5 +1,6 @@
 #include "members.hpp"
 
+#include "../scenes/scene_keys.hpp"
 #include "../study/run_scene.hpp"
 
 #include <lagroid/run/interrupt.hpp>
@@ -17,7 +18,12 @@ namespace lagroid::app {
 
 namespace {
 
-constexpr long most_apart = 1'000'000'000;  // [output] every
+const KeyOf<Texts> final_key{
+    "final", {}, "", "names of recorded quantities or columns, kept of the last node", {}, "all"};
+const KeyOf<Texts> initial_key{"initial", {}, "", "the same, of the first node", {}, "none"};
+const KeyOf<Texts> series_key{"series", {}, "", "the same, of all recorded nodes", {}, "none"};
+const KeyOf<Whole> every_key{"every", {1, most_apart}, "", "n: the series have each n-th node, and the last", 1};
+const KeyOf<Flag> ledger_key{"ledger", {}, "", "whether the drifts of the ledger are kept", true};
 
 /// What a series is called in a list of names: by itself, or by single columns.
 bool named_in(const std::vector<std::string>& names, const Columns& series, std::size_t component) {
@@ -92,16 +98,17 @@ class SceneRunner final : public MemberRunner {
 
 }  // namespace
 
+Table keep_table() { return {{final_key, initial_key, series_key, every_key, ledger_key}}; }
+
 KeptColumns read_keep(const Section& sweep) {
   const Section section = sweep.section_or_empty("keep");
-  constexpr std::string_view what = "names of recorded quantities or columns";
   KeptColumns keep;
-  if (section.has("final")) keep.final = section.texts_or_none("final", what);
-  keep.initial = section.texts_or_none("initial", what);
-  keep.series = section.texts_or_none("series", what);
+  if (section.has(final_key.name)) keep.final = read_key(section, final_key);
+  keep.initial = read_key(section, initial_key);
+  keep.series = read_key(section, series_key);
   if (section.has("every") && keep.series.empty()) section.fail("every", "goes with series");
-  keep.every = section.integer_or("every", 1, 1, most_apart);
-  keep.ledger = section.flag_or("ledger", true);
+  keep.every = read_key(section, every_key);
+  keep.ledger = read_key(section, ledger_key);
   return keep;
 }
 

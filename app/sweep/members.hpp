@@ -22,6 +22,7 @@ struct KeptColumns {
   long every = 1;
   bool ledger = true;  ///< how far each quantity drifted
 };
+Table keep_table();
 KeptColumns read_keep(const Section& sweep);
 
 /// Runs members; may be asked by several threads at once.

@@ -2,6 +2,7 @@
 
 #include "../families/family.hpp"
 #include "../reading/its_scene.hpp"
+#include "../reading/kinds.hpp"
 
 #include <lagroid/run/machine.hpp>
 
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 namespace lagroid::app {
 
@@ -22,15 +24,26 @@ namespace fs = std::filesystem;
 constexpr long most_parts = 512;  ///< unless more are asked for
 constexpr long most_files = 1'000'000;
 
+KeyOf<Text> column_key(std::string name, std::string meaning) {
+  return {std::move(name), {}, "", "a column of members.csv: " + std::move(meaning), {}, "it is not drawn"};
+}
+const KeyOf<Text> x_key = column_key("x", "to the right");
+const KeyOf<Text> y_key = column_key("y", "upwards");
+const KeyOf<Text> quantity_key = column_key("quantity", "what is shown");
+const KeyOf<OneOf> engine_key{"engine", {{"auto", "scenes", "lanes"}}, "", "how members are run", "auto"};
+const KeyOf<Whole> part_key{
+    "part", {1, 100'000'000}, "", "members of a part, which is computed as a whole", {}, "at most 512 parts"};
+const KeyOf<Either> scene_key{std::string(keys::sweep),
+                              {{{Text{}}, {AnyTable{}}}},
+                              "",
+                              "the path of a scene, or the scene itself, or `file` and what differs from it"};
+
 SweepPlot read_plot(const Section& sweep) {
   const Section section = sweep.section_or_empty("plot");
   SweepPlot plot;
-  const auto read = [&](const char* key, std::string& to) {
-    if (section.has(key)) to = section.text(key, "a column of members.csv");
-  };
-  read("x", plot.x);
-  read("y", plot.y);
-  read("quantity", plot.quantity);
+  plot.x = read_key_or(section, x_key, "");
+  plot.y = read_key_or(section, y_key, "");
+  plot.quantity = read_key_or(section, quantity_key, "");
   if (!plot.y.empty() && plot.x.empty()) section.fail("y", "goes with x");
   return plot;
 }
@@ -40,15 +53,23 @@ void read_rest(const Section& sweep, SweepScene& out) {
   out.keep = read_keep(sweep);
   out.plot = read_plot(sweep);
   const Section run = sweep.section_or_empty("run");
-  out.engine = run.choice_or("engine", "auto", {"auto", "scenes", "lanes"});
+  out.engine = read_key(run, engine_key);
   const long count = out.design.count();
-  out.part = run.integer_or("part", (count + most_parts - 1) / most_parts, 1, 100'000'000);
+  out.part = read_key_or(run, part_key, (count + most_parts - 1) / most_parts);
   if (out.parts() > most_files)
     run.fail("part", fmt::format("makes {} parts, each a file for a while; take {} or more", out.parts(),
                                  (count + most_files - 1) / most_files));
 }
 
 }  // namespace
+
+Table sweep_table() {
+  return {{scene_key, optional_table("keep", keep_table(), "what is kept of every member"),
+           optional_table("plot", {{x_key, y_key, quantity_key}}, "what is drawn"),
+           optional_table("run", {{engine_key, part_key}}, "how it is computed")},
+          design_tables(),
+          "many members of a scene"};
+}
 
 SweepScene read_sweep(const fs::path& file, const std::vector<std::string>& overrides) {
   const Section sweep = read_scene(file, overrides);

@@ -39,6 +39,9 @@ struct SweepScene {
   long count_of(long p) const { return std::min(part, design.count() - first_of(p)); }
 };
 
+/// The keys of a sweep.
+Table sweep_table();
+
 /// Reads SWEEP.toml and its scene; `scene = "FILE"` is seen from the sweep, or from the working folder where it is not
 /// there. [scene] has the scene itself, or `file` and what is to differ from it. Where the scene asks for an accuracy,
 /// method and step are still to be chosen. Throws SceneError.

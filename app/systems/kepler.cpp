@@ -7,6 +7,8 @@ namespace lagroid::app {
 
 namespace {
 
+const VectorKeys state_keys{{"position", {2}, "m", "x, y"}, {"momentum", {2}, "m/s", "px, py, of a unit mass"}};
+
 PreparedScene<Kepler> read(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<Kepler, 2>("kepler", {"x", "y"}, "m", {"px", "py"}, "m/s");
   p.panels = {{"orbit", "x", "y", "x", {"y"}, true},
@@ -22,13 +24,14 @@ PreparedScene<Kepler> read(const Section& scene, const RunContext& context) {
     planet.trail = true;
     return std::vector<Shape>{{"sphere", {0.1}}, planet};
   };
-  return read_mechanical<Kepler, 2>(scene, context, p, "x, y", "px, py", off_centre, any_state, shapes);
+  return read_mechanical<Kepler, 2>(scene, context, p, state_keys, off_centre, any_state, shapes);
 }
 
 }  // namespace
 
 const SystemModule& kepler_module() {
-  static const ModuleOf<Kepler> module("kepler", "planar Kepler problem", read);
+  static const ModuleOf<Kepler> module("kepler", "planar Kepler problem", read,
+                                       [] { return keys_of<Kepler>(state_keys); });
   return module;
 }
 

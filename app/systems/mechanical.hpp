@@ -2,17 +2,25 @@
 /// What the scenes of point masses on R^n have in common.
 
 #include "../scenes/boundary_value.hpp"
+#include "../scenes/system_module.hpp"
 
 #include <lagroid/systems/mechanical.hpp>
 
 namespace lagroid::app {
 
-/// [initial] position and momentum as vectors of R^n.
-template <int N>
-State<Pair<N>> read_vector_state(const Section& initial, std::string_view position, std::string_view momentum) {
+/// A state as vectors of R^n.
+struct VectorKeys {
+  KeyOf<NumberArray> position;
+  KeyOf<NumberArray> momentum;
+};
+template <class Sys> SystemKeys keys_of(const VectorKeys& state) {
+  return {parameter_keys<Sys>(), {state.position, state.momentum}, {state.position}};
+}
+
+template <int N> State<Pair<N>> read_vector_state(const Section& initial, const VectorKeys& keys) {
   State<Pair<N>> s;
-  s.object = Eigen::Map<const Vector<double, N>>(initial.numbers("position", N, position).data());
-  s.momentum = Eigen::Map<const Vector<double, N>>(initial.numbers("momentum", N, momentum).data());
+  s.object = Eigen::Map<const Vector<double, N>>(read_key(initial, keys.position).data());
+  s.momentum = Eigen::Map<const Vector<double, N>>(read_key(initial, keys.momentum).data());
   return s;
 }
 
@@ -37,16 +45,15 @@ Presentation<Sys> vector_presentation(std::string name, std::vector<std::string>
 /// [boundary] start and end, each a position that `check(system, section, q)` refuses or returns, and the time between
 /// them.
 template <class Sys, int N, class Check>
-BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::string_view position,
+BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, const KeyOf<NumberArray>& position,
                                         const Check& check) {
   const TimeGrid grid = read_time(scene);
   system.h = grid.step;
   const Section boundary = scene.section("boundary", "start and end");
   const auto end = [&](std::string_view key) {
     const Section section = boundary.section(key, "position");
-    return check(
-        system, section,
-        Vector<double, N>(Eigen::Map<const Vector<double, N>>(section.numbers("position", N, position).data())));
+    return check(system, section,
+                 Vector<double, N>(Eigen::Map<const Vector<double, N>>(read_key(section, position).data())));
   };
   const Vector<double, N> from = end("start");
   return {{{system, PairArrow<double, N>{from, end("end")}}, std::size_t(grid.steps)},
@@ -57,16 +64,16 @@ BoundaryScene<Sys> read_vector_boundary(const Section& scene, Sys system, std::s
 /// it.
 template <class Sys, int N, class Check, class CheckState, class Shapes>
 PreparedScene<Sys> read_mechanical(const Section& scene, const RunContext& context, Presentation<Sys> p,
-                                   std::string_view position, std::string_view momentum, const Check& check,
-                                   const CheckState& check_state, const Shapes& shapes) {
+                                   const VectorKeys& keys, const Check& check, const CheckState& check_state,
+                                   const Shapes& shapes) {
   Sys system = read_parameters<Sys>(scene);
   p.shapes = shapes(system);
   if (is_boundary_value(scene, "position and momentum"))
     return boundary_value<Sys>(scene, context, p, [=](const Section& s) {
-      return read_vector_boundary<Sys, N>(s, read_parameters<Sys>(s), position, check);
+      return read_vector_boundary<Sys, N>(s, read_parameters<Sys>(s), keys.position, check);
     });
   const Section section = scene.section("initial", "position and momentum");
-  auto initial = read_vector_state<N>(section, position, momentum);
+  auto initial = read_vector_state<N>(section, keys);
   initial.object = check(system, section, initial.object);
   check_state(system, section, initial);
   system.h = read_time(scene).step;

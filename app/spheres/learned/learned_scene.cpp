@@ -22,7 +22,7 @@ class LearnedSystem final : public SphereSystem {
       : learned_(std::move(learned)), file_(std::move(file)) {}
 
   std::string_view name() const override { return keys::learned_hamiltonian; }
-  std::vector<SphereForm> forms() const override { return {SphereForm::momenta}; }
+  std::vector<SphereForm> forms() const override { return learned_forms; }
   Points in_form(const Points& z, SphereForm, SphereForm) const override { return z; }
   std::unique_ptr<SphereIntegrator> begin(const Points& start, const SphereIntegratorOptions& options) const override {
     return integrator_on_spheres(learning::IntegratedField(learned_.model->equations(learned_.parameters)), start,
@@ -61,7 +61,7 @@ class LearnedSystem final : public SphereSystem {
 std::unique_ptr<SphereSystem> read_learned_hamiltonian(const Section& scene) {
   const Section parameters = scene.section("parameters", "which model");
   try {
-    const std::string name = parameters.text("model", "the path of a model.json");
+    const std::string name = read_key(parameters, learned_model_key);
     std::filesystem::path file = std::filesystem::path(scene.file()).parent_path() / name;
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) file = name;

@@ -89,7 +89,7 @@ MemberList read_data_sets(const fs::path& path) {
 }  // namespace
 
 MemberList read_member_list(const Section& section) {
-  const std::string name = section.text("file", "the path of a CSV or HDF5 file of members");
+  const std::string name = read_key(section, member_file);
   fs::path file = fs::path(section.file()).parent_path() / name;
   std::error_code ignored;
   if (!fs::exists(file, ignored)) file = name;

@@ -1,5 +1,6 @@
 #include "../../scenes/attitude.hpp"
 #include "../../scenes/boundary_value.hpp"
+#include "../../scenes/scene_arrow.hpp"
 #include "../../scenes/system_module.hpp"
 
 #include <lagroid/systems/control/plate_ball.hpp>
@@ -61,10 +62,20 @@ Presentation<PlateBall> presentation(const PlateBall& system) {
   time.fail(time.has("step") ? "step" : time.has("accuracy") ? "accuracy" : "steps", why);
 }
 
+const KeyOf<NumberArray> position{"position", {2}, "m", "x, y"};
+const KeyOf<NumberArray> momentum{"momentum", {5}, "", "px, py, M1, M2, M3 at the first object"};
+
+SystemKeys own_keys() {
+  const std::vector<Key> end{position, SceneArrow<SO3>::declared(SceneArrow<SO3>::key)};
+  std::vector<Key> initial = end;
+  initial.push_back(momentum);
+  return {parameter_keys<PlateBall>(), std::move(initial), end, multistart_keys()};
+}
+
 ArrowOf<G> end_point(const Section& end) {
-  const auto q = end.numbers("position", 2, "x, y");
+  const auto q = read_key(end, position);
   const Vector<double, 2> at(q[0], q[1]);
-  return {PairArrow<double, 2>{at, at}, SceneArrow<SO3>::read(end, "attitude")};
+  return {PairArrow<double, 2>{at, at}, SceneArrow<SO3>::read(end, SceneArrow<SO3>::key)};
 }
 
 PreparedScene<PlateBall> initial_value(const Section& scene, const RunContext& context, const PlateBall& system) {
@@ -72,7 +83,7 @@ PreparedScene<PlateBall> initial_value(const Section& scene, const RunContext& c
   const ArrowOf<G> configuration = end_point(initial);
   State<G> state;
   std::get<0>(state.object) = std::get<0>(configuration).source;
-  state.momentum = Eigen::Map<const Vector<double, 5>>(initial.numbers("momentum", 5, "px, py, M1, M2, M3").data());
+  state.momentum = Eigen::Map<const Vector<double, 5>>(read_key(initial, momentum).data());
   read_multistart(scene.section_or_empty("solver"));
   return simulation(scene, context, system, presentation(system), state, configuration);
 }
@@ -117,7 +128,8 @@ PreparedScene<PlateBall> read(const Section& scene, const RunContext& context) {
 }  // namespace
 
 const SystemModule& plate_ball_module() {
-  static const ModuleOf<PlateBall> module("plate_ball", "optimal control of a ball rolling on a rotating plate", read);
+  static const ModuleOf<PlateBall> module("plate_ball", "optimal control of a ball rolling on a rotating plate", read,
+                                          own_keys);
   return module;
 }
 

@@ -54,7 +54,8 @@ PreparedScene<Unicycle> read(const Section& scene, const RunContext& context) {
 }  // namespace
 
 const SystemModule& unicycle_module() {
-  static const ModuleOf<Unicycle> module(name, "steering at constant speed: planar elastica on SE(2)", read);
+  static const ModuleOf<Unicycle> module(name, "steering at constant speed: planar elastica on SE(2)", read,
+                                         [] { return keys_of<Unicycle>(name, dress); });
   return module;
 }
 

@@ -7,6 +7,9 @@ namespace lagroid::app {
 
 namespace {
 
+const VectorKeys state_keys{{"position", {3}, "m", "x, y, z on the sphere, z up"},
+                      {"momentum", {3}, "kg m/s", "px, py, pz, tangent to the sphere"}};
+
 PreparedScene<SphericalPendulum> read(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<SphericalPendulum, 3>("spherical_pendulum", {"x", "y", "z"}, "m", {"px", "py", "pz"},
                                                      "kg m/s");
@@ -42,15 +45,15 @@ PreparedScene<SphericalPendulum> read(const Section& scene, const RunContext& co
     bob.trail = true;
     return std::vector<Shape>{rod, bob};
   };
-  return read_mechanical<SphericalPendulum, 3>(scene, context, p, "x, y, z with z up", "px, py, pz", on_sphere, tangent,
-                                               shapes);
+  return read_mechanical<SphericalPendulum, 3>(scene, context, p, state_keys, on_sphere, tangent, shapes);
 }
 
 }  // namespace
 
 const SystemModule& spherical_pendulum_module() {
   static const ModuleOf<SphericalPendulum> module("spherical_pendulum",
-                                                  "spherical pendulum, R^3 with an object constraint", read);
+                                                  "spherical pendulum, R^3 with an object constraint", read,
+                                                  [] { return keys_of<SphericalPendulum>(state_keys); });
   return module;
 }
 

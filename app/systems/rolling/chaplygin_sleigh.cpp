@@ -8,6 +8,12 @@ namespace lagroid::app {
 
 namespace {
 
+const KeyOf<NumberArray> velocity{"velocity", {2}, "", "turning (rad/s), ahead (m/s)"};
+
+SystemKeys own_keys() {
+  return {parameter_keys<ChaplyginSleigh>(), {SceneArrow<SE2>::declared(SceneArrow<SE2>::key), velocity}};
+}
+
 PreparedScene<ChaplyginSleigh> read(const Section& scene, const RunContext& context) {
   using Point = TrajectoryPoint<ChaplyginSleigh>;
   auto system = read_parameters<ChaplyginSleigh>(scene);
@@ -40,15 +46,16 @@ PreparedScene<ChaplyginSleigh> read(const Section& scene, const RunContext& cont
 
   refuse_boundary<ChaplyginSleigh>(scene);
   const Section initial = scene.section("initial", "position and velocity");
-  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, "position");
-  const auto velocity = initial.numbers("velocity", 2, "turning (rad/s), ahead (m/s)");
-  return simulation(scene, context, system, p, system.sliding(velocity[0], velocity[1]), pose);
+  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, SceneArrow<SE2>::key);
+  const auto given = read_key(initial, velocity);
+  return simulation(scene, context, system, p, system.sliding(given[0], given[1]), pose);
 }
 
 }  // namespace
 
 const SystemModule& chaplygin_sleigh_module() {
-  static const ModuleOf<ChaplyginSleigh> module("chaplygin_sleigh", "body sliding on a blade (nonholonomic)", read);
+  static const ModuleOf<ChaplyginSleigh> module("chaplygin_sleigh", "body sliding on a blade (nonholonomic)", read,
+                                                own_keys);
   return module;
 }
 

@@ -1,4 +1,5 @@
 #include "../../scenes/attitude.hpp"
+#include "../../scenes/scene_arrow.hpp"
 #include "../../scenes/simulation.hpp"
 #include "../../scenes/system_module.hpp"
 
@@ -51,22 +52,33 @@ Presentation<RollingBall> presentation(const RollingBall& system) {
   return p;
 }
 
+const KeyOf<NumberArray> position{"position", {2}, "m", "x, y"};
+const KeyOf<NumberArray> velocity{"velocity", {2}, "m/s", "of the centre, dx/dt and dy/dt"};
+const KeyOf<Number> spin{"spin", {}, "rad/s", "about the vertical; rolling says the rest of the angular velocity", 0.0};
+
+SystemKeys own_keys() {
+  return {parameter_keys<RollingBall>(),
+          {position, velocity, spin, SceneArrow<SO3>::declared(SceneArrow<SO3>::key)}};
+}
+
 PreparedScene<RollingBall> read(const Section& scene, const RunContext& context) {
   const RollingBall system = read_system(scene);
   refuse_boundary<RollingBall>(scene);
   const Section initial = scene.section("initial", "position, velocity, spin and attitude");
-  const auto position = initial.numbers("position", 2, "x, y");
-  const auto velocity = initial.numbers("velocity", 2, "dx/dt, dy/dt");
-  const Vector<double, 2> q(position[0], position[1]);
-  const auto state = system.rolling(q, {velocity[0], velocity[1]}, initial.number_or("spin", 0));
-  const ArrowOf<G> configuration{PairArrow<double, 2>{q, q}, SceneArrow<SO3>::read(initial, "attitude").transpose()};
+  const auto at = read_key(initial, position);
+  const auto v = read_key(initial, velocity);
+  const Vector<double, 2> q(at[0], at[1]);
+  const auto state = system.rolling(q, {v[0], v[1]}, read_key(initial, spin));
+  const ArrowOf<G> configuration{PairArrow<double, 2>{q, q},
+                                 SceneArrow<SO3>::read(initial, SceneArrow<SO3>::key).transpose()};
   return simulation(scene, context, system, presentation(system), state, configuration);
 }
 
 }  // namespace
 
 const SystemModule& rolling_ball_module() {
-  static const ModuleOf<RollingBall> module("rolling_ball", "ball rolling on a rotating plate (nonholonomic)", read);
+  static const ModuleOf<RollingBall> module("rolling_ball", "ball rolling on a rotating plate (nonholonomic)", read,
+                                            own_keys);
   return module;
 }
 

@@ -10,6 +10,12 @@ namespace lagroid::app {
 
 namespace {
 
+const KeyOf<NumberArray> rates{"rates", {2}, "rad/s", "turning and rolling"};
+
+SystemKeys own_keys() {
+  return {parameter_keys<RollingDisk>(), {SceneArrow<SE2>::declared(SceneArrow<SE2>::key), rates}};
+}
+
 PreparedScene<RollingDisk> read(const Section& scene, const RunContext& context) {
   using Point = TrajectoryPoint<RollingDisk>;
   auto system = read_parameters<RollingDisk>(scene);
@@ -51,16 +57,17 @@ PreparedScene<RollingDisk> read(const Section& scene, const RunContext& context)
 
   refuse_boundary<RollingDisk>(scene);
   const Section initial = scene.section("initial", "position and rates");
-  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, "position");
-  const auto rates = initial.numbers("rates", 2, "turning, rolling (rad/s)");
+  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, SceneArrow<SE2>::key);
+  const auto given = read_key(initial, rates);
   const ArrowOf<RollingDisk::GroupoidType> configuration{pose, Matrix<double, 2, 2>::Identity()};
-  return simulation(scene, context, system, p, system.rolling(rates[0], rates[1]), configuration);
+  return simulation(scene, context, system, p, system.rolling(given[0], given[1]), configuration);
 }
 
 }  // namespace
 
 const SystemModule& rolling_disk_module() {
-  static const ModuleOf<RollingDisk> module("rolling_disk", "upright disk rolling on the plane (nonholonomic)", read);
+  static const ModuleOf<RollingDisk> module("rolling_disk", "upright disk rolling on the plane (nonholonomic)", read,
+                                            own_keys);
   return module;
 }
 

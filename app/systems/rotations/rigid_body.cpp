@@ -1,4 +1,5 @@
 #include "../../scenes/any_system.hpp"
+#include "../../scenes/scene_keys.hpp"
 #include "rotating.hpp"
 
 #include <lagroid/systems/rotations/moser_veselov.hpp>
@@ -32,7 +33,7 @@ PreparedScene<RigidBody> moser_veselov(const Section& scene, const RunContext& c
   const Section time = scene.section("time", "step and steps");
   refuse_accuracy(scene);
   const auto& orders = moser_veselov_orders;
-  const int order = int(time.integer_or("order", moser_veselov_method.order, orders.front(), orders.back()));
+  const int order = int(read_key(time, time_keys::order(moser_veselov_method.order, orders.back())));
   if (std::find(orders.begin(), orders.end(), order) == orders.end())
     time.fail("order", fmt::format("must be {}, got {}", any_of_these(orders), order));
   const RunExtent extent = read_extent(scene, context);
@@ -79,7 +80,8 @@ PreparedScene<RigidBody> read(const Section& scene, const RunContext& context) {
 }  // namespace
 
 const SystemModule& rigid_body_module() {
-  static const ModuleOf<RigidBody> module(name, "free rigid body on SO(3)", read, own_methods);
+  static const ModuleOf<RigidBody> module(name, "free rigid body on SO(3)", read,
+                                          [] { return keys_of<RigidBody>(name, dress); }, own_methods);
   return module;
 }
 

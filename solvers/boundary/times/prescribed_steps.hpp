@@ -1,33 +1,17 @@
 #pragma once
 /// Boundary values whose step sizes are a function of the arrow. [G], after Example 6.2
 
+#include <lagroid/core/capabilities/time_scale_of_arrows.hpp>
 #include <lagroid/groupoids/time_extended.hpp>
 #include <lagroid/solvers/boundary/boundary_kkt.hpp>
 #include <lagroid/solvers/boundary/times/timed_path.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <utility>
 #include <vector>
 
 namespace lagroid {
-
-/// A system that writes `S time_scale(const Arrow<S>& g) const`, a template: a time sigma(g) > 0 in which little
-/// changes near the arrow, to which steps can be proportional, t1 - t0 = epsilon sigma(g). With sigma(g^{-1}) =
-/// sigma(g) the steps are symmetric where the discretisation is.
-template <class Sys>
-concept HasTimeScaleOfArrows = Timed<Sys> && requires(const Sys& system, const ArrowOf<typename Sys::GroupoidType>& g) {
-  { system.time_scale(g) } -> std::convertible_to<double>;
-};
-
-namespace detail {
-LAGROID_MEMBER_NAME(NamesTimeScaleOfArrows, time_scale);
-}  // namespace detail
-
-/// Whether `time_scale`, where there is one, is that.
-template <class Sys>
-inline constexpr bool time_scale_of_arrows_fits = HasTimeScaleOfArrows<Sys> || !detail::NamesTimeScaleOfArrows<Sys>;
 
 /// h(g) = epsilon sigma(g).
 struct TimeScaleStep {

@@ -1,6 +1,7 @@
+#include "../families/family.hpp"
 #include "../reading/its_scene.hpp"
 #include "../reading/kinds.hpp"
-#include "family.hpp"
+#include "sweep_scene.hpp"
 
 namespace lagroid::app {
 
@@ -15,6 +16,7 @@ class Sweeps final : public SceneFamily {
     const Section scene = read_its_scene(sweep);
     return family_of(scene).uses(scene);
   }
+  std::vector<SceneKeys> keys_of_scenes() const override { return {{"sweep", sweep_table()}}; }
 };
 
 }  // namespace

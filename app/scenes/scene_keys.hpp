@@ -1,0 +1,83 @@
+#pragma once
+/// The keys of [time], [solver] and [output] that scenes of several families share.
+
+#include "../reading/key.hpp"
+
+#include <lagroid/solvers/methods/declared_methods.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+inline constexpr long most_steps = 2'000'000'000;
+inline constexpr long most_apart = 1'000'000'000;  ///< rows, checkpoints
+
+namespace time_keys {
+
+inline const KeyOf<Whole> steps{"steps", {1, most_steps}, "", "how many"};
+inline const KeyOf<Number> step{
+    "step", {positive}, "s", "the size of a step; of the first, where sizes vary", {}, "`duration` over `steps`"};
+inline const KeyOf<Number> duration{
+    "duration", {positive}, "s", "of all steps, which are equal: in place of `step`", {}, "`steps` times `step`"};
+inline const KeyOf<Number> accuracy{"accuracy",
+                                    {positive},
+                                    "",
+                                    "in place of `step`: the size at which a step and two half ones differ by that "
+                                    "much, relative to the motion over it",
+                                    {},
+                                    "`step` is given"};
+inline const KeyOf<Number> start{"start", {}, "s", "when the first step begins", 0.0};
+
+/// `first_of` is the order where it is not given.
+KeyOf<Whole> order(int first_of = 2, int most = usual_compositions.back().order);
+KeyOf<OneOf> composition(std::span<const Composition> offered, std::string_view usual = usual_compositions[0].name);
+KeyOf<OneOf> mode(std::vector<std::string> words = mode_words());
+/// Of a boundary value.
+KeyOf<OneOf> boundary_mode(std::vector<std::string> words);
+/// The first of the names is what there is without the key.
+KeyOf<OneOf> method(std::vector<std::string> names);
+KeyOf<OneOf> without_root();
+
+}  // namespace time_keys
+
+namespace solver_keys {
+
+inline const KeyOf<Whole> max_iterations{"max_iterations", {1, most_iterations}, "", "of a step", {}, "60; of Ceres 100"};
+inline const KeyOf<Number> tolerance{
+    "tolerance", {nonnegative}, "", "a step is taken whose scaled residual is this small; 0: down to round-off", 0.0};
+KeyOf<OneOf> method();
+
+}  // namespace solver_keys
+
+namespace output_keys {
+
+inline const KeyOf<Whole> every{"every", {1, most_apart}, "", "n: each n-th node is recorded, and the last", 1};
+inline const KeyOf<Whole> checkpoint{
+    "checkpoint", {1, most_apart}, "", "steps from one checkpoint to the next", {}, "ten seconds"};
+
+}  // namespace output_keys
+
+/// Of [time] in every scene: which steps, if they are equal.
+std::vector<Key> grid_keys();
+/// [time] of an initial value; `own` are methods beside those declared for every system.
+Table time_table(std::span<const DeclaredMethod> own, bool depends_on_time);
+/// [output] of an initial value.
+Table output_table();
+/// [solver] of an initial value.
+Table step_solver_table();
+
+/// [accuracy]: a target in place of method and step.
+namespace accuracy_keys {
+
+extern const KeyOf<Number> target;
+extern const KeyOf<Number> pilot;
+extern const KeyOf<Text> methods;
+
+}  // namespace accuracy_keys
+
+/// Initial values with these keys: by the method and the step that [time] names, and by those that [accuracy] chooses.
+std::vector<Table> initial_values(const std::vector<Key>& keys, const Table& time);
+
+}  // namespace lagroid::app
