@@ -72,8 +72,8 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
 #endif
 }
 
-/// Serves a command line of lagroid for these systems: run, resume, view, plot, study, sweep, list, schema, cite and, where
-/// the program beside it with the laws is built, check. Returns the exit code.
+/// Serves a command line of lagroid for these systems: run, resume, view, plot, study, sweep, list, schema, cite and,
+/// where the program beside it with the laws is built, check. Returns the exit code.
 inline int program(int argc, char** argv, std::vector<Module> modules) {
   std::vector<const app::SystemModule*> systems;
   for (const Module& each : modules) systems.push_back(each.of.get());

@@ -62,12 +62,9 @@ const KeyOf<NumberArray> hangs_at =
 const KeyOf<Texts> between{"between", {}, "", "two names of bodies, or \"ground\" for one of them"};
 const KeyOf<SpacePoints> points{
     "points", {2}, "m", "a point of each, in its body's frame, of the ground in space", {}, "[[0, 0, 0], [0, 0, 0]]"};
-const KeyOf<NumberArray> ground_amplitude{"ground_amplitude",
-                                      {3},
-                                      "m",
-                                      "the ground's point is at point + amplitude (1 - cos(rate t))",
-                                      {},
-                                      "the ground rests"};
+const KeyOf<NumberArray> ground_amplitude{
+    "ground_amplitude", {3}, "m", "the ground's point is at point + amplitude (1 - cos(rate t))", {},
+    "the ground rests"};
 const KeyOf<Number> ground_rate{"ground_rate", {}, "rad/s", "of that motion", {}, "the ground rests"};
 
 const KeyOf<OneOf> rotation{"rotation", {{"exp", "cayley"}}, "", "how a turn becomes an angular velocity", "exp"};
@@ -351,15 +348,15 @@ const std::vector<SceneKind>& body_kinds() {
 }
 
 Table bodies_table() {
-  return {{rotation, project_velocities, KeyOf<Tables>{"body", {table_of(body_kinds())}, "", "what moves"},
-           KeyOf<Tables>{"joint", {table_of(joint_kinds())}, "", "what ties bodies, or holds their velocities", {}, "none"},
-           KeyOf<Tables>{"effect", {table_of(effect_kinds())}, "", "what acts on bodies", {}, "none"}}};
+  return {
+      {rotation, project_velocities, KeyOf<Tables>{"body", {table_of(body_kinds())}, "", "what moves"},
+       KeyOf<Tables>{"joint", {table_of(joint_kinds())}, "", "what ties bodies, or holds their velocities", {}, "none"},
+       KeyOf<Tables>{"effect", {table_of(effect_kinds())}, "", "what acts on bodies", {}, "none"}}};
 }
 
 SceneBodies read_scene_bodies(const Section& scene) {
   SceneBodies out;
-  out.scene.rotation =
-      read_key(scene, rotation) == *rotation.fallback ? Retraction::exponential : Retraction::cayley;
+  out.scene.rotation = read_key(scene, rotation) == *rotation.fallback ? Retraction::exponential : Retraction::cayley;
   out.projects = read_key(scene, project_velocities);
   for (const auto& table : scene.tables("body")) read_kind(body_kinds(), out, table);
   for (const auto& table : scene.tables("joint")) read_kind(joint_kinds(), out, table);

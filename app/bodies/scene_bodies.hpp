@@ -93,7 +93,7 @@ inline constexpr NumberRule damping_rule{"positive, and below 1e100", [](double 
 
 /// A vector of space; without a fallback it must be given.
 KeyOf<NumberArray> vector_key(std::string name, std::string unit, std::string meaning,
-                          std::optional<multibody::Vec> fallback = {});
+                              std::optional<multibody::Vec> fallback = {});
 multibody::Vec vector_at(const Section& table, const KeyOf<NumberArray>& key);
 
 inline const KeyOf<Text> body_key{"body", {}, "", "the name of a body"};

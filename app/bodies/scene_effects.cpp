@@ -43,8 +43,8 @@ const KeyOf<Number> turning_drag{"turning", {nonnegative}, "N m s", "torque over
 const KeyOf<NumberArray> acts_at = vector_key("at", "m", "where it acts, in the body's frame", Vec::Zero());
 const KeyOf<NumberArray> force_key = vector_key("force", "N", "in space");
 const KeyOf<NumberArray> torque_key = vector_key("torque", "N m", "in the body's frame; of a planar body [0, 0, T]");
-const KeyOf<NumberArray> motor_torque = vector_key(
-    "torque", "N m", "on the second, in space at the start, fixed in the first; of planar bodies [0, 0, T]");
+const KeyOf<NumberArray> motor_torque =
+    vector_key("torque", "N m", "on the second, in space at the start, fixed in the first; of planar bodies [0, 0, T]");
 const KeyOf<NumberArray> field_key = vector_key("field", "T", "of induction");
 const KeyOf<NumberArray> frame_rate = vector_key("rate", "rad/s", "angular velocity of the frame");
 const KeyOf<Flag> centrifugal_key{"centrifugal", {}, "", "false: a weight holds that force", true};
@@ -89,8 +89,7 @@ void read_central(SceneBodies& bodies, const Section& table) {
 }
 
 void read_mutual(SceneBodies& bodies, const Section& table) {
-  auto gravity =
-      std::make_unique<multibody::MutualGravity>(read_key(table, gravitation), read_key(table, softening));
+  auto gravity = std::make_unique<multibody::MutualGravity>(read_key(table, gravitation), read_key(table, softening));
   for (const NamedBody* body : bodies.chosen(table))
     if (body->mass > 0) gravity->add(body->mass_centre, body->mass);
   bodies.scene.add_effects(std::move(gravity));
@@ -104,8 +103,8 @@ void read_charges(SceneBodies& bodies, const Section& table) {
   for (std::size_t i = 0; i < charged.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (q[i] * q[j] != 0)
-        bodies.scene.add(multibody::InverseSquare{
-            {charged[j]->mass_centre, charged[i]->mass_centre}, -constant * q[i] * q[j], e});
+        bodies.scene.add(
+            multibody::InverseSquare{{charged[j]->mass_centre, charged[i]->mass_centre}, -constant * q[i] * q[j], e});
 }
 
 void read_spring(SceneBodies& bodies, const Section& table) {
@@ -306,14 +305,12 @@ const std::vector<SceneKind>& effect_kinds() {
       {"torsion_spring", "between two bodies that turn", read_torsion, {between, torsion_direction, torsion_stiffness}},
       {"drag", "of a medium that rests", read_drag, {motion_drag, turning_drag, chosen_bodies}},
       {"damper", "between two points that do not meet", read_damper, tie(damping)},
-      {"control_cost", "counts the kinetic terms, summed over the steps: a column, and a line of the report", read_cost},
+      {"control_cost", "counts the kinetic terms, summed over the steps: a column, and a line of the report",
+       read_cost},
       {"force", "on a point of a body", read_force, {body_key, acts_at, force_key, drive_rate, phase}},
       {"torque", "on a body", read_torque, {body_key, torque_key}},
       {"motor", "between two bodies that turn", read_motor, {between, motor_torque, drive_rate, phase}},
-      {"charges",
-       "of the bodies on each other",
-       read_charges,
-       {any_charges, coulomb, softening, chosen_bodies}},
+      {"charges", "of the bodies on each other", read_charges, {any_charges, coulomb, softening, chosen_bodies}},
       {"magnetic_field", "a uniform one; point masses alone", read_magnetic, {field_key, any_charges, chosen_bodies}},
       {"rotating_frame",
        "in which the bodies are seen; point masses alone",

@@ -55,9 +55,9 @@ class Spheres final : public SceneFamily {
       Table table{{KeyOf<OneOf>{std::string(keys::system), {{std::string(entry.name)}}, "", std::string(entry.summary)},
                    KeyOf<Table>{"parameters", {entry.parameters}, "", "of the system"},
                    optional_table("output", output_table(), "what is recorded")}};
-      table.kinds = initial_values(
-          {KeyOf<Table>{"initial", sphere_start_table(entry.forms), "", "the state to start from"}},
-          sphere_time_table(entry));
+      table.kinds =
+          initial_values({KeyOf<Table>{"initial", sphere_start_table(entry.forms), "", "the state to start from"}},
+                         sphere_time_table(entry));
       table.about = entry.summary;
       all.push_back({std::string(entry.name), std::move(table)});
     }

@@ -30,8 +30,7 @@ const KeyOf<Flag> restart_key{"restart", {}, "", "forget the momentum after a st
 const KeyOf<Flag> ahead_key{"look_ahead", {}, "", "the gradient where the momentum alone would lead", false};
 const KeyOf<Number> cap_key{
     "cap", {positive}, "1/L", "upper bound of the gradient's share s, L the Lipschitz constant", 1.0};
-const KeyOf<Flag> capped_key{
-    "capped", {}, "", "false: as in the paper's uncapped runs, which lose convergence", true};
+const KeyOf<Flag> capped_key{"capped", {}, "", "false: as in the paper's uncapped runs, which lose convergence", true};
 
 const KeyOf<Number> robust_c{"c", {positive}, "", "below 4; with look_ahead below 4/3, default 1", RobustOptions{}.c};
 const KeyOf<Number> power{"power", {positive}, "", "effective p", RobustOptions{}.power};
@@ -51,8 +50,8 @@ const KeyOf<Number> first_radius{"first_radius", {nonnegative}, "", "of the regi
 const KeyOf<Number> largest_radius{
     "largest_radius", {nonnegative}, "", "of the region", {}, "the square root of the dimension"};
 
-constexpr std::array retractions{ManifoldRetraction::qr, ManifoldRetraction::polar, ManifoldRetraction::exponential, ManifoldRetraction::orthographic,
-                                 ManifoldRetraction::cayley};
+constexpr std::array retractions{ManifoldRetraction::qr, ManifoldRetraction::polar, ManifoldRetraction::exponential,
+                                 ManifoldRetraction::orthographic, ManifoldRetraction::cayley};
 KeyOf<OneOf> retraction_key() {
   KeyOf<OneOf> key{"retraction", {}, "", "from tangents to the manifold", std::string(to_string(retractions[0]))};
   for (const ManifoldRetraction each : retractions) key.value.words.emplace_back(to_string(each));
@@ -158,8 +157,7 @@ std::optional<double> read_penalty(const Section& method) {
     return std::nullopt;
   const double weight = read_key(method, penalty_key);
   const bool penalises = read_key(method, constraint_key) == penalty;
-  if (!penalises && method.has(penalty_key.name))
-    method.fail(penalty_key.name, "goes with constraint = \"penalty\"");
+  if (!penalises && method.has(penalty_key.name)) method.fail(penalty_key.name, "goes with constraint = \"penalty\"");
   return penalises ? std::optional(weight) : std::nullopt;
 }
 

@@ -22,8 +22,8 @@ using optimisation::Instance, optimisation::Point, optimisation::Stopping;
 const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of a random start", 1};
 const KeyOf<Text> file_key{"file", {}, "", "the name of a file", {}, "a random start"};
 const KeyOf<Flag> nearest{"nearest", {}, "", "true: the point of the manifold that is nearest to the file's", false};
-const KeyOf<Whole> component_key{
-    "component", {-1, 1}, "", "of O(n): 1 or -1, the sign of the determinant", {}, "as it comes"};
+const KeyOf<Whole> component_key{"component", {-1, 1},      "", "of O(n): 1 or -1, the sign of the determinant",
+                                 {},          "as it comes"};
 
 const KeyOf<Number> gradient{"gradient", {nonnegative}, "", "stop at this norm of it", 0.0};
 const KeyOf<Number> relative_gradient{"relative_gradient",
@@ -32,13 +32,16 @@ const KeyOf<Number> relative_gradient{"relative_gradient",
                                       "stop at this norm of it over that at the start",
                                       {},
                                       "1e-8 where nothing else stops, else 0"};
-const KeyOf<Number> gap_key{"gap", {positive}, "", "stop so far above the least value, found by linear algebra", {}, "none"};
+const KeyOf<Number> gap_key{"gap", {positive}, "", "stop so far above the least value, found by linear algebra",
+                            {},    "none"};
 const KeyOf<Number> value{"value", {}, "", "stop at this value", {}, "none"};
-const KeyOf<Whole> iterations{
-    "iterations", {1, 1'000'000'000}, "", "at most", long(Stopping().iterations)};
+const KeyOf<Whole> iterations{"iterations", {1, 1'000'000'000}, "", "at most", long(Stopping().iterations)};
 const KeyOf<Number> seconds{"seconds", {positive}, "s", "at most", {}, "any number"};
-const KeyOf<Whole> patience{
-    "patience", {0, 1'000'000'000}, "", "iterations without progress, at most; 0: any number", long(Stopping().patience)};
+const KeyOf<Whole> patience{"patience",
+                            {0, 1'000'000'000},
+                            "",
+                            "iterations without progress, at most; 0: any number",
+                            long(Stopping().patience)};
 const KeyOf<Flag> reference_key{
     "reference", {}, "", "ask linear algebra for the least value", {}, "true with `gap` of [stop]"};
 
@@ -95,14 +98,15 @@ Stopping read_stopping(const Section& scene) {
 Table optimisation_table() {
   Table table{{optional_table("method", optimisers_table(), "by which it is minimised"),
                optional_table("start", {{file_key, nearest, component_key, seed_key}}, "where it begins"),
-               optional_table(
-                   "stop", {{relative_gradient, gradient, gap_key, value, iterations, seconds, patience}}, "when it ends"),
+               optional_table("stop", {{relative_gradient, gradient, gap_key, value, iterations, seconds, patience}},
+                              "when it ends"),
                reference_key}};
   for (const auto& entry : problems()) {
-    Table kind{{KeyOf<OneOf>{std::string(keys::optimisation), {{std::string(entry.name)}}, "", std::string(entry.summary)},
-                KeyOf<Table>{"data", {entry.data}, "", "the matrices of the problem"}},
-               {},
-               std::string(entry.summary)};
+    Table kind{
+        {KeyOf<OneOf>{std::string(keys::optimisation), {{std::string(entry.name)}}, "", std::string(entry.summary)},
+         KeyOf<Table>{"data", {entry.data}, "", "the matrices of the problem"}},
+        {},
+        std::string(entry.summary)};
     if (!entry.parameters.empty())
       kind.keys.push_back(KeyOf<Table>{"parameters", {entry.parameters}, "", "of the problem"});
     table.kinds.push_back(std::move(kind));

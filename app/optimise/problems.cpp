@@ -21,7 +21,9 @@ using optimisation::Instance;
 
 const std::string symmetric = "symmetric";
 const std::string gaussian = "gaussian";
-KeyOf<OneOf> random_key(std::vector<std::string> words) { return {"random", {std::move(words)}, "", "how it is drawn"}; }
+KeyOf<OneOf> random_key(std::vector<std::string> words) {
+  return {"random", {std::move(words)}, "", "how it is drawn"};
+}
 const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of what is drawn", 1};
 const KeyOf<Whole> rows_key{"rows", {1, 20000}, "", "how many"};
 const KeyOf<Whole> columns_key{"columns", {1, 20000}, "", "how many"};

@@ -87,8 +87,8 @@ struct Either {
   std::vector<Value> values;
 };
 struct Value {
-  std::variant<Number, Whole, OneOf, Text, Texts, Flag, NumberArray, NumberList, AnyAttitude, SpacePoints, Table, Tables, AnyTable,
-               Either>
+  std::variant<Number, Whole, OneOf, Text, Texts, Flag, NumberArray, NumberList, AnyAttitude, SpacePoints, Table,
+               Tables, AnyTable, Either>
       is;
 };
 
@@ -142,7 +142,8 @@ std::vector<std::string> given(const Section& at, std::string_view name, const s
 bool given(const Section& at, std::string_view name, const std::string& what, const Flag& value);
 std::vector<double> given(const Section& at, std::string_view name, const std::string& what, const NumberArray& value);
 std::vector<double> given(const Section& at, std::string_view name, const std::string& what, const NumberList& value);
-std::array<double, 4> given(const Section& at, std::string_view name, const std::string& what, const AnyAttitude& value);
+std::array<double, 4> given(const Section& at, std::string_view name, const std::string& what,
+                            const AnyAttitude& value);
 
 }  // namespace reading
 

@@ -30,27 +30,16 @@ const KeyOf<Number> amplitude{"amplitude",
                               "distance of the ends, or one where they meet",
                               0.0};
 constexpr std::string_view minima = "minima";
-const KeyOf<OneOf> seek{"seek",
-                        {{std::string(minima), "stationary"}},
-                        "",
-                        "what to look for: a mechanical motion need not be a minimum of its action",
-                        {},
-                        "`minima` of optimal control, else `stationary`"};
-const KeyOf<Number> tolerance{"tolerance",
-                              {positive},
-                              "",
-                              "on the scaled residual of the boundary-value equations",
-                              BoundaryOptions().tolerance};
-const KeyOf<Whole> max_iterations{
-    "max_iterations", {1, 1000000}, "", "of a start", BoundaryOptions().max_iterations};
+const KeyOf<OneOf> seek{"seek", {{std::string(minima), "stationary"}},
+                        "",     "what to look for: a mechanical motion need not be a minimum of its action",
+                        {},     "`minima` of optimal control, else `stationary`"};
+const KeyOf<Number> tolerance{
+    "tolerance", {positive}, "", "on the scaled residual of the boundary-value equations", BoundaryOptions().tolerance};
+const KeyOf<Whole> max_iterations{"max_iterations", {1, 1000000}, "", "of a start", BoundaryOptions().max_iterations};
 
 KeyOf<OneOf> method() {
   const auto words = words_of(boundary_words);
-  return {"method",
-          {words},
-          "",
-          "on the whole path; on the initial momentum; by least squares",
-          words.front()};
+  return {"method", {words}, "", "on the whole path; on the initial momentum; by least squares", words.front()};
 }
 
 const KeyOf<Text> parameter{"parameter",
@@ -76,9 +65,7 @@ Table boundary_time_table(const std::vector<std::string>& modes, bool depends_on
   if (depends_on_time) table.keys.push_back(time_keys::start);
   return table;
 }
-Table boundary_solver_table() {
-  return {{method(), seek, starts, seed, amplitude, tolerance, max_iterations}};
-}
+Table boundary_solver_table() { return {{method(), seek, starts, seed, amplitude, tolerance, max_iterations}}; }
 Table continuation_table() { return {{parameter, from, steps}}; }
 
 MultistartOptions read_multistart(const Section& solver) {

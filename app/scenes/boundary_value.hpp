@@ -49,8 +49,8 @@ struct BoundaryChoice {
 };
 BoundaryChoice read_boundary_solver(const Section& solver);
 
-/// [solver] starts and seed. Scenes of the plate-ball read them from initial values too, so that they may switch between
-/// the two.
+/// [solver] starts and seed. Scenes of the plate-ball read them from initial values too, so that they may switch
+/// between the two.
 std::vector<Key> multistart_keys();
 MultistartOptions read_multistart(const Section& solver);
 

@@ -54,7 +54,8 @@ template <class G> struct SceneArrow {
   G groupoid;
 
   static KeyOf<NumberArray> declared(std::string_view name) {
-    return {std::string(name), {std::size_t(G::arrow_coordinate_count())}, "", "coordinates of the arrow that ends there"};
+    return {
+        std::string(name), {std::size_t(G::arrow_coordinate_count())}, "", "coordinates of the arrow that ends there"};
   }
   ArrowOf<G> read(const Section& section, std::string_view name) const {
     const auto given = read_key(section, declared(name));

@@ -15,12 +15,8 @@ KeyOf<Whole> order(int first_of, int most) {
 KeyOf<OneOf> composition(std::span<const Composition> offered, std::string_view usual) {
   std::vector<std::string> names;
   for (const auto& each : offered) names.emplace_back(each.name);
-  return {"composition",
-          {std::move(names)},
-          "",
-          "how a step is composed of others",
-          std::string(usual),
-          "the usual one of the order"};
+  return {"composition",      {std::move(names)},          "", "how a step is composed of others",
+          std::string(usual), "the usual one of the order"};
 }
 
 KeyOf<OneOf> mode(std::vector<std::string> words) {
@@ -74,10 +70,9 @@ Table time_table(std::span<const DeclaredMethod> own, bool depends_on_time) {
     methods.emplace_back(each.name);
     most = std::max(most, each.order);
   }
-  table.keys.insert(table.keys.end(),
-                    {time_keys::accuracy, time_keys::mode(), time_keys::without_root(),
-                     time_keys::method(std::move(methods)), time_keys::order(2, most),
-                     time_keys::composition(compositions_of(OtherOrders::composed_flows))});
+  table.keys.insert(table.keys.end(), {time_keys::accuracy, time_keys::mode(), time_keys::without_root(),
+                                       time_keys::method(std::move(methods)), time_keys::order(2, most),
+                                       time_keys::composition(compositions_of(OtherOrders::composed_flows))});
   if (depends_on_time) table.keys.push_back(time_keys::start);
   return table;
 }
@@ -114,11 +109,10 @@ std::vector<Table> initial_values(const std::vector<Key>& keys, const Table& tim
     span.keys.push_back(std::move(key));
   }
   aimed.keys.push_back(KeyOf<Table>{"time", span, "", "how long: `duration`, or `step` and `steps`"});
-  aimed.keys.push_back(
-      KeyOf<Table>{"accuracy",
-                   {{accuracy_keys::target, accuracy_keys::pilot, accuracy_keys::methods}},
-                   "",
-                   "chooses method and step"});
+  aimed.keys.push_back(KeyOf<Table>{"accuracy",
+                                    {{accuracy_keys::target, accuracy_keys::pilot, accuracy_keys::methods}},
+                                    "",
+                                    "chooses method and step"});
   return {stepped, aimed};
 }
 

@@ -44,7 +44,8 @@ KeyOf<OneOf> without_root();
 
 namespace solver_keys {
 
-inline const KeyOf<Whole> max_iterations{"max_iterations", {1, most_iterations}, "", "of a step", {}, "60; of Ceres 100"};
+inline const KeyOf<Whole> max_iterations{"max_iterations",  {1, most_iterations}, "", "of a step", {},
+                                         "60; of Ceres 100"};
 inline const KeyOf<Number> tolerance{
     "tolerance", {nonnegative}, "", "a step is taken whose scaled residual is this small; 0: down to round-off", 0.0};
 KeyOf<OneOf> method();
@@ -54,8 +55,8 @@ KeyOf<OneOf> method();
 namespace output_keys {
 
 inline const KeyOf<Whole> every{"every", {1, most_apart}, "", "n: each n-th node is recorded, and the last", 1};
-inline const KeyOf<Whole> checkpoint{
-    "checkpoint", {1, most_apart}, "", "steps from one checkpoint to the next", {}, "ten seconds"};
+inline const KeyOf<Whole> checkpoint{"checkpoint", {1, most_apart}, "", "steps from one checkpoint to the next",
+                                     {},           "ten seconds"};
 
 }  // namespace output_keys
 

@@ -100,7 +100,8 @@ template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
   using Read = std::function<PreparedScene<Sys>(const Section& scene, const RunContext& context)>;
   /// `keys` are made when they are asked for.
   using Keys = std::function<SystemKeys()>;
-  ModuleOf(std::string name, std::string summary, Read read, Keys keys, std::span<const DeclaredMethod> own_methods = {})
+  ModuleOf(std::string name, std::string summary, Read read, Keys keys,
+           std::span<const DeclaredMethod> own_methods = {})
       : SystemModule(std::move(name), std::move(summary)),
         read_(std::move(read)),
         keys_(std::move(keys)),

@@ -70,8 +70,8 @@ template <class P> inline constexpr bool is_for_each_link = std::is_same_v<P, co
 
 Chain one_link() { return {Numbers::Ones(1), Numbers::Ones(1)}; }
 
-const KeyOf<Whole> links_key{
-    "links", {1, 100'000}, "1", "how many, where neither masses nor lengths says it", {}, "as many as these"};
+const KeyOf<Whole> links_key{"links", {1, 100'000},      "1", "how many, where neither masses nor lengths says it",
+                             {},      "as many as these"};
 
 }  // namespace
 

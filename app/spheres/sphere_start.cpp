@@ -18,7 +18,8 @@ constexpr double slack = 1e-6;  // of what is typed in with a few digits
 
 /// A vector for each point, or one for all; and the same of numbers.
 KeyOf<Either> vectors_key(std::string name, std::string unit, std::string meaning, std::string otherwise) {
-  return {std::move(name), {{{NumberArray{3}}, {SpacePoints{}}}}, std::move(unit), std::move(meaning), {}, std::move(otherwise)};
+  return {std::move(name),     {{{NumberArray{3}}, {SpacePoints{}}}}, std::move(unit), std::move(meaning), {},
+          std::move(otherwise)};
 }
 KeyOf<Either> angles_key(std::string name, std::string meaning, std::string otherwise) {
   return {std::move(name), {{{Number{}}, {NumberList{}}}}, "rad", std::move(meaning), {}, std::move(otherwise)};
@@ -29,8 +30,9 @@ const KeyOf<Either> directions =
 const KeyOf<Either> theta_key =
     angles_key("theta", "angles of the rods from the upward vertical (or one for all)", "`directions`");
 const KeyOf<Either> phi_key = angles_key("phi", "azimuths of the rods (or one for all)", "0");
-const KeyOf<Either> angular_velocities = vectors_key(
-    "angular_velocities", "rad/s", "angular velocities of the rods in space, at right angles to them (or one for all)", "0");
+const KeyOf<Either> angular_velocities =
+    vectors_key("angular_velocities", "rad/s",
+                "angular velocities of the rods in space, at right angles to them (or one for all)", "0");
 const KeyOf<Either> momenta = vectors_key(
     "momenta", "kg m^2/s", "momenta conjugate to the directions, at right angles to them (or one for all)", "0");
 const KeyOf<Flag> project_velocities{"project_velocities",
@@ -114,9 +116,10 @@ Points read_start(const Section& scene, const SphereSystem& system, SphereForm f
     for (std::size_t i = 0; i < moving.size(); ++i) {
       const double along = q[i].dot(moving[i]);
       if (!projects && !(std::abs(along) <= slack * moving[i].norm()))
-        initial.fail(key.name, fmt::format("that of link {} has a part {:.6g} along its rod, which moves nothing; leave it "
-                                      "away, or say initial.project_velocities = true",
-                                      i + 1, along));
+        initial.fail(key.name,
+                     fmt::format("that of link {} has a part {:.6g} along its rod, which moves nothing; leave it "
+                                 "away, or say initial.project_velocities = true",
+                                 i + 1, along));
       moving[i] -= along * q[i];
     }
   };

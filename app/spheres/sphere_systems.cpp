@@ -8,27 +8,26 @@
 namespace lagroid::app {
 
 const std::vector<SphereEntry>& sphere_systems() {
-  static const std::vector<SphereEntry> all{
-      {keys::pendulum_chain,
-       "chain of spherical pendula",
-       "SE(3)^k acting on (T*S^2)^k",
-       pendulum_chain_parameters(),
-       {"turning about the vertical"},
-       {"vertical angular momentum"},
-       pendulum_chain_forms,
-       {rattle_method},
-       {},
-       read_pendulum_chain},
-      {keys::learned_hamiltonian,
-       "a Hamiltonian that lagroid learn found",
-       "SE(3)^k acting on (T*S^2)^k",
-       {learned_model_key},
-       {},
-       {},
-       learned_forms,
-       {},
-       learned_hamiltonian_source,
-       read_learned_hamiltonian}};
+  static const std::vector<SphereEntry> all{{keys::pendulum_chain,
+                                             "chain of spherical pendula",
+                                             "SE(3)^k acting on (T*S^2)^k",
+                                             pendulum_chain_parameters(),
+                                             {"turning about the vertical"},
+                                             {"vertical angular momentum"},
+                                             pendulum_chain_forms,
+                                             {rattle_method},
+                                             {},
+                                             read_pendulum_chain},
+                                            {keys::learned_hamiltonian,
+                                             "a Hamiltonian that lagroid learn found",
+                                             "SE(3)^k acting on (T*S^2)^k",
+                                             {learned_model_key},
+                                             {},
+                                             {},
+                                             learned_forms,
+                                             {},
+                                             learned_hamiltonian_source,
+                                             read_learned_hamiltonian}};
   return all;
 }
 

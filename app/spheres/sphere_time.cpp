@@ -23,13 +23,14 @@ KeyOf<OneOf> form_key(const std::vector<SphereForm>& forms) {
   return key;
 }
 
-const KeyOf<Number> tolerance{"tolerance",
-                              {{"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }}},
-                              "",
-                              "of a method that estimates its error: inner steps of the size that the estimate asks for "
-                              "lead from node to node; `step` is then the distance of the nodes",
-                              {},
-                              "steps are as long as `step`"};
+const KeyOf<Number> tolerance{
+    "tolerance",
+    {{"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }}},
+    "",
+    "of a method that estimates its error: inner steps of the size that the estimate asks for "
+    "lead from node to node; `step` is then the distance of the nodes",
+    {},
+    "steps are as long as `step`"};
 
 std::string usual_method(const SphereEntry& entry) {
   return std::string(entry.own_methods.empty() ? lie_group_methods::commutator_free_4.name

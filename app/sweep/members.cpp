@@ -18,8 +18,8 @@ namespace lagroid::app {
 
 namespace {
 
-const KeyOf<Texts> final_key{
-    "final", {}, "", "names of recorded quantities or columns, kept of the last node", {}, "all"};
+const KeyOf<Texts> final_key{"final", {},   "", "names of recorded quantities or columns, kept of the last node",
+                             {},      "all"};
 const KeyOf<Texts> initial_key{"initial", {}, "", "the same, of the first node", {}, "none"};
 const KeyOf<Texts> series_key{"series", {}, "", "the same, of all recorded nodes", {}, "none"};
 const KeyOf<Whole> every_key{"every", {1, most_apart}, "", "n: the series have each n-th node, and the last", 1};

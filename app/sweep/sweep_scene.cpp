@@ -31,8 +31,8 @@ const KeyOf<Text> x_key = column_key("x", "to the right");
 const KeyOf<Text> y_key = column_key("y", "upwards");
 const KeyOf<Text> quantity_key = column_key("quantity", "what is shown");
 const KeyOf<OneOf> engine_key{"engine", {{"auto", "scenes", "lanes"}}, "", "how members are run", "auto"};
-const KeyOf<Whole> part_key{
-    "part", {1, 100'000'000}, "", "members of a part, which is computed as a whole", {}, "at most 512 parts"};
+const KeyOf<Whole> part_key{"part", {1, 100'000'000},   "", "members of a part, which is computed as a whole",
+                            {},     "at most 512 parts"};
 const KeyOf<Either> scene_key{std::string(keys::sweep),
                               {{{Text{}}, {AnyTable{}}}},
                               "",

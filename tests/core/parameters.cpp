@@ -97,13 +97,22 @@ TEST(Parameters, AreRefusedByNameAndRule) {
 }
 
 TEST(Parameters, AreListedWithWhatTheConstructorMakesOfThem) {
-  const auto listed = listed_parameters<Spring>();
-  ASSERT_EQ(listed.size(), 4u);
-  EXPECT_EQ(listed[0].fallback, "") << "must be given";
-  EXPECT_EQ(listed[1].fallback, "0.5, 0");
-  EXPECT_EQ(listed[3].fallback, "hooke");
-  EXPECT_EQ(listed[3].meaning, "of the force: hooke or quartic");
-  EXPECT_EQ(listed_parameters<Pendulum>().size(), 4u);
+  const auto keys = parameter_keys<Spring>();
+  ASSERT_EQ(keys.size(), 4u);
+  EXPECT_TRUE(keys[0].required());
+  EXPECT_EQ(fallback_of(keys[1]), "0.5, 0");
+  EXPECT_EQ(fallback_of(keys[3]), "hooke");
+  EXPECT_EQ(meaning_of(keys[3]), "of the force: hooke or quartic");
+  EXPECT_EQ(parameter_keys<Pendulum>().size(), 4u);
+}
+
+TEST(AnySystem, DeclaresTheKeysOfItsTables) {
+  const SystemKeys keys = any_module<Spring>("spring", "a mass on a spring").keys();
+  ASSERT_EQ(keys.initial.size(), 2u);
+  EXPECT_EQ(keys.initial[0].name, "position");
+  EXPECT_EQ(std::get<NumberArray>(keys.initial[1].value.is).size, 2u);
+  ASSERT_EQ(keys.end.size(), 1u);
+  EXPECT_EQ(keys.end[0].name, "position");
 }
 
 /// Derivatives by parameters take the same declaration.

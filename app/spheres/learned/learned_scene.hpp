@@ -10,7 +10,10 @@ inline constexpr Source learned_hamiltonian_source{"celledoni2023",
                                                    "Hamiltonians on (T*S^2)^k learned through Lie group integrators"};
 
 inline const KeyOf<Text> learned_model_key{
-    "model", {}, "", "path of the model.json that lagroid learn --out left, seen from the scene or from the working folder"};
+    "model",
+    {},
+    "",
+    "path of the model.json that lagroid learn --out left, seen from the scene or from the working folder"};
 inline const std::vector<SphereForm> learned_forms{SphereForm::momenta};
 
 /// [parameters] model = "model.json", as `lagroid learn --out` left it; seen from the working folder.

@@ -8,7 +8,7 @@ namespace lagroid::app {
 namespace {
 
 const VectorKeys state_keys{{"position", {3}, "m", "x, y, z on the sphere, z up"},
-                      {"momentum", {3}, "kg m/s", "px, py, pz, tangent to the sphere"}};
+                            {"momentum", {3}, "kg m/s", "px, py, pz, tangent to the sphere"}};
 
 PreparedScene<SphericalPendulum> read(const Section& scene, const RunContext& context) {
   auto p = vector_presentation<SphericalPendulum, 3>("spherical_pendulum", {"x", "y", "z"}, "m", {"px", "py", "pz"},

@@ -57,8 +57,7 @@ const KeyOf<NumberArray> velocity{"velocity", {2}, "m/s", "of the centre, dx/dt 
 const KeyOf<Number> spin{"spin", {}, "rad/s", "about the vertical; rolling says the rest of the angular velocity", 0.0};
 
 SystemKeys own_keys() {
-  return {parameter_keys<RollingBall>(),
-          {position, velocity, spin, SceneArrow<SO3>::declared(SceneArrow<SO3>::key)}};
+  return {parameter_keys<RollingBall>(), {position, velocity, spin, SceneArrow<SO3>::declared(SceneArrow<SO3>::key)}};
 }
 
 PreparedScene<RollingBall> read(const Section& scene, const RunContext& context) {

@@ -80,8 +80,8 @@ PreparedScene<RigidBody> read(const Section& scene, const RunContext& context) {
 }  // namespace
 
 const SystemModule& rigid_body_module() {
-  static const ModuleOf<RigidBody> module(name, "free rigid body on SO(3)", read,
-                                          [] { return keys_of<RigidBody>(name, dress); }, own_methods);
+  static const ModuleOf<RigidBody> module(
+      name, "free rigid body on SO(3)", read, [] { return keys_of<RigidBody>(name, dress); }, own_methods);
   return module;
 }
 
