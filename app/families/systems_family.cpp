@@ -35,7 +35,8 @@ Table scene_table(const SystemModule& module) {
                                time_table(module.own_methods(), own.depends_on_time));
   if (!own.end.empty())
     table.kinds.push_back({{KeyOf<Table>{"boundary", boundary_table({own.end}), "", "the two ends"},
-                            KeyOf<Table>{"time", boundary_time_table(own.boundary_modes, own.depends_on_time), "", "how long it takes, in how many steps"},
+                            KeyOf<Table>{"time", boundary_time_table(own.boundary_modes, own.depends_on_time), "",
+                                         "how long it takes, in how many steps"},
                             optional_table("solver", boundary_solver_table(), "of the boundary value"),
                             optional_table("continuation", continuation_table(),
                                            "carries the solutions of an easier problem to this one")}});

@@ -40,8 +40,7 @@ template <DiscreteSystem Sys> TimeMode read_boundary_mode(const Section& scene) 
                 "time_scale(g) is there but does not fit: a const template of an arrow's scalar, which returns it, of "
                 "a system that takes the step as an argument (see HasTimeScaleOfArrows)");
   const auto word = [](TimeMode mode) { return std::string(integration_method({.mode = mode}).name); };
-  const std::string chosen =
-      read_key(scene.section_or_empty("time"), time_keys::boundary_mode(boundary_modes<Sys>()));
+  const std::string chosen = read_key(scene.section_or_empty("time"), time_keys::boundary_mode(boundary_modes<Sys>()));
   for (const TimeMode mode : {TimeMode::adaptive, TimeMode::controlled})
     if (chosen == word(mode)) return mode;
   return TimeMode::fixed;

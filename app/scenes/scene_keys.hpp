@@ -20,7 +20,9 @@ inline const KeyOf<Whole> steps{"steps", {1, most_steps}, "", "how many"};
 inline const KeyOf<Number> step{
     "step", {positive}, "s", "the size of a step; of the first, where sizes vary", {}, "`duration` over `steps`"};
 inline const KeyOf<Number> duration{
-    "duration", {positive}, "s", "of all steps, which are equal: in place of `step`", {}, "`steps` times `step`"};
+    "duration", {positive},
+    "s",        "of all steps, in place of `step`: of equal ones, and of boundary values",
+    {},         "`steps` times `step`"};
 inline const KeyOf<Number> accuracy{"accuracy",
                                     {positive},
                                     "",

@@ -23,7 +23,7 @@ KeyOf<OneOf> form_key(const std::vector<SphereForm>& forms) {
   return key;
 }
 
-const KeyOf<Number> tolerance{
+const KeyOf<Number> tolerance_key{
     "tolerance",
     {{"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }}},
     "",
@@ -60,7 +60,7 @@ KeyOf<OneOf> method_key(const SphereEntry& entry) {
 
 Table sphere_time_table(const SphereEntry& entry) {
   Table table{grid_keys()};
-  table.keys.insert(table.keys.end(), {method_key(entry), form_key(entry.forms), tolerance});
+  table.keys.insert(table.keys.end(), {method_key(entry), form_key(entry.forms), tolerance_key});
   if (!entry.own_methods.empty())
     table.keys.insert(table.keys.end(), {time_keys::order(), time_keys::composition(compositions::all)});
   return table;
@@ -92,7 +92,7 @@ SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry
     time.fail("tolerance", fmt::format("goes with a method that estimates its error: method = \"{}\"",
                                        lie_group_methods::munthe_kaas_54.name));
   options.stop = InterruptGuard::interrupted;
-  options.tolerance = read_key(time, tolerance);
+  options.tolerance = read_key(time, tolerance_key);
   return options;
 }
 

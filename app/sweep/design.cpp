@@ -28,8 +28,8 @@ const KeyOf<Whole> count_on_grid{"count", {1, most_members}, "", "numbers on the
 const KeyOf<NumberList> values_key{"values", {}, "", "the numbers that it takes"};
 const KeyOf<Number> mean{"mean", {}, "", "of a normal distribution"};
 const KeyOf<Number> deviation{"deviation", {positive}, "", "of a normal distribution"};
-const std::string sphere = "sphere";
-const std::string attitude = "attitude";
+const std::string on_sphere = "sphere";
+const std::string of_attitudes = "attitude";
 KeyOf<OneOf> distribution_key(std::vector<std::string> words) {
   return {"distribution", {std::move(words)}, "", "uniform: a vector on a sphere, or a unit quaternion"};
 }
@@ -156,7 +156,7 @@ Variation read_variation(const Section& vary, bool on_grid, const Section& scene
   std::size_t size = 1;
   if (vary.has("distribution")) {
     if (on_grid) vary.fail("distribution", "has no grid; give from, to and count, or values, or another design.kind");
-    size = read_key(vary, distribution_key({sphere, attitude})) == sphere ? 3 : 4;
+    size = read_key(vary, distribution_key({on_sphere, of_attitudes})) == on_sphere ? 3 : 4;
     if (size == 3) read_sphere(vary, v);
     if (size == 4) read_attitude(v);
   } else if (vary.has("values")) {
@@ -294,8 +294,8 @@ std::vector<Table> design_tables() {
                 {range,
                  values,
                  {{path_key, mean, deviation}},
-                 {{path_key, distribution_key({sphere}), radius_key}},
-                 {{path_key, distribution_key({attitude})}}}),
+                 {{path_key, distribution_key({on_sphere}), radius_key}},
+                 {{path_key, distribution_key({of_attitudes})}}}),
           {{KeyOf<Table>{"design", {{kind_key({list_of_members}), member_file}}, "", "which members there are"}}}};
 }
 

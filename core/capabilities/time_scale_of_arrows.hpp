@@ -1,6 +1,6 @@
 #pragma once
-/// A time in which little changes near an arrow: sigma(g) > 0, to which the steps of a boundary value can be proportional,
-/// t1 - t0 = epsilon sigma(g). One wants it where a path is fast in places. [G], after Example 6.2
+/// A time in which little changes near an arrow: sigma(g) > 0, to which the steps of a boundary value can be
+/// proportional, t1 - t0 = epsilon sigma(g). One wants it where a path is fast in places. [G], after Example 6.2
 ///
 ///     template <class S> S time_scale(const Arrow<S>& g) const { return ...; }     a member of the system
 ///
