@@ -1,7 +1,7 @@
 #pragma once
 /// A scene of bodies while it is read: its bodies by name, and where they are at the start.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <lagroid/run/motion/shape.hpp>
 #include <lagroid/systems/multibody/scene.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// Scenes of bodies as motions.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 #include "../scenes/motion_scene.hpp"
 
 #include <lagroid/solvers/methods/declared_methods.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// The methods that a scene can ask to minimise by.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// What a scene of `lagroid optimize` says.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 #include <lagroid/systems/optimisation/instances.hpp>

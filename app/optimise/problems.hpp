@@ -1,7 +1,7 @@
 #pragma once
 /// The functions that a scene can ask to minimise.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <lagroid/systems/optimisation/instances.hpp>
 

@@ -11,7 +11,7 @@
 ///
 /// Source: [G] section 5.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 #include "boundary_times.hpp"
 #include "simulation.hpp"
 

@@ -9,7 +9,7 @@
 ///
 /// Errors: SceneError where the numbers are no arrow.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <lagroid/groupoids/groups/se2.hpp>
 #include <lagroid/groupoids/groups/so2.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// The keys of [time], [solver] and [output] that scenes of several families share.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <lagroid/solvers/methods/declared_methods.hpp>
 

@@ -6,7 +6,7 @@
 /// A module is made by `any_module` (any_system.hpp), or from a function that reads scenes of the system (`ModuleOf`).
 /// Errors: SceneError of the scenes that it reads.
 
-#include "../reading/parameter.hpp"
+#include "../keys/parameter.hpp"
 #include "../reading/scene_reader.hpp"
 #include "motion_scene.hpp"
 #include "prepared_scene.hpp"

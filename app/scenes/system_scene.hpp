@@ -8,7 +8,7 @@
 ///
 /// Errors: SceneError for a mistake in the scene.
 
-#include "../reading/parameter.hpp"
+#include "../keys/parameter.hpp"
 #include "attitude.hpp"
 #include "scene_arrow.hpp"
 #include "simulation.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// Declared keys as a JSON Schema, draft 2020-12.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Systems on (T*S^2)^k, as scenes name them.
 
-#include "../reading/parameter.hpp"
+#include "../keys/parameter.hpp"
 #include "../reading/scene_reader.hpp"
 
 #include <lagroid/core/quantity.hpp>

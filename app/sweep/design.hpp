@@ -1,7 +1,7 @@
 #pragma once
 /// The members of a sweep: which numbers of a scene each of them has in place of others.
 
-#include "../reading/key.hpp"
+#include "../keys/key.hpp"
 
 #include <cstddef>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 /// Members of a sweep that stand in a file.
 
-#include "../../reading/key.hpp"
+#include "../../keys/key.hpp"
 
 #include <string>
 #include <vector>

@@ -6,7 +6,7 @@
 ///     const KeyOf<Number> length{"length", {positive}, "m", "of the rod", {}, "that at the start"};
 ///     const double l = read_key_or(table, length, apart);
 
-#include "scene_reader.hpp"
+#include "../reading/scene_reader.hpp"
 
 #include <array>
 #include <cstddef>
