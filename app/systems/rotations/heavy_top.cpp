@@ -11,6 +11,7 @@ template <> struct SceneArrow<HeavyTop::GroupoidType> {
   static constexpr std::string_view key = "attitude";
   HeavyTop::GroupoidType groupoid;
 
+  static auto declared(std::string_view name) { return SceneArrow<SO3>::declared(name); }
   static Arrow read(const Section& section, std::string_view name) {
     return {SceneArrow<SO3>::read(section, name), Vector<double, 3>(0, 0, 1)};
   }
