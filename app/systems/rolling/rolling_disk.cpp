@@ -10,10 +10,10 @@ namespace lagroid::app {
 
 namespace {
 
-const KeyOf<NumberArray> rates{"rates", {2}, "rad/s", "turning and rolling"};
+const KeyOf<NumberArray> rates_key{"rates", {2}, "rad/s", "turning and rolling"};
 
 SystemKeys own_keys() {
-  return {parameter_keys<RollingDisk>(), {SceneArrow<SE2>::declared(SceneArrow<SE2>::key), rates}};
+  return {parameter_keys<RollingDisk>(), {SceneArrow<SE2>::declared(SceneArrow<SE2>::key), rates_key}};
 }
 
 PreparedScene<RollingDisk> read(const Section& scene, const RunContext& context) {
@@ -58,7 +58,7 @@ PreparedScene<RollingDisk> read(const Section& scene, const RunContext& context)
   refuse_boundary<RollingDisk>(scene);
   const Section initial = scene.section("initial", "position and rates");
   const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, SceneArrow<SE2>::key);
-  const auto given = read_key(initial, rates);
+  const auto given = read_key(initial, rates_key);
   const ArrowOf<RollingDisk::GroupoidType> configuration{pose, Matrix<double, 2, 2>::Identity()};
   return simulation(scene, context, system, p, system.rolling(given[0], given[1]), configuration);
 }
