@@ -27,17 +27,24 @@ Table scene_table(const SystemModule& module) {
   const SystemKeys own = module.keys();
   Table solver = step_solver_table();
   solver.keys.insert(solver.keys.end(), own.solver.begin(), own.solver.end());
-  Table table{{KeyOf<OneOf>{std::string(keys::system), {{module.name()}}, "", module.summary()},
-               optional_table("output", output_table(), "what is recorded")}};
+  Table table{{KeyOf<OneOf>{std::string(keys::system), {{module.name()}}, "", module.summary()}}};
   if (!own.parameters.empty()) table.keys.push_back(parameters_key(own.parameters));
-  table.kinds = initial_values({KeyOf<Table>{"initial", {own.initial}, "", "the state to start from"},
-                                optional_table("solver", solver, "of the implicit equations of a step")},
-                               time_table(module.own_methods(), own.depends_on_time));
+  const std::vector<Key> started{KeyOf<Table>{"initial", {own.initial}, "", "the state to start from"},
+                                 optional_table("output", output_table(), "what is recorded")};
+  std::vector<Key> stepped = started;
+  stepped.push_back(optional_table("solver", solver, "of the implicit equations of a step"));
+  table.kinds = initial_values(stepped, time_table(own.depends_on_time));
+  for (const DeclaredMethod& method : module.own_methods()) {
+    table.kinds.push_back({started});
+    table.kinds.back().keys.push_back(
+        KeyOf<Table>{"time", own_time_table(method), "", std::string(method.source.what)});
+  }
   if (!own.end.empty())
     table.kinds.push_back({{KeyOf<Table>{"boundary", boundary_table({own.end}), "", "the two ends"},
                             KeyOf<Table>{"time", boundary_time_table(own.boundary_modes, own.depends_on_time), "",
                                          "how long it takes, in how many steps"},
                             optional_table("solver", boundary_solver_table(), "of the boundary value"),
+                            optional_table("output", {{output_keys::every}}, "what is recorded"),
                             optional_table("continuation", continuation_table(),
                                            "carries the solutions of an easier problem to this one")}});
   table.about = module.summary();

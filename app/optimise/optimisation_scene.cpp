@@ -20,7 +20,7 @@ namespace {
 using optimisation::Instance, optimisation::Point, optimisation::Stopping;
 
 const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of a random start", 1};
-const KeyOf<Text> file_key{"file", {}, "", "the name of a file", {}, "a random start"};
+const KeyOf<Text> file_key{"file", {}, "", "the name of a file; without it the start is random"};
 const KeyOf<Flag> nearest{"nearest", {}, "", "true: the point of the manifold that is nearest to the file's", false};
 const KeyOf<Whole> component_key{"component", {-1, 1},      "", "of O(n): 1 or -1, the sign of the determinant",
                                  {},          "as it comes"};
@@ -97,7 +97,7 @@ Stopping read_stopping(const Section& scene) {
 
 Table optimisation_table() {
   Table table{{optional_table("method", optimisers_table(), "by which it is minimised"),
-               optional_table("start", {{file_key, nearest, component_key, seed_key}}, "where it begins"),
+               optional_table("start", {{component_key, seed_key}, {{{file_key, nearest}}, {}}}, "where it begins"),
                optional_table("stop", {{relative_gradient, gradient, gap_key, value, iterations, seconds, patience}},
                               "when it ends"),
                reference_key}};

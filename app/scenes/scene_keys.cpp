@@ -62,18 +62,22 @@ KeyOf<OneOf> method() {
 
 std::vector<Key> grid_keys() { return {time_keys::steps, time_keys::step, time_keys::duration}; }
 
-Table time_table(std::span<const DeclaredMethod> own, bool depends_on_time) {
+Table time_table(bool depends_on_time) {
   Table table{grid_keys()};
-  std::vector<std::string> methods = method_words();
-  int most = usual_compositions.back().order;
-  for (const DeclaredMethod& each : own) {
-    methods.emplace_back(each.name);
-    most = std::max(most, each.order);
-  }
   table.keys.insert(table.keys.end(), {time_keys::accuracy, time_keys::mode(), time_keys::without_root(),
-                                       time_keys::method(std::move(methods)), time_keys::order(2, most),
+                                       time_keys::method(method_words()), time_keys::order(),
                                        time_keys::composition(compositions_of(OtherOrders::composed_flows))});
   if (depends_on_time) table.keys.push_back(time_keys::start);
+  return table;
+}
+
+Table own_time_table(const DeclaredMethod& own) {
+  Table table{grid_keys()};
+  KeyOf<OneOf> method = time_keys::method({std::string(own.name)});
+  method.fallback.reset();
+  KeyOf<Whole> order = time_keys::order(own.order, own.order);
+  order.meaning = "of the method";
+  table.keys.insert(table.keys.end(), {method, order});
   return table;
 }
 

@@ -64,8 +64,10 @@ inline const KeyOf<Whole> checkpoint{"checkpoint", {1, most_apart}, "", "steps f
 
 /// Of [time] in every scene: which steps, if they are equal.
 std::vector<Key> grid_keys();
-/// [time] of an initial value; `own` are methods beside those declared for every system.
-Table time_table(std::span<const DeclaredMethod> own, bool depends_on_time);
+/// [time] of an initial value, by a method that is declared for every system.
+Table time_table(bool depends_on_time);
+/// [time] of an initial value, by a method of the system's own, whose highest order is the usual one.
+Table own_time_table(const DeclaredMethod& own);
 /// [output] of an initial value.
 Table output_table();
 /// [solver] of an initial value.
