@@ -15,7 +15,7 @@ marks = re.compile(r"(<!-- keys of (\w+)(?: with (\w+))?: ([\w.]+) -->\n)(.*?)(<
 
 
 def number(x):
-    return f"{x:g}" if abs(x) < 1e6 or x != int(x) else f"{int(x):,}".replace(",", " ")
+    return f"{x:,}".replace(",", " ") if isinstance(x, int) else f"{x:g}"
 
 
 def range_of(declared):
