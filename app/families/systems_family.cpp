@@ -29,16 +29,15 @@ Table scene_table(const SystemModule& module) {
   solver.keys.insert(solver.keys.end(), own.solver.begin(), own.solver.end());
   Table table{{KeyOf<OneOf>{std::string(keys::system), {{module.name()}}, "", module.summary()}}};
   if (!own.parameters.empty()) table.keys.push_back(parameters_key(own.parameters));
-  const std::vector<Key> started{KeyOf<Table>{"initial", {own.initial}, "", "the state to start from"},
-                                 optional_table("output", output_table(), "what is recorded")};
-  std::vector<Key> stepped = started;
-  stepped.push_back(optional_table("solver", solver, "of the implicit equations of a step"));
-  table.kinds = initial_values(stepped, time_table(own.depends_on_time));
-  for (const DeclaredMethod& method : module.own_methods()) {
-    table.kinds.push_back({started});
-    table.kinds.back().keys.push_back(
-        KeyOf<Table>{"time", own_time_table(method), "", std::string(method.source.what)});
-  }
+  const auto started_with = [&](const KeyOf<Table>& other) {
+    return std::vector<Key>{KeyOf<Table>{"initial", {own.initial}, "", "the state to start from"},
+                            optional_table("output", output_table(), "what is recorded"), other};
+  };
+  table.kinds = initial_values(started_with(optional_table("solver", solver, "of the implicit equations of a step")),
+                               time_table(own.depends_on_time));
+  for (const DeclaredMethod& method : module.own_methods())
+    table.kinds.push_back(
+        {started_with(KeyOf<Table>{"time", own_time_table(method), "", std::string(method.source.what)})});
   if (!own.end.empty())
     table.kinds.push_back({{KeyOf<Table>{"boundary", boundary_table({own.end}), "", "the two ends"},
                             KeyOf<Table>{"time", boundary_time_table(own.boundary_modes, own.depends_on_time), "",
