@@ -17,8 +17,7 @@
 /// Source: [G] A.1.
 
 #include <lagroid/core/algebroid.hpp>
-
-#include <Eigen/LU>
+#include <lagroid/core/matrices/decompositions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +71,7 @@ template <Groupoid G, class Section> class Bisection {
     int settled = 0;
     for (int k = 0; k < iterations; ++k) {
       const Vector<S, size> gap = groupoid_.object_displacement(image(q), r);
-      const Matrix<double, size, size> inverse = Eigen::MatrixXd(slope(without_derivatives(q)).inverse());
+      const Matrix<double, size, size> inverse = inverse_of(slope(without_derivatives(q)));
       q = groupoid_.displace_object(q, Vector<S, size>(inverse.template cast<S>() * gap));
       bool small = true;
       for (int i = 0; i < size; ++i) small = small && std::abs(double(value_of(gap(i)))) < 1e-9 * scale;

@@ -159,9 +159,12 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   Matrix<T, rank, K> frame_to_end(const std::tuple<As...>& g, const Matrix<T, arrow_dimension, K>& rows) const {
     Matrix<T, rank, K> out;
     each([&]<std::size_t I>() {
-      const Matrix<T, frames[I], K> part = rows.template middleRows<frames[I]>(start(frames, I));
-      out.template middleRows<dimensions[I]>(start(dimensions, I)) =
-          std::get<I>(factor).template frame_to_end<Which>(std::get<I>(g), part);
+      Matrix<T, frames[I], K> part;
+      for (int k = 0; k < K; ++k)
+        for (int i = 0; i < frames[I]; ++i) part(i, k) = rows(start(frames, I) + i, k);
+      const Matrix<T, dimensions[I], K> there = std::get<I>(factor).template frame_to_end<Which>(std::get<I>(g), part);
+      for (int k = 0; k < K; ++k)
+        for (int i = 0; i < dimensions[I]; ++i) out(start(dimensions, I) + i, k) = there(i, k);
     });
     return out;
   }
@@ -169,8 +172,10 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   Matrix<T, arrow_dimension, arrow_dimension> frame_bracket(const Vector<T, arrow_dimension>& p) const {
     Matrix<T, arrow_dimension, arrow_dimension> out = Matrix<T, arrow_dimension, arrow_dimension>::Zero();
     each([&]<std::size_t I>() {
-      out.template block<frames[I], frames[I]>(start(frames, I), start(frames, I)) =
-          std::get<I>(factor).frame_bracket(segment<frames, I>(p));
+      constexpr int at = start(frames, I);
+      const Matrix<T, frames[I], frames[I]> block = std::get<I>(factor).frame_bracket(segment<frames, I>(p));
+      for (int k = 0; k < frames[I]; ++k)
+        for (int i = 0; i < frames[I]; ++i) out(at + i, at + k) = block(i, k);
     });
     return out;
   }
@@ -195,7 +200,9 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
     return sum;
   }
   template <const std::array<int, factors>& Sizes, std::size_t I, class V> static auto segment(const V& x) {
-    return Vector<typename V::Scalar, Sizes[I]>(x.template segment<Sizes[I]>(start(Sizes, I)));
+    Vector<typename V::Scalar, Sizes[I]> out;
+    unrolled<Sizes[I]>([&]<int J>() { out(J) = x(start(Sizes, I) + J); });
+    return out;
   }
 
   template <class F> static auto indexed(const F& f) {
@@ -215,7 +222,7 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
     const auto put = [&]<int At, int I>(const auto& self) {
       const auto& part = std::get<I>(parts);
       constexpr int length = std::decay_t<decltype(part)>::SizeAtCompileTime;
-      out.template segment<length>(At) = part;
+      unrolled<length>([&]<int J>() { out(At + J) = part(J); });
       if constexpr (I + 1 < int(factors)) self.template operator()<At + length, I + 1>(self);
     };
     put.template operator()<0, 0>(put);

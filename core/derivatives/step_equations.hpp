@@ -13,18 +13,21 @@
 /// Source: [G] Def. 3.3, Def. 3.5, Corollary 3.4.
 
 #include <lagroid/core/derivatives/two_sided.hpp>
-
-#include <Eigen/SVD>
-
-#include <cmath>
+#include <lagroid/core/matrices/decompositions.hpp>
+#include <lagroid/core/matrices/scaling.hpp>
 
 namespace lagroid {
 
 /// The step equations F-(g, lambda) = mu, phi(g) = 0, C(beta(g)) = 0, in the unknowns (w, lambda), g <- g tau(w).
 ///
+/// Written entry by entry: every file with a system of its own compiles them for its sizes, and Eigen's expressions of
+/// blocks would take most of that time (docs/decisions/72_expressions_cost_their_square.md).
+///
 /// For object constraints F- contains lambda . dC o rho at the source, the impulse between two arrows.
 template <class Sys, class S = double> struct StepEquations {
-  static constexpr int size = Sys::dimension + Sys::constraints;
+  static constexpr int n = Sys::dimension;
+  static constexpr int m = Sys::constraints;
+  static constexpr int size = n + m;
   /// Not aligned, so that Eigen reads it number by number, as it is written.
   using Residual = Eigen::Matrix<S, size, 1, Eigen::DontAlign>;
   using Jacobian = Matrix<S, size, size>;
@@ -32,44 +35,23 @@ template <class Sys, class S = double> struct StepEquations {
   static Residual residual(const GradientsOf<Sys, S>& d,
                            const AlgebroidVector<typename Sys::GroupoidType, S>& momentum) {
     Residual r;
-    r.template head<Sys::dimension>() = -d.source_gradient - momentum;
-    r.template tail<Sys::constraints>() = d.constraint;
+    unrolled<n>([&]<int I>() { r(I) = -d.source_gradient(I) - momentum(I); });
+    unrolled<m>([&]<int A>() { r(n + A) = d.constraint(A); });
     return r;
   }
 
   /// [ -d2f/dv dw   -(d(phi, C o alpha)/dv)^T ;  d(phi, C o beta)/dw   0 ].
   static Jacobian jacobian(const TwoSidedOf<Sys>& d) {
     Jacobian j;
-    j.template topLeftCorner<Sys::dimension, Sys::dimension>() = -d.mixed;
-    j.template topRightCorner<Sys::dimension, Sys::constraints>() = -d.constraint_source;
-    j.template bottomLeftCorner<Sys::constraints, Sys::dimension>() = d.constraint_target;
-    j.template bottomRightCorner<Sys::constraints, Sys::constraints>().setZero();
-    return j;
-  }
-};
-
-/// Row and column scales, powers of two, with which a matrix has rows and columns of largest entry near one.
-template <int Rows, int Columns = Rows> struct Scaling {
-  Vector<double, Rows> row;
-  Vector<double, Columns> column;
-
-  Matrix<double, Rows, Columns> apply(const Matrix<double, Rows, Columns>& a) const {
-    return row.asDiagonal() * a * column.asDiagonal();
-  }
-
-  /// Ruiz's simultaneous equilibration. Zero rows and columns keep scale one.
-  static Scaling equilibrate(const Matrix<double, Rows, Columns>& a) {
-    Scaling s{Vector<double, Rows>::Ones(a.rows()), Vector<double, Columns>::Ones(a.cols())};
-    const auto inverse_root = [](double x) { return x > 0 && std::isfinite(x) ? 1 / std::sqrt(x) : 1.0; };
-    for (int sweep = 0; sweep < 8; ++sweep) {
-      const Matrix<double, Rows, Columns> b = s.apply(a).cwiseAbs();
-      for (int i = 0; i < b.rows(); ++i) s.row(i) *= inverse_root(b.row(i).maxCoeff());
-      for (int j = 0; j < b.cols(); ++j) s.column(j) *= inverse_root(b.col(j).maxCoeff());
+    for (int k = 0; k < n; ++k) {
+      for (int i = 0; i < n; ++i) j(i, k) = -d.mixed(i, k);
+      for (int a = 0; a < m; ++a) j(n + a, k) = d.constraint_target(a, k);
     }
-    const auto power_of_two = [](double x) { return std::exp2(std::round(std::log2(x))); };
-    s.row = s.row.unaryExpr(power_of_two);
-    s.column = s.column.unaryExpr(power_of_two);
-    return s;
+    for (int b = 0; b < m; ++b) {
+      for (int i = 0; i < n; ++i) j(i, n + b) = -d.constraint_source(i, b);
+      for (int a = 0; a < m; ++a) j(n + a, n + b) = 0;
+    }
+    return j;
   }
 };
 
@@ -80,7 +62,7 @@ template <DiscreteSystem Sys> double regularity_condition(const Sys& system, con
   using E = StepEquations<Sys>;
   const auto j = E::jacobian(two_sided(system, step.arrow, step.multipliers));
   const typename E::Jacobian scaled = Scaling<E::size>::equilibrate(j).apply(j);
-  const auto sigma = Eigen::JacobiSVD<typename E::Jacobian>(scaled).singularValues().eval();
+  const Eigen::VectorXd sigma = singular_values(scaled);
   return sigma(0) / sigma(E::size - 1);
 }
 

@@ -15,9 +15,8 @@
 /// Source: [G] Theorem 3.1, 3.3, Remark 2.17.
 
 #include <lagroid/core/hamiltonian/symplectic.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/system.hpp>
-
-#include <Eigen/QR>
 
 namespace lagroid {
 
@@ -121,7 +120,7 @@ template <DiscreteSystem Sys> class GeneratedSubmanifold {
       const Eigen::MatrixXd normals = jacobian(Vector<double, size>(Vector<double, size>::Zero()), [&](const auto& x) {
                                         return conditions_at(chart.arrow(x));
                                       }).transpose();
-      const Eigen::MatrixXd q = normals.householderQr().householderQ();
+      const Eigen::MatrixXd q = orthogonal_factor(normals);
       out.setZero();
       out.topLeftCorner(size, size - conditions) = q.rightCols(size - conditions);
       out.bottomRightCorner(conditions, conditions).setIdentity();

@@ -15,9 +15,8 @@
 /// what is not finite does not descend, nor a constraint near whose samples there is no zero.
 
 #include <lagroid/core/derivatives/annihilator.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/reduction/reduced_system.hpp>
-
-#include <Eigen/QR>
 
 #include <cmath>
 #include <cstddef>
@@ -89,9 +88,7 @@ class DescentTally {
 
 /// The orthogonal projection to the span of the columns: the same for every basis of a distribution's annihilator.
 template <int N, int K> Matrix<double, N, N> projection_to_span(const Matrix<double, N, K>& columns) {
-  const Eigen::ColPivHouseholderQR<Matrix<double, N, K>> qr(columns);
-  const Matrix<double, N, N> q = qr.householderQ();
-  const auto basis = q.leftCols(qr.rank());
+  const Eigen::MatrixXd basis = orthonormal_span(columns);
   return basis * basis.transpose();
 }
 
@@ -110,7 +107,7 @@ template <class Reduced, class A> A on_the_constraint(const Reduced& reduced, A 
           derivative_of(reduced.constraint(reduced.groupoid.extend(reduced.groupoid.template cast<D>(h), w)));
     }
     const Vector<double, m> value = reduced.constraint(h);
-    const Vector<double, n> w = slope.completeOrthogonalDecomposition().solve(value);
+    const Vector<double, n> w = least_squares(slope, value);
     h = reduced.groupoid.extend(h, Vector<double, n>(-w));
     if (w.norm() <= 1e-13) return h;
   }

@@ -23,6 +23,7 @@
 
 #include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/derivatives/two_sided.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/core/reduction/full_system.hpp>
 #include <lagroid/core/reduction/not_free.hpp>
@@ -147,7 +148,7 @@ struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection,
     Vector<double, G::dimension> components;
     components << s.momentum, level;
     return {full_groupoid().source(horizontal(this->groupoid.unit(s.object))),
-            adapted_basis(s.object).transpose().partialPivLu().solve(components)};
+            solve_regular(adapted_basis(s.object).transpose(), components)};
   }
   /// The state of the base below a full one. Its momentum along the fibres is not looked at: `momentum_of` has it.
   State<B> state_below(const State<G>& z) const {

@@ -13,6 +13,7 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/bisection.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 
 namespace lagroid::laws {
@@ -32,10 +33,13 @@ template <Groupoid G> struct RandomSection {
     auto z = groupoid->coordinates_of_object(q);
     using S = typename std::decay_t<decltype(z)>::Scalar;
     for (int i = 0; i < size; ++i) z(i) = z(i) * (1 / length);
-    Vector<S, G::dimension> out = constant.template cast<S>();
-    if constexpr (size > 0) {
-      const S factor = S(1.0) + weight.template cast<S>().dot(z);
-      out += (linear.template cast<S>() * z).eval() * factor;
+    S factor(1.0);
+    for (int j = 0; j < size; ++j) factor += weight(j) * z(j);
+    Vector<S, G::dimension> out;
+    for (int i = 0; i < G::dimension; ++i) {
+      S slope(0.0);
+      for (int j = 0; j < size; ++j) slope += linear(i, j) * z(j);
+      out(i) = constant(i) + slope * factor;
     }
     return out;
   }
@@ -116,7 +120,7 @@ LawReport algebroid_laws(const G& groupoid, const DrawObject& draw_object, const
     const auto units = bisection_through(groupoid, groupoid.unit(groupoid.source(g)));
     return worst({arrows(b(groupoid.source(g)), g), objects(groupoid.source(b(q)), q),
                   arrows(units(q), groupoid.unit(q)),
-                  std::abs(b.slope(groupoid.source(g)).determinant()) > 1e-9 ? 0.0 : 1.0});
+                  std::abs(determinant_of(b.slope(groupoid.source(g)))) > 1e-9 ? 0.0 : 1.0});
   });
   law("products of bisections", [&] {
     const auto g = arrow();

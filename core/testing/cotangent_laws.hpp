@@ -1,5 +1,5 @@
-#pragma once
-/// The symplectic groupoid T*G => A*G as a test suite that any groupoid runs by naming itself: source anti-Poisson,
+#pragma once  /// The symplectic groupoid T*G => A*G as a test suite that any groupoid runs by naming itself: source
+              /// anti-Poisson,
 /// target Poisson, their fibres orthogonal, units and the graph of the product Lagrangian.
 ///
 /// That steps of a discrete Lagrangian system are Poisson maps rests on these statements.
@@ -13,17 +13,10 @@
 
 #include <lagroid/core/bisection.hpp>
 #include <lagroid/core/hamiltonian/symplectic.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 
-#include <Eigen/LU>
-
 namespace lagroid::laws {
-
-namespace detail {
-
-inline double matrix_defect(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) { return relative_defect(x, y); }
-
-}  // namespace detail
 
 /// [G] Theorem A.1, Def. 2.11 and the remarks after it: the graph of the product is Lagrangian, the source is
 /// anti-Poisson, the target Poisson, their fibres orthogonal, the units Lagrangian. `Cotangent` is CotangentGroupoid<G>
@@ -37,7 +30,6 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
   using A = ArrowOf<G>;
   using V = Vector<double, n>;
   using W = Vector<double, size>;
-  using detail::matrix_defect;
   using detail::relative_defect;
 
   const auto fibre = [&] { return V(draw_vector<n>(options.large)); };
@@ -91,7 +83,7 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
         return f(chart.covector(y.template head<size>().eval(), y.template tail<size>().eval()));
       });
     };
-    const Eigen::MatrixXd c = derivative([&](const auto& p) { return chart.canonical(p); }).inverse();
+    const Eigen::MatrixXd c = inverse_of(derivative([&](const auto& p) { return chart.canonical(p); }));
     const typename Cotangent::template Arrow<double> at{g, values};
     return Point{c * canonical * c.transpose(),
                  derivative([&](const auto& p) { return cotangent.coordinates_of_object(cotangent.source(p)); }),
@@ -101,16 +93,16 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
   const auto poisson = [&](const auto& z) { return poisson_tensor(groupoid, z.object, z.momentum); };
   law("source is anti-Poisson", [&] {
     const Point p = point();
-    return matrix_defect(p.source * p.tensor * p.source.transpose(), -poisson(p.from));
+    return relative_defect(p.source * p.tensor * p.source.transpose(), -poisson(p.from));
   });
   law("target is Poisson", [&] {
     const Point p = point();
-    return matrix_defect(p.target * p.tensor * p.target.transpose(), poisson(p.to));
+    return relative_defect(p.target * p.tensor * p.target.transpose(), poisson(p.to));
   });
   law("fibres of source and target are orthogonal", [&] {
     const Point p = point();
     const Eigen::MatrixXd product = p.source * p.tensor * p.target.transpose();
-    return matrix_defect(product, Eigen::MatrixXd::Zero(product.rows(), product.cols()));
+    return relative_defect(product, Eigen::MatrixXd::Zero(product.rows(), product.cols()));
   });
   law("units are Lagrangian", [&] {
     const typename Cotangent::template Object<double> z{draw_object(), fibre()};
@@ -120,7 +112,7 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
       return chart.canonical(cotangent.unit(cotangent.displace_object(cotangent.template cast_object<S>(z), u)));
     });
     const Eigen::MatrixXd form = c.transpose() * canonical * c;
-    return matrix_defect(form, Eigen::MatrixXd::Zero(size, size));
+    return relative_defect(form, Eigen::MatrixXd::Zero(size, size));
   });
   law("graph of the product is Lagrangian", [&] {
     // Composable pairs: p1 anywhere; the arrow of p2 starts where p1 ends; its values on the target are free.
@@ -147,8 +139,8 @@ LawReport cotangent_laws(const G& groupoid, const DrawObject& draw_object, const
       const Eigen::MatrixXd c = jacobian(x, [&](const auto& y) { return chart.canonical(p(y)); });
       return Eigen::MatrixXd(c.transpose() * canonical * c);
     };
-    return matrix_defect(form(chart1, first) + form(chart2, second),
-                         form(chart3, [&](const auto& y) { return cotangent.multiply(first(y), second(y)); }));
+    return relative_defect(form(chart1, first) + form(chart2, second),
+                           form(chart3, [&](const auto& y) { return cotangent.multiply(first(y), second(y)); }));
   });
   return report;
 }

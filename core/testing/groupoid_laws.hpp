@@ -32,14 +32,15 @@ struct GroupoidLawOptions {
 
 namespace detail {
 
-template <class X, class Y> double relative_defect(const X& x, const Y& y) {
+/// Of matrices of any size, so that each is no more than copied in the file that compares it.
+inline double relative_defect(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
   if (x.size() == 0) return 0;
   if (!x.allFinite() || !y.allFinite()) return std::numeric_limits<double>::infinity();
   return (x - y).cwiseAbs().maxCoeff() / (1 + y.cwiseAbs().maxCoeff());
 }
 
 /// The same for differences that were taken between points with the coordinates z, and have the round-off of these.
-template <class X, class Y, class Z> double displacement_defect(const X& x, const Y& y, const Z& z) {
+inline double displacement_defect(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Eigen::MatrixXd& z) {
   return relative_defect(x, y) / (z.size() == 0 ? 1 : std::max(1.0, z.cwiseAbs().maxCoeff()));
 }
 

@@ -1,6 +1,7 @@
 #include <lagroid/groupoids/groups/rotations.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <lagroid/core/matrices/real_schur.hpp>
+
 #include <Eigen/LU>
 
 #include <cmath>
@@ -51,28 +52,26 @@ template <class S> Eigen::VectorX<S> skew_entries(const Eigen::MatrixX<S>& a) {
 
 template <class S> SkewSpectrum<S>::SkewSpectrum(const Matrix& x) : basis_(x.rows(), x.cols()), angles_(x.rows() / 2) {
   if (x.size() == 0) return;
-  if (!x.allFinite()) {  // which RealSchur would pass over
+  if (!x.allFinite()) {  // which the Schur form would pass over
     basis_.setConstant(std::numeric_limits<S>::quiet_NaN());
     angles_.setConstant(std::numeric_limits<S>::quiet_NaN());
     return;
   }
-  const Eigen::RealSchur<Matrix> schur(x);
-  const Matrix& t = schur.matrixT();
+  const auto [t, u] = real_schur<S>(x);
   const Eigen::Index n = x.rows();
   Eigen::Index planes = 0;
   std::vector<Eigen::Index> fixed;  // directions that X sends to zero, up to round-off
   for (Eigen::Index i = 0; i < n; ++i) {
     if (i + 1 < n && t(i + 1, i) != 0) {
       angles_(planes) = (t(i + 1, i) - t(i, i + 1)) / 2;
-      basis_.template middleCols<2>(2 * planes++) = schur.matrixU().template middleCols<2>(i);
+      basis_.template middleCols<2>(2 * planes++) = u.template middleCols<2>(i);
       ++i;
     } else {
       fixed.push_back(i);
     }
   }
   angles_.tail(angles_.size() - planes).setZero();
-  for (std::size_t k = 0; k < fixed.size(); ++k)
-    basis_.col(2 * planes + Eigen::Index(k)) = schur.matrixU().col(fixed[k]);
+  for (std::size_t k = 0; k < fixed.size(); ++k) basis_.col(2 * planes + Eigen::Index(k)) = u.col(fixed[k]);
 }
 
 template <class S> Eigen::MatrixX<S> SkewSpectrum<S>::exp() const {
@@ -175,8 +174,7 @@ template <class S> std::optional<Eigen::MatrixX<S>> principal_log(const Eigen::M
     if (tangents.radius() <= 1) return tangents.apply([](S t) { return 2 * std::atan(t); });
   }
   if (!q.allFinite()) return std::nullopt;
-  const Eigen::RealSchur<Matrix> schur(q);
-  const Matrix& t = schur.matrixT();
+  const auto [t, u] = real_schur<S>(q);
   const Eigen::Index n = q.rows();
   Matrix inner = Matrix::Zero(n, n);
   const auto turn = [&](Eigen::Index i, Eigen::Index j, S angle) {
@@ -194,7 +192,7 @@ template <class S> std::optional<Eigen::MatrixX<S>> principal_log(const Eigen::M
   }
   if (reversed.size() % 2 != 0) return std::nullopt;
   for (std::size_t k = 0; k < reversed.size(); k += 2) turn(reversed[k], reversed[k + 1], std::numbers::pi_v<S>);
-  const Matrix x = schur.matrixU() * inner * schur.matrixU().transpose();
+  const Matrix x = u * inner * u.transpose();
   return (x - x.transpose()) / 2;
 }
 

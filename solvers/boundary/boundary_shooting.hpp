@@ -14,13 +14,13 @@
 /// remedy.
 
 #include <lagroid/core/derivatives/step_equations.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/solvers/boundary/boundary_newton.hpp>
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <memory>
 #include <optional>
@@ -165,7 +165,7 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
     if constexpr (Sys::object_constraints == 0) {
       return sensitivity.partialPivLu().solve(miss);
     } else {
-      return sensitivity.completeOrthogonalDecomposition().solve(miss);
+      return least_squares(sensitivity, miss);
     }
   }
 

@@ -14,8 +14,6 @@
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 
-#include <Eigen/LU>
-
 namespace lagroid {
 
 /// mu + <nu, omega(q)>, with nu such that the velocity of the result keeps the constraints at q: of the reaction at an
@@ -46,13 +44,10 @@ AlgebroidVector<typename Sys::GroupoidType> constrained_momentum(const Sys& syst
   d.mixed = lagrangian.mixed();  // without forces that depend on the velocity
   if constexpr (Nonholonomic<Sys>)
     d.constraint_target.template topRows<phis>() = d.constraint_source.template leftCols<phis>().transpose();
-  const auto equations = E::jacobian(d);
-  const auto scaling = Scaling<E::size>::equilibrate(equations);
   Vector<double, E::size> side = Vector<double, E::size>::Zero();
   side.template head<n>() = state.momentum - 0.5 * (lagrangian.right() - lagrangian.left());
   side.template segment<phis>(n) = -d.constraint.template head<phis>();
-  const Eigen::FullPivLU<typename E::Jacobian> factored(scaling.apply(equations));
-  const Vector<double, E::size> solution = scaling.column.cwiseProduct(factored.solve(scaling.row.cwiseProduct(side)));
+  const Vector<double, E::size> solution = solve_equilibrated(E::jacobian(d), side);
   return state.momentum + d.constraint_source.template rightCols<reactions>() * solution.template tail<reactions>();
 }
 

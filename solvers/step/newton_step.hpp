@@ -76,9 +76,13 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
                                  StepReport& report);
   Residual corrected(const ScaledResidual<Sys>& at) const;
 
-  double norm_of(const Residual& residual) const { return residual.cwiseProduct(scaling_.row).cwiseAbs().maxCoeff(); }
-  double roundoff_ratio_of(const Residual& residual) const {
-    return residual.cwiseProduct(chord_.floor).cwiseAbs().maxCoeff();
+  double norm_of(const Residual& residual) const { return largest_product(residual, scaling_.row); }
+  double roundoff_ratio_of(const Residual& residual) const { return largest_product(residual, chord_.floor); }
+  /// max_i |a_i b_i|
+  template <class A> static double largest_product(const Residual& a, const A& b) {
+    double largest = std::abs(a(0) * b(0));
+    unrolled<E::size - 1>([&]<int I>() { largest = std::max(largest, std::abs(a(I + 1) * b(I + 1))); });
+    return largest;
   }
 
   static void move(const Sys& system, Step<Sys>& step, const Residual& correction) {

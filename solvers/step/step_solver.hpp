@@ -86,13 +86,17 @@ typename StepEquations<Sys, S>::Residual round_off_level(const Sys& system,
                                                          const State<typename Sys::GroupoidType, S>& state,
                                                          const Step<Sys, S>& step,
                                                          const typename StepEquations<Sys, S>::Jacobian& jacobian) {
+  using std::abs, std::max;
   constexpr int n = Sys::dimension;
-  typename StepEquations<Sys, S>::Residual size =
-      jacobian.template leftCols<n>().cwiseAbs() * system.groupoid.coordinate_scale(step.arrow);
-  size.template head<n>() += state.momentum.cwiseAbs();
-  if constexpr (Sys::constraints > 0)
-    size += jacobian.template rightCols<Sys::constraints>().cwiseAbs() * step.multipliers.cwiseAbs();
-  return (std::numeric_limits<double>::epsilon() * size).cwiseMax(std::numeric_limits<double>::min());
+  const AlgebroidVector<typename Sys::GroupoidType, S> scale = system.groupoid.coordinate_scale(step.arrow);
+  typename StepEquations<Sys, S>::Residual level;
+  for (int i = 0; i < n + Sys::constraints; ++i) {
+    S size = i < n ? abs(state.momentum(i)) : S(0);
+    for (int j = 0; j < n; ++j) size += abs(jacobian(i, j)) * scale(j);
+    for (int a = 0; a < Sys::constraints; ++a) size += abs(jacobian(i, n + a)) * abs(step.multipliers(a));
+    level(i) = max(S(std::numeric_limits<double>::epsilon() * size), S(std::numeric_limits<double>::min()));
+  }
+  return level;
 }
 
 /// The scaled step equations at one point, with an estimate of how far round-off lets them be solved.
@@ -108,11 +112,16 @@ template <DiscreteSystem Sys> struct ScaledResidual {
     residual = E::residual(d, state.momentum);
     jacobian = E::jacobian(d);
     if (rescale) scaling = Scaling<E::size>::equilibrate(jacobian);
-    norm = residual.cwiseProduct(scaling.row).cwiseAbs().maxCoeff();
-
     const typename E::Residual level = round_off_level(system, state, step, jacobian);
-    roundoff_ratio = residual.cwiseAbs().cwiseQuotient(level).maxCoeff();
-    if (!residual.allFinite() || !jacobian.allFinite() || !level.allFinite() || underflows(jacobian, level)) {
+    norm = roundoff_ratio = 0;
+    bool finite = true;
+    for (int i = 0; i < E::size; ++i) {
+      norm = std::max(norm, std::abs(residual(i) * scaling.row(i)));
+      roundoff_ratio = std::max(roundoff_ratio, std::abs(residual(i)) / level(i));
+      finite = finite && std::isfinite(residual(i)) && std::isfinite(level(i));
+      for (int j = 0; j < E::size; ++j) finite = finite && std::isfinite(jacobian(i, j));
+    }
+    if (!finite || underflows(jacobian, level)) {
       norm = std::numeric_limits<double>::quiet_NaN();
       roundoff_ratio = std::numeric_limits<double>::infinity();
     }
@@ -124,7 +133,8 @@ template <DiscreteSystem Sys> struct ScaledResidual {
   static bool underflows(const typename E::Jacobian& jacobian, const typename E::Residual& level) {
     constexpr double small = 1e-100;
     for (Eigen::Index i = 0; i < level.size(); ++i) {
-      const double largest = jacobian.row(i).template head<Sys::dimension>().cwiseAbs().maxCoeff();
+      double largest = 0;
+      for (int j = 0; j < Sys::dimension; ++j) largest = std::max(largest, std::abs(jacobian(i, j)));
       if (level(i) <= std::numeric_limits<double>::min() && largest > 0 && largest < small) return true;
     }
     return false;

@@ -11,6 +11,7 @@
 ///
 /// Requires states from which a step can be taken. (Cortes and Martinez 2001; Marsden and West 2001, part 3.)
 
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/testing/derivative_laws.hpp>
 #include <lagroid/solvers/testing/variational_laws.hpp>
 
@@ -94,7 +95,7 @@ double velocity_defect(const Sys& system, const State<typename Sys::GroupoidType
   const auto scaling = Scaling<Eigen::Dynamic, Eigen::Dynamic>::equilibrate(equations);
   const Eigen::MatrixXd scaled = scaling.apply(equations);
   const Eigen::VectorXd scaled_side = scaling.row.asDiagonal() * side;
-  const Eigen::VectorXd left = scaled * scaled.completeOrthogonalDecomposition().solve(scaled_side) - scaled_side;
+  const Eigen::VectorXd left = scaled * least_squares(scaled, scaled_side) - scaled_side;
   if (!left.allFinite()) return std::numeric_limits<double>::infinity();
   return left.norm() == 0 ? 0 : left.norm() / std::max(scaled_side.norm(), std::numeric_limits<double>::min());
 }
@@ -143,7 +144,7 @@ LawReport dalembert_laws(const Sys& system, const Draw& draw, int count = 5, dou
       const Step<Sys> rest{system.groupoid.unit(state.object), Sys::Multipliers::Zero()};
       const Eigen::MatrixXd reactions = detail::reactions_at(system, rest);
       const Eigen::VectorXd reaction = reported.momentum - state.momentum;
-      const Eigen::VectorXd across = reaction - reactions * reactions.colPivHouseholderQr().solve(reaction);
+      const Eigen::VectorXd across = reaction - reactions * least_squares(reactions, reaction);
       return worst({detail::velocity_defect(system, reported), across.norm() / (1 + state.momentum.norm())});
     });
   if constexpr (HasAnnihilator<Sys>)

@@ -10,11 +10,9 @@
 
 #include <lagroid/core/capabilities/reversed.hpp>
 #include <lagroid/core/hamiltonian/lagrangian.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
-
-#include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <array>
@@ -61,7 +59,7 @@ SubmanifoldTangent solved_graph(const Sys& system, const State<typename Sys::Gro
                                       const auto q = groupoid.template cast_object<S>(from.object);
                                       return system.object_constraint(groupoid.displace_object(q, u));
                                     }).transpose();
-    const Eigen::MatrixXd basis = normals.householderQr().householderQ();
+    const Eigen::MatrixXd basis = orthogonal_factor(normals);
     along = basis.rightCols(d - c).eval();
   }
   SubmanifoldTangent graph{{},
@@ -133,8 +131,7 @@ LawReport dynamics_laws(const Sys& system, const Draw& draw, double tolerance = 
       const Step<Sys> first = step_from(system, start);
       const Step<Sys> second = step_from(system, legendre_plus(system, first));
       const auto& cotangent = submanifold.cotangent();
-      const Eigen::MatrixXd matched =
-          submanifold.tangent(second).minus.partialPivLu().solve(submanifold.tangent(first).plus);
+      const Eigen::MatrixXd matched = solve_regular(submanifold.tangent(second).minus, submanifold.tangent(first).plus);
       const Eigen::MatrixXd columns1 = submanifold.directions(first);
       const Eigen::MatrixXd columns2 = submanifold.directions(second) * matched;
       const CotangentChart<G> chart(cotangent, groupoid.multiply(first.arrow, second.arrow));

@@ -13,12 +13,10 @@
 
 #include <lagroid/core/derivatives/step_equations.hpp>
 #include <lagroid/core/hamiltonian/lagrangian.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/solvers/boundary/boundary_problem.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
-
-#include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <cstddef>
 #include <limits>
@@ -34,12 +32,10 @@ namespace detail {
 inline Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& a) {
   if (a.rows() == 0) return Eigen::MatrixXd::Identity(a.cols(), a.cols());
   const auto balance = Scaling<Eigen::Dynamic, Eigen::Dynamic>::equilibrate(a);
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(balance.apply(a), Eigen::ComputeFullV);
-  svd.setThreshold(1e-12);
-  const auto& sigma = svd.singularValues();
-  for (Eigen::Index i = 0; i < svd.rank(); ++i)
+  const auto [sigma, v, rank] = right_singular_vectors(balance.apply(a), 1e-12);
+  for (Eigen::Index i = 0; i < rank; ++i)
     if (sigma(i) < 1e-9 * sigma(0)) throw NotSampled("constraints nearly dependent along a path from the state drawn");
-  Eigen::MatrixXd kernel = balance.column.asDiagonal() * svd.matrixV().rightCols(a.cols() - svd.rank());
+  Eigen::MatrixXd kernel = balance.column.asDiagonal() * v.rightCols(a.cols() - rank);
   kernel.colwise().normalize();
   return kernel;
 }
@@ -227,7 +223,7 @@ LawReport variational_laws(const Sys& system, const Draw& draw, std::size_t coun
       path = displaced(problem, path, detail::variation_of<Sys>(step), 1.0);
       v = detail::first_variation(system, path);
       if (v.conditions.size() == 0) break;
-      step = -v.derivative.completeOrthogonalDecomposition().solve(v.conditions);
+      step = -least_squares(v.derivative, v.conditions);
     }
     const bool on_constraints = v.conditions.size() == 0 || v.conditions.norm() < 1e-6 * length * v.derivative.norm();
     return double(!on_constraints || detail::criticality_defect(v) < 10 * tolerance);
