@@ -24,6 +24,10 @@ class Examples(unittest.TestCase):
     def test_they_are_short(self):
         self.assertEqual([source.name for source in examples.sources if len(source.read_text().splitlines()) >= 60], [])
 
+    def test_the_last_is_reduced_by_the_library(self):
+        self.assertIn(" reduce(", examples.sources[-1].read_text())
+        self.assertIn("#include <lagroid/core/reduction/", examples.sources[-1].read_text())
+
 
 class BrokenExamples(unittest.TestCase):
     def of(self, text):
