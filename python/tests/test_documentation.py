@@ -5,8 +5,12 @@ import io
 import os
 import re
 import unittest
+import warnings
 
 from data import ROOT
+
+import lagroid
+from lagroid import compat
 
 PAGE = (ROOT / "docs" / "python.md").read_text()
 
@@ -16,12 +20,13 @@ def blocks(language: str, page: str = PAGE) -> list[str]:
 
 
 def run(page: str) -> dict[str, object]:
-    """What the page's program leaves."""
+    """What the page's program leaves. A retired name in it is an error."""
     names: dict[str, object] = {}
     folder = os.getcwd()
     os.chdir(ROOT)
     try:
-        with contextlib.redirect_stdout(io.StringIO()):
+        with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+            warnings.simplefilter("error", DeprecationWarning)
             for block in blocks("python", (ROOT / "docs" / page).read_text()):
                 exec(compile(block, f"docs/{page}", "exec"), names)  # noqa: S102
     finally:
@@ -29,12 +34,41 @@ def run(page: str) -> dict[str, object]:
     return names
 
 
+def unknown_names(page: str) -> set[str]:
+    """Of the code in the last column of the page's tables, what is no name in our headers, no word of scenes and
+    commands and no name in Python; of what its Python takes from the package, what is not there or is retired."""
+    cells = re.findall(r"^\|.*(?<!\\)\|(.*)\|$", page, re.MULTILINE)
+    code = " ".join(span for cell in cells for span in re.findall(r"`([^`]*)`", cell))
+    words = set(re.findall(r"[A-Za-z_]\w+", code))
+    known = {"lagroid", *(name for each in lagroid.__all__ for name in (each, *dir(getattr(lagroid, each))))}
+    for layer in ("core", "groupoids", "solvers", "systems", "run", "app"):
+        for path in (ROOT / layer).rglob("*.[hc]pp"):
+            text = re.sub("//.*", "", path.read_text())
+            if path.suffix == ".hpp":
+                known |= {path.stem, *path.relative_to(ROOT).parts, *re.findall(r"[A-Za-z_]\w+", text)}
+            known |= {word for quoted in re.findall(r'"([\w -]+)"', text) for word in re.findall(r"\w+", quoted)}
+    taken = {name for block in blocks("python", page) for name in re.findall(r"\blagroid\.(\w+)", block)}
+    return (words - known) | {name for name in taken if name in compat.NAMES or not hasattr(lagroid, name)}
+
+
 class ComingFrom(unittest.TestCase):
+    page = (ROOT / "docs" / "coming_from.md").read_text()
+
     def test_first_programs_run(self) -> None:
         names = run("coming_from.md")
         self.assertTrue(names["solution"].converged)  # type: ignore[attr-defined]
         self.assertEqual(names["centre"].status, "converged")  # type: ignore[attr-defined]
         self.assertGreater(names["centre"].x[2], 0.9)  # type: ignore[attr-defined]
+
+    def test_our_words_are_names_of_ours(self) -> None:
+        self.assertGreater(self.page.count("|---|"), 4)
+        self.assertEqual(unknown_names(self.page), set())
+
+    def test_a_retired_name_is_found_out(self) -> None:
+        table = "| there | here |\n|---|---|\n| `solve` | `make_march`, then `Sphere` or `hinge` |\n"
+        self.assertEqual(unknown_names(table), {"make_march"})
+        block = "```python\nlagroid.Pairs(1), lagroid.Pair(1), lagroid.pears\n```\n"
+        self.assertEqual(unknown_names(block), {"Pairs", "pears"})
 
 
 class Page(unittest.TestCase):
@@ -57,8 +91,6 @@ class Page(unittest.TestCase):
             self.assertTrue((ROOT / name).exists(), name)
 
     def test_classes_exist(self) -> None:
-        import lagroid
-
         errors = re.findall(r"^\| (\w+(?:Error|Interrupted)) \|", PAGE, re.M)
         for name in re.findall(r"lagroid\.(\w+)\(", PAGE) + errors:
             self.assertTrue(hasattr(lagroid, name), name)
