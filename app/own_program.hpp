@@ -46,7 +46,7 @@ namespace lagroid {
 struct Module {
   std::shared_ptr<const app::SystemModule> of;
 #if defined(LAGROID_WITH_LAWS)
-  std::function<Certificate(const app::Section& scene, const app::CheckOptions& options)> certify;
+  std::function<Certificate(const app::Section& scene, const app::CheckCommandOptions& options)> certify;
 #endif
 };
 
@@ -63,7 +63,7 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
   const auto made =
       std::make_shared<const app::ModuleOf<Sys>>(app::any_module<Sys>(std::move(name), std::move(summary), dress));
 #if defined(LAGROID_WITH_LAWS)
-  return {made, [made](const app::Section& scene, const app::CheckOptions& options) {
+  return {made, [made](const app::Section& scene, const app::CheckCommandOptions& options) {
             return app::certify(made->prepare(scene, {.progress = !options.json}), options);
           }};
 #else
@@ -78,7 +78,7 @@ inline int program(int argc, char** argv, std::vector<Module> modules) {
   std::vector<const app::SystemModule*> systems;
   for (const Module& each : modules) systems.push_back(each.of.get());
 #if defined(LAGROID_WITH_LAWS)
-  const auto ask = [&](const app::SystemModule& asked, const app::Section& scene, const app::CheckOptions& how) {
+  const auto ask = [&](const app::SystemModule& asked, const app::Section& scene, const app::CheckCommandOptions& how) {
     const auto is = [&](const Module& each) { return each.of.get() == &asked; };
     return std::find_if(modules.begin(), modules.end(), is)->certify(scene, how);
   };

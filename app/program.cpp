@@ -155,7 +155,7 @@ int program(int argc, char** argv, ProgramParts parts) {
   CLI::App* schema_command =
       app.add_subcommand("schema", "print a JSON Schema of scenes, for editors (see docs/scenes.md)");
   add_schema_options(*schema_command, schema_options);
-  StudyOptions study_options;
+  StudyCommandOptions study_options;
   CLI::App* study_command = app.add_subcommand(
       "study", "what accuracy costs a scene: error against time and evaluations, by all methods that apply");
   add_study_options(*study_command, study_options);

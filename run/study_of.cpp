@@ -1,5 +1,5 @@
 #include <lagroid/run/files/output_folder.hpp>
-#include <lagroid/run/reports/text.hpp>
+#include <lagroid/run/files/program_scene.hpp>
 #include <lagroid/run/study/methods.hpp>
 #include <lagroid/run/study/study.hpp>
 
@@ -47,12 +47,7 @@ void require_study(const StudyRequest& request, double step, long steps) {
 }
 
 std::string studied(const std::string& name, double step, long steps, const std::vector<NamedVector>& start) {
-  if (const std::string problem = text_problem(name); !problem.empty())
-    throw std::invalid_argument(fmt::format("StudyOptions::name: {}", problem));
-  for (const NamedVector& each : start)
-    if (!std::ranges::all_of(each.values, [](double x) { return std::isfinite(x); }))
-      throw std::invalid_argument(
-          fmt::format("the start of a study must be finite, got {} [{}]", each.name, fmt::join(each.values, ", ")));
+  require_name_and_start("StudyOptions::name", name, "a study", start);
   std::string out = fmt::format("{}, {} steps of {:.17g}", name, steps, step);
   for (const NamedVector& each : start) out += fmt::format("\n{} {:.17g}", each.name, fmt::join(each.values, " "));
   return out;

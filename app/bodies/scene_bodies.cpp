@@ -193,7 +193,7 @@ void read_chain(SceneBodies& bodies, const Section& table) {
   const std::string on = read_key(table, hangs_on);
   const Vec arm = vector_at(table, hangs_at);
   const NamedBody* holder = on == "ground" ? nullptr : &bodies.named(table, "on", on);
-  End last = holder ? bodies.end_of(table, "at", holder, arm) : bodies.ground_of(table, arm);
+  Attachment last = holder ? bodies.end_of(table, "at", holder, arm) : bodies.ground_of(table, arm);
   if (!holder) bodies.isolated = false;
   const Vec origin = last.place;
   for (long k = 1; k <= count; ++k) {
@@ -204,7 +204,7 @@ void read_chain(SceneBodies& bodies, const Section& table) {
     b.body = bodies.scene.point_mass(each_mass, b.place, turning.cross(Vec(b.place - origin)));
     b.mass_centre = b.body.centre;
     keep(bodies, b);
-    const End here = bodies.end_of(table, "name", &bodies.bodies.back(), Vec::Zero());
+    const Attachment here = bodies.end_of(table, "name", &bodies.bodies.back(), Vec::Zero());
     bodies.scene.add(multibody::Rod{{last.site, here.site}, each_length});
     bodies.lines.push_back({last, here, 0.008});
     last = here;
@@ -245,12 +245,12 @@ std::vector<const NamedBody*> SceneBodies::chosen(const Section& table) const {
   return out;
 }
 
-End SceneBodies::end_of(const Section& table, std::string_view key, const NamedBody* body, const Vec& arm) {
+Attachment SceneBodies::end_of(const Section& table, std::string_view key, const NamedBody* body, const Vec& arm) {
   if (body && body->body.attitude.index < 0 && !body->planar && !arm.isZero(0))
     table.fail(key, fmt::format("\"{}\" is a point mass and has no other points: give [0, 0, 0]", body->name));
   if (body && body->planar && arm(2) != 0)
     table.fail(key, fmt::format("\"{}\" moves in the plane: give it a third coordinate of 0", body->name));
-  End end;
+  Attachment end;
   end.body = body;
   end.arm = arm;
   end.place = body ? Vec(body->place + body->attitude * arm) : arm;
@@ -258,8 +258,8 @@ End SceneBodies::end_of(const Section& table, std::string_view key, const NamedB
   return end;
 }
 
-End SceneBodies::ground_of(const Section& table, const Vec& place) {
-  End end = end_of(table, "", nullptr, place);
+Attachment SceneBodies::ground_of(const Section& table, const Vec& place) {
+  Attachment end = end_of(table, "", nullptr, place);
   if (!table.has(ground_amplitude.name) && !table.has(ground_rate.name)) return end;
   const Vec amplitude = vector_at(table, ground_amplitude);
   const double rate = read_key(table, ground_rate);
@@ -271,7 +271,7 @@ End SceneBodies::ground_of(const Section& table, const Vec& place) {
   return end;
 }
 
-std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
+std::array<Attachment, 2> SceneBodies::ends(const Section& table, bool with_points) {
   const auto names = read_key(table, between);
   if (names.size() != 2)
     table.fail(table.has("between") ? "between" : "",
@@ -279,7 +279,7 @@ std::array<End, 2> SceneBodies::ends(const Section& table, bool with_points) {
   if (names[0] == names[1]) table.fail("between", fmt::format("\"{}\" is tied to itself", names[0]));
   std::vector<std::vector<double>> arms(2, {0, 0, 0});
   if (with_points && table.has(points.name)) arms = table.points(points.name, *points.value.count, 3, points.meaning);
-  std::array<End, 2> out;
+  std::array<Attachment, 2> out;
   for (std::size_t i = 0; i < 2; ++i) {
     const Vec arm(arms[i][0], arms[i][1], arms[i][2]);
     if (names[i] != "ground") {

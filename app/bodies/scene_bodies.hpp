@@ -35,7 +35,7 @@ struct NamedBody {
 };
 
 /// One end of a joint or a spring: a point of a body or of the ground.
-struct End {
+struct Attachment {
   const NamedBody* body = nullptr;  ///< null: the ground
   multibody::Vec arm = multibody::Vec::Zero();
   multibody::Vec place = multibody::Vec::Zero();  ///< in space at the start
@@ -57,7 +57,7 @@ struct SceneBodies {
   std::deque<NamedBody> bodies;  ///< ends point to them
   /// Straight connections to be drawn, and how thick (over the size of the scene).
   struct Line {
-    End from, to;
+    Attachment from, to;
     double width;
   };
   std::vector<Line> lines;
@@ -75,7 +75,7 @@ struct SceneBodies {
   double extent = 0;         ///< size of the scene at the start, m
 
   /// The ends of a table, by `end_keys`; without points, by the first of these.
-  std::array<End, 2> ends(const Section& table, bool with_points = true);
+  std::array<Attachment, 2> ends(const Section& table, bool with_points = true);
   /// The bodies named under `chosen_bodies`, each once, a chain by its own name too; all of them where it is missing.
   std::vector<const NamedBody*> chosen(const Section& table) const;
   const NamedBody& named(const Section& table, std::string_view key, const std::string& name) const;
@@ -83,9 +83,9 @@ struct SceneBodies {
     return const_cast<NamedBody&>(std::as_const(*this).named(table, key, name));
   }
   /// The point of a body (null: the ground) that `key` of the table gives.
-  End end_of(const Section& table, std::string_view key, const NamedBody* body, const multibody::Vec& arm);
+  Attachment end_of(const Section& table, std::string_view key, const NamedBody* body, const multibody::Vec& arm);
   /// A point of the ground, which `ground_keys` of the table may move.
-  End ground_of(const Section& table, const multibody::Vec& place);
+  Attachment ground_of(const Section& table, const multibody::Vec& place);
 };
 
 /// Of dampers.

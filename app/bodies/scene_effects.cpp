@@ -118,8 +118,8 @@ void read_spring(SceneBodies& bodies, const Section& table) {
 }
 
 /// Whether what acts on these ends acts in the plane.
-bool turn_in_plane(const std::array<End, 2>& ends) {
-  return std::any_of(ends.begin(), ends.end(), [](const End& end) { return end.body && end.body->planar; });
+bool turn_in_plane(const std::array<Attachment, 2>& ends) {
+  return std::any_of(ends.begin(), ends.end(), [](const Attachment& end) { return end.body && end.body->planar; });
 }
 
 void require_across_plane(const Section& table, const std::string& name, const Vec& torque) {
@@ -128,25 +128,25 @@ void require_across_plane(const Section& table, const std::string& name, const V
 }
 
 /// The ends of what acts on two bodies that turn: both in space, or both in the plane; either may be the ground.
-std::array<End, 2> turning_ends(SceneBodies& bodies, const Section& table, std::string_view effect) {
+std::array<Attachment, 2> turning_ends(SceneBodies& bodies, const Section& table, std::string_view effect) {
   const auto ends = bodies.ends(table, /*with_points=*/false);
-  for (const End& end : ends)
+  for (const Attachment& end : ends)
     if (!end.turns_in_space() && !end.body->planar)
       table.fail("between", fmt::format("\"{}\" does not turn: {} acts on bodies that do", end.name(), effect));
-  const auto in_space = [](const End& end) { return end.body && !end.body->planar; };
+  const auto in_space = [](const Attachment& end) { return end.body && !end.body->planar; };
   if (turn_in_plane(ends) && std::any_of(ends.begin(), ends.end(), in_space))
     table.fail("between", fmt::format("{} acts on two bodies that turn in space, or on two in the plane", effect));
   return ends;
 }
 
 /// (x, y, angle) of what turns in the plane; the ground's angle is zero.
-multibody::Site planar_place(SceneBodies& bodies, const End& end) {
+multibody::Site planar_place(SceneBodies& bodies, const Attachment& end) {
   return end.body ? bodies.scene.planar_place(end.body->body) : bodies.scene.ground(Vec::Zero());
 }
 
 /// A torque on a planar body is the third part of a force on its place, and derived from a potential where it is
 /// constant.
-void turn(SceneBodies& bodies, const End& end, double torque, const Drive& drive) {
+void turn(SceneBodies& bodies, const Attachment& end, double torque, const Drive& drive) {
   const Vec force(0, 0, torque);
   if (drive.periodic) {
     bodies.scene.add(multibody::PeriodicForce{{planar_place(bodies, end)}, force, drive.rate, drive.phase});
@@ -159,7 +159,7 @@ void turn(SceneBodies& bodies, const End& end, double torque, const Drive& drive
 void read_torsion(SceneBodies& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a torsion spring");
   if (turn_in_plane(ends)) {
-    const auto angle = [](const End& end) { return end.body ? end.body->angle : 0.0; };
+    const auto angle = [](const Attachment& end) { return end.body ? end.body->angle : 0.0; };
     bodies.scene.add(multibody::PlanarTorsionSpring{{planar_place(bodies, ends[0]), planar_place(bodies, ends[1])},
                                                     read_key(table, torsion_stiffness),
                                                     angle(ends[1]) - angle(ends[0])});
@@ -244,7 +244,7 @@ void read_force(SceneBodies& bodies, const Section& table) {
   const Drive drive = read_drive(table);
   if (body.planar && force(2) != 0)
     table.fail("force", fmt::format("\"{}\" moves in the plane: give a third part of 0", body.name));
-  const End end = bodies.end_of(table, "at", &body, arm);
+  const Attachment end = bodies.end_of(table, "at", &body, arm);
   if (drive.periodic) {
     bodies.scene.add(multibody::PeriodicForce{{end.site}, force, drive.rate, drive.phase});
     bodies.timed = true;
@@ -262,7 +262,7 @@ void read_torque(SceneBodies& bodies, const Section& table) {
   bodies.isolated = false;
   if (body.planar) {
     require_across_plane(table, body.name, torque);
-    End end;
+    Attachment end;
     end.body = &body;
     turn(bodies, end, torque(2), {});
     return;

@@ -57,8 +57,8 @@ Mat frame_along(const Section& table, const KeyOf<NumberArray>& key) {
   return out;
 }
 
-void require_turning(const Section& table, const std::array<End, 2>& ends, const std::string& kind) {
-  for (const End& end : ends) {
+void require_turning(const Section& table, const std::array<Attachment, 2>& ends, const std::string& kind) {
+  for (const Attachment& end : ends) {
     if (end.turns_in_space()) continue;
     table.fail(
         "between",
@@ -68,7 +68,7 @@ void require_turning(const Section& table, const std::array<End, 2>& ends, const
   }
 }
 
-void require_together(const Section& table, const std::array<End, 2>& ends) {
+void require_together(const Section& table, const std::array<Attachment, 2>& ends) {
   const double apart = (ends[1].place - ends[0].place).norm();
   if (apart > 1e-9 * (1 + ends[0].place.norm()))
     table.fail("points", fmt::format("the two points are {:.6g} m apart at the start, and must be one: \"{}\" has "
@@ -78,35 +78,35 @@ void require_together(const Section& table, const std::array<End, 2>& ends) {
 }
 
 /// The direction u in space, fixed in the first body, and v, fixed in the second, keep their right angle.
-void keep_right_angle(SceneBodies& bodies, const std::array<End, 2>& ends, const Vec& u, const Vec& v) {
+void keep_right_angle(SceneBodies& bodies, const std::array<Attachment, 2>& ends, const Vec& u, const Vec& v) {
   bodies.scene.add(FixedAngle{{}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(u), ends[1].seen(v), 0});
 }
 
 /// The second body keeps its attitude relative to the first.
-void keep_attitude(SceneBodies& bodies, const std::array<End, 2>& ends) {
+void keep_attitude(SceneBodies& bodies, const std::array<Attachment, 2>& ends) {
   for (int i = 0; i < 3; ++i) keep_right_angle(bodies, ends, Vec::Unit(i), Vec::Unit((i + 1) % 3));
 }
 
 /// The second point stays in the plane with this normal, fixed in the first body, through the first point.
-void keep_in_plane(SceneBodies& bodies, const std::array<End, 2>& ends, const Vec& across) {
+void keep_in_plane(SceneBodies& bodies, const std::array<Attachment, 2>& ends, const Vec& across) {
   bodies.scene.add(InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(across)});
 }
 
-void require_in_plane(const Section& table, const std::array<End, 2>& ends, const Vec& across) {
+void require_in_plane(const Section& table, const std::array<Attachment, 2>& ends, const Vec& across) {
   const double off = across.dot(ends[1].place - ends[0].place);
   if (std::abs(off) > 1e-9 * (1 + ends[0].place.norm() + ends[1].place.norm()))
     table.fail("points", fmt::format("the point of \"{}\" is {:.6g} m off where the joint lets it go, at the start",
                                      ends[1].name(), off));
 }
 
-std::array<End, 2> tied_ends(SceneBodies& bodies, const Section& table) {
+std::array<Attachment, 2> tied_ends(SceneBodies& bodies, const Section& table) {
   const auto ends = bodies.ends(table);
   if (!ends[0].body && !ends[1].body) table.fail("between", "ties the ground to itself");
   return ends;
 }
 
 /// Ends that turn in space, and meet.
-std::array<End, 2> joined_ends(SceneBodies& bodies, const Section& table, const std::string& kind) {
+std::array<Attachment, 2> joined_ends(SceneBodies& bodies, const Section& table, const std::string& kind) {
   const auto ends = tied_ends(bodies, table);
   require_turning(table, ends, kind);
   require_together(table, ends);
@@ -152,7 +152,7 @@ void read_hinge(SceneBodies& bodies, const Section& table) {
   read_damping(bodies, table, turning_damping, turn);
   if (!table.has(hinge_rate.name)) return;
   turn.rate = read_key(table, hinge_rate);
-  const auto turning = [&](const End& end) { return end.body ? along.dot(end.body->angular_velocity) : 0.0; };
+  const auto turning = [&](const Attachment& end) { return end.body ? along.dot(end.body->angular_velocity) : 0.0; };
   const double has = turning(ends[1]) - turning(ends[0]);
   if (!bodies.projects && std::abs(has - turn.rate) > 1e-9 * (1 + std::abs(turn.rate)))
     table.fail("rate", fmt::format("the second body turns against the first at {:.10g} rad/s at the start: give it an "

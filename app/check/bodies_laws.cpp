@@ -11,7 +11,7 @@ namespace {
 class BodiesLaws final : public FamilyLaws {
  public:
   const SceneFamily& family() const override { return bodies_family(); }
-  Certificate certify(const Section& scene, const CheckOptions& options) const override {
+  Certificate certify(const Section& scene, const CheckCommandOptions& options) const override {
     const BodiesToCheck bodies = read_bodies(scene, {}).to_check;
     Certificate certificate;
     certificate.system = bodies.name;

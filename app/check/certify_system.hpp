@@ -52,7 +52,8 @@ State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vecto
 
 }  // namespace checking
 
-template <DiscreteSystem Sys> Certificate certify(const PreparedScene<Sys>& prepared, const CheckOptions& options) {
+template <DiscreteSystem Sys>
+Certificate certify(const PreparedScene<Sys>& prepared, const CheckCommandOptions& options) {
   checking::Thinned<Sys> run;
   const RunResult result = prepared.run([&](const TrajectoryPoint<Sys>& point) { run.add(point); });
   auto points = run.points();
@@ -89,6 +90,6 @@ template <DiscreteSystem Sys> Certificate certify(const PreparedScene<Sys>& prep
 }
 
 /// Of the system of the library that the module is of.
-Certificate certify_system(const SystemModule& module, const Section& scene, const CheckOptions& options);
+Certificate certify_system(const SystemModule& module, const Section& scene, const CheckCommandOptions& options);
 
 }  // namespace lagroid::app

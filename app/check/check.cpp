@@ -13,7 +13,7 @@ namespace lagroid::app {
 
 namespace {
 
-Certificate certified(const Section& scene, const CheckOptions& options) {
+Certificate certified(const Section& scene, const CheckCommandOptions& options) {
   const laws::Sampling sampling(options.samples, options.seed);
   const auto clock = std::chrono::steady_clock::now();
   Certificate certificate = laws_of(scene).certify(scene, options);
@@ -21,7 +21,7 @@ Certificate certified(const Section& scene, const CheckOptions& options) {
   return certificate;
 }
 
-int check(const CheckOptions& options) {
+int check(const CheckCommandOptions& options) {
   Section scene = read_scene(options.scene, options.overrides);
   if (scene.has("accuracy")) scene = choose_by_accuracy(scene).scene;
   const Certificate certificate = certified(scene, options);
@@ -37,7 +37,7 @@ int check_program(int argc, char** argv, ProgramParts parts, std::vector<const F
   use_systems(std::move(parts.systems));
   use_laws(std::move(laws));
   CLI::App app{"ask a scene's system, along its run, every law that applies", "lagroid check"};
-  CheckOptions options;
+  CheckCommandOptions options;
   add_scene_options(app, options);
   app.add_option("--samples", options.samples, "random samples a law")->check(CLI::Range(1, 1000000));
   app.add_option("--seed", options.seed, "of the samples; the certificate is reproducible")

@@ -5,7 +5,7 @@
 
 namespace lagroid::app {
 
-struct CheckOptions : SceneOptions {
+struct CheckCommandOptions : SceneOptions {
   int samples = 100;
   long seed = 20261120;
 };

@@ -20,7 +20,7 @@ class FamilyLaws {
  public:
   virtual ~FamilyLaws() = default;
   virtual const SceneFamily& family() const = 0;
-  virtual Certificate certify(const Section& scene, const CheckOptions& options) const = 0;
+  virtual Certificate certify(const Section& scene, const CheckCommandOptions& options) const = 0;
 };
 
 /// Those of systems, along the runs of their scenes, given a function that tests the system of a module.
@@ -28,7 +28,7 @@ class LawsOfSystems final : public FamilyLaws {
  public:
   explicit LawsOfSystems(AskLaws ask) : ask_(std::move(ask)) {}
   const SceneFamily& family() const override { return systems_family(); }
-  Certificate certify(const Section& scene, const CheckOptions& options) const override {
+  Certificate certify(const Section& scene, const CheckCommandOptions& options) const override {
     return ask_(module_of_scene(scene), scene, options);
   }
 

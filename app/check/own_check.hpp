@@ -13,7 +13,7 @@ namespace lagroid::app {
 
 /// Tests the laws of the system of a module, along the run of a scene.
 using AskLaws =
-    std::function<Certificate(const SystemModule& module, const Section& scene, const CheckOptions& options)>;
+    std::function<Certificate(const SystemModule& module, const Section& scene, const CheckCommandOptions& options)>;
 
 /// Serves a command line of `check` for the systems. Returns the exit code.
 int own_check_program(int argc, char** argv, std::vector<const SystemModule*> systems, AskLaws ask);

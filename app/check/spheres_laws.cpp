@@ -15,7 +15,7 @@ namespace {
 class SpheresLaws final : public FamilyLaws {
  public:
   const SceneFamily& family() const override { return spheres_family(); }
-  Certificate certify(const Section& scene, const CheckOptions& options) const override {
+  Certificate certify(const Section& scene, const CheckCommandOptions& options) const override {
     const SphereEntry& entry = *sphere_system_of(scene);
     const SpheresToCheck asked = read_spheres(entry, scene, {}).to_check;
     const SphereSystem& system = *asked.system;

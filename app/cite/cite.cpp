@@ -27,7 +27,7 @@ constexpr int year = 2026;
 std::vector<Use> uses_in(const CiteOptions& options) {
   std::vector<Use> all;
   if (options.subject.empty() || options.cff) {
-    for (const Reference& reference : references()) all.push_back({&reference, ""});
+    for (const Article& reference : references()) all.push_back({&reference, ""});
     return all;
   }
   std::error_code ignored;
@@ -45,14 +45,14 @@ std::vector<Use> uses_in(const CiteOptions& options) {
   return family_of(scene).uses(scene);
 }
 
-std::string pages(const Reference& r, std::string_view dash) {
+std::string pages(const Article& r, std::string_view dash) {
   return r.last_page.empty() ? std::string(r.first_page) : fmt::format("{}{}{}", r.first_page, dash, r.last_page);
 }
 
 std::string as_text(const std::vector<Use>& uses) {
   std::string out = fmt::format("{}: Lagroid {}. {}, {}.\n", authors, LAGROID_VERSION, what_it_is, year);
   for (const auto& [reference, what] : uses) {
-    const Reference& r = *reference;
+    const Article& r = *reference;
     std::string names;
     for (const Author& author : r.authors)
       names += fmt::format("{}{} {}", names.empty() ? "" : ", ", author.given, author.family);
@@ -71,7 +71,7 @@ std::string as_bibtex(const std::vector<Use>& uses) {
       "{{{}}}\n}}\n",
       authors, what_it_is, LAGROID_VERSION, year);
   for (const Use& use : uses) {
-    const Reference& r = *use.reference;
+    const Article& r = *use.reference;
     std::string names;
     for (const Author& author : r.authors)
       names += fmt::format("{}{}, {}", names.empty() ? "" : " and ", author.family, author.given);
@@ -103,7 +103,7 @@ std::string as_json(const std::vector<Use>& uses) {
                      {"license", "BSD-3-Clause"}};
   out["references"] = Json::array();
   for (const auto& [reference, what] : uses) {
-    const Reference& r = *reference;
+    const Article& r = *reference;
     Json names = Json::array();
     for (const Author& author : r.authors) names.push_back({{"given", author.given}, {"family", author.family}});
     Json one{{"key", r.key},       {"authors", names},       {"title", r.title}, {"journal", r.journal},
@@ -133,7 +133,7 @@ std::string as_cff(const std::vector<Use>& uses) {
       "references:\n",
       quoted(what_it_is), quoted(authors), quoted(LAGROID_VERSION));
   for (const Use& use : uses) {
-    const Reference& r = *use.reference;
+    const Article& r = *use.reference;
     out += "  - type: article\n    authors:\n";
     for (const Author& author : r.authors)
       out += fmt::format("      - family-names: {}\n        given-names: {}\n", quoted(author.family),

@@ -6,8 +6,8 @@
 
 namespace lagroid::app {
 
-std::span<const Reference> references() {
-  static const std::vector<Reference> all{
+std::span<const Article> references() {
+  static const std::vector<Article> all{
       {"marrero2015",
        "G",
        {{"Juan Carlos", "Marrero"}, {"David", "Martín de Diego"}, {"Ari", "Stern"}},
@@ -228,9 +228,9 @@ std::span<const Reference> references() {
   return all;
 }
 
-const Reference& reference(std::string_view key) {
+const Article& reference(std::string_view key) {
   const auto all = references();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Reference& r) { return r.key == key; });
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Article& r) { return r.key == key; });
   if (found == all.end()) throw std::logic_error("no reference " + std::string(key));
   return *found;
 }

@@ -16,7 +16,7 @@ struct Author {
 };
 
 /// An article in a journal.
-struct Reference {
+struct Article {
   std::string_view key;     ///< of BibTeX, and in --json
   std::string_view letter;  ///< [G], [N], [V] and [H] of this project's documentation; empty for the others
   std::vector<Author> authors;
@@ -32,13 +32,13 @@ struct Reference {
 };
 
 /// All of them, [G], [N], [V] and [H] first.
-std::span<const Reference> references();
+std::span<const Article> references();
 /// The one with that key, which is one of them.
-const Reference& reference(std::string_view key);
+const Article& reference(std::string_view key);
 
 /// A reference, and what it stands behind.
 struct Use {
-  const Reference* reference;
+  const Article* reference;
   std::string what;
 };
 

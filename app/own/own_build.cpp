@@ -1,9 +1,8 @@
 #include "own_build.hpp"
 
-#include "process.hpp"
-
 #include <lagroid/run/files/kept_file.hpp>
 #include <lagroid/run/machine.hpp>
+#include <lagroid/run/process.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -149,7 +148,7 @@ std::string from_the_users_line(const std::string& said, const fs::path& source)
 void compile(const std::vector<std::string>& words, const fs::path& out, const fs::path& log, const fs::path& source) {
   int code = 0;
   try {
-    code = run_process(words, {out, log});
+    code = run_process(words, {.out = out, .error = log});
   } catch (const std::system_error& error) {
     throw BuildRefused(fmt::format("{}; install the package g++", error.what()));
   }

@@ -3,7 +3,8 @@
 #include "../command/command.hpp"
 #include "own_build.hpp"
 #include "own_parts.hpp"
-#include "process.hpp"
+
+#include <lagroid/run/process.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>

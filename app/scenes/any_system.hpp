@@ -23,7 +23,7 @@ template <DiscreteSystem Sys> BoundaryScene<Sys> read_ends(const Section& scene)
   const Section boundary = scene.section("boundary", "start and end");
   const auto start = read_configuration(system, boundary.section("start", "a configuration"));
   const auto end = read_configuration(system, boundary.section("end", "a configuration"));
-  const SceneArrow<typename Sys::GroupoidType> spoken{system.groupoid};
+  const ArrowFormat<typename Sys::GroupoidType> spoken{system.groupoid};
   return {equal_steps_stage(system, spoken.between(start, end), std::size_t(read_time(scene).steps)), start};
 }
 

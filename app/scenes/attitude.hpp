@@ -1,7 +1,7 @@
 #pragma once
 /// The panel that shows an attitude over time, in reports of scenes.
 
-#include "scene_arrow.hpp"
+#include "arrow_format.hpp"
 
 #include <lagroid/run/run_result.hpp>
 

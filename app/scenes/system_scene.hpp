@@ -1,6 +1,6 @@
 #pragma once
 /// What any system reads from a scene, and its words in reports: parameters as it declares them, arrows as scenes write
-/// them (scene_arrow.hpp).
+/// them (arrow_format.hpp).
 ///
 ///     const auto system = read_system<Sys>(scene);
 ///     const Presentation<Sys> presentation = dressed<Sys>(system, "dido", nullptr);
@@ -9,8 +9,8 @@
 /// Errors: SceneError for a mistake in the scene.
 
 #include "../keys/parameter.hpp"
+#include "arrow_format.hpp"
 #include "attitude.hpp"
-#include "scene_arrow.hpp"
 #include "simulation.hpp"
 #include "system_module.hpp"
 
@@ -32,10 +32,10 @@ template <class Sys> using Dress = void (*)(Presentation<Sys>& presentation, con
 template <DiscreteSystem Sys> Presentation<Sys> presentation_of(const Sys& system, std::string_view name) {
   using G = typename Sys::GroupoidType;
   using Point = TrajectoryPoint<Sys>;
-  const SceneArrow<G> spoken{system.groupoid};
+  const ArrowFormat<G> spoken{system.groupoid};
   Presentation<Sys> p;
   p.name = name;
-  p.position = spoken.labels(SceneArrow<G>::key);
+  p.position = spoken.labels(ArrowFormat<G>::key);
   p.position_unit = "of the configuration's coordinates";
   p.position_of = [spoken](const Point& point) { return spoken.coordinates(point.configuration, point.state.object); };
   State<G> somewhere;
@@ -86,13 +86,13 @@ template <DiscreteSystem Sys> Sys read_system(const Section& scene) {
 template <DiscreteSystem Sys>
 ArrowOf<typename Sys::GroupoidType> read_configuration(const Sys& system, const Section& section) {
   using G = typename Sys::GroupoidType;
-  const auto arrow = SceneArrow<G>{system.groupoid}.read(section, SceneArrow<G>::key);
+  const auto arrow = ArrowFormat<G>{system.groupoid}.read(section, ArrowFormat<G>::key);
   if constexpr (Sys::object_constraints > 0) {
     const auto q = system.groupoid.target(arrow);
     const double off = system.object_constraint(q).cwiseAbs().maxCoeff();
     constexpr double on_it = 1e-8;
     if (!(off <= on_it * (1 + system.groupoid.coordinates_of_object(q).squaredNorm())))
-      section.fail(SceneArrow<G>::key, fmt::format("is off the constraint C(q) = 0 by {:.3g}", off));
+      section.fail(ArrowFormat<G>::key, fmt::format("is off the constraint C(q) = 0 by {:.3g}", off));
   }
   return arrow;
 }

@@ -121,13 +121,13 @@ std::unique_ptr<Reference> reference_of(const std::string& text, const Experimen
   return method_reference(experiment, method.front(), h);
 }
 
-std::string command_of(const StudyOptions& options) {
+std::string command_of(const StudyCommandOptions& options) {
   std::string out = "./lagroid study " + quoted(options.scene);
   for (const auto& given : options.overrides) out += " --set " + quoted(given);
   if (!options.methods.empty()) out += " --methods " + quoted(options.methods);
   if (!options.steps.empty()) out += " --steps " + quoted(options.steps);
   if (!options.reference.empty()) out += " --reference " + quoted(options.reference);
-  const StudyOptions usual;
+  const StudyCommandOptions usual;
   if (options.target != usual.target) out += fmt::format(" --target {:g}", options.target);
   if (options.longest != usual.longest) out += fmt::format(" --longest {:g}", options.longest);
   if (options.budget != usual.budget) out += fmt::format(" --budget {:g}", options.budget);
@@ -151,7 +151,7 @@ std::string listing(const Experiment& experiment, bool json) {
 
 }  // namespace
 
-void add_study_options(CLI::App& command, StudyOptions& options) {
+void add_study_options(CLI::App& command, StudyCommandOptions& options) {
   add_scene_options(command, options);
   command.add_option("--methods", options.methods,
                      "those whose names match, as in 'splitting*,runge-kutta'; all by default (see --list)");
@@ -178,7 +178,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_flag("--list", options.list, "say which methods apply to the scene, and run nothing");
 }
 
-int study(const StudyOptions& options) {
+int study(const StudyCommandOptions& options) {
   Findings findings;
   std::string note;
   std::optional<OutputFolder> folder;

@@ -7,7 +7,7 @@
 
 namespace lagroid::app {
 
-struct StudyOptions : SceneOptions {
+struct StudyCommandOptions : SceneOptions {
   std::string methods;    ///< patterns, separated by commas; empty: all
   std::string steps;      ///< sizes, separated by commas, or first:last:count; empty: found
   std::string reference;  ///< METHOD@STEP, or the study.json of an earlier study; empty: extrapolated
@@ -19,9 +19,9 @@ struct StudyOptions : SceneOptions {
   std::string out;
 };
 
-void add_study_options(CLI::App& command, StudyOptions& options);
+void add_study_options(CLI::App& command, StudyCommandOptions& options);
 
 /// Returns the exit code. Throws SceneError for mistakes in the scene.
-int study(const StudyOptions& options);
+int study(const StudyCommandOptions& options);
 
 }  // namespace lagroid::app

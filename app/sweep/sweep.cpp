@@ -162,9 +162,10 @@ int lead(Ranks& ranks, const SweepOptions& options) {
   ScheduleOutcome outcome;
   {
     Progress progress("sweep", parts, !options.json);
-    const Schedule schedule{.threads = options.threads,
-                            .progress = [&](long done) { progress.update(parts - long(missing.size()) + done); },
-                            .interrupted = InterruptGuard::interrupted};
+    const SchedulingOptions schedule{
+        .threads = options.threads,
+        .progress = [&](long done) { progress.update(parts - long(missing.size()) + done); },
+        .interrupted = InterruptGuard::interrupted};
     outcome = for_each_part(ranks, missing, schedule, worker(plan->sweep, options.out));
   }
   const long left = long(plan->folder->missing(plan->sweep).size());

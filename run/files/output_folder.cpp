@@ -2,15 +2,14 @@
 #include <lagroid/run/files/nesting.hpp>
 #include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/process.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/prctl.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,7 +18,6 @@
 #include <charconv>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <fstream>
 #include <system_error>
 #include <thread>
@@ -107,20 +105,6 @@ void remove_stale_stagings(const fs::path& folder) {
   }
 }
 
-/// Waits for gnuplot, or kills it when a signal comes, unless one came `before`. Its status.
-int wait_for_gnuplot(pid_t child, bool before) {
-  int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (!before && InterruptGuard::interrupted()) {
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-      return status;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return status;
-}
-
 /// A full disk is no mistake on the command line.
 [[noreturn]] void refuse_place(const fs::path& folder, const fs::path& where, std::error_code why) {
   const auto line = fmt::format("{}: nothing can be written in {} ({}); choose another place", folder.string(),
@@ -145,33 +129,30 @@ std::string run_gnuplot(const fs::path& folder, const Drawing& drawing, bool bef
                : fmt::format("interrupted; run `gnuplot {}` in the output folder later", drawing.script);
   };
   if (const std::string why = stopped(); !why.empty()) return why;
-  const pid_t child = fork();
-  if (child < 0) return "could not start a process";
-  if (child == 0) {
-    std::signal(SIGPIPE, SIG_DFL);  // which programs of ours do without
-    std::signal(SIGXFSZ, SIG_DFL);
-    prctl(PR_SET_PDEATHSIG, SIGTERM);  // killed with us
-    if (chdir(folder.c_str()) != 0) _exit(126);
-    if (std::freopen(gnuplot_log, "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
-      _exit(126);
-    execlp("gnuplot", "gnuplot", drawing.script.c_str(), static_cast<char*>(nullptr));
-    _exit(127);
+  int code = 0;
+  try {
+    Process gnuplot({"gnuplot", drawing.script}, {.folder = folder, .out = "/dev/null", .error = gnuplot_log});
+    while (gnuplot.running()) {
+      if (!before && InterruptGuard::interrupted()) gnuplot.kill();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    code = gnuplot.wait();
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::no_such_file_or_directory)
+      return fmt::format("{}; run `gnuplot {}` in the output folder later", error.what(), drawing.script);
+    return fmt::format(
+        "gnuplot is not installed (Debian package gnuplot-nox); run `gnuplot {}` in the output folder later",
+        drawing.script);
   }
-  const int status = wait_for_gnuplot(child, before);
   if (const std::string why = stopped(); !why.empty()) return why;
   const bool drawn = std::all_of(drawing.pictures.begin(), drawing.pictures.end(),
                                  [&](const std::string& picture) { return is_whole(folder / picture); });
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && drawn) return "";
+  if (code == 0 && drawn) return "";
   std::ifstream log(folder / gnuplot_log);
   std::string first;
   for (std::string line; std::getline(log, line);)
     if (line.find("line") != std::string::npos && first.empty()) first = line;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return fmt::format(
-        "gnuplot is not installed (Debian package gnuplot-nox); run `gnuplot {}` in the output folder later",
-        drawing.script);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
-    return "gnuplot did not draw all pictures to their ends; is the disk full?";
+  if (code == 0) return "gnuplot did not draw all pictures to their ends; is the disk full?";
   return fmt::format("gnuplot failed{}", first.empty() ? "" : ": " + first);
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 namespace lagroid {
 
@@ -19,14 +20,22 @@ constexpr std::string_view of_a_program = "# a run of a program of one's own";
 
 bool is_of_a_program(std::string_view scene) { return scene.starts_with(of_a_program); }
 
-std::string scene_of_program(const ProgramRun& run) {
-  if (const std::string problem = text_problem(run.name); !problem.empty())
-    throw std::invalid_argument(fmt::format("RunOptions::name: {}", problem));
-  for (const auto& numbers : {run.object, run.momentum, run.configuration})
-    if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
+void require_name_and_start(std::string_view option, std::string_view name, std::string_view what,
+                            std::span<const NamedVector> start) {
+  if (const std::string problem = text_problem(name); !problem.empty())
+    throw std::invalid_argument(fmt::format("{}: {}", option, problem));
+  for (const NamedVector& each : start)
+    if (!std::ranges::all_of(each.values, [](double x) { return std::isfinite(x); }))
       throw std::invalid_argument(
-          fmt::format("the start of a run must be finite, got object [{}], momentum [{}], configuration [{}]",
-                      fmt::join(run.object, ", "), fmt::join(run.momentum, ", "), fmt::join(run.configuration, ", ")));
+          fmt::format("the start of {} must be finite, got {} [{}]", what, each.name, fmt::join(each.values, ", ")));
+}
+
+std::string scene_of_program(const ProgramRun& run) {
+  const auto numbers = [](std::span<const double> of) { return std::vector<double>(of.begin(), of.end()); };
+  const std::vector<NamedVector> start{{"object", numbers(run.object)},
+                                       {"momentum", numbers(run.momentum)},
+                                       {"configuration", numbers(run.configuration)}};
+  require_name_and_start("RunOptions::name", run.name, "a run", start);
   return fmt::format(
       "{}\nname = {}\nmethod = {}\nstep = {:.17g}\nevery = {}\nsystem = [{:.17g}]\nobject = [{:.17g}]\nmomentum = "
       "[{:.17g}]\nconfiguration = [{:.17g}]\n",

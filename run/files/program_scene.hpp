@@ -2,6 +2,8 @@
 /// What stands in the place of a scene where a program of one's own runs its system: name, method, step, start, and
 /// numbers that identify the system. A run is resumed only where it is the same.
 
+#include <lagroid/run/motion/motion.hpp>
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +21,11 @@ struct ProgramRun {
   std::span<const double> momentum;
   std::span<const double> configuration;
 };
+
+/// Refuses a name (that of `option`) which is not one line of text, and a start (of `what`, as "a run") of which a
+/// number is not finite: throws std::invalid_argument.
+void require_name_and_start(std::string_view option, std::string_view name, std::string_view what,
+                            std::span<const NamedVector> start);
 
 /// It as text. Throws std::invalid_argument where the name is not one line of text, or the start no numbers.
 std::string scene_of_program(const ProgramRun& run);

@@ -31,28 +31,6 @@ double squared_error(const Model& model, const Eigen::VectorXd& theta, const Sch
   return std::isfinite(sum) ? sum : none;
 }
 
-std::string_view to_string(TrainingStatus outcome) {
-  switch (outcome) {
-    case TrainingStatus::converged:
-      return "converged";
-    case TrainingStatus::reached:
-      return "reached";
-    case TrainingStatus::early_stopped:
-      return "early_stopped";
-    case TrainingStatus::iteration_limit:
-      return "iteration_limit";
-    case TrainingStatus::time_limit:
-      return "time_limit";
-    case TrainingStatus::interrupted:
-      return "interrupted";
-    case TrainingStatus::too_little_data:
-      return "too_little_data";
-    case TrainingStatus::not_finite:
-      return "not_finite";
-  }
-  return "unknown";
-}
-
 double mean_squared_error(const Model& model, const Eigen::VectorXd& theta, const Schedule& schedule,
                           const Trajectories& data) {
   return squared_error(model, theta, schedule, data, nullptr) / data.total_weight();

@@ -36,7 +36,28 @@ enum class TrainingStatus {
   too_little_data,  ///< fewer numbers than parameters, or a part without weight
   not_finite,       ///< no start has a finite error and derivative, or further on one has none
 };
-std::string_view to_string(TrainingStatus outcome);
+
+constexpr std::string_view to_string(TrainingStatus outcome) {
+  switch (outcome) {
+    case TrainingStatus::converged:
+      return "converged";
+    case TrainingStatus::reached:
+      return "reached";
+    case TrainingStatus::early_stopped:
+      return "early_stopped";
+    case TrainingStatus::iteration_limit:
+      return "iteration_limit";
+    case TrainingStatus::time_limit:
+      return "time_limit";
+    case TrainingStatus::interrupted:
+      return "interrupted";
+    case TrainingStatus::too_little_data:
+      return "too_little_data";
+    case TrainingStatus::not_finite:
+      return "not_finite";
+  }
+  return "unknown";
+}
 
 /// Where a training is, after an iteration.
 struct Stage {

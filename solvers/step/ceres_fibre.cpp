@@ -14,9 +14,10 @@ namespace {
 
 using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-class Fibre final : public ceres::Manifold {
+/// SourceFibreManifold of any groupoid, which is known by its equations alone.
+class AnySourceFibreManifold final : public ceres::Manifold {
  public:
-  explicit Fibre(const FibreEquations& equations) : equations_(equations) {}
+  explicit AnySourceFibreManifold(const FibreEquations& equations) : equations_(equations) {}
   int AmbientSize() const override { return equations_.sizes().ambient; }
   int TangentSize() const override { return equations_.sizes().tangent; }
   bool Plus(const double* x, const double* delta, double* out) const override { return equations_.plus(x, delta, out); }
@@ -40,7 +41,7 @@ class Fibre final : public ceres::Manifold {
 
 class Cost final : public ceres::CostFunction {
  public:
-  Cost(const FibreEquations& equations, const Fibre& fibre) : equations_(equations), fibre_(fibre) {
+  Cost(const FibreEquations& equations, const AnySourceFibreManifold& fibre) : equations_(equations), fibre_(fibre) {
     const auto [ambient, tangent, multipliers] = equations.sizes();
     set_num_residuals(tangent + multipliers);
     mutable_parameter_block_sizes()->push_back(ambient);
@@ -66,13 +67,13 @@ class Cost final : public ceres::CostFunction {
 
  private:
   const FibreEquations& equations_;
-  const Fibre& fibre_;
+  const AnySourceFibreManifold& fibre_;
 };
 
 }  // namespace
 
 struct FibreProblem::Work {
-  Fibre fibre;
+  AnySourceFibreManifold fibre;
   Cost cost;
   std::vector<double> arrow;
   std::vector<double> multipliers;

@@ -158,8 +158,8 @@ TEST(AnySystem, HasBoundaryValues) {
 /// Factors of one kind are told apart by number.
 TEST(AnySystem, SpeaksOfProducts) {
   using G = Product<SO2, SO3, SO2>;
-  EXPECT_EQ(SceneArrow<G>::keys(), (std::vector<std::string>{"angle1", "attitude", "angle2"}));
-  const SceneArrow<G> spoken{G()};
+  EXPECT_EQ(ArrowFormat<G>::keys(), (std::vector<std::string>{"angle1", "attitude", "angle2"}));
+  const ArrowFormat<G> spoken{G()};
   const Section initial = parse_scene("angle2 = 0.25\nattitude = [0, 0, 1, 0]\n", "arrow.toml", {});
   const auto arrow = spoken.read(initial, "");
   const auto angles = spoken.coordinates(arrow, ObjectOf<G>());

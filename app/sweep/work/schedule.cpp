@@ -155,7 +155,7 @@ class Crew {
 };
 
 /// Rank 0: hands out, and counts.
-ScheduleOutcome hand_out(Ranks& ranks, std::span<const long> parts, const Schedule& schedule, Crew& crew) {
+ScheduleOutcome hand_out(Ranks& ranks, std::span<const long> parts, const SchedulingOptions& schedule, Crew& crew) {
   ScheduleOutcome outcome;
   const double begun = processor_time();
   std::size_t next = 0;
@@ -227,7 +227,7 @@ void ask_for_parts(Ranks& ranks, Crew& crew) {
 
 }  // namespace
 
-ScheduleOutcome for_each_part(Ranks& ranks, std::span<const long> parts, const Schedule& schedule,
+ScheduleOutcome for_each_part(Ranks& ranks, std::span<const long> parts, const SchedulingOptions& schedule,
                               const std::function<bool(long)>& work) {
   try {
     Crew crew(schedule.threads > 0 ? schedule.threads : available_threads(), work, schedule.interrupted);

@@ -9,7 +9,8 @@
 
 namespace lagroid::app {
 
-struct Schedule {
+/// How parts are handed out, and who is told.
+struct SchedulingOptions {
   int threads = 0;                                     ///< of each rank; 0: all that it may use
   std::function<void(long parts)> progress = nullptr;  ///< on rank 0, from time to time: how many are finished
   std::function<bool()> interrupted = nullptr;         ///< asked by each rank; no parts are begun after it
@@ -27,7 +28,7 @@ struct ScheduleOutcome {
 /// returns false where an interrupt came before the part was finished; an exception ends the schedule, too. Called by
 /// all ranks; all return when all have ended, with the outcome on rank 0. Rank 0 hands parts out from the calling
 /// thread, in their order, while its own threads work; who is idle asks, and nobody spins.
-ScheduleOutcome for_each_part(Ranks& ranks, std::span<const long> parts, const Schedule& schedule,
+ScheduleOutcome for_each_part(Ranks& ranks, std::span<const long> parts, const SchedulingOptions& schedule,
                               const std::function<bool(long)>& work);
 
 }  // namespace lagroid::app

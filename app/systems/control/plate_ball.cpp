@@ -1,6 +1,6 @@
+#include "../../scenes/arrow_format.hpp"
 #include "../../scenes/attitude.hpp"
 #include "../../scenes/boundary_value.hpp"
-#include "../../scenes/scene_arrow.hpp"
 #include "../../scenes/system_module.hpp"
 
 #include <lagroid/systems/control/plate_ball.hpp>
@@ -66,7 +66,7 @@ const KeyOf<NumberArray> position{"position", {2}, "m", "x, y"};
 const KeyOf<NumberArray> momentum{"momentum", {5}, "", "px, py, M1, M2, M3 at the first object"};
 
 SystemKeys own_keys() {
-  const std::vector<Key> end{position, SceneArrow<SO3>::declared(SceneArrow<SO3>::key)};
+  const std::vector<Key> end{position, ArrowFormat<SO3>::declared(ArrowFormat<SO3>::key)};
   std::vector<Key> initial = end;
   initial.push_back(momentum);
   return {parameter_keys<PlateBall>(), std::move(initial), end, multistart_keys()};
@@ -75,7 +75,7 @@ SystemKeys own_keys() {
 ArrowOf<G> end_point(const Section& end) {
   const auto q = read_key(end, position);
   const Vector<double, 2> at(q[0], q[1]);
-  return {PairArrow<double, 2>{at, at}, SceneArrow<SO3>::read(end, SceneArrow<SO3>::key)};
+  return {PairArrow<double, 2>{at, at}, ArrowFormat<SO3>::read(end, ArrowFormat<SO3>::key)};
 }
 
 PreparedScene<PlateBall> initial_value(const Section& scene, const RunContext& context, const PlateBall& system) {

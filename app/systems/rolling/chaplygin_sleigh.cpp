@@ -1,4 +1,4 @@
-#include "../../scenes/scene_arrow.hpp"
+#include "../../scenes/arrow_format.hpp"
 #include "../../scenes/simulation.hpp"
 #include "../../scenes/system_module.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 const KeyOf<NumberArray> velocity{"velocity", {2}, "", "turning (rad/s), ahead (m/s)"};
 
 SystemKeys own_keys() {
-  return {parameter_keys<ChaplyginSleigh>(), {SceneArrow<SE2>::declared(SceneArrow<SE2>::key), velocity}};
+  return {parameter_keys<ChaplyginSleigh>(), {ArrowFormat<SE2>::declared(ArrowFormat<SE2>::key), velocity}};
 }
 
 PreparedScene<ChaplyginSleigh> read(const Section& scene, const RunContext& context) {
@@ -26,7 +26,7 @@ PreparedScene<ChaplyginSleigh> read(const Section& scene, const RunContext& cont
   p.momentum = {"M", "p1", "p2"};
   p.momentum_unit = "kg m^2/s for M; kg m/s for p";
   p.multipliers = {"lambda"};
-  p.position_of = [](const Point& point) { return SceneArrow<SE2>::coordinates(point.configuration, {}); };
+  p.position_of = [](const Point& point) { return ArrowFormat<SE2>::coordinates(point.configuration, {}); };
   p.extras = {{{"velocities", {"w", "v1"}, "rad/s for w, m/s for v1", "turning, and the blade's ahead", false, {}},
                [system](const Point& point, double* out) {
                  Eigen::Map<Vector<double, 2>> velocities(out);
@@ -46,7 +46,7 @@ PreparedScene<ChaplyginSleigh> read(const Section& scene, const RunContext& cont
 
   refuse_boundary<ChaplyginSleigh>(scene);
   const Section initial = scene.section("initial", "position and velocity");
-  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, SceneArrow<SE2>::key);
+  const Matrix<double, 3, 3> pose = ArrowFormat<SE2>::read(initial, ArrowFormat<SE2>::key);
   const auto given = read_key(initial, velocity);
   return simulation(scene, context, system, p, system.sliding(given[0], given[1]), pose);
 }

@@ -1,5 +1,5 @@
+#include "../../scenes/arrow_format.hpp"
 #include "../../scenes/attitude.hpp"
-#include "../../scenes/scene_arrow.hpp"
 #include "../../scenes/simulation.hpp"
 #include "../../scenes/system_module.hpp"
 
@@ -57,7 +57,7 @@ const KeyOf<NumberArray> velocity{"velocity", {2}, "m/s", "of the centre, dx/dt 
 const KeyOf<Number> spin{"spin", {}, "rad/s", "about the vertical; rolling says the rest of the angular velocity", 0.0};
 
 SystemKeys own_keys() {
-  return {parameter_keys<RollingBall>(), {position, velocity, spin, SceneArrow<SO3>::declared(SceneArrow<SO3>::key)}};
+  return {parameter_keys<RollingBall>(), {position, velocity, spin, ArrowFormat<SO3>::declared(ArrowFormat<SO3>::key)}};
 }
 
 PreparedScene<RollingBall> read(const Section& scene, const RunContext& context) {
@@ -69,7 +69,7 @@ PreparedScene<RollingBall> read(const Section& scene, const RunContext& context)
   const Vector<double, 2> q(at[0], at[1]);
   const auto state = system.rolling(q, {v[0], v[1]}, read_key(initial, spin));
   const ArrowOf<G> configuration{PairArrow<double, 2>{q, q},
-                                 SceneArrow<SO3>::read(initial, SceneArrow<SO3>::key).transpose()};
+                                 ArrowFormat<SO3>::read(initial, ArrowFormat<SO3>::key).transpose()};
   return simulation(scene, context, system, presentation(system), state, configuration);
 }
 

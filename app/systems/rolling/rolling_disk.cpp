@@ -1,4 +1,4 @@
-#include "../../scenes/scene_arrow.hpp"
+#include "../../scenes/arrow_format.hpp"
 #include "../../scenes/simulation.hpp"
 #include "../../scenes/system_module.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 const KeyOf<NumberArray> rates_key{"rates", {2}, "rad/s", "turning and rolling"};
 
 SystemKeys own_keys() {
-  return {parameter_keys<RollingDisk>(), {SceneArrow<SE2>::declared(SceneArrow<SE2>::key), rates_key}};
+  return {parameter_keys<RollingDisk>(), {ArrowFormat<SE2>::declared(ArrowFormat<SE2>::key), rates_key}};
 }
 
 PreparedScene<RollingDisk> read(const Section& scene, const RunContext& context) {
@@ -30,7 +30,7 @@ PreparedScene<RollingDisk> read(const Section& scene, const RunContext& context)
   p.multipliers = {"lambda1", "lambda2"};
   p.position_of = [](const Point& point) {
     const auto& [pose, roll] = point.configuration;
-    auto position = SceneArrow<SE2>::coordinates(pose, {});
+    auto position = ArrowFormat<SE2>::coordinates(pose, {});
     position.push_back(SO2::log(roll)(0));
     return position;
   };
@@ -57,7 +57,7 @@ PreparedScene<RollingDisk> read(const Section& scene, const RunContext& context)
 
   refuse_boundary<RollingDisk>(scene);
   const Section initial = scene.section("initial", "position and rates");
-  const Matrix<double, 3, 3> pose = SceneArrow<SE2>::read(initial, SceneArrow<SE2>::key);
+  const Matrix<double, 3, 3> pose = ArrowFormat<SE2>::read(initial, ArrowFormat<SE2>::key);
   const auto given = read_key(initial, rates_key);
   const ArrowOf<RollingDisk::GroupoidType> configuration{pose, Matrix<double, 2, 2>::Identity()};
   return simulation(scene, context, system, p, system.rolling(given[0], given[1]), configuration);

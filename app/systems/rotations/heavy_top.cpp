@@ -6,14 +6,14 @@
 namespace lagroid::app {
 
 /// A node is an attitude: the arrow from the vertical in space to that seen from the body.
-template <> struct SceneArrow<HeavyTop::GroupoidType> {
+template <> struct ArrowFormat<HeavyTop::GroupoidType> {
   using Arrow = ArrowOf<HeavyTop::GroupoidType>;
   static constexpr std::string_view key = "attitude";
   HeavyTop::GroupoidType groupoid;
 
-  static auto declared(std::string_view name) { return SceneArrow<SO3>::declared(name); }
+  static auto declared(std::string_view name) { return ArrowFormat<SO3>::declared(name); }
   static Arrow read(const Section& section, std::string_view name) {
-    return {SceneArrow<SO3>::read(section, name), Vector<double, 3>(0, 0, 1)};
+    return {ArrowFormat<SO3>::read(section, name), Vector<double, 3>(0, 0, 1)};
   }
   Arrow between(const Arrow& start, const Arrow& end) const {
     return groupoid.project(groupoid.multiply(groupoid.inverse(start), end));

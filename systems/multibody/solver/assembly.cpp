@@ -430,7 +430,7 @@ void Assembly::require_one_principle(const Model::Island& island) const {
     if (role == Role::nonholonomic || role == Role::damping)
       throw std::domain_error("nonholonomic joints and dampers do not go together with vakonomic joints");
   if (island.dragged.size() > 0)
-    throw std::domain_error("drag and deflection do not go together with vakonomic joints");
+    throw std::domain_error("drag and gyroscopic forces do not go together with vakonomic joints");
   for (const Vec& damping : island.rotations.of(model_.factors.turn_damping))
     if (!damping.isZero(0)) throw std::domain_error("drag does not go together with vakonomic joints");
 }

@@ -191,7 +191,7 @@ TEST_F(Scenes, WhatIsWrongIsSaidInOneLine) {
            "[[joint]]\nkind = \"blade\"\nbody = \"card\"\nprinciple = \"vakonomic\"\n[[effect]]\nkind = \"drag\"\n"
            "motion = 1\n" +
            grid,
-       "drag and deflection do not go together with vakonomic joints"},
+       "drag and gyroscopic forces do not go together with vakonomic joints"},
       {brick +
            "[[joint]]\nkind = \"hinge\"\naxis = [1, 0, 0]\nbetween = [\"ground\", \"brick\"]\npoints = [[1, 0, 0], [0, "
            "0, 0]]\nrate = 7\n" +

@@ -20,8 +20,8 @@ namespace {
 
 using lagroid::app::Message;
 using lagroid::app::Ranks;
-using lagroid::app::Schedule;
 using lagroid::app::ScheduleOutcome;
+using lagroid::app::SchedulingOptions;
 
 /// Where ranks that are threads leave their messages.
 struct Post {
@@ -83,7 +83,7 @@ ScheduleOutcome on_ranks(int ranks, int threads, long parts, const std::function
   for (int rank = 0; rank < ranks; ++rank)
     others.emplace_back([&, rank] {
       LocalRanks self(post, rank);
-      Schedule schedule{.threads = threads, .interrupted = interrupted};
+      SchedulingOptions schedule{.threads = threads, .interrupted = interrupted};
       const auto outcome = for_each_part(self, all, schedule, [&work, rank](long part) { return work(rank, part); });
       if (rank == 0) out = outcome;
     });

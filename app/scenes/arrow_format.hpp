@@ -4,7 +4,7 @@
 /// A user writes a position or an attitude, not the coordinates of an arrow; a groupoid of one's own may have a
 /// specialisation too.
 ///
-///     const SceneArrow<SO3> arrows{};
+///     const ArrowFormat<SO3> arrows{};
 ///     const Matrix<double, 3, 3> attitude = arrows.read(initial, "attitude");  // [initial] attitude = [1, 0, 0, 0]
 ///
 /// Errors: SceneError where the numbers are no arrow.
@@ -49,7 +49,7 @@ inline std::array<double, 4> quaternion_of(const Matrix<double, 3, 3>& rotation)
 ///     attitude(arrow) const                                    a rotation in space, where there is one
 ///
 /// This one, of any groupoid, takes the coordinates of arrows (LieGroupoid::coordinates_of_arrow).
-template <class G> struct SceneArrow {
+template <class G> struct ArrowFormat {
   static constexpr std::string_view key = "configuration";
   G groupoid;
 
@@ -84,7 +84,7 @@ template <class G> struct SceneArrow {
 };
 
 /// Points of R^n: a node is its position.
-template <int N> struct SceneArrow<Pair<N>> {
+template <int N> struct ArrowFormat<Pair<N>> {
   static constexpr std::string_view key = "position";
   Pair<N> groupoid;
 
@@ -112,7 +112,7 @@ template <int N> struct SceneArrow<Pair<N>> {
 };
 
 /// Attitudes; without one, the identity.
-template <> struct SceneArrow<SO3> {
+template <> struct ArrowFormat<SO3> {
   static constexpr std::string_view key = "attitude";
   SO3 groupoid;
 
@@ -133,7 +133,7 @@ template <> struct SceneArrow<SO3> {
 };
 
 /// Angles in the plane; without one, zero.
-template <> struct SceneArrow<SO2> {
+template <> struct ArrowFormat<SO2> {
   static constexpr std::string_view key = "angle";
   SO2 groupoid;
 
@@ -152,7 +152,7 @@ template <> struct SceneArrow<SO2> {
 };
 
 /// Poses in the plane: x, y and the heading (rad).
-template <> struct SceneArrow<SE2> {
+template <> struct ArrowFormat<SE2> {
   static constexpr std::string_view key = "position";
   SE2 groupoid;
 
@@ -175,7 +175,7 @@ template <> struct SceneArrow<SE2> {
 };
 
 /// R^n as a group; without a position, the origin.
-template <int N> struct SceneArrow<VectorGroup<N>> {
+template <int N> struct ArrowFormat<VectorGroup<N>> {
   static constexpr std::string_view key = "position";
   VectorGroup<N> groupoid;
 
@@ -186,7 +186,7 @@ template <int N> struct SceneArrow<VectorGroup<N>> {
     return Eigen::Map<const Vector<double, N>>(read_key(section, declared(name)).data());
   }
   static Vector<double, N> between(const Vector<double, N>& start, const Vector<double, N>& end) { return end - start; }
-  static std::vector<std::string> labels(std::string_view name) { return SceneArrow<Pair<N>>::labels(name); }
+  static std::vector<std::string> labels(std::string_view name) { return ArrowFormat<Pair<N>>::labels(name); }
   static std::vector<double> coordinates(const Vector<double, N>& x, const Vector<double, 0>&) {
     return {x.data(), x.data() + N};
   }
@@ -198,13 +198,13 @@ inline std::vector<Key> as_keys(std::vector<Key> keys) { return keys; }
 
 /// Factor by factor. A key that several factors have is numbered: angle1, angle2. The attitude is the first factor's
 /// that has one.
-template <class... Gs> struct SceneArrow<Product<Gs...>> {
+template <class... Gs> struct ArrowFormat<Product<Gs...>> {
   static constexpr std::string_view key = "";
   Product<Gs...> groupoid;
   using Arrow = ArrowOf<Product<Gs...>>;
 
   static std::vector<std::string> keys() {
-    constexpr std::array<std::string_view, sizeof...(Gs)> plain{SceneArrow<Gs>::key...};
+    constexpr std::array<std::string_view, sizeof...(Gs)> plain{ArrowFormat<Gs>::key...};
     std::vector<std::string> out;
     for (std::size_t i = 0; i < plain.size(); ++i) {
       std::size_t same = 0;
@@ -222,7 +222,7 @@ template <class... Gs> struct SceneArrow<Product<Gs...>> {
     std::size_t i = 0;
     const auto add = [&](const std::vector<Key>& each) { all.insert(all.end(), each.begin(), each.end()); };
     const std::vector<std::string> names = keys();
-    (add(as_keys(SceneArrow<Gs>::declared(names[i++]))), ...);
+    (add(as_keys(ArrowFormat<Gs>::declared(names[i++]))), ...);
     return all;
   }
   Arrow read(const Section& section, std::string_view) const {
@@ -254,7 +254,7 @@ template <class... Gs> struct SceneArrow<Product<Gs...>> {
   template <class F> auto indexed(const F& f) const {
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
       const std::vector<std::string> names = keys();
-      return std::tuple{f.template operator()<I>(SceneArrow<Gs>{std::get<I>(groupoid.factor)}, names[I])...};
+      return std::tuple{f.template operator()<I>(ArrowFormat<Gs>{std::get<I>(groupoid.factor)}, names[I])...};
     }
     (std::index_sequence_for<Gs...>());
   }
@@ -266,6 +266,6 @@ template <class... Gs> struct SceneArrow<Product<Gs...>> {
 };
 
 /// The keys of an arrow.
-template <class G> std::vector<Key> arrow_keys() { return as_keys(SceneArrow<G>::declared(SceneArrow<G>::key)); }
+template <class G> std::vector<Key> arrow_keys() { return as_keys(ArrowFormat<G>::declared(ArrowFormat<G>::key)); }
 
 }  // namespace lagroid::app
