@@ -30,9 +30,14 @@ const KeyOf<Number> amplitude{"amplitude",
                               "distance of the ends, or one where they meet",
                               0.0};
 constexpr std::string_view minima = "minima";
-const KeyOf<OneOf> seek{"seek", {{std::string(minima), "stationary"}},
-                        "",     "what to look for: a mechanical motion need not be a minimum of its action",
-                        {},     "`minima` of optimal control, else `stationary`"};
+const KeyOf<OneOf> stationary_kind{"stationary_kind",
+                                   {{std::string(minima), "stationary"}},
+                                   "",
+                                   "what to look for: a mechanical motion need not be a minimum of its action",
+                                   {},
+                                   "`minima` of optimal control, else `stationary`"};
+/// Its name until 0.3, which goes with 0.4.
+constexpr const char* seek = "seek";
 const KeyOf<Number> tolerance{
     "tolerance", {positive}, "", "on the scaled residual of the boundary-value equations", BoundaryOptions().tolerance};
 const KeyOf<Whole> max_iterations{"max_iterations", {1, 1000000}, "", "of a start", BoundaryOptions().max_iterations};
@@ -65,7 +70,9 @@ Table boundary_time_table(const std::vector<std::string>& modes, bool depends_on
   if (depends_on_time) table.keys.push_back(time_keys::start);
   return table;
 }
-Table boundary_solver_table() { return {{method(), seek, starts, seed, amplitude, tolerance, max_iterations}}; }
+Table boundary_solver_table() {
+  return {{method(), stationary_kind, starts, seed, amplitude, tolerance, max_iterations}};
+}
 Table continuation_table() { return {{parameter, from, steps}}; }
 
 MultistartOptions read_multistart(const Section& solver) {
@@ -78,8 +85,14 @@ MultistartOptions read_multistart(const Section& solver) {
 BoundaryChoice read_boundary_solver(const Section& solver) {
   BoundaryChoice choice;
   choice.method = choice_of(boundary_words, read_key(solver, method()));
-  if (solver.has(seek.name))
-    choice.stationary_kind = read_key(solver, seek) == minima ? StationaryKind::minima : StationaryKind::stationary;
+  KeyOf<OneOf> kind = stationary_kind;
+  if (solver.has(seek)) {
+    if (solver.has(kind.name)) solver.fail(seek, "is the old name of " + kind.name + ", which is there too");
+    choice.notes.push_back(fmt::format("solver.{} is solver.{} now; the old name goes with 0.4", seek, kind.name));
+    kind.name = seek;
+  }
+  if (solver.has(kind.name))
+    choice.stationary_kind = read_key(solver, kind) == minima ? StationaryKind::minima : StationaryKind::stationary;
   choice.multistart = read_multistart(solver);
   choice.multistart.amplitude = read_key(solver, amplitude);
   choice.options.tolerance = read_key(solver, tolerance);

@@ -46,6 +46,7 @@ struct BoundaryChoice {
   std::optional<StationaryKind> stationary_kind;
   BoundaryOptions options;
   MultistartOptions multistart;
+  std::vector<std::string> notes;  ///< of keys that were given by their old names
 };
 BoundaryChoice read_boundary_solver(const Section& solver);
 
@@ -326,6 +327,7 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
   for (const auto& [status, count] : found.outcomes)
     counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", count, to_string(status));
   result.starts = found.starts;
+  result.notes = choice.notes;
   result.notes.push_back(fmt::format("{} starts: {}", found.starts, counted));
   if (found.lost > 0)
     result.notes.push_back(

@@ -72,7 +72,9 @@ TEST_F(CommandLine, BadBoundaryValuesExitTwo) {
            "run " + example("kepler_boundary") + " --set boundary.end.position=[0,0]",
            "run " + example("kepler_boundary") + " --set time.steps=1",
            "run " + example("kepler_boundary") + " --set solver.method=shoot",
+           "run " + example("kepler_boundary") + " --set solver.stationary_kind=maxima",
            "run " + example("kepler_boundary") + " --set solver.seek=maxima",
+           "run " + example("kepler_boundary") + " --set solver.seek=minima --set solver.stationary_kind=minima",
            "run " + example("kepler_boundary") + " --set boundary.end.attitude=[0,0,1]",
            "run " + example("kepler_boundary") +
                " --set continuation.parameter=parameters.mass --set continuation.from=1",
@@ -83,6 +85,20 @@ TEST_F(CommandLine, BadBoundaryValuesExitTwo) {
     const Outcome r = expect_refused(arguments + " --json");
     EXPECT_EQ(nlohmann::json::parse(r.out).at("status"), "invalid_scene");
   }
+}
+
+TEST_F(CommandLine, TheOldNameOfTheStationaryKindIsReadAndTold) {
+  const auto found = [](const std::string& key) {
+    const Outcome r = run("run " + example("kepler_boundary") + " --json --set solver.starts=6 --set solver." + key);
+    EXPECT_EQ(r.code, 0) << r.err;
+    return nlohmann::json::parse(r.out);
+  };
+  const auto now = found("stationary_kind=stationary");
+  const auto before = found("seek=stationary");
+  EXPECT_EQ(before.at("cost"), now.at("cost"));
+  EXPECT_NE(before.at("notes").dump().find("solver.seek is solver.stationary_kind now"), std::string::npos);
+  EXPECT_EQ(now.at("notes").dump().find("seek"), std::string::npos);
+  EXPECT_NE(found("stationary_kind=minima").at("notes"), now.at("notes"));
 }
 
 TEST_F(CommandLine, AFailingBoundaryValueIsTyped) {
