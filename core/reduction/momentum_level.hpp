@@ -10,9 +10,9 @@
 /// holonomy round the two displaced arrows and vanishes where the connection is flat. (For sums over Pair(Q):
 /// Jalnapurkar, Leok, Marsden & West, Discrete Routh reduction, J. Phys. A 39 (2006).)
 ///
-///     const MomentumLevel level(FactorConnection<Factors<1>, Pair<1>, SO2>{}, kepler_in_polar_coordinates,
-///     angular_momentum); auto run = FixedStepIntegrator(level, level.state_below(z), ...);       // of the radius
-///     alone const auto g = level.full_arrow(run.point().step.arrow);               // angle included
+///     const MomentumLevel level(FactorConnection<Factors<1>, Pair<1>, SO2>{}, polar_kepler, angular_momentum);
+///     const auto start = level.state_below(z);                  // of the radius alone: where an integrator begins, run
+///     const auto g = level.full_arrow(run.point().step.arrow);  // angle included
 ///
 /// Derivatives are those of the full system in bases adapted to the connection, so that a level costs a few of its
 /// evaluations: those of Newton's method for theta.

@@ -10,8 +10,8 @@
 /// formula, Am. J. Phys. 59 (1991) 394: dynamic 2 E T / |mu|, geometric minus a solid angle).
 ///
 ///     PhaseTally phase(level, HorizontalArrows::zero_momentum);
-///     while (...) { run.advance(); phase.add(run.point().step.arrow); }
-///     phase.geometric(), phase.dynamic(), phase.total()
+///     while (run.advance().converged()) phase.add(run.point().step.arrow);
+///     const Vector<double, 1> geometric = phase.geometric(), dynamic = phase.dynamic();
 ///
 /// Required: arrows that compose, in their order. Nothing is thrown.
 

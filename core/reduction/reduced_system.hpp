@@ -6,9 +6,9 @@
 /// Trajectories of L go to trajectories of L', and the momenta are related by A*Phi, so that one computes in fewer
 /// variables and has the full motion back from them (reconstruct.hpp).
 ///
-///     const auto reduced = reduce(LeftQuotient<SO3>{}, body, samples);   // throws DoesNotDescend with its worst
-///     sample auto run = FixedStepIntegrator(reduced, reduced.state_below(full_state), ...); const auto full =
-///     full_point(reduced, run.point());
+///     const auto reduced = reduce(LeftQuotient<SO3>{}, body, samples);  // throws DoesNotDescend: the worst sample
+///     const auto start = reduced.state_below(full_state);               // where an integrator begins, run
+///     const auto full = full_point(reduced, run.point());               // reconstruct.hpp
 ///
 /// Required: Phi says which arrow of G stands for h (`representative` or `over`, core/morphism.hpp), and L, the
 /// constraints, forces and distributions descend; `examine_descent` (descent.hpp) samples whether they do.

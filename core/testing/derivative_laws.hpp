@@ -4,7 +4,7 @@
 /// Run it before a trajectory: a Lagrangian that keeps an Eigen expression in `auto` has wrong derivatives, and steps
 /// still converge.
 ///
-///     const auto draw = [&] { return laws::step_from(system, a_random_state()); };
+///     const auto draw = [&] { return laws::step_from(system, a_random_state()); };  // momentum_laws.hpp
 ///     EXPECT_TRUE(lagroid::laws::derivative_laws(system, draw).holds());
 ///
 /// Requires RapidCheck, and a `draw` that returns a random Step of the system. Returns a LawReport of the laws
