@@ -1,4 +1,4 @@
-"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below."""
+"""Writes docs/gallery.md and its pictures: gallery.py PROGRAM runs the scenes below, and the examples' programs beside it."""
 import os
 import pathlib
 import re
@@ -9,7 +9,8 @@ import tempfile
 
 root = pathlib.Path(__file__).resolve().parents[2]
 
-# Scenes by subject, with the settings that keep a picture small.
+# Scenes by subject, with the settings that keep a picture small; `a_program` of examples/ instead of a scene.
+a_program = None
 gallery = {
     "The cheapest way": {
         "plate_ball": [], "unicycle": [], "attitude_control": [], "kepler_boundary": []},
@@ -18,7 +19,7 @@ gallery = {
         "pythagorean": ["output.every=20000"], "kepler_controlled": ["time.steps=800"]},
     "Bodies that turn": {
         "rigid_body": ["time.steps=1000"], "heavy_top": ["time.steps=1000"], "tops": ["output.every=20"],
-        "tumbling_book": ["output.every=10"]},
+        "tumbling_book": ["output.every=10"], "geometric_phase": a_program},
     "Pendula": {
         "spherical_pendulum": ["output.every=2"], "spring_pendulum": ["output.every=30"],
         "foucault": ["output.every=12"],
@@ -31,21 +32,30 @@ gallery = {
 }
 
 
-def caption(scene):
-    """The comment that opens a scene, as one paragraph."""
+def source(name, settings):
+    return f"examples/{name}.{'cpp' if settings is a_program else 'toml'}"
+
+
+def caption(file):
+    """The comment that opens a scene or a program, as one paragraph; of a program up to its first empty line."""
+    mark = "//" if file.suffix == ".cpp" else "#"
     lines = []
-    for line in scene.read_text().splitlines():
-        if not line.startswith("#"):
+    for line in file.read_text().splitlines():
+        if not line.startswith(mark) or line == "//":
             break
-        lines.append(line.removeprefix("#").strip())
+        lines.append(line.removeprefix(mark).strip())
     said = " ".join(lines)
     if not said:
-        sys.exit(f"gallery: {scene}: the scene does not open with what it is; write a comment there")
+        sys.exit(f"gallery: {file}: it does not open with what it is; write a comment there")
     return re.sub(r"(?=[*_\[\]<])", r"\\", said)
 
 
-def command(name, settings):
-    return ["run", f"examples/{name}.toml", *(word for setting in settings for word in ("--set", setting))]
+def command(name, settings, folder):
+    """The words that draw a picture into the folder."""
+    if settings is a_program:
+        return [f"build/release/bin/{name}", folder]
+    changed = (word for setting in settings for word in ("--set", setting))
+    return ["./lagroid", "run", source(name, settings), *changed, "--out", folder]
 
 
 def page():
@@ -56,20 +66,22 @@ def page():
     for subject, scenes in gallery.items():
         lines += ["", f"## {subject}"]
         for name, settings in scenes.items():
-            lines += ["", f"### {name.replace('_', ' ').capitalize()}", "", caption(root / f"examples/{name}.toml"),
-                      f"([scene](../examples/{name}.toml))", "",
-                      f"    ./lagroid {' '.join(command(name, settings))} --out out/gallery/{name}", "",
+            file = source(name, settings)
+            lines += ["", f"### {name.replace('_', ' ').capitalize()}", "", caption(root / file),
+                      f"([{'program' if settings is a_program else 'scene'}](../{file}))", "",
+                      f"    {' '.join(command(name, settings, f'out/gallery/{name}'))}", "",
                       f"![{name}](gallery/{name}.svg)"]
     return "\n".join(lines) + "\n"
 
 
 def draw(program, name, settings, pictures):
-    """Runs the scene and keeps its picture."""
+    """Runs the scene or the program and keeps its picture."""
     with tempfile.TemporaryDirectory() as folder:
-        arguments = command(name, settings)
-        done = subprocess.run([program, *arguments, "--out", folder], cwd=root, capture_output=True, text=True)
+        _, *arguments = words = command(name, settings, folder)
+        runs = program.parent / name if settings is a_program else program
+        done = subprocess.run([runs, *arguments], cwd=root, capture_output=True, text=True)
         if done.returncode != 0:
-            sys.exit(f"gallery: lagroid {' '.join(arguments)}: {done.stderr.strip()}")
+            sys.exit(f"gallery: {' '.join(words)}: {done.stderr.strip()}")
         shutil.copy(pathlib.Path(folder) / "plot.svg", pictures / f"{name}.svg")
 
 
