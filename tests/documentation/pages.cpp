@@ -151,7 +151,7 @@ TEST(Time, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/time
 TEST(Time, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(prose_of(read("docs/time.md"))), none); }
 
 TEST(TheoryPages, WhatTheyNameExists) {
-  for (const char* paper : {"G", "N", "V", "H"})
+  for (const char* paper : {"G", "N", "V", "H", "lagrange_poincare"})
     EXPECT_EQ(unknown_names(prose_of(read(std::string("docs/theory/") + paper + ".md"))), none) << paper;
 }
 
