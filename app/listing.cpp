@@ -30,6 +30,8 @@ std::string text_listing() {
     for (const Key& p : s.parameters) out += fmt::format("  {:<18} {}\n", p.name, listed(p));
     if (!s.symmetries.empty()) out += fmt::format("  symmetries         {}\n", fmt::join(s.symmetries, "; "));
     if (!s.conserved.empty()) out += fmt::format("  conserved          {}\n", fmt::join(s.conserved, "; "));
+    for (const ListedReduction& r : s.reductions)
+      out += fmt::format("  reduced by         {}: {}; to {}\n", r.name, r.meaning, r.groupoid);
   }
   return out;
 }
@@ -42,12 +44,16 @@ std::string json_listing() {
       parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"meaning", meaning_of(p)}});
       if (const std::string fallback = fallback_of(p); !fallback.empty()) parameters.back()["default"] = fallback;
     }
+    auto reductions = nlohmann::ordered_json::array();
+    for (const ListedReduction& r : s.reductions)
+      reductions.push_back({{"name", r.name}, {"meaning", r.meaning}, {"groupoid", r.groupoid}});
     out.push_back({{"name", s.name},
                    {"summary", s.summary},
                    {"groupoid", s.groupoid},
                    {"parameters", parameters},
                    {"symmetries", s.symmetries},
-                   {"conserved", s.conserved}});
+                   {"conserved", s.conserved},
+                   {"reductions", reductions}});
   }
   return out.dump(2) + "\n";
 }

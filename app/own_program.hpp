@@ -17,6 +17,7 @@
 #if defined(LAGROID_STEPS_ALONE)
 #include "own/steps_module.hpp"
 #else
+#include "reductions/reduced_scene.hpp"
 #include "scenes/any_system.hpp"
 
 #include <lagroid/solvers/boundary/boundary_methods.hpp>
@@ -26,7 +27,7 @@
 #include "check/certify_system.hpp"
 #include "check/own_check.hpp"
 
-#include <lagroid/solvers/testing/certificate.hpp>
+#include <lagroid/solvers/testing/reduced_certificate.hpp>
 #endif
 
 #include "own/own_parts.hpp"

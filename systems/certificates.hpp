@@ -6,6 +6,7 @@
 #include <lagroid/core/testing/law_report.hpp>
 
 #include <functional>
+#include <string_view>
 #include <vector>
 
 namespace lagroid::laws {
@@ -14,5 +15,10 @@ namespace lagroid::laws {
 /// own).
 template <DiscreteSystem Sys>
 std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw);
+/// The laws of the system that it is reduced to by the reduction of that name
+/// (solvers/testing/reduced_certificate.hpp).
+template <DiscreteSystem Sys>
+std::vector<LawReport> reduced_certificate(const Sys& system, std::string_view name,
+                                           const std::function<State<typename Sys::GroupoidType>()>& draw);
 
 }  // namespace lagroid::laws

@@ -9,7 +9,10 @@
 ///     kepler.h = 0.05;
 ///     const double energy = kepler.energy({{1, 0}, {0, 1.2}});
 
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
+#include <lagroid/groupoids/connections.hpp>
+#include <lagroid/groupoids/polar.hpp>
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
@@ -66,6 +69,11 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   /// Rotation about the centre.
   std::vector<Symmetry<Kepler>> symmetries() const {
     return {{"angular momentum", [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); }}};
+  }
+  static auto reductions() {
+    return std::tuple(reduction("rotations", PolarQuotient{}, "rotations about the centre"),
+                      fixed_momentum("angular-momentum", PolarQuotient{}, FactorConnection<Factors<1>, Pair<1>, SO2>{},
+                                     "the radius alone moves"));
   }
   std::vector<Quantity<Kepler>> quantities() const { return {energy_quantity(), symmetries()[0].quantity()}; }
 };

@@ -2,13 +2,13 @@
 # the class, app/systems/NAME.cpp with how its scenes are read and shown, both in the folder FOLDER where IN FOLDER says
 # so. What the solvers make of each is compiled once, from files that are made here (systems/instances.hpp).
 # INITIAL_VALUES: it is forced, nonholonomic or depends on time, and has no boundary values; others name their sizes
-# (solvers/boundary/sizes). Further sources of its own stand after SOURCES.
+# (solvers/boundary/sizes). REDUCED: how many equations a step has of each reduction that it declares, in their order.
+# Further sources of its own stand after SOURCES.
 set(system_names)
 set(system_classes)
 set(system_headers)  # as <lagroid/...>
-set(certificate_sources)  # of lagroid_certificates
 function(lagroid_system name class)
-  cmake_parse_arguments(ARG "INITIAL_VALUES" "IN;SIZES" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "INITIAL_VALUES" "IN;SIZES" "REDUCED;SOURCES" ${ARGN})
   set(header systems/${name}.hpp)
   if(ARG_IN)
     set(header systems/${ARG_IN}/${name}.hpp)
@@ -24,6 +24,12 @@ function(lagroid_system name class)
     configure_file(${PROJECT_SOURCE_DIR}/systems/instances/${part}.cpp.in ${made}_${part}.cpp @ONLY)
   endforeach()
   list(TRANSFORM parts REPLACE "(.+)" "${made}_\\1.cpp" OUTPUT_VARIABLE sources)
+  set(place 0)
+  foreach(variables ${ARG_REDUCED})
+    configure_file(${PROJECT_SOURCE_DIR}/systems/instances/reduced.cpp.in ${made}_reduced_${place}_integrators.cpp @ONLY)
+    list(APPEND sources ${made}_reduced_${place}_integrators.cpp)
+    math(EXPR place "${place}+1")
+  endforeach()
   set(system_names ${system_names} ${name} PARENT_SCOPE)
   set(system_headers ${system_headers} ${header} PARENT_SCOPE)
   set(header_of_${name} ${header} PARENT_SCOPE)
@@ -31,7 +37,14 @@ function(lagroid_system name class)
   lagroid_part(${name} ${sources} ${ARG_SOURCES})
   set(lagroid_parts ${lagroid_parts} PARENT_SCOPE)
   set(sizes_of_${name} ${ARG_SIZES} PARENT_SCOPE)
-  set(certificate_sources ${certificate_sources} ${made}_certificate.cpp PARENT_SCOPE)
+  set(reduced_of_${name} ${ARG_REDUCED} PARENT_SCOPE)
+  set(certificates ${made}_certificate.cpp)
+  if(ARG_REDUCED)
+    configure_file(${PROJECT_SOURCE_DIR}/systems/instances/reduced_certificate.cpp.in ${made}_reduced_certificate.cpp
+                   @ONLY)
+    list(APPEND certificates ${made}_reduced_certificate.cpp)
+  endif()
+  set(certificates_of_${name} ${certificates} PARENT_SCOPE)
 endfunction()
 lagroid_system(plate_ball PlateBall IN control SIZES 5_3_0
                SOURCES systems/control/plate_ball.cpp systems/control/plate_ball_boundary.cpp)
@@ -40,12 +53,14 @@ lagroid_system(attitude_control AttitudeControl IN control SIZES 3_1_0 SOURCES s
 lagroid_system(rigid_body RigidBody IN rotations SIZES 3_0_0
                SOURCES systems/rotations/rigid_body.cpp systems/rotations/moser_veselov.cpp
                        systems/rotations/moser_veselov_solvers.cpp)
-lagroid_system(heavy_top HeavyTop IN rotations SIZES 3_0_0 SOURCES systems/rotations/heavy_top.cpp)
+lagroid_system(heavy_top HeavyTop IN rotations SIZES 3_0_0
+               SOURCES systems/rotations/heavy_top.cpp)
 lagroid_system(pendulum Pendulum IN pendulums SIZES 1_0_0)
-lagroid_system(kepler Kepler SIZES 2_0_0)
+lagroid_system(kepler Kepler SIZES 2_0_0 REDUCED 2 1)
 lagroid_system(spherical_pendulum SphericalPendulum IN pendulums SIZES 3_0_1 SOURCES systems/pendulums/spherical_pendulum.cpp)
 lagroid_system(gyrostat Gyrostat IN rotations SIZES 6_0_0_32)
-lagroid_system(rolling_ball RollingBall IN rolling INITIAL_VALUES SOURCES systems/rolling/rolling_ball.cpp)
+lagroid_system(rolling_ball RollingBall IN rolling INITIAL_VALUES
+               SOURCES systems/rolling/rolling_ball.cpp)
 lagroid_system(rolling_disk RollingDisk IN rolling INITIAL_VALUES SOURCES systems/rolling/rolling_disk.cpp)
 lagroid_system(chaplygin_sleigh ChaplyginSleigh IN rolling INITIAL_VALUES SOURCES systems/rolling/chaplygin_sleigh.cpp)
 lagroid_system(damped_pendulum DampedPendulum IN pendulums INITIAL_VALUES SOURCES systems/pendulums/damped_pendulum.cpp)

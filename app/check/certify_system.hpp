@@ -9,12 +9,16 @@
 #include "../scenes/system_module.hpp"
 #include "check_options.hpp"
 
+#include <lagroid/core/reduction/reconstruction.hpp>
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/run/ledger/certificate.hpp>
 #include <lagroid/solvers/generating/constrained_momentum.hpp>
 #include <lagroid/systems/certificates.hpp>
 
 #include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
@@ -52,6 +56,36 @@ State<typename Sys::GroupoidType> draw_state(const Sys& system, const std::vecto
 
 }  // namespace checking
 
+namespace checking {
+
+/// Whether the system descends along each reduction that it declares, where the run starts; and the laws of the system
+/// that the scene is reduced to.
+template <DiscreteSystem Sys>
+void examine_reductions(const PreparedScene<Sys>& prepared, const TrajectoryPoint<Sys>& start,
+                        const std::function<State<typename Sys::GroupoidType>()>& draw, Certificate& certificate) {
+  const auto arrows = arrows_about(prepared.system.groupoid, start.state.object);
+  for_each_reduction<Sys>([&]<class Declared>(const Declared& declared) {
+    ReductionFinding found;
+    found.name = declared.name;
+    found.groupoid = Declared::Codomain::name();
+    found.is_claimed = prepared.reduced_by == declared.name;
+    try {
+      const Reconstruction<Sys, Declared> down(declared, prepared.system, start.state, start.configuration);
+      const DescentReport report = down.examine(arrows);
+      for (const DescentFinding& each : report.findings) found.defect = std::max(found.defect, each.defect);
+      found.why_not = report.sentence();
+      if (found.is_claimed)
+        for (laws::LawReport& suite : laws::reduced_certificate<Sys>(prepared.system, declared.name, draw))
+          certificate.suites.push_back(std::move(suite));
+    } catch (const NotFree& nothing_to_reduce_to) {
+      found.why_not = nothing_to_reduce_to.what();
+    }
+    certificate.reductions.push_back(std::move(found));
+  });
+}
+
+}  // namespace checking
+
 template <DiscreteSystem Sys>
 Certificate certify(const PreparedScene<Sys>& prepared, const CheckCommandOptions& options) {
   checking::Thinned<Sys> run;
@@ -79,6 +113,10 @@ Certificate certify(const PreparedScene<Sys>& prepared, const CheckCommandOption
   }
   certificate.suites =
       laws::certificate<Sys>(prepared.system, [&] { return checking::draw_state(prepared.system, points, largest); });
+  if constexpr (HasReductions<Sys>)
+    checking::examine_reductions<Sys>(
+        prepared, run.points().front(), [&] { return checking::draw_state(prepared.system, points, largest); },
+        certificate);
   if constexpr (requires { prepared.system.symmetries(); }) {
     for (const auto& symmetry : prepared.system.symmetries()) {
       const auto found = examine<Sys>(prepared.system, symmetry, steps);

@@ -33,8 +33,9 @@ Table scene_table(const SystemModule& module) {
     return std::vector<Key>{KeyOf<Table>{"initial", {own.initial}, "", "the state to start from"},
                             optional_table("output", output_table(), "what is recorded"), other};
   };
-  table.kinds = initial_values(started_with(optional_table("solver", solver, "of the implicit equations of a step")),
-                               time_table(own.depends_on_time));
+  std::vector<Key> stepped = started_with(optional_table("solver", solver, "of the implicit equations of a step"));
+  if (!own.reductions.empty()) stepped.push_back(reduce_key(own.reductions));
+  table.kinds = initial_values(stepped, time_table(own.depends_on_time));
   for (const DeclaredMethod& method : module.own_methods())
     table.kinds.push_back(
         {started_with(KeyOf<Table>{"time", own_time_table(method), "", std::string(method.source.what)})});

@@ -29,10 +29,10 @@ template <DiscreteSystem Sys> class StepsModule final : public SystemModule {
   bool nonholonomic() const override { return Nonholonomic<Sys>; }
   std::span<const DeclaredMethod> own_methods() const override { return {}; }
   ListedSystem listed() const override { return listed_system<Sys>(name(), summary()); }
-  SystemKeys keys() const override { return with_times<Sys>(keys_of<Sys>(name(), dress_)); }
+  SystemKeys keys() const override { return with_declarations<Sys>(keys_of<Sys>(name(), dress_)); }
   MotionScene read(const Section&, const RunContext&) const override { throw NeedsAllMethods{}; }
   RunResult run(const Section& scene, const RunContext& context) const override {
-    if (scene.has("boundary")) throw NeedsAllMethods{};
+    if (scene.has("boundary") || scene.has(reduce_word)) throw NeedsAllMethods{};
     const Sys system = read_system<Sys>(scene);
     const Presentation<Sys> presentation = dressed(system, name(), dress_);
     const InitialValue<Sys> initial = read_initial(system, scene, presentation.momentum);

@@ -55,7 +55,7 @@ if(LAGROID_APP)
   install(EXPORT lagroid-commands-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
   install(FILES ${PROJECT_SOURCE_DIR}/app/own_program.hpp ${PROJECT_SOURCE_DIR}/app/program.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app COMPONENT development)
-  foreach(folder own reading keys scenes families command check)
+  foreach(folder own reading keys scenes reductions families command check)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/app/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app
             COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "templates" EXCLUDE)
   endforeach()

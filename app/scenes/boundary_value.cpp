@@ -143,6 +143,7 @@ bool is_boundary_value(const Section& scene, const std::string& initial) {
   if (scene.has("initial") && boundary) scene.fail("boundary", "give [initial] or [boundary], not both");
   if (!scene.has("initial") && !boundary)
     scene.fail("", fmt::format("missing table [initial] ({}) or [boundary] (start, end)", initial));
+  if (boundary) refuse_to_reduce(scene, "goes with [initial]: boundary values are those of the full system");
   return boundary;
 }
 

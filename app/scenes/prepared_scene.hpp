@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace lagroid::app {
@@ -26,6 +27,7 @@ template <DiscreteSystem Sys> struct PreparedScene {
   std::function<std::unique_ptr<Motion>()> begin;                  ///< the motion alone; null for boundary values
   std::vector<Method> methods = {};                                ///< by which the scene could be integrated
   std::shared_ptr<const NewtonInitialValue<Sys>> plain = nullptr;  ///< null where it is none
+  std::string reduced_by = {};                                     ///< the reduction that it names, or none
 };
 
 }  // namespace lagroid::app

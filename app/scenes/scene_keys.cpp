@@ -51,6 +51,15 @@ KeyOf<OneOf> without_root() {
 
 }  // namespace time_keys
 
+KeyOf<OneOf> reduce_key(std::vector<std::string> names) {
+  return {std::string(reduce_word),
+          {std::move(names)},
+          "",
+          "what the system is reduced by: steps are those of the reduced system, recorded is the full motion",
+          {},
+          "the system as it is"};
+}
+
 namespace solver_keys {
 
 KeyOf<OneOf> method() {

@@ -44,6 +44,11 @@ KeyOf<OneOf> without_root();
 
 }  // namespace time_keys
 
+/// Beside `system`: by what it is reduced.
+inline constexpr std::string_view reduce_word = "reduce";
+/// One of these, by which the system can be reduced.
+KeyOf<OneOf> reduce_key(std::vector<std::string> names);
+
 namespace solver_keys {
 
 inline const KeyOf<Whole> max_iterations{"max_iterations",  {1, most_iterations}, "", "of a step", {},

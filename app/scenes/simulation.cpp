@@ -59,22 +59,27 @@ namespace {
 
 std::string read_mode_word(const Section& time) { return read_key(time, time_keys::mode()); }
 
-/// Refuses a key that asks for what the system lacks.
-void need(const Section& time, std::string_view key, std::span<const Requirement> requirements,
-          const Capabilities& able) {
-  if (const Requirement* lacking = unmet(requirements, able))
-    time.fail(key, fmt::format("this system has no {}; see docs/time.md for those that do", lacking->what));
-}
+/// What a system can do, with the words for what it cannot.
+struct Able {
+  const Capabilities& capabilities;
+  std::string_view system;
+  std::string_view remedy;
+
+  /// Refuses a key that asks for what the system lacks.
+  void require(const Section& time, std::string_view key, std::span<const Requirement> requirements) const {
+    if (const Requirement* lacking = unmet(requirements, capabilities))
+      time.fail(key, fmt::format("{} has no {}; {}", system, lacking->what, remedy));
+  }
+};
 
 /// The options of the method itself.
-void read_options(const Section& time, const IntegrationMethod& method, const Capabilities& able,
-                  IntegratorOptions& options) {
+void read_options(const Section& time, const IntegrationMethod& method, const Able& able, IntegratorOptions& options) {
   if (method.composed()) {
     const bool flows = method.other_orders == OtherOrders::composed_flows;
     options.composition =
-        read_composition(time, flows ? std::span<const Composition>(able.splittings) : compositions::all);
+        read_composition(time, flows ? std::span<const Composition>(able.capabilities.splittings) : compositions::all);
     if (!flows && options.composition.stages() > 1)
-      need(time, time.has("order") ? "order" : "composition", requirements::of_composed_steps, able);
+      able.require(time, time.has("order") ? "order" : "composition", requirements::of_composed_steps);
   } else {
     if (time.has("composition"))
       time.fail("composition",
@@ -84,7 +89,8 @@ void read_options(const Section& time, const IntegrationMethod& method, const Ca
   }
   if (options.mode == TimeMode::adaptive) {
     options.without_root = choice_of(without_root_words, read_key(time, time_keys::without_root()));
-    if (options.without_root == WithoutRoot::controlled) need(time, "without_root", requirements::of_controlled, able);
+    if (options.without_root == WithoutRoot::controlled)
+      able.require(time, "without_root", requirements::of_controlled);
   } else if (time.has("without_root")) {
     time.fail("without_root",
               fmt::format("goes with mode = \"{}\"", integration_method({.mode = TimeMode::adaptive}).name));
@@ -115,10 +121,12 @@ const DeclaredMethod& read_declared_method(const Section& time, std::span<const 
   return integration_method(read_mode_word(time), word);
 }
 
-IntegratorChoice read_integrator(const Section& scene, const Capabilities& able) {
+IntegratorChoice read_integrator(const Section& scene, const Capabilities& capabilities, std::string_view system,
+                                 std::string_view remedy) {
+  const Able able{capabilities, system, remedy};
   const Section time = scene.section("time", "step and steps, or duration and steps");
   const IntegrationMethod& method = integration_method(read_mode_word(time), read_method_word(time, {}));
-  need(time, method.equal_steps() ? "method" : "mode", method.needs, able);
+  able.require(time, method.equal_steps() ? "method" : "mode", method.needs);
   IntegratorChoice choice;
   IntegratorOptions& options = choice.options;
   options = options_of(method);
@@ -164,6 +172,10 @@ std::vector<Method> integration_methods(const Capabilities& able) {
   for (const NamedMethod& m : named_methods(able))
     all.push_back({m.name, m.order, m.stages, m.equal_steps, settings_of(m.options), m.to_compare});
   return all;
+}
+
+void refuse_to_reduce(const Section& scene, std::string_view why) {
+  if (scene.has(reduce_word)) scene.fail(reduce_word, std::string(why));
 }
 
 long read_every(const Section& scene) { return read_key(scene.section_or_empty("output"), output_keys::every); }

@@ -10,7 +10,9 @@
 
 #include "../reading/scene_reader.hpp"
 #include "prepared_scene.hpp"
+#include "scene_keys.hpp"
 
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/run/motion/drive.hpp>
 #include <lagroid/run/motion/system_motion.hpp>
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
@@ -52,14 +54,19 @@ struct IntegratorChoice {
 std::string read_method_word(const Section& time, std::span<const DeclaredMethod> own);
 /// The method that `mode` and `method` of [time] name; it is one of `own`, or one that is declared for every system.
 const DeclaredMethod& read_declared_method(const Section& time, std::span<const DeclaredMethod> own);
-/// Refuses what the system does not have.
-IntegratorChoice read_integrator(const Section& scene, const Capabilities& able);
+/// Refuses what the system does not have; `system` and `remedy` are its words for that.
+IntegratorChoice read_integrator(const Section& scene, const Capabilities& able,
+                                 std::string_view system = "this system",
+                                 std::string_view remedy = "see docs/time.md for those that do");
 /// `order`, `composition`: of a fixed step.
 Composition read_composition(const Section& time, std::span<const Composition> offered);
 /// The fixed steps of a kind, by each of the compositions.
 std::vector<Method> composed_methods(std::string_view step, std::span<const Composition> composed_by);
 /// All that it would accept.
 std::vector<Method> integration_methods(const Capabilities& able);
+
+/// Refuses `reduce`, for a reason.
+void refuse_to_reduce(const Section& scene, std::string_view why);
 
 /// [output]: every n-th node is recorded (and the last).
 long read_every(const Section& scene);
@@ -95,26 +102,40 @@ std::unique_ptr<Motion> motion_of(const Sys& system, const Presentation<Sys>& pr
                                              observer);
 }
 
+/// Makes the step of the system that of [time] accuracy, where it is given. Returns false where there is none, and
+/// the result says so.
+template <DiscreteSystem Sys>
+bool find_first_step(Sys& system, const State<typename Sys::GroupoidType>& initial, const IntegratorChoice& choice,
+                     RunResult& result) {
+  if (choice.accuracy == 0) return true;
+  const double h = step_for_accuracy(system, initial, choice.accuracy, choice.options);
+  if (h > 0) {
+    system.h = h;
+    result.notes.push_back(fmt::format("first step {:.6g} for time.accuracy = {:.3g}", h, choice.accuracy));
+    return true;
+  }
+  result.status = std::string(to_string(SolveStatus::no_step));
+  result.message = "no step from the initial state has the accuracy asked for; give time.step in place of accuracy";
+  return false;
+}
+
 /// Runs the system.
 template <DiscreteSystem Sys>
 RunResult simulate(Sys system, const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                    const ArrowOf<typename Sys::GroupoidType>& configuration, const IntegratorChoice& choice,
                    RunExtent extent, const RunContext& context, const Observer<Sys>& observer) {
   RunResult result;
-  if (choice.accuracy > 0) {
-    const double h = step_for_accuracy(system, initial, choice.accuracy, choice.options);
-    if (h > 0) {
-      system.h = h;
-      result.notes.push_back(fmt::format("first step {:.6g} for time.accuracy = {:.3g}", h, choice.accuracy));
-    } else {
-      result.status = std::string(to_string(SolveStatus::no_step));
-      result.message = "no step from the initial state has the accuracy asked for; give time.step in place of accuracy";
-      extent.steps = 0;
-    }
-  }
+  if (!find_first_step(system, initial, choice, result)) extent.steps = 0;
   drive(*motion_of(system, presentation, initial, configuration, choice.options, observer), extent, context, result);
   return result;
 }
+
+/// The same of the reduction that the scene names; of a system of one's own include ../reductions/reduced_scene.hpp.
+template <DiscreteSystem Sys>
+PreparedScene<Sys> reduced_simulation(const Section& scene, const RunContext& context, const Sys& system,
+                                      const Presentation<Sys>& presentation,
+                                      const State<typename Sys::GroupoidType>& initial,
+                                      const ArrowOf<typename Sys::GroupoidType>& configuration);
 
 /// The same, to be run later: [time] steps, [solver] and [output] are read from the scene, which must hold no key
 /// besides those read.
@@ -122,6 +143,11 @@ template <DiscreteSystem Sys>
 PreparedScene<Sys> simulation(const Section& scene, const RunContext& context, const Sys& system,
                               const Presentation<Sys>& presentation, const State<typename Sys::GroupoidType>& initial,
                               const ArrowOf<typename Sys::GroupoidType>& configuration) {
+  if constexpr (HasReductions<Sys>) {
+    if (scene.has(reduce_word)) return reduced_simulation(scene, context, system, presentation, initial, configuration);
+  } else {
+    refuse_to_reduce(scene, "this system declares nothing by which it is reduced; leave it out");
+  }
   const Capabilities able = capabilities_of(system);
   const IntegratorChoice choice = read_integrator(scene, able);
   const RunExtent extent = read_extent(scene, context);

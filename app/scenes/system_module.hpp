@@ -24,6 +24,12 @@
 
 namespace lagroid::app {
 
+/// By what a system can be reduced, and where that leads.
+struct ListedReduction {
+  std::string name;
+  std::string meaning;
+  std::string groupoid;
+};
 /// What `lagroid list` shows of a system that scenes can name.
 struct ListedSystem {
   std::string name;
@@ -32,6 +38,7 @@ struct ListedSystem {
   std::vector<Key> parameters;
   std::vector<std::string> symmetries;  ///< declared by the system with its default parameters
   std::vector<std::string> conserved;   ///< quantities promised as conserved
+  std::vector<ListedReduction> reductions = {};
 };
 
 /// The keys of a system's own tables, as its reader reads them.
@@ -42,6 +49,7 @@ struct SystemKeys {
   std::vector<Key> solver = {};  ///< of [solver] beside an initial value, besides those of every system
   bool depends_on_time = false;
   std::vector<std::string> boundary_modes = {};  ///< of [time] beside a boundary value
+  std::vector<std::string> reductions = {};      ///< by which `reduce` beside an initial value can ask
 };
 
 /// The words of [time] mode of a boundary value.
@@ -52,10 +60,11 @@ template <DiscreteSystem Sys> std::vector<std::string> boundary_modes() {
   if (HasTimeScaleOfArrows<Sys>) add(TimeMode::controlled);
   return modes;
 }
-/// With what the system's type says of time.
-template <DiscreteSystem Sys> SystemKeys with_times(SystemKeys keys) {
+/// With what the system's type says of time and of its reductions.
+template <DiscreteSystem Sys> SystemKeys with_declarations(SystemKeys keys) {
   keys.depends_on_time = TimeDependent<Sys>;
   keys.boundary_modes = boundary_modes<Sys>();
+  keys.reductions = names_of_reductions<Sys>();
   return keys;
 }
 
@@ -91,6 +100,9 @@ template <DiscreteSystem Sys> ListedSystem listed_system(const std::string& name
     for (const auto& symmetry : system.symmetries()) out.symmetries.push_back(symmetry.name);
   for (const auto& quantity : quantities_of(system))
     if (quantity.promise == Promise::conserved) out.conserved.push_back(quantity.name);
+  for_each_reduction<Sys>([&]<class Declared>(const Declared& declared) {
+    out.reductions.push_back({std::string(declared.name), std::string(declared.meaning), Declared::Codomain::name()});
+  });
   return out;
 }
 
@@ -121,7 +133,7 @@ template <DiscreteSystem Sys> class ModuleOf final : public SystemModule {
     return {read.begin(), read_extent(scene, context), read.methods};
   }
   ListedSystem listed() const override { return listed_system<Sys>(name(), summary()); }
-  SystemKeys keys() const override { return with_times<Sys>(keys_()); }
+  SystemKeys keys() const override { return with_declarations<Sys>(keys_()); }
 
  private:
   Read read_;

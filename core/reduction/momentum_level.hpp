@@ -113,6 +113,9 @@ struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection,
     if constexpr (HasBranch<Sys>) return this->full.admissible(full_arrow(b));
     return true;
   }
+  Step<MomentumLevel> first_guess(const State<B>& s) const requires HasFirstGuess<Sys> {
+    return {connection(this->full.first_guess(state_over(s)).arrow), {}};
+  }
   double energy(const State<B>& s) const requires requires(const Sys& f, const State<G>& z) { f.energy(z); }
   { return this->full.energy(state_over(s)); }
 

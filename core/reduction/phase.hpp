@@ -15,6 +15,7 @@
 ///
 /// Required: arrows that compose, in their order. Nothing is thrown.
 
+#include <lagroid/core/number_archive.hpp>
 #include <lagroid/core/reduction/momentum_level.hpp>
 #include <lagroid/core/scalars/compensation.hpp>
 
@@ -48,9 +49,28 @@ template <class Level> class PhaseTally {
     }
   }
 
+  /// Of a step of that size, where not all have one.
+  void add(const ArrowOf<typename Level::GroupoidType>& b, double size) {
+    set_time_step(level_, size);
+    add(b);
+  }
+
   Angles dynamic() const { return dynamic_; }
   Angles geometric() const { return fibre_ + holonomy_; }
   Angles total() const { return dynamic() + geometric(); }
+
+  /// Visits all that the next arrow is added to.
+  void serialize(NumberArchive& archive) {
+    archive(dynamic_, dynamic_rest_.lost, fibre_, fibre_rest_.lost, holonomy_);
+    bool any = lifted_.has_value();
+    archive(any);
+    if (!any) {
+      lifted_.reset();
+      return;
+    }
+    if (!lifted_) lifted_.emplace();
+    archive.arrow(level_.full.groupoid, *lifted_);
+  }
 
  private:
   Level level_;

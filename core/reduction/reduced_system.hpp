@@ -111,15 +111,15 @@ struct ReducedSystem
   }
   Rates<H> rates(const State<H>& s) const requires HasRates<Sys> {
     const State<G> z = state_over(s);
-    const Rates<G> full = this->full.rates(z);
+    const Rates<G> above = this->full.rates(z);
     if constexpr (Phi::keeps_basis) {
-      return {full.velocity, full.momentum};
+      return {above.velocity, above.momentum};
     } else {
       // d/dt of the reduced momentum along q' = rho(X), mu' = that of the full motion.
       const auto q = this->full.groupoid.target(this->full.groupoid.tau(
-          this->full.groupoid.template cast_object<Dual<double>>(z.object), infinitesimal(full.velocity)));
-      return {(morphism.algebroid(z.object) * full.velocity).eval(),
-              derivative_of(morphism.reduced_momentum(q, moved_along(z.momentum, full.momentum)))};
+          this->full.groupoid.template cast_object<Dual<double>>(z.object), infinitesimal(above.velocity)));
+      return {(morphism.algebroid(z.object) * above.velocity).eval(),
+              derivative_of(morphism.reduced_momentum(q, moved_along(z.momentum, above.momentum)))};
     }
   }
   double time_scale_rate(const State<H>& s) const requires requires(const Sys& f, const State<G>& z) {

@@ -79,17 +79,20 @@ def run(
     scene: SceneLike,
     *,
     set: Optional[Mapping[str, Any]] = None,
+    reduce: Optional[str] = None,
     record: bool = True,
     out: Optional[str | os.PathLike[str]] = None,
 ) -> RunResult:
     """Runs a scene (docs/scenes.md): a file, a TOML text (a str with more than one line) or a dict.
 
-    `set` holds other values by dotted keys, as in {"time.steps": 100}. Without `record` only the ledger and the end
+    `set` holds other values by dotted keys, as in {"time.steps": 100}. `reduce` names one of the system's reductions
+    (`systems()` has them): its steps are then those of the reduced system, its motion the full one. Without `record` only the ledger and the end
     points are kept. `out` is a folder for checkpoints and the files of `lagroid run --out`.
 
     Returns also where a step failed: see `status`, or call `require`. Raises SceneError, OutputError, and Interrupted
     after Ctrl-C. Other threads of Python go on meanwhile."""
-    return _finished(_lagroid.run(made(scene, set), record, out))
+    given = {**(set or {}), "reduce": reduce} if reduce is not None else set
+    return _finished(_lagroid.run(made(scene, given), record, out))
 
 
 def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None, other_build: bool = False) -> RunResult:
@@ -112,5 +115,6 @@ def require(result: _Result) -> _Result:
 
 
 def systems() -> dict[str, dict[str, Any]]:
-    """The systems that a scene can name: summary, groupoid, parameters, symmetries, conserved quantities."""
+    """The systems that a scene can name: summary, groupoid, parameters, symmetries, conserved quantities,
+    reductions."""
     return {entry["name"]: entry for entry in json.loads(_lagroid.listing())}

@@ -36,7 +36,8 @@ Json json(const laws::LawReport& suite) {
 
 bool Certificate::holds() const {
   return !suites.empty() && std::all_of(suites.begin(), suites.end(), [](const auto& s) { return s.holds(); }) &&
-         std::all_of(symmetries.begin(), symmetries.end(), [](const auto& s) { return s.holds; });
+         std::all_of(symmetries.begin(), symmetries.end(), [](const auto& s) { return s.holds; }) &&
+         std::all_of(reductions.begin(), reductions.end(), [](const auto& r) { return r.holds(); });
 }
 
 std::string text_certificate(const Certificate& c) {
@@ -64,6 +65,16 @@ std::string text_certificate(const Certificate& c) {
     ++laws;
     broken += s.holds ? 0 : 1;
   }
+  if (!c.reductions.empty()) out += "  reductions, where the scene starts\n";
+  for (const auto& r : c.reductions) {
+    out += fmt::format("    {:<8}  {:<48} to {}, defect {:.1e}{}\n",
+                       !r.holds()          ? "BROKEN"
+                       : r.why_not.empty() ? "holds"
+                                           : "none",
+                       r.name, r.groupoid, r.defect, r.why_not.empty() ? "" : "; " + r.why_not);
+    ++laws;
+    broken += r.holds() ? 0 : 1;
+  }
   if (!c.failure.empty()) return out + fmt::format("  NOT certified: the run itself failed: {}\n", c.failure);
   out += c.holds() ? fmt::format("  certified: all {} laws hold\n", laws)
                    : fmt::format("  NOT certified: of {} laws {} broken, {} unjudged\n", laws, broken, unjudged);
@@ -76,9 +87,15 @@ std::string json_certificate(const Certificate& c) {
   Json symmetries = Json::array();
   for (const auto& s : c.symmetries)
     symmetries.push_back({{"name", s.name}, {"kind", s.kind}, {"defect", number(s.defect)}});
-  Json out{{"system", c.system},   {"groupoid", c.groupoid},   {"status", c.status()},
-           {"states", c.states},   {"samples", c.samples},     {"seed", c.seed},
-           {"seconds", c.seconds}, {"symmetries", symmetries}, {"suites", suites}};
+  Json reductions = Json::array();
+  for (const auto& r : c.reductions) {
+    reductions.push_back(
+        {{"name", r.name}, {"groupoid", r.groupoid}, {"defect", number(r.defect)}, {"descends", r.why_not.empty()}});
+    if (!r.why_not.empty()) reductions.back()["message"] = r.why_not;
+  }
+  Json out{{"system", c.system},       {"groupoid", c.groupoid}, {"status", c.status()}, {"states", c.states},
+           {"samples", c.samples},     {"seed", c.seed},         {"seconds", c.seconds}, {"symmetries", symmetries},
+           {"reductions", reductions}, {"suites", suites}};
   if (!c.failure.empty()) out["message"] = c.failure;
   return json_text(out);
 }

@@ -19,6 +19,16 @@ struct SymmetryFinding {
   bool holds = false;
 };
 
+/// A declared reduction and whether the system descends along it.
+struct ReductionFinding {
+  std::string name;
+  std::string groupoid;     ///< of the reduced system
+  double defect = 0;        ///< the largest of all that is to be invariant, relative
+  std::string why_not;      ///< empty where it descends
+  bool is_claimed = false;  ///< by the scene: what is then none is broken
+  bool holds() const { return why_not.empty() || !is_claimed; }
+};
+
 struct Certificate {
   std::string system;
   std::string groupoid;
@@ -30,6 +40,7 @@ struct Certificate {
   double seconds = 0;
   std::vector<laws::LawReport> suites;
   std::vector<SymmetryFinding> symmetries;
+  std::vector<ReductionFinding> reductions;
 
   bool holds() const;
   std::string status() const { return holds() ? "certified" : failure.empty() ? "broken" : failure_status; }

@@ -55,7 +55,7 @@ template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys
 }
 
 /// An integrator of a system as a motion.
-template <DiscreteSystem Sys> class SystemMotion final : public Motion {
+template <DiscreteSystem Sys> class SystemMotion : public Motion {
  public:
   using G = typename Sys::GroupoidType;
 

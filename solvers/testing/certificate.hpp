@@ -17,24 +17,18 @@
 #include <lagroid/solvers/testing/variational_laws.hpp>
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace lagroid::laws {
 
-/// The suites that apply to a system: of its groupoid, algebroid and cotangent groupoid, at objects of the states
-/// drawn; of its derivatives, its dynamics, its momenta, its declared symmetries and its action principle, at steps
-/// from those states. Of a forced or nonholonomic system, whose step is not Poisson, the Lagrange-d'Alembert principle
-/// is tested in place of dynamics and action. `draw()` returns a State from which a step can be taken.
+/// The suites of a system itself, on a groupoid whose laws are tested elsewhere: of its derivatives, its dynamics, its
+/// momenta, its declared symmetries and its action principle, at steps from the states drawn. Of a forced or
+/// nonholonomic system, whose step is not Poisson, the Lagrange-d'Alembert principle is tested in place of dynamics and
+/// action. `draw()` returns a State from which a step can be taken.
 template <DiscreteSystem Sys>
-std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw) {
-  const auto& groupoid = system.groupoid;
-  const auto object = [&] { return draw().object; };
-  std::vector<LawReport> reports{
-      groupoid_laws(groupoid, object),
-      algebroid_laws(groupoid, object),
-      cotangent_laws(groupoid, object),
-      derivative_laws(system, [&] { return step_from(system, draw()); }),
-  };
+std::vector<LawReport> system_laws(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw) {
+  std::vector<LawReport> reports{derivative_laws(system, [&] { return step_from(system, draw()); })};
   const auto append = [&](LawReport report) {
     if (!report.laws.empty()) reports.push_back(std::move(report));
   };
@@ -47,6 +41,20 @@ std::vector<LawReport> certificate(const Sys& system, const std::function<State<
   }
   append(momentum_laws(system, draw));
   if constexpr (requires { system.symmetries(); }) append(noether_laws(system, system.symmetries(), draw));
+  return reports;
+}
+
+/// All of them: of its groupoid, algebroid and cotangent groupoid, at objects of the states drawn, then its own.
+template <DiscreteSystem Sys>
+std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw) {
+  const auto& groupoid = system.groupoid;
+  const auto object = [&] { return draw().object; };
+  std::vector<LawReport> reports{
+      groupoid_laws(groupoid, object),
+      algebroid_laws(groupoid, object),
+      cotangent_laws(groupoid, object),
+  };
+  for (LawReport& report : system_laws(system, draw)) reports.push_back(std::move(report));
   return reports;
 }
 

@@ -1,0 +1,62 @@
+#pragma once
+/// An integrator of a full system whose steps are those of its reduction: what is seen of it is the full motion.
+///
+/// Loop, recorder, ledger and checkpoints then take a reduced run as any other.
+///
+///     Reconstruction<Kepler, Reduction<PolarQuotient>> down(declared, kepler, state, configuration);
+///     ReducedIntegrator<Kepler, Reduction<PolarQuotient>> orbit(down, {});
+///     while (orbit.advance().converged()) std::cout << orbit.point().state.object.transpose() << '\n';
+///
+/// Requires the methods of the reduced system (integrator_methods.hpp). Errors are those of `make_integrator`.
+
+#include <lagroid/core/reduction/reconstruction.hpp>
+#include <lagroid/solvers/integrators/integrator.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace lagroid {
+
+template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : public Integrator<Sys> {
+ public:
+  using Down = Reconstruction<Sys, Declared>;
+  using Below = typename Down::Below;
+
+  ReducedIntegrator(const Down& down, const IntegratorOptions& options)
+      : down_(down),
+        below_(make_integrator(down.system(), down.initial(), down.configuration(), options)),
+        point_(down_.full(below_->point())) {}
+
+  StepReport advance() override {
+    const StepReport report = below_->advance();
+    if (!report.converged()) return report;
+    below_->for_each_inner_stage([&](const Step<Below>& step, double, double size) { down_.join(step, size); });
+    down_.join(below_->point().step, below_->point().step_size);
+    point_ = down_.full(below_->point());
+    return report;
+  }
+  const TrajectoryPoint<Sys>& point() const override { return point_; }
+  MethodTraits traits() const override { return below_->traits(); }
+  void for_each_inner_stage(const typename Integrator<Sys>::Visit& visit) const override {
+    if constexpr (Sys::constraints > 0)
+      below_->for_each_inner_stage(
+          [&](const Step<Below>& step, double start, double size) { visit(down_.full_step(step, size), start, size); });
+  }
+  long without_root() const override { return below_->without_root(); }
+  void serialize(NumberArchive& archive) override {
+    below_->serialize(archive);
+    down_.serialize(archive);
+    if (archive.reading()) point_ = down_.full(below_->point());
+  }
+
+  /// The reduced run, and how the full one is made of it.
+  const TrajectoryPoint<Below>& point_below() const { return below_->point(); }
+  const Down& down() const { return down_; }
+
+ private:
+  Down down_;
+  std::unique_ptr<Integrator<Below>> below_;
+  TrajectoryPoint<Sys> point_;
+};
+
+}  // namespace lagroid
