@@ -25,9 +25,17 @@ function(lagroid_system name class)
   endforeach()
   list(TRANSFORM parts REPLACE "(.+)" "${made}_\\1.cpp" OUTPUT_VARIABLE sources)
   set(place 0)
+  set(reduced)
   foreach(variables ${ARG_REDUCED})
-    configure_file(${PROJECT_SOURCE_DIR}/systems/instances/reduced.cpp.in ${made}_reduced_${place}_integrators.cpp @ONLY)
-    list(APPEND sources ${made}_reduced_${place}_integrators.cpp)
+    foreach(part integrators descent)
+      set(file ${made}_reduced_${place}_${part}.cpp)
+      configure_file(${PROJECT_SOURCE_DIR}/systems/instances/reduced_${part}.cpp.in ${file} @ONLY)
+      list(APPEND sources ${file})
+    endforeach()
+    string(APPEND reduced "extern template DescentReport examine_reduction(const Reconstruction<${class}, ReductionAt<${class}, ${place}>>&,\n"
+           "  const std::vector<ArrowOf<${class}::GroupoidType>>&);\n"
+           "using Reduced${class}${place} = ReducedBy<${class}, ${place}>;\n"
+           "LAGROID_STEP_SOLVERS(extern template, Reduced${class}${place});\n")
     math(EXPR place "${place}+1")
   endforeach()
   set(system_names ${system_names} ${name} PARENT_SCOPE)
@@ -38,6 +46,7 @@ function(lagroid_system name class)
   set(lagroid_parts ${lagroid_parts} PARENT_SCOPE)
   set(sizes_of_${name} ${ARG_SIZES} PARENT_SCOPE)
   set(reduced_of_${name} ${ARG_REDUCED} PARENT_SCOPE)
+  set(reduced_declarations_of_${name} "${reduced}" PARENT_SCOPE)
   set(certificates ${made}_certificate.cpp)
   if(ARG_REDUCED)
     configure_file(${PROJECT_SOURCE_DIR}/systems/instances/reduced_certificate.cpp.in ${made}_reduced_certificate.cpp
@@ -53,12 +62,12 @@ lagroid_system(attitude_control AttitudeControl IN control SIZES 3_1_0 SOURCES s
 lagroid_system(rigid_body RigidBody IN rotations SIZES 3_0_0
                SOURCES systems/rotations/rigid_body.cpp systems/rotations/moser_veselov.cpp
                        systems/rotations/moser_veselov_solvers.cpp)
-lagroid_system(heavy_top HeavyTop IN rotations SIZES 3_0_0
+lagroid_system(heavy_top HeavyTop IN rotations SIZES 3_0_0 REDUCED 2
                SOURCES systems/rotations/heavy_top.cpp)
 lagroid_system(pendulum Pendulum IN pendulums SIZES 1_0_0)
 lagroid_system(kepler Kepler SIZES 2_0_0 REDUCED 2 1)
 lagroid_system(spherical_pendulum SphericalPendulum IN pendulums SIZES 3_0_1 SOURCES systems/pendulums/spherical_pendulum.cpp)
-lagroid_system(gyrostat Gyrostat IN rotations SIZES 6_0_0_32)
+lagroid_system(gyrostat Gyrostat IN rotations SIZES 6_0_0_32 REDUCED 3)
 lagroid_system(rolling_ball RollingBall IN rolling INITIAL_VALUES
                SOURCES systems/rolling/rolling_ball.cpp)
 lagroid_system(rolling_disk RollingDisk IN rolling INITIAL_VALUES SOURCES systems/rolling/rolling_disk.cpp)

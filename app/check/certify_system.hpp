@@ -71,7 +71,7 @@ void examine_reductions(const PreparedScene<Sys>& prepared, const TrajectoryPoin
     found.is_claimed = prepared.reduced_by == declared.name;
     try {
       const Reconstruction<Sys, Declared> down(declared, prepared.system, start.state, start.configuration);
-      const DescentReport report = down.examine(arrows);
+      const DescentReport report = examine_reduction(down, arrows);
       for (const DescentFinding& each : report.findings) found.defect = std::max(found.defect, each.defect);
       found.why_not = report.sentence();
       if (found.is_claimed)

@@ -32,7 +32,7 @@ PreparedScene<Sys> simulation_reduced_by(const Declared& declared, const Section
       scene.fail(reduce_word, nothing_to_reduce_to.what());
     }
   }();
-  if (const DescentReport found = down.examine(arrows); !found.descends())
+  if (const DescentReport found = examine_reduction(down, arrows); !found.descends())
     scene.fail(reduce_word, fmt::format("\"{}\" is no symmetry of this system: {}", declared.name, found.sentence()));
   const Capabilities able = capabilities_of(down.system());
   const IntegratorChoice choice =

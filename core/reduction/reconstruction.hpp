@@ -235,8 +235,17 @@ class Reconstruction<Sys, FixedMomentum<Connection, First>> {
   Phases phases_;
 };
 
-/// What a system is after the reduction that it declares in that place.
+/// Whether the system descends, at these arrows. (It is compiled once for each reduction of the library's systems.)
+template <DiscreteSystem Sys, class Declared>
+DescentReport examine_reduction(const Reconstruction<Sys, Declared>& down,
+                                const std::vector<ArrowOf<typename Sys::GroupoidType>>& arrows) {
+  return down.examine(arrows);
+}
+
+/// The reduction that a system declares in that place, and what the system is after it.
 template <DiscreteSystem Sys, std::size_t Place>
-using ReducedBy = typename Reconstruction<Sys, std::tuple_element_t<Place, decltype(Sys::reductions())>>::Below;
+using ReductionAt = std::tuple_element_t<Place, decltype(Sys::reductions())>;
+template <DiscreteSystem Sys, std::size_t Place>
+using ReducedBy = typename Reconstruction<Sys, ReductionAt<Sys, Place>>::Below;
 
 }  // namespace lagroid

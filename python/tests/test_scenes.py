@@ -35,6 +35,16 @@ class Scenes(unittest.TestCase):
         self.assertEqual(len(run.time), 8)
         self.assertAlmostEqual(run.time[-1], 1.4)
 
+    def test_a_reduced_run_gives_the_full_motion_back(self) -> None:
+        scene, settings = EXAMPLES / "kepler.toml", {"time.steps": 100}
+        full = lagroid.run(scene, set=settings)
+        back = lagroid.run(scene, set=settings, reduce="angular-momentum")
+        np.testing.assert_allclose(back["position"], full["position"], rtol=0, atol=1e-11)
+        self.assertIn("geometric phase", [entry.name for entry in back.ledger])
+        self.assertIn("angular-momentum", [each["name"] for each in lagroid.systems()["kepler"]["reductions"]])
+        with self.assertRaisesRegex(lagroid.SceneError, "none of rotations, angular-momentum"):
+            lagroid.run(scene, reduce="translations")
+
     def test_arrays_of_tables(self) -> None:
         run = lagroid.run(EXAMPLES / "chain_drop.toml", set={"time.steps": 2})
         self.assertTrue(run.converged)

@@ -10,7 +10,9 @@
 /// Requires positive moments. (Marsden and Ratiu, Introduction to Mechanics and Symmetry, 15.11.)
 
 #include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
+#include <lagroid/groupoids/connections.hpp>
 #include <lagroid/groupoids/groups/so2.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/systems/control/rotation_map.hpp>
@@ -115,6 +117,10 @@ struct Gyrostat : System<Gyrostat, Product<SO3, SO2, SO2, SO2>> {
          }}};
     for (const auto& symmetry : symmetries()) all.push_back(symmetry.quantity());
     return all;
+  }
+  static auto reductions() {
+    return std::tuple(fixed_momentum("rotor-momenta", FactorConnection<Factors<1, 2, 3>, SO3, SO2, SO2, SO2>{},
+                                     "the body alone turns"));
   }
 };
 

@@ -11,7 +11,9 @@
 /// Requires positive principal moments and unit vectors v.
 
 #include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
+#include <lagroid/groupoids/connections.hpp>
 #include <lagroid/groupoids/rotated.hpp>
 #include <lagroid/systems/control/rotation_map.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -98,6 +100,10 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   /// Turning about the vertical; a Lagrange top also about its own axis.
   std::vector<Symmetry<HeavyTop>> symmetries() const;
   std::vector<Quantity<HeavyTop>> quantities() const;
+  static auto reductions() {
+    return std::tuple(
+        fixed_momentum("vertical-momentum", ShortestRotation{}, "the vertical seen from the body alone moves"));
+  }
 };
 
 LAGROID_STEPS(extern template, HeavyTop);

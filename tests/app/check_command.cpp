@@ -38,6 +38,25 @@ TEST_F(CommandLine, ACertificateIsWithheldFromALawThatIsBroken) {
   EXPECT_EQ(nlohmann::json::parse(run(scene + " --json").out).at("status"), "broken");
 }
 
+TEST_F(CommandLine, ReductionsAreExaminedAndTheOneOfTheSceneHasItsLaws) {
+  const auto of = [&](const std::string& scene) {
+    const Outcome r = run("check " + scene + " --samples 10 --json");
+    EXPECT_EQ(r.code, 0) << scene << r.out;
+    return nlohmann::json::parse(r.out);
+  };
+  const auto reduced_suites = [](const nlohmann::json& certificate) {
+    const auto& suites = certificate.at("suites");
+    return std::count_if(suites.begin(), suites.end(), [](const auto& suite) {
+      return suite.at("suite").template get<std::string>().starts_with("reduced: ");
+    });
+  };
+  const auto full = of(example("kepler"));
+  EXPECT_EQ(full.at("reductions").size(), 2u);
+  EXPECT_EQ(full.at("reductions").at(0).at("descends"), true);
+  EXPECT_EQ(reduced_suites(full), 0);
+  EXPECT_GT(reduced_suites(of(example("kepler") + " --set reduce=rotations")), 0);
+}
+
 TEST_F(CommandLine, StatesWithoutAStepArePassedOver) {
   // Half turns in one step: the run goes through, steps from some states beside it do not.
   const Outcome r = run("check " + example("rigid_body") + " --samples 20 --json --set time.step=3");

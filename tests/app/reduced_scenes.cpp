@@ -77,12 +77,16 @@ class ReducedScenes : public CommandLine {
 
 TEST_F(ReducedScenes, HaveTheFullMotion) {
   const std::string kepler = example("kepler") + " --set time.steps=1000";
-  for (const Reduced& each : std::vector<Reduced>{
-           {kepler, "rotations", "initial.momentum=[0,2.0000002]"},
-           {kepler + " --set time.order=4", "rotations", "initial.momentum=[0,2.0000002]"},
-           {example("kepler_adaptive") + " --set time.steps=300", "rotations", "initial.momentum=[0,2.0000002]"},
-           {kepler, "angular-momentum", "initial.momentum=[0,2.0000002]"},
-           {kepler + " --set time.order=4", "angular-momentum", "initial.momentum=[0,2.0000002]"}}) {
+  const std::vector<Reduced> scenes{
+      {kepler, "rotations", "initial.momentum=[0,2.0000002]"},
+      {kepler + " --set time.order=4", "rotations", "initial.momentum=[0,2.0000002]"},
+      {example("kepler_adaptive") + " --set time.steps=300", "rotations", "initial.momentum=[0,2.0000002]"},
+      {kepler, "angular-momentum", "initial.momentum=[0,2.0000002]"},
+      {kepler + " --set time.order=4", "angular-momentum", "initial.momentum=[0,2.0000002]"},
+      {example("heavy_top") + " --set time.steps=1000", "vertical-momentum", "initial.momentum=[0,0,2.50000025]"},
+      {example("gyrostat") + " --set time.steps=1000", "rotor-momenta",
+       "initial.momentum=[0.3,1.50000015,0.4,0.2,-0.1,0.3]"}};
+  for (const Reduced& each : scenes) {
     SCOPED_TRACE(each.scene + " by " + each.by);
     const std::string number = std::to_string(entries());
     const Rows full = rows("full" + number, each.scene);
@@ -124,7 +128,9 @@ TEST_F(ReducedScenes, TellThePhasesOfAFixedMomentum) {
 TEST_F(ReducedScenes, GoOnWithTheSameBits) {
   for (const std::string scene :
        {example("kepler") + " --set reduce=rotations", example("kepler") + " --set reduce=rotations --set time.order=4",
-        example("kepler_adaptive") + " --set reduce=rotations", example("kepler_reduced"),
+        example("kepler_adaptive") + " --set reduce=rotations",
+        example("heavy_top") + " --set reduce=vertical-momentum",
+        example("gyrostat") + " --set reduce=rotor-momenta --set time.order=4", example("kepler_reduced"),
         example("kepler_reduced") + " --set time.order=4"}) {
     const fs::path whole = folder_ / ("whole" + std::to_string(entries()));
     const fs::path parts = folder_ / ("parts" + std::to_string(entries()));
