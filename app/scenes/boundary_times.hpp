@@ -6,8 +6,7 @@
 
 #include <lagroid/run/run_result.hpp>
 #include <lagroid/solvers/boundary/multistart.hpp>
-#include <lagroid/solvers/boundary/times/free_steps.hpp>
-#include <lagroid/solvers/boundary/times/prescribed_steps.hpp>
+#include <lagroid/solvers/boundary/times/varied_steps.hpp>
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
 
@@ -46,15 +45,6 @@ template <DiscreteSystem Sys> TimeMode read_boundary_mode(const Section& scene) 
   return TimeMode::fixed;
 }
 
-/// The path with steps of that mode beside one of equal steps.
-template <Timed Sys>
-TimedSolution<Sys> with_steps(TimeMode mode, const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary,
-                              const TimedSolution<Sys>& equal) {
-  if constexpr (HasTimeScaleOfArrows<Sys>)
-    if (mode == TimeMode::controlled) return solve_prescribed_steps(system, boundary, equal);
-  return solve_free_steps(system, boundary, equal);
-}
-
 /// Gives all paths the steps of that mode, or says why none of those sought has them.
 template <Timed Sys>
 void vary_steps(TimeMode mode, const Sys& system, const ArrowOf<typename Sys::GroupoidType>& boundary,
@@ -66,7 +56,7 @@ void vary_steps(TimeMode mode, const Sys& system, const ArrowOf<typename Sys::Gr
   };
   const std::size_t count = found.solutions.size();
   for (auto& equal : found.solutions) {
-    TimedSolution<Sys> solution = with_steps(mode, system, boundary, equal);
+    TimedSolution<Sys> solution = solve_varied_steps(mode, system, boundary, equal);
     found.iterations += solution.iterations;
     if (solution.converged()) {
       varied.push_back(std::move(solution));

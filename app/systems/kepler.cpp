@@ -3,6 +3,10 @@
 
 #include <lagroid/systems/kepler.hpp>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, Kepler);
+}
+
 namespace lagroid::app {
 
 namespace {

@@ -3,6 +3,10 @@
 
 #include <lagroid/systems/control/attitude_control.hpp>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, AttitudeControl);
+}
+
 namespace lagroid::app {
 
 namespace {

@@ -7,6 +7,10 @@
 
 #include <lagroid/systems/control/plate_ball_boundary.hpp>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, PlateBall);
+}
+
 namespace lagroid::app {
 
 namespace {

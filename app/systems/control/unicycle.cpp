@@ -4,6 +4,10 @@
 
 #include <numbers>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, Unicycle);
+}
+
 namespace lagroid::app {
 
 namespace {

@@ -3,6 +3,10 @@
 
 #include <lagroid/systems/pendulums/pendulum.hpp>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, Pendulum);
+}
+
 namespace lagroid::app {
 
 namespace {

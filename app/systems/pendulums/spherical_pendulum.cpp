@@ -3,6 +3,10 @@
 
 #include <lagroid/systems/pendulums/spherical_pendulum.hpp>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, SphericalPendulum);
+}
+
 namespace lagroid::app {
 
 namespace {

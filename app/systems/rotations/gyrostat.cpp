@@ -3,6 +3,10 @@
 
 #include <lagroid/systems/rotations/gyrostat.hpp>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, Gyrostat);
+}
+
 namespace lagroid::app {
 
 namespace {

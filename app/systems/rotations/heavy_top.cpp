@@ -3,6 +3,10 @@
 
 #include <lagroid/systems/rotations/heavy_top.hpp>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, HeavyTop);
+}
+
 namespace lagroid::app {
 
 /// A node is an attitude: the arrow from the vertical in space to that seen from the body.

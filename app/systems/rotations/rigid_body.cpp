@@ -9,6 +9,10 @@
 #include <algorithm>
 #include <array>
 
+namespace lagroid {
+LAGROID_VARIED_STEPS(extern template, RigidBody);
+}
+
 namespace lagroid::app {
 
 namespace {
