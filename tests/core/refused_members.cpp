@@ -6,6 +6,7 @@
 #elif defined(PATH) || defined(PATH_OF_OTHERS) || defined(FITS)
 #include <lagroid/solvers/boundary/boundary_values.hpp>
 #endif
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/pair.hpp>
@@ -131,6 +132,10 @@ struct Particle : System<Particle, Line, told> {
   static std::vector<int> parameters() { return {}; }
 #elif defined(PARAMETERS_NOT_STATIC)
   auto parameters() const { return std::tuple(parameter("h", &Particle::h, "s", "the step")); }
+#elif defined(REDUCTIONS)
+  static std::vector<int> reductions() { return {}; }
+#elif defined(REDUCTIONS_NOT_STATIC)
+  auto reductions() const { return std::tuple(reduction("none", 0, "a number is no morphism")); }
 #elif defined(REFUSED)
   std::string refused() const { return {}; }
 #elif defined(QUANTITIES)
@@ -170,6 +175,7 @@ int main() {
 #else
   quantities_of(system);
   for_each_parameter<Particle>([](const auto&) {});
+  for_each_reduction<Particle>([](const auto&) {});
   refusal_of(system);
   FixedStepIntegrator<Particle> integrator(system, start, unit, std::make_unique<NewtonStep<Particle>>());
   integrator.traits();
