@@ -1,9 +1,11 @@
 #include "listing.hpp"
 
 #include "families/family.hpp"
+#include "reading/messages.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <utility>
@@ -13,18 +15,27 @@ namespace lagroid::app {
 
 namespace {
 
-std::vector<ListedSystem> listed_systems() {
+std::vector<ListedSystem> listed_systems(const std::string& name) {
   std::vector<ListedSystem> out;
+  std::vector<std::string> names;
   for (const SceneFamily* family : families())
-    for (ListedSystem& system : family->systems()) out.push_back(std::move(system));
+    for (ListedSystem& system : family->systems()) {
+      names.emplace_back(system.name);
+      if (name.empty() || name == system.name) out.push_back(std::move(system));
+    }
+  if (out.empty() && !name.empty()) {
+    const std::string guess = nearest(name, names);
+    throw CLI::ValidationError("list", fmt::format("no system \"{}\"{}", name,
+                                                   guess.empty() ? "" : fmt::format("; did you mean \"{}\"?", guess)));
+  }
   return out;
 }
 
 }  // namespace
 
-std::string text_listing() {
+std::string text_listing(const std::string& name) {
   std::string out;
-  for (const auto& s : listed_systems()) {
+  for (const auto& s : listed_systems(name)) {
     out += fmt::format("{:<20} {}\n", s.name, s.summary);
     out += fmt::format("  groupoid           {}\n", s.groupoid);
     for (const Key& p : s.parameters) out += fmt::format("  {:<18} {}\n", p.name, listed(p));
@@ -36,9 +47,9 @@ std::string text_listing() {
   return out;
 }
 
-std::string json_listing() {
+std::string json_listing(const std::string& name) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const auto& s : listed_systems()) {
+  for (const auto& s : listed_systems(name)) {
     auto parameters = nlohmann::ordered_json::array();
     for (const Key& p : s.parameters) {
       parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"meaning", meaning_of(p)}});

@@ -146,10 +146,12 @@ int program(int argc, char** argv, ProgramParts parts) {
   plot_command->add_option("run", plot.run, "the folder that lagroid run --out wrote")->required();
   plot_command->add_flag("--own-script", plot.own_script, "draw by a plot.gp that was edited: it can run anything");
   CLI::App* check_command =
-      app.add_subcommand("check", "ask a scene's system every law that applies: lagroid check --help");
+      app.add_subcommand("check", "test every law that applies to a scene's system: lagroid check --help");
   check_command->set_help_flag();
   check_command->prefix_command();
   CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
+  std::string listed_system;
+  list_command->add_option("system", listed_system, "one of them alone");
   list_command->add_flag("--json", options.json, "print one JSON array and nothing else on standard output");
   SchemaOptions schema_options;
   CLI::App* schema_command =
@@ -167,7 +169,7 @@ int program(int argc, char** argv, ProgramParts parts) {
   app.require_subcommand(0, 1);
   return command_line(app, argc, argv, options, [&] {
     if (list_command->parsed()) {
-      print(options.json ? json_listing() : text_listing());
+      print(options.json ? json_listing(listed_system) : text_listing(listed_system));
       return 0;
     }
     if (schema_command->parsed()) return schema(schema_options);

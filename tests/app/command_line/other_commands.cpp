@@ -138,6 +138,17 @@ TEST_F(CommandLine, ListNamesSystemsGroupoidsParametersAndSymmetries) {
   EXPECT_EQ(listed.at(0).at("symmetries").size(), 3U);
 }
 
+TEST_F(CommandLine, ListOfOneSystem) {
+  const std::string all = run("list").out, one = run("list damped_pendulum").out;
+  EXPECT_TRUE(one.starts_with("damped_pendulum ")) << one;
+  EXPECT_NE(all.find(one), std::string::npos);
+  EXPECT_LT(one.size(), all.size() / 4);
+  EXPECT_EQ(nlohmann::json::parse(run("list kepler --json").out).size(), 1U);
+  const Outcome r = run("list damped_pendulums");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("did you mean \"damped_pendulum\"?"), std::string::npos) << r.err;
+}
+
 TEST_F(CommandLine, EveryListedParameterIsRead) {
   // A table in the place of a parameter is refused under its name; an unlisted key is refused as unknown.
   for (const auto& system : nlohmann::json::parse(run("list --json").out)) {
