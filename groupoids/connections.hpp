@@ -12,6 +12,11 @@
 ///     Arrow attach(const Arrow'& b, const Vector<S, k>& theta) const          the arrow with both; attach(b, 0) is
 ///                                                                             the horizontal lift of b
 ///
+/// and may supply, for speed,
+///
+///     Matrix adapted_basis(const Object'& m) const          the horizontal lifts of the basis at m, then the angles'
+///                                                           directions, as columns
+///
 /// (Leok, Marsden & Weinstein, A Discrete Theory of Connections on Principal Bundles, arXiv:math/0508338.) Where the
 /// horizontal arrows are closed under products the connection is flat; where they are not, its curvature acts as a
 /// magnetic field on a system of fixed momentum (core/reduction/momentum_level.hpp) and is what a geometric phase adds
@@ -82,6 +87,7 @@ struct FactorConnection
   static constexpr int angles = []<std::size_t... I>(Factors<I...>) { return (Factor<I>::dimension + ...); }
   (Fibre{});
   static constexpr bool flat = true;
+  static constexpr int rank = Product<Gs...>::dimension;
 
   template <class... As> auto operator()(const std::tuple<As...>& g) const {
     return [&]<std::size_t... I>(Factors<I...>) {
@@ -118,8 +124,29 @@ struct FactorConnection
     }
     (std::index_sequence_for<Gs...>{});
   }
+  /// The bases of the factors, those of the base first.
+  template <class Q> Matrix<double, rank, rank> adapted_basis(const Q&) const {
+    Matrix<double, rank, rank> basis = Matrix<double, rank, rank>::Zero();
+    int column = 0;
+    const auto append = [&]<std::size_t... I>(Factors<I...>) {
+      (
+          [&] {
+            basis.template block<Factor<I>::dimension, Factor<I>::dimension>(start<I>, column).setIdentity();
+            column += Factor<I>::dimension;
+          }(),
+          ...);
+    };
+    append(Base{});
+    append(Fibre{});
+    return basis;
+  }
 
  private:
+  /// Where the directions of factor J begin in those of the product.
+  template <std::size_t J> static constexpr int start = []<std::size_t... I>(Factors<I...>) {
+    return ((I < J ? Gs::dimension : 0) + ...);
+  }
+  (std::index_sequence_for<Gs...>{});
   template <std::size_t I> const Factor<I>& factor() const { return std::get<I>(this->from.factor); }
   /// Where the angles of factor J begin.
   template <std::size_t J> static constexpr int offset = []<std::size_t... I>(Factors<I...>) {

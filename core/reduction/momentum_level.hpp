@@ -14,12 +14,16 @@
 ///     const auto start = level.state_below(z);                  // of the radius alone: where an integrator begins, run
 ///     const auto g = level.full_arrow(run.point().step.arrow);  // angle included
 ///
-/// Derivatives are those of the full system in bases adapted to the connection, so that a level costs a few of its
-/// evaluations: those of Newton's method for theta.
+/// Derivatives are those of the full system in bases adapted to the connection, at the theta that Newton's method
+/// finds.
 ///
-/// Required: a variational system without constraints on the gauge groupoid, its step in a member h if it has one,
-/// whose L(b, .) has one critical point with momentum `level` near theta = 0. Errors: where there is none R is not a
-/// number, and the step's status tells it. NotFree where the symmetry leaves a point of the base where it is.
+/// Object constraints C(q) = 0 are constraints of the base as they are, since objects of a gauge groupoid are its
+/// points, and their multipliers are the same. Constraints on arrows are refused by the compiler: phi(b, theta(b)) = 0
+/// would constrain b, but theta then depends on the multipliers, so that R + <lambda, phi> is no function of b alone.
+///
+/// Required: a variational system without arrow constraints on the gauge groupoid, its step in a member h if it has
+/// one, whose L(b, .) has one critical point with momentum `level` near theta = 0. Errors: where there is none R is not
+/// a number, and the step's status tells it. NotFree where the symmetry leaves a point of the base where it is.
 
 #include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/derivatives/two_sided.hpp>
@@ -33,13 +37,16 @@
 namespace lagroid {
 
 template <class Connection, DiscreteSystem Sys>
-struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection, Sys>, typename Connection::Codomain> {
+struct MomentumLevel
+    : detail::FullSystem<Sys>,
+      System<MomentumLevel<Connection, Sys>, typename Connection::Codomain, 0, Sys::object_constraints> {
   static_assert(std::is_same_v<typename Sys::GroupoidType, typename Connection::Domain>,
                 "a connection takes apart arrows of the groupoid that it starts from, its Domain");
-  static_assert(Variational<Sys> && Sys::constraints == 0,
-                "a momentum level is that of a variational system without constraints");
+  static_assert(Variational<Sys> && Sys::arrow_constraints == 0,
+                "a momentum level is that of a variational system without constraints on arrows");
   using Full = Sys;
   using MembersVary = void;
+  using Multipliers = Vector<double, Sys::object_constraints>;
   using G = typename Connection::Domain;
   using B = typename Connection::Codomain;
   using ConnectionType = Connection;
@@ -64,6 +71,9 @@ struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection,
     S routhian = this->full.lagrangian(connection.attach(b, theta));
     for (int i = 0; i < angles; ++i) routhian -= theta(i) * level(i);
     return routhian;
+  }
+  template <class Q> auto object_constraint(const Q& m) const requires(Sys::object_constraints > 0) {
+    return this->full.object_constraint(full_groupoid().source(horizontal(this->groupoid.unit(m))));
   }
   template <class A> auto forces(const A& b) const requires(!Connection::flat) {
     using S = ScalarOf<A>;
@@ -90,10 +100,17 @@ struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection,
   // A base arrow's displacements are those of the full arrow along the horizontal directions, while the angle keeps its
   // momentum: in adapted bases the full gradients' first part, magnetic term included, and the Schur complement of the
   // mixed derivative's last block.
-  GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b, const Vector<double, 0>&) const { return two_sided(b, {}); }
-  TwoSidedOf<MomentumLevel> two_sided(const ArrowOf<B>& b, const Vector<double, 0>&) const {
+  GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b, const Multipliers& lambda) const {
     const Vector<double, angles> theta = root_of(b, level).x;
-    const auto d = lagroid::two_sided(this->full, ArrowOf<G>(connection.attach(b, theta)), {});
+    const auto d = lagroid::gradients(this->full, ArrowOf<G>(connection.attach(b, theta)), lambda);
+    return {d.value - theta.dot(level),
+            adapted_basis(this->groupoid.source(b)).template leftCols<n>().transpose() * d.source_gradient,
+            adapted_basis(this->groupoid.target(b)).template leftCols<n>().transpose() * d.target_gradient,
+            d.constraint};
+  }
+  TwoSidedOf<MomentumLevel> two_sided(const ArrowOf<B>& b, const Multipliers& lambda) const {
+    const Vector<double, angles> theta = root_of(b, level).x;
+    const auto d = lagroid::two_sided(this->full, ArrowOf<G>(connection.attach(b, theta)), lambda);
     const auto source = adapted_basis(this->groupoid.source(b));
     const auto target = adapted_basis(this->groupoid.target(b));
     const Matrix<double, G::dimension, G::dimension> mixed = source.transpose() * d.mixed * target;
@@ -105,6 +122,9 @@ struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection,
         mixed.template topLeftCorner<n, n>() - mixed.template topRightCorner<n, angles>() *
                                                    mixed.template bottomRightCorner<angles, angles>().inverse() *
                                                    mixed.template bottomLeftCorner<angles, n>();
+    out.constraint = d.constraint;
+    out.constraint_source = source.template leftCols<n>().transpose() * d.constraint_source;
+    out.constraint_target = d.constraint_target * target.template leftCols<n>();
     return out;
   }
   bool admissible(const ArrowOf<B>& b) const requires(HasBranch<Sys> || FreeInPart<Connection>) {
@@ -177,24 +197,30 @@ struct MomentumLevel : detail::FullSystem<Sys>, System<MomentumLevel<Connection,
     for (int i = 0; i < values.size(); ++i) values(i) = value_of(x(i));
     return this->groupoid.template arrow_at<double>(values);
   }
-  /// theta with <F-, along the fibre> = momentum over b, from theta = 0.
+  /// theta with dL/dtheta = momentum over b, from theta = 0.
   detail::Root<angles> root_of(const ArrowOf<B>& b, const Vector<double, angles>& momentum) const {
-    const auto at_source = adapted_basis(this->groupoid.source(b)).template rightCols<angles>().eval();
-    const auto at_target = adapted_basis(this->groupoid.target(b)).template rightCols<angles>().eval();
+    using M = HyperDual<double, angles, angles>;
+    const ArrowOf<B, M> over = this->groupoid.template cast<M>(b);
     const auto equations = [&](const Vector<double, angles>& theta) {
-      const auto d = lagroid::two_sided(this->full, ArrowOf<G>(connection.attach(b, theta)), {});
+      Vector<M, angles> varied;
+      for (int i = 0; i < angles; ++i) {
+        varied(i) = M(theta(i));
+        varied(i).set_left(i, 1);
+        varied(i).set_right(i, 1);
+      }
+      const M value = this->full.lagrangian(connection.attach(over, varied));
       detail::EquationsAt<angles> at;
-      at.value = -(at_source.transpose() * d.source_gradient) - momentum;
-      at.jacobian = -(at_source.transpose() * d.mixed * at_target);
+      at.value = value.left() - momentum;
+      at.jacobian = value.mixed();
       for (int i = 0; i < angles; ++i)
-        at.measure(i, at_source.col(i).cwiseAbs().dot(d.source_gradient.cwiseAbs()) +
-                          at.jacobian.row(i).cwiseAbs().dot(theta.cwiseAbs()) + std::abs(momentum(i)));
+        at.measure(i, at.jacobian.row(i).cwiseAbs().dot(theta.cwiseAbs()) + std::abs(momentum(i)));
       return at;
     };
     return detail::newton_iteration<angles>(equations, Vector<double, angles>(Vector<double, angles>::Zero()));
   }
   /// The horizontal lifts of the base's basis, then the angles' directions, as columns in A_qG.
   Matrix<double, G::dimension, G::dimension> adapted_basis(const ObjectOf<B>& m) const {
+    if constexpr (requires { connection.adapted_basis(m); }) return connection.adapted_basis(m);
     using D = Dual<double>;
     const ObjectOf<B, D> md = this->groupoid.template cast_object<D>(m);
     Matrix<double, G::dimension, G::dimension> basis;

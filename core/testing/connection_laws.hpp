@@ -13,7 +13,8 @@
 namespace lagroid::laws {
 
 /// Arrows and pairs (b, theta) determine each other; angles add along the fibres, at either end (the group is Abelian
-/// and central), and along all arrows where the connection says that it is flat.
+/// and central), and along all arrows where the connection says that it is flat. Its adapted basis, where it supplies
+/// one, is that of its horizontal lifts.
 template <class Connection, class DrawObject>
 LawReport connection_laws(const Connection& connection, const DrawObject& draw_object,
                           const GroupoidLawOptions& options = {}) {
@@ -56,6 +57,21 @@ LawReport connection_laws(const Connection& connection, const DrawObject& draw_o
     return worst({differ(connection.angle(from.multiply(along_the_fibre(from.source(g), theta), g)), sum),
                   differ(connection.angle(from.multiply(g, along_the_fibre(from.target(g), theta))), sum)});
   });
+  if constexpr (requires(const ObjectOf<typename Connection::Codomain>& m) { connection.adapted_basis(m); })
+    law("adapted basis", [&] {
+      using D = Dual<double>;
+      constexpr int n = Connection::Codomain::dimension;
+      const auto m = connection.object(draw_object());
+      const auto over = connection.to.template cast_object<D>(m);
+      Matrix<double, G::dimension, G::dimension> basis;
+      for (int i = 0; i < G::dimension; ++i) {
+        Vector<D, n> v = Vector<D, n>::Constant(D(0.0));
+        Vector<D, Connection::angles> theta = Vector<D, Connection::angles>::Constant(D(0.0));
+        (i < n ? v(i) : theta(i - n)).derivative = 1;
+        basis.col(i) = derivative_of(from.tau_inverse(connection.attach(connection.to.tau(over, v), theta)));
+      }
+      return relative_defect(connection.adapted_basis(m), basis);
+    });
   if constexpr (Connection::flat)
     law("a flat connection is a morphism", [&] {
       const auto g = arrow_from(draw_object());

@@ -1,0 +1,71 @@
+// A system that is held to a surface, at a fixed momentum: the spherical pendulum in cylinder coordinates by its angle.
+
+#include <lagroid/groupoids/connections.hpp>
+#include <lagroid/groupoids/groups/so2.hpp>
+#include <lagroid/groupoids/pair.hpp>
+
+#include "../../support/level_runs.hpp"
+
+#include <cmath>
+
+using namespace lagroid;
+
+namespace {
+
+using Cylinder = Product<Pair<1>, SO2, Pair<1>>;
+
+/// A bob at (distance from the axis, angle, height) on the unit sphere.
+struct Bob : System<Bob, Cylinder, 0, 1> {
+  double h = 0.02;
+  double gravity = 1;
+  template <class S> S lagrangian(const ArrowOf<Cylinder, S>& g) const {
+    const auto& [distance, turn, height] = g;
+    const S r0 = distance.source(0);
+    const S r1 = distance.target(0);
+    const S rise = height.target(0) - height.source(0);
+    const S squares = r0 * r0 + r1 * r1 - r0 * r1 * turn.trace() + rise * rise;
+    return squares * (0.5 / h) - (height.source(0) + height.target(0)) * (0.5 * h * gravity);
+  }
+  template <class Q> auto object_constraint(const Q& q) const {
+    const auto& [distance, turn, height] = q;
+    using S = typename std::remove_cvref_t<decltype(distance)>::Scalar;
+    return Vector<S, 1>((distance(0) * distance(0) + height(0) * height(0) - 1.0) * 0.5);
+  }
+};
+using ByTheAngle = FactorConnection<Factors<1>, Pair<1>, SO2, Pair<1>>;
+
+/// Tangent to the sphere.
+State<Cylinder> start() {
+  return {{Vector<double, 1>(0.8), {}, Vector<double, 1>(-0.6)}, Vector<double, 3>(0.3, 0.5, 0.4)};
+}
+
+TEST(ConstrainedLevel, OfTheSphericalPendulumLeavesItsHeight) {
+  const auto level = level_through(ByTheAngle{}, Bob{}, start());
+  static_assert(std::remove_cvref_t<decltype(level)>::object_constraints == 1);
+  EXPECT_EQ(level.level(0), 0.5);
+  EXPECT_TRUE(agree(run_level_beside(level, start(), 1000)));
+}
+
+TEST(ConstrainedLevel, HasTheMultipliersOfTheFullSystem) {
+  const auto level = level_through(ByTheAngle{}, Bob{}, start());
+  using Level = std::remove_cvref_t<decltype(level)>;
+  const auto z = level.state_below(start());
+  FixedStepIntegrator<Bob> above(level.full, start(), level.full.groupoid.unit(start().object),
+                                 std::make_unique<NewtonStep<Bob>>());
+  FixedStepIntegrator<Level> below(level, z, level.groupoid.unit(z.object), std::make_unique<NewtonStep<Level>>());
+  for (int k = 0; k < 50; ++k) {
+    ASSERT_TRUE(above.advance().converged());
+    ASSERT_TRUE(below.advance().converged());
+    EXPECT_NEAR(below.point().step.multipliers(0), above.point().step.multipliers(0), 1e-12);
+    const auto& [distance, height] = below.point().state.object;
+    EXPECT_NEAR(std::hypot(distance(0), height(0)), 1, 1e-14);
+  }
+}
+
+TEST(BrokenConstrainedLevel, OfAnotherMomentumIsSeen) {
+  auto level = level_through(ByTheAngle{}, Bob{}, start());
+  level.level(0) += 1e-6;
+  EXPECT_FALSE(agree(run_level_beside(level, start(), 20)));
+}
+
+}  // namespace
