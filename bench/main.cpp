@@ -45,7 +45,7 @@ int main(int argc, char** argv) try {
       {"@BOUNDARY@", bench::boundary_subjects(), bench::boundary_goals(), 7},
       {"@LIE_NEWTON@", bench::lie_newton_subjects(), bench::lie_newton_goals(), 21},
   };
-  bool any = part == "effects" || part == "accuracy";
+  bool any = part == "effects" || part == "accuracy" || part == "reduction";
   for (auto& chapter : chapters) {
     chapter.subjects = bench::matching(std::move(chapter.subjects), part);
     any = any || !chapter.subjects.empty();
@@ -63,16 +63,24 @@ int main(int argc, char** argv) try {
     chapter.tables = bench::table(chapter.subjects, results);
     tables += chapter.tables;
   }
+  std::string reductions;
+  if (part.empty() || part == "reduction") {
+    const auto groups = bench::reduction_groups();
+    results.merge(bench::reduction_counts(groups));
+    reductions = bench::reduction_table(groups, results);
+    for (auto& goal : bench::reduction_goals(groups)) goals.push_back(std::move(goal));
+  }
   const std::string goals_reached = bench::goals_table(goals, results, /*every=*/part.empty());
   const std::string accuracy = part.empty() || part == "accuracy" ? bench::chain_accuracy_table() : std::string();
   const std::string effects = part.empty() || part == "effects" ? bench::effects_table() : std::string();
-  fmt::print("{}\n{}\n{}\n{}", tables, accuracy, effects, goals_reached);
+  fmt::print("{}\n{}\n{}\n{}\n{}", tables, accuracy, effects, reductions, goals_reached);
   if (write_page) {
     std::string page = bench::file_contents(LAGROID_SOURCE "/bench/performance.md.in");
     bench::put(page, "@MACHINE@", bench::machine());
     bench::put(page, "@GOALS@", goals_reached);
     for (const auto& chapter : chapters) bench::put(page, chapter.mark, chapter.tables);
     bench::put(page, "@EFFECTS@", effects);
+    bench::put(page, "@REDUCTIONS@", reductions);
     bench::put(page, "@CHAIN@", accuracy);
     bench::put(page, "@COMPILE@", bench::compile_times());
     bench::write_whole(LAGROID_SOURCE "/docs/performance.md", page);

@@ -30,7 +30,7 @@ struct Goal {
 
 /// Times each subject took: median over the repetitions and spread (quartiles' distance over the median).
 struct Measured {
-  double median = 0;  ///< ns
+  double median = 0;  ///< ns; of subjects that are counted, not timed, the instructions
   double spread = 0;
   double instructions = 0;  ///< 0 where the machine does not tell
 };
@@ -69,6 +69,11 @@ std::vector<Subject> ensemble_subjects();
 std::vector<Goal> ensemble_goals();
 /// Markdown: instructions and memory of a scene's step without and with each effect. Needs valgrind.
 std::string effects_table();
+/// Systems that are reduced: the instructions of a step, reduced by the library and by hand. Needs valgrind.
+std::vector<std::string> reduction_groups();
+Results reduction_counts(const std::vector<std::string>& groups);
+std::vector<Goal> reduction_goals(const std::vector<std::string>& groups);
+std::string reduction_table(const std::vector<std::string>& groups, const Results& counts);
 /// Markdown: what accuracy costs on a chain, by a scene, by hand and by MuJoCo.
 std::string chain_accuracy_table();
 /// Markdown: seconds to compile the files of bench/user, with the build's own command.
