@@ -36,7 +36,7 @@ int check_program(int argc, char** argv, ProgramParts parts, std::vector<const F
   use_families(std::move(parts.families));
   use_systems(std::move(parts.systems));
   use_laws(std::move(laws));
-  CLI::App app{"test every law that applies to a scene's system, along its run", "lagroid check"};
+  CLI::App app{"ask a scene's system, along its run, every law that applies", "lagroid check"};
   CheckCommandOptions options;
   add_scene_options(app, options);
   app.add_option("--samples", options.samples, "random samples a law")->check(CLI::Range(1, 1000000));
