@@ -126,7 +126,7 @@ TEST_F(ReducedScenes, TellThePhasesOfAFixedMomentum) {
 }
 
 TEST_F(ReducedScenes, GoOnWithTheSameBits) {
-  for (const std::string scene :
+  for (const std::string& scene :
        {example("kepler") + " --set reduce=rotations", example("kepler") + " --set reduce=rotations --set time.order=4",
         example("kepler_adaptive") + " --set reduce=rotations",
         example("heavy_top") + " --set reduce=vertical-momentum",

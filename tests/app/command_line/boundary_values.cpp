@@ -88,7 +88,7 @@ TEST_F(CommandLine, BadBoundaryValuesExitTwo) {
 }
 
 TEST_F(CommandLine, TheOldNameOfTheStationaryKindIsReadAndTold) {
-  const auto found = [](const std::string& key) {
+  const auto found = [this](const std::string& key) {
     const Outcome r = run("run " + example("kepler_boundary") + " --json --set solver.starts=6 --set solver." + key);
     EXPECT_EQ(r.code, 0) << r.err;
     return nlohmann::json::parse(r.out);
