@@ -1,5 +1,5 @@
-#pragma once  /// The symplectic groupoid T*G => A*G as a test suite that any groupoid runs by naming itself: source
-              /// anti-Poisson,
+#pragma once
+/// The symplectic groupoid T*G => A*G as a test suite that any groupoid runs by naming itself: source anti-Poisson,
 /// target Poisson, their fibres orthogonal, units and the graph of the product Lagrangian.
 ///
 /// That steps of a discrete Lagrangian system are Poisson maps rests on these statements.

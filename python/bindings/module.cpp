@@ -58,7 +58,8 @@ PYBIND11_MODULE(_lagroid, module) {
   app::use_families(std::move(parts.families));
   app::use_systems(std::move(parts.systems));
   module.attr("__version__") = LAGROID_VERSION;
-  module.def("listing", app::json_listing, "The systems a scene can name, as JSON.");
+  module.def(
+      "listing", [] { return app::json_listing(); }, "The systems a scene can name, as JSON.");
   module.def(
       "read_hdf5",
       [](const std::filesystem::path& file, const std::string& dataset) {
