@@ -11,7 +11,7 @@
 /// Jalnapurkar, Leok, Marsden & West, Discrete Routh reduction, J. Phys. A 39 (2006).)
 ///
 ///     const MomentumLevel level(FactorConnection<Factors<1>, Pair<1>, SO2>{}, polar_kepler, angular_momentum);
-///     const auto start = level.state_below(z);                  // of the radius alone: where an integrator begins, run
+///     const auto start = level.state_below(z);                  // of the radius alone: where a run begins
 ///     const auto g = level.full_arrow(run.point().step.arrow);  // angle included
 ///
 /// Derivatives are those of the full system in bases adapted to the connection, at the theta that Newton's method
