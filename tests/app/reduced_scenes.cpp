@@ -1,5 +1,5 @@
 // Scenes that name a reduction: the full motion back, both momenta in the ledger, and what is refused.
-#include "command_line.hpp"
+#include "scenes/scenes.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -138,16 +138,8 @@ TEST_F(ReducedScenes, GoOnWithTheSameBits) {
     ASSERT_EQ(run("run " + scene + " --set time.steps=130 --out " + parts.string()).code, 0) << scene;
     const Outcome on = run("resume " + parts.string() + " --set time.steps=300 --json");
     ASSERT_EQ(on.code, 0) << scene << on.err;
-    const auto contents = [](const fs::path& file) {
-      std::ifstream in(file, std::ios::binary);
-      return std::string(std::istreambuf_iterator<char>(in), {});
-    };
-    EXPECT_TRUE(contents(whole / "trajectory.csv") == contents(parts / "trajectory.csv")) << scene;
-    auto a = nlohmann::json::parse(contents(whole / "summary.json"));
-    auto b = nlohmann::json::parse(on.out);
-    a.erase("seconds");
-    b.erase("seconds");
-    EXPECT_EQ(a, b) << scene;
+    SCOPED_TRACE(scene);
+    lagroid::scene_tests::expect_the_same_bits(whole, parts, on.out);
   }
 }
 
