@@ -2,8 +2,9 @@
 /// Morphisms of Lie groupoids and of discrete constrained Lagrangian systems. [G] 4.1
 
 #include <lagroid/core/derivatives/implicit.hpp>
-#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/system.hpp>
+
+#include <Eigen/LU>
 
 #include <concepts>
 #include <vector>
@@ -73,7 +74,7 @@ template <class Derived, class From, class To> struct Morphism {
       const Matrix<S, n, n> map = algebroid(q);
       Matrix<double, n, n> values;
       for (int i = 0; i < n * n; ++i) values.data()[i] = value_of(map.data()[i]);
-      const Matrix<double, n, n> inverse = inverse_of(values.transpose());
+      const Matrix<double, n, n> inverse = values.transpose().partialPivLu().inverse();
       Vector<S, n> x = Vector<S, n>::Constant(S(0.0));
       for (int order = 0; order <= nilpotency<S>; ++order) {
         Vector<S, n> defect = mu;
