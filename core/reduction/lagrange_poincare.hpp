@@ -13,9 +13,9 @@
 /// v and s0 -> s1 -> s1 + w -> s0: the curvature. The equations are F+ of an arrow = F- of the next, part by part, and
 /// together those of the unsplit system ([G] (5)).
 ///
-///     const auto into = leaving(split, step);          // split: a system on a SplitGauge, as PulledBack(system,
-///     joined) const auto from = entering(split, next);         // into.horizontal = from.horizontal, into.vertical =
-///     ...
+///     const auto into = leaving(split, step);  // split: a system on a SplitGauge, PulledBack along Unsplit
+///     const auto from = entering(split, next);
+///     const bool solved = into.horizontal.isApprox(from.horizontal) && into.vertical.isApprox(from.vertical);
 ///
 /// (Marsden, Leok & Weinstein as there; on Atiyah groupoids: Marrero, Martin de Diego & Martinez, Discrete Lagrangian
 /// and Hamiltonian mechanics on Lie groupoids, Nonlinearity 19 (2006).)

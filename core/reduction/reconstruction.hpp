@@ -3,10 +3,10 @@
 /// where it starts, and the full motion over its run, node after node.
 ///
 ///     Reconstruction<Kepler, Reduction<PolarQuotient>> down(declared, kepler, state, configuration);
-///     auto run = FixedStepIntegrator(down.system(), down.initial(), down.configuration(), ...);
-///     while (run.advance().converged()) {
-///       down.join(run.point().step, run.point().step_size);
-///       const TrajectoryPoint<Kepler> full = down.full(run.point());
+///     const auto run = make_integrator(down.system(), down.initial(), down.configuration(), {});
+///     while (run->advance().converged()) {
+///       down.join(run->point().step, run->point().step_size);
+///       const TrajectoryPoint<Kepler> full = down.full(run->point());
 ///     }
 ///
 /// The full motion begins with the given configuration, whichever object it ends at. Where a morphism reduces, each

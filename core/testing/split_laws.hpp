@@ -2,8 +2,8 @@
 /// Split gauge groupoids (groupoids/split_gauge.hpp) and discrete Lagrange-Poincare equations as properties that a
 /// user's own connection and system run by naming themselves.
 ///
-///     const LawReport report = laws::splitting_laws(SplitGauge<Transport>{}, draw_shape);
-///     const LawReport equations = laws::lagrange_poincare_laws(Unsplit<Transport>{}, system, draw_step);
+///     const laws::LawReport report = laws::splitting_laws(SplitGauge<Transport>{}, draw_shape);
+///     const laws::LawReport equations = laws::lagrange_poincare_laws(Unsplit<Transport>{}, system, draw_step);
 ///
 /// Requires draw_object(), objects of the base, and draw(), a Step of the system on the gauge groupoid. Returns a
 /// report with one entry a law; throws nothing.

@@ -2,7 +2,7 @@
 /// A reduced run as a Motion: what is recorded and judged is the full motion, beside it the reduced run's own momentum,
 /// what the reduced run keeps and, at a fixed momentum, how much of the motion along the fibres is geometry.
 ///
-///     ReducedMotion<Kepler, Reduction<PolarQuotient>> motion(declared, down, presentation, arrows, options);
+///     ReducedMotion<Kepler, Reduction<PolarQuotient>> motion(declared, kepler, down, presentation, arrows, options);
 ///
 /// Requires arrows of the full system about the start, by which is known which of its symmetries descend. Errors are
 /// those of ReducedIntegrator.

@@ -1,11 +1,11 @@
 #pragma once
 /// Boundary values with steps that vary, of either kind, by one name: the sizes free, or prescribed by the arrows.
 ///
-///     const auto equal = timed(...);  // a solution with equal steps, see timed_path.hpp
 ///     const TimedSolution<Kepler> path = solve_varied_steps(TimeMode::adaptive, kepler, boundary, equal);
 ///
-/// Requires TimeMode::adaptive, or TimeMode::controlled of a system with a time scale of its arrows. Returns what
-/// solve_free_steps and solve_prescribed_steps do. Nothing throws.
+/// `equal` is a solution with equal steps (with_times of timed_path.hpp). Requires TimeMode::adaptive, or
+/// TimeMode::controlled of a system with a time scale of its arrows. Returns what solve_free_steps and
+/// solve_prescribed_steps do. Nothing throws.
 
 #include <lagroid/solvers/boundary/times/free_steps.hpp>
 #include <lagroid/solvers/boundary/times/prescribed_steps.hpp>
