@@ -13,26 +13,16 @@ namespace lagroid::app {
 
 namespace {
 
-ProgramCommand optimize_command() {
-  ProgramCommand command = command_of("optimize", "minimise a function on a manifold (see docs/optimisation.md)",
-                                      add_optimise_options, optimise);
-  command.run_scene = [](const SceneOptions& scene, const std::optional<std::string>& out) {
-    OptimiseOptions options;
+/// A command that `lagroid run` hands scenes over to: its options are those of a scene and a folder `out`.
+template <class Options>
+ProgramCommand command_of_scenes(const char* name, const char* what, void (*add)(CLI::App&, Options&),
+                                 int (*carry_out)(const Options&)) {
+  ProgramCommand command = command_of(name, what, add, carry_out);
+  command.run_scene = [carry_out](const SceneOptions& scene, const std::optional<std::string>& out) {
+    Options options;
     static_cast<SceneOptions&>(options) = scene;
     options.out = out;
-    return optimise(options);
-  };
-  return command;
-}
-
-ProgramCommand control_command() {
-  ProgramCommand command = command_of("control", "solve an optimal control problem (see docs/optimal_control.md)",
-                                      add_control_options, control);
-  command.run_scene = [](const SceneOptions& scene, const std::optional<std::string>& out) {
-    ControlCommandOptions options;
-    static_cast<SceneOptions&>(options) = scene;
-    options.out = out;
-    return control(options);
+    return carry_out(options);
   };
   return command;
 }
@@ -43,7 +33,11 @@ ProgramParts whole_program() {
   return {{&systems_family(), &spheres_family(), &bodies_family(), &optimisation_family(), &control_family(),
            &sweeps_family()},
           library_systems(),
-          {new_command(), sweep_command(), optimize_command(), control_command(),
+          {new_command(), sweep_command(),
+           command_of_scenes("optimize", "minimise a function on a manifold (see docs/optimisation.md)",
+                             add_optimise_options, optimise),
+           command_of_scenes("control", "solve an optimal control problem (see docs/optimal_control.md)",
+                             add_control_options, control),
            command_of("learn", "fit a Hamiltonian on (T*S^2)^k to trajectories (see docs/learning.md)",
                       add_learn_options, learn),
            command_of("trajectories", "draw trajectories of a pendulum chain into a file, to learn from",
