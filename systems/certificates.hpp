@@ -15,6 +15,10 @@ namespace lagroid::laws {
 /// own).
 template <DiscreteSystem Sys>
 std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw);
+/// Those of its groupoid alone, which take no step (solvers/testing/certificate.hpp).
+template <DiscreteSystem Sys>
+std::vector<LawReport> groupoid_certificate(const Sys& system,
+                                            const std::function<State<typename Sys::GroupoidType>()>& draw);
 /// The laws of the system that it is reduced to by the reduction of that name
 /// (solvers/testing/reduced_certificate.hpp).
 template <DiscreteSystem Sys>

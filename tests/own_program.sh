@@ -86,5 +86,8 @@ if [ -n "$whole" ]; then
   sed -i 's/g(2) + h(2)}/g(2) + h(2) * 2.0}/' hills/hills.hpp
   ! "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml --set time.steps=20 >check.log 2>&1 || fail "a broken groupoid passes"
   grep -q associat check.log || { cat check.log >&2; fail "its broken law is not named"; }
+  # Steps that fail do not hide it.
+  ! "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml --set time.step=1e9 >check.log 2>&1 || fail "a failed run passes"
+  grep -q "groupoid is none: .*associat" check.log || { cat check.log >&2; fail "its broken law is not named beside the failure"; }
 fi
 echo "own_program: holds"

@@ -4,7 +4,8 @@
 ///
 ///     const Certificate found = certify(module.task(scene, context), {.samples = 100});
 ///
-/// Returns a Certificate; where the run itself fails, one without laws whose `failure` is the reason.
+/// Returns a Certificate; where the run itself fails, one of the laws of the groupoid alone, at objects that the run
+/// came to, whose `failure` is the reason: a groupoid that is none has no steps.
 
 #include "../scenes/system_module.hpp"
 #include "check_options.hpp"
@@ -109,6 +110,8 @@ Certificate certify(const PreparedScene<Sys>& prepared, const CheckCommandOption
   if (!result.converged()) {
     certificate.failure = result.message;
     certificate.failure_status = result.status;
+    const auto state = [&] { return points[*rc::gen::inRange<std::size_t>(0, points.size())].state; };
+    if (!points.empty()) certificate.suites = laws::groupoid_certificate<Sys>(prepared.system, state);
     return certificate;
   }
   certificate.suites =

@@ -35,7 +35,8 @@ Json json(const laws::LawReport& suite) {
 }  // namespace
 
 bool Certificate::holds() const {
-  return !suites.empty() && std::all_of(suites.begin(), suites.end(), [](const auto& s) { return s.holds(); }) &&
+  return failure.empty() && !suites.empty() &&
+         std::all_of(suites.begin(), suites.end(), [](const auto& s) { return s.holds(); }) &&
          std::all_of(symmetries.begin(), symmetries.end(), [](const auto& s) { return s.holds; }) &&
          std::all_of(reductions.begin(), reductions.end(), [](const auto& r) { return r.holds(); });
 }
@@ -75,7 +76,9 @@ std::string text_certificate(const Certificate& c) {
     ++laws;
     broken += r.holds() ? 0 : 1;
   }
-  if (!c.failure.empty()) return out + fmt::format("  NOT certified: the run itself failed: {}\n", c.failure);
+  if (!c.failure.empty())
+    return out + fmt::format("  NOT certified: the run itself failed: {}{}\n", c.failure,
+                             broken > 0 ? fmt::format("; {} laws of its groupoid are broken", broken) : "");
   out += c.holds() ? fmt::format("  certified: all {} laws hold\n", laws)
                    : fmt::format("  NOT certified: of {} laws {} broken, {} unjudged\n", laws, broken, unjudged);
   return out;

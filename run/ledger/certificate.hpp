@@ -32,7 +32,7 @@ struct ReductionFinding {
 struct Certificate {
   std::string system;
   std::string groupoid;
-  std::string failure;         ///< why the run that laws are tested along ended early, if it did: then none was tested
+  std::string failure;  ///< why the run that laws are tested along ended early: then those of a groupoid alone are
   std::string failure_status;  ///< as in RunResult
   std::size_t states = 0;      ///< of that run, from which samples were drawn; 0: they were drawn by the caller
   int samples = 0;             ///< of each law

@@ -22,6 +22,16 @@
 
 namespace lagroid::laws {
 
+/// The suites of a system's groupoid, of its algebroid and of its cotangent groupoid, at objects of the states drawn.
+/// No step is taken: what is no groupoid may have none.
+template <DiscreteSystem Sys>
+std::vector<LawReport> groupoid_certificate(const Sys& system,
+                                            const std::function<State<typename Sys::GroupoidType>()>& draw) {
+  const auto& groupoid = system.groupoid;
+  const auto object = [&] { return draw().object; };
+  return {groupoid_laws(groupoid, object), algebroid_laws(groupoid, object), cotangent_laws(groupoid, object)};
+}
+
 /// The suites of a system itself, on a groupoid whose laws are tested elsewhere: of its derivatives, its dynamics, its
 /// momenta, its declared symmetries and its action principle, at steps from the states drawn. Of a forced or
 /// nonholonomic system, whose step is not Poisson, the Lagrange-d'Alembert principle is tested in place of dynamics and
@@ -47,13 +57,7 @@ std::vector<LawReport> system_laws(const Sys& system, const std::function<State<
 /// All of them: of its groupoid, algebroid and cotangent groupoid, at objects of the states drawn, then its own.
 template <DiscreteSystem Sys>
 std::vector<LawReport> certificate(const Sys& system, const std::function<State<typename Sys::GroupoidType>()>& draw) {
-  const auto& groupoid = system.groupoid;
-  const auto object = [&] { return draw().object; };
-  std::vector<LawReport> reports{
-      groupoid_laws(groupoid, object),
-      algebroid_laws(groupoid, object),
-      cotangent_laws(groupoid, object),
-  };
+  std::vector<LawReport> reports = groupoid_certificate(system, draw);
   for (LawReport& report : system_laws(system, draw)) reports.push_back(std::move(report));
   return reports;
 }

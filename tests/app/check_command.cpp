@@ -86,12 +86,14 @@ TEST_F(CommandLine, SystemsAtRestInOtherUnitsAndWithTinyStepsAreCertified) {
   }
 }
 
-TEST_F(CommandLine, WhereTheRunFailsNothingIsAsked) {
+TEST_F(CommandLine, WhereTheRunFailsTheGroupoidAloneIsTested) {
   const Outcome r = run("check " + example("spherical_pendulum") + " --json --set time.step=2");
   EXPECT_EQ(r.code, 3) << r.out;
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_EQ(json.at("status"), "not_converged") << r.out;
   EXPECT_NE(json.at("message").get<std::string>().find("step 1"), std::string::npos) << r.out;
+  EXPECT_EQ(json.at("suites").size(), 3U);
+  for (const auto& suite : json.at("suites")) EXPECT_TRUE(suite.at("holds")) << suite;
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
 }
 

@@ -43,7 +43,7 @@ std::vector<std::string> nightly_files() {
 /// What the page names and nightly tests alone bear, but for what its section on them says, and the other way round:
 /// suites of tests, and law suites that no other test calls.
 std::vector<std::string> misplaced_on(const std::string& page) {
-  const std::string told = section(page, "## What is asked when");
+  const std::string told = section(page, "## What is tested when");
   std::string daily;
   const auto files = nightly_files();
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "tests")) {
