@@ -1,0 +1,105 @@
+#pragma once
+/// Optimal control from many starts: one start finds one local minimum, and which one is chance. The first start is the
+/// straight trajectory; the others wind about the loops of the groupoid and are bent by sine modes.
+///
+///     const ControlSearch<Dubins> found = search_control(task, 100, {.starts = 12});
+///     for (const auto& each : found.minima) std::cout << each.report.cost << '\n';  // cheapest first
+///
+/// Requires what `solve_control` requires. Returns the distinct solutions, cheapest first, and how every start ended;
+/// where none converged, the failure with the least violation. The same seed finds the same.
+
+#include <lagroid/core/capabilities/loops.hpp>
+#include <lagroid/solvers/control/solve_control.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace lagroid {
+
+struct ControlSearchOptions {
+  int starts = 10;
+  std::uint64_t seed = 1;
+  double amplitude = 0;  ///< of bends, in coordinates of AG; 0: the length of the straight trajectory, or one
+  ControlOptions solver;
+};
+
+template <class Sys> struct ControlSearch {
+  std::vector<ControlSolution<Sys>> minima;  ///< distinct solutions, cheapest first
+  ControlSolution<Sys> best_failure;         ///< where there are none
+  std::map<ControlStatus, int> outcomes;
+  int iterations = 0;
+};
+
+/// Start `index`, the same whatever the number of starts.
+template <class Sys>
+ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, int index,
+                                     const ControlSearchOptions& options = {}) {
+  using G = typename Sys::GroupoidType;
+  ControlTrajectory<Sys> path = straight_trajectory(task, stages);
+  if (index == 0) return path;
+  const G& groupoid = task.system.groupoid;
+  std::seed_seq sequence{std::uint32_t(options.seed), std::uint32_t(options.seed >> 32), std::uint32_t(index)};
+  std::mt19937_64 generator(sequence);
+  const AlgebroidVector<G> whole = groupoid.tau_inverse(task.boundary);
+  const double length = whole.norm();
+  const double amplitude = options.amplitude > 0 ? options.amplitude : length > 1e-3 ? length : 1;
+  std::uniform_real_distribution<double> octave(-3, 1);
+  std::normal_distribution<double> normal(0, amplitude * std::exp2(octave(generator)));
+  constexpr int modes = 3;
+  Eigen::Matrix<double, Sys::dimension, modes> bends;
+  for (double& x : bends.reshaped()) x = normal(generator);
+
+  // Of three starts in succession one winds forward about each loop, one backward and one not at all.
+  Eigen::VectorXd turns = Eigen::VectorXd::Zero(loop_count(task.system));
+  for (int i = 0; i < turns.size(); ++i) turns(i) = std::array<int, 3>{1, -1, 0}[std::size_t((index - 1 + i) % 3)];
+
+  ArrowOf<G> reached = groupoid.unit(groupoid.source(task.boundary));
+  ArrowOf<G> before = reached;
+  for (long k = 0; k < stages; ++k) {
+    reached = groupoid.compose(reached, path.arrows[std::size_t(k)]);
+    ArrowOf<G> here = reached;
+    if (k + 1 < stages) {
+      const double t = double(k + 1) / double(stages);
+      if (turns.size() > 0)
+        here = groupoid.compose(here, loop_of(task.system, groupoid.target(here), whole, t * turns));
+      AlgebroidVector<G> bend = AlgebroidVector<G>::Zero();
+      for (int j = 0; j < modes; ++j) bend += std::sin((j + 1) * std::numbers::pi * t) / (j + 1) * bends.col(j);
+      here = groupoid.project(groupoid.extend(here, bend));
+    } else {
+      here = task.boundary;
+    }
+    path.arrows[std::size_t(k)] = groupoid.project(groupoid.compose(groupoid.inverse(before), here));
+    before = here;
+  }
+  if (task.duration_is_free) path.step *= std::exp2(std::uniform_real_distribution<double>(-1, 1)(generator));
+  return path;
+}
+
+template <class Sys>
+ControlSearch<Sys> search_control(const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {}) {
+  ControlSearch<Sys> found;
+  for (int i = 0; i < options.starts; ++i) {
+    ControlSolution<Sys> solution = solve_control(task, control_guess(task, stages, i, options), options.solver);
+    ++found.outcomes[solution.report.status];
+    found.iterations += solution.report.iterations;
+    if (!solution.report.converged()) {
+      if (i == 0 || !(found.best_failure.report.violation <= solution.report.violation))
+        found.best_failure = std::move(solution);
+      continue;
+    }
+    const auto same = [&](const ControlSolution<Sys>& known) {
+      return std::abs(known.report.cost - solution.report.cost) <= 1e-7 * (1e-6 + std::abs(solution.report.cost));
+    };
+    if (std::none_of(found.minima.begin(), found.minima.end(), same)) found.minima.push_back(std::move(solution));
+  }
+  std::sort(found.minima.begin(), found.minima.end(),
+            [](const auto& a, const auto& b) { return a.report.cost < b.report.cost; });
+  return found;
+}
+
+}  // namespace lagroid

@@ -1,0 +1,165 @@
+#pragma once
+/// A primal-dual interior point method on the manifold of trajectories: slacks s > 0 turn gamma <= 0 into gamma + s =
+/// 0, and Newton's method solves, for a sequence mu -> 0,
+///
+///     d(l + <lambda, phi> + <z, gamma>) = 0,    phi = 0,    gamma + s = 0,    s_i z_i = mu.
+///
+/// Its unknowns are displacements of nodes and controls, so that no chart and no norm of a quaternion is in the way,
+/// and an iteration costs O(N).
+///
+///     InteriorPoint solver(transcription);
+///     const ControlReport found = solver.solve();  // from the trajectory as it stands
+///     if (!found.converged()) std::cerr << found.message;
+///
+/// Requires a trajectory whose ends are those of the problem; it need satisfy no constraint. Returns a ControlReport;
+/// where it is not `converged` the trajectory is the last iterate, and `worst` lists what is violated most. No
+/// allocation in an iteration but of the filter's entries. Nothing throws.
+///
+/// Waechter and Biegler, Math. Program. 106 (2006): filter, inertia correction, second-order corrections; the
+/// restoration is a primal-dual iteration on the smoothed sum of violations.
+
+#include <lagroid/solvers/control/stage_kkt.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid {
+
+enum class ControlStatus {
+  converged,
+  infeasible,     ///< a stationary point of the violation: near it no trajectory satisfies the constraints
+  not_converged,  ///< the iterations are used up
+  singular,       ///< no shift of the matrix gave a direction
+  not_finite      ///< a value at the start
+};
+
+constexpr std::string_view to_string(ControlStatus status) {
+  switch (status) {
+    case ControlStatus::converged:
+      return "converged";
+    case ControlStatus::infeasible:
+      return "infeasible";
+    case ControlStatus::not_converged:
+      return "not_converged";
+    case ControlStatus::singular:
+      return "singular";
+    case ControlStatus::not_finite:
+      return "not_finite";
+  }
+  return "";
+}
+
+struct ControlOptions {
+  int max_iterations = 500;
+  double tolerance = 1e-10;    ///< on every part of the KKT residual
+  double first_barrier = 0.1;  ///< mu, at first
+  double least_slack = 1e-2;   ///< of an inequality at the start
+};
+
+/// A constraint that is violated: row `row` of phi (equality) or gamma at a stage.
+struct ConstraintViolation {
+  long stage = 0;
+  int row = 0;
+  bool is_equality = false;
+  double amount = 0;
+};
+
+struct ControlReport {
+  ControlStatus status = ControlStatus::not_converged;
+  int iterations = 0;    ///< restoration included
+  int restorations = 0;  ///< how often it was called
+  int factorisations = 0;
+  double cost = 0;
+  double stationarity = 0;     ///< largest component of the Lagrangian's gradient, relative to the multipliers' size
+  double violation = 0;        ///< largest of |phi| and of gamma's positive part
+  double complementarity = 0;  ///< largest s_i z_i
+  bool is_strict_minimum = false;          ///< the matrix has the inertia of a strict local minimum, without a shift
+  std::vector<ConstraintViolation> worst;  ///< of a trajectory that is infeasible, the largest five
+  std::string message;                     ///< where it is not converged: what to do
+
+  bool converged() const { return status == ControlStatus::converged; }
+};
+
+class InteriorPoint {
+ public:
+  explicit InteriorPoint(Transcription& transcription, ControlOptions options = {});
+
+  ControlReport solve();
+
+  /// The costates lambda of the equalities, and the multipliers z >= 0 of the inequalities, at the trajectory.
+  const StageRows& costates() const { return costates_; }
+  const StageRows& inequality_multipliers() const { return multipliers_; }
+
+ private:
+  struct Merit {
+    double violation = 0;  // sum of |phi| and |gamma + s|
+    double barrier = 0;    // cost - mu sum log s
+    bool finite() const;
+  };
+  struct KktError {
+    double stationarity = 0;
+    double violation = 0;
+    double complementarity = 0;
+    double largest() const;
+  };
+  enum class Outcome { advanced, stuck };
+
+  void begin();
+  void evaluate();
+  Merit merit(const StageValues& values, const StageRows& slacks) const;
+  KktError error(double barrier);
+  void lagrangian_gradient(const StageRows& costates, const StageRows& weights, TrajectoryDisplacement& out) const;
+  double smoothed_violation(const StageValues& at, double nu) const;
+  bool factor();
+  bool direction();
+  void newton_side(const StageRows& equality, const StageRows& inequality_gap);
+  double change_of_inequality(long stage, int i) const;
+  void slack_directions(const StageRows& inequality_gap);
+  double fraction_to_boundary(const StageRows& at, const StageRows& along) const;
+  double slope() const;
+  Outcome line_search();
+  Merit try_step(double fraction);
+  bool accepted_by_filter(const Merit& trial) const;
+  bool acceptable(const Merit& now, const Merit& trial, double slope, double fraction) const;
+  void take(double fraction);
+  bool restore();
+  void least_squares_costates();
+  void update_barrier();
+  void describe();
+  double largest_violation() const;
+
+  Transcription& transcription_;
+  ControlOptions options_;
+  TranscriptionSizes sizes_;
+  StageKkt kkt_;
+  StageValues values_;
+  StageValues trial_;
+  StageDerivatives derivatives_;
+  StageRows costates_;
+  StageRows multipliers_;
+  StageRows slacks_;
+  StageRows trial_slacks_;
+  StageRows sigma_;
+  StageRows weights_;
+  StageRows dual_;
+  StageRows slack_step_;
+  StageRows multiplier_step_;
+  StageRows equality_;  // what a direction is to correct: phi, or phi with a second-order correction
+  StageRows gap_;       // gamma + s, likewise
+  TrajectoryDisplacement gradient_;
+  KktVector right_;
+  KktVector step_;
+  KktVector first_step_;  // before a second-order correction
+  StageRows first_slack_step_;
+
+  double barrier_ = 0;
+  double shift_ = 0;       // of the displacements' diagonal, in the last factorisation
+  double last_shift_ = 0;  // the last that was not zero
+  std::vector<Merit> filter_;
+  double largest_allowed_ = 0;  // violation
+  double small_violation_ = 0;
+  ControlReport report_;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,88 @@
+#pragma once
+/// The KKT matrix of an optimal control problem with its elimination, linear in the number of stages:
+///
+///     unknowns of stage k:  y_k = (du_k, dlambda_k, v_{k+1}),    beside all stages:  (free components of v_0, t).
+///
+/// The matrix is block-tridiagonal but for the few unknowns beside all stages, which border it: these have no place
+/// along the trajectory where their pivot would be safe.
+///
+///     StageKkt kkt(transcription);
+///     kkt.assemble(derivatives, sigma);
+///     const StageKkt::Inertia inertia = kkt.factor(0, 0);
+///     kkt.solve(right, step);
+///
+/// Requires numbers that are finite; others show in `smallest`. No allocation after construction. Nothing throws.
+
+#include <lagroid/solvers/control/transcription.hpp>
+#include <lagroid/solvers/linear_algebra/symmetric_factor_sized.hpp>
+
+#include <vector>
+
+namespace lagroid {
+
+/// A vector of the KKT system: a displacement of the trajectory, and of the multipliers of its equalities.
+struct KktVector {
+  KktVector() = default;
+  explicit KktVector(const TranscriptionSizes& sizes) : primal(sizes), multipliers(sizes.stages, sizes.equality) {}
+  TrajectoryDisplacement primal;
+  StageRows multipliers;
+};
+
+class StageKkt {
+ public:
+  explicit StageKkt(const Transcription& transcription);
+
+  /// Which second derivatives of the stages' Lagrangians the matrix has.
+  enum class HessianPart { exact, none };
+  /// The matrix of these + sum_i sigma_i dgamma_i^T dgamma_i and of the equalities' derivatives.
+  void assemble(const StageDerivatives& derivatives, const StageRows& sigma,
+                HessianPart hessian_part = HessianPart::exact);
+
+  /// What a factorisation shows of the matrix.
+  struct Inertia {
+    long negative = 0;    ///< eigenvalues
+    double smallest = 0;  ///< |pivot|
+  };
+  /// Factors with `primal` added to the diagonal of displacements and `dual` subtracted from that of the equalities'
+  /// multipliers.
+  Inertia factor(double primal, const StageRows& dual);
+  /// The negative eigenvalues of the matrix at a minimum: one for each equality.
+  long equalities() const;
+
+  /// Solves the factored system, and once more for what round-off has left.
+  void solve(const KktVector& right, KktVector& out);
+
+ private:
+  int border_of_start(int component) const { return border_index_[std::size_t(component)]; }
+  void eliminate(const KktVector& right, KktVector& out);
+  /// right - (the matrix) out.
+  void residual(const KktVector& right, const KktVector& out, KktVector& left) const;
+
+  TranscriptionSizes sizes_;
+  std::vector<bool> free_end_;
+  std::vector<int> border_index_;  // of each component of v_0; -1 where it is fixed
+  bool duration_is_free_;
+  int border_ = 0;  // unknowns beside all stages: free components of v_0, then the duration's t
+  int block_ = 0;   // of y_k
+
+  double primal_ = 0;
+  StageRows dual_;
+  StageRows diagonal_;          // block x block
+  StageRows coupling_;          // block x node, to v_k of the stage before
+  StageRows bordered_;          // block x border
+  std::vector<double> corner_;  // border x border
+
+  std::vector<SymmetricFactorSized> factors_;
+  StageRows passed_;         // node x node: the v-part of the inverse of a pivot block
+  StageRows border_solved_;  // block x border: the pivot block's inverse times the border there
+  SymmetricFactorSized corner_factor_;
+  std::vector<double> corner_work_;
+  StageRows right_;  // block: right-hand sides on their way, then solutions
+  std::vector<double> border_right_;
+  std::vector<double> block_work_;   // block x block, or a stage's Hessian
+  std::vector<double> column_work_;  // block x max(node, border)
+  KktVector left_;
+  KktVector correction_;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,98 @@
+#pragma once
+/// The numbers of an optimal control problem, stage by stage: rows of equal length one after another, and displacements
+/// of a trajectory.
+///
+///     StageRows costates(sizes.stages, sizes.equality);
+///     costates[0][1] = 2;  // of the first stage, the second
+///     const double most = largest_entry(costates);
+///
+/// Requires stages within range. Nothing throws.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace lagroid {
+
+/// How many numbers there are of each kind.
+struct TranscriptionSizes {
+  int node = 0;          ///< n, the dimension of the groupoid: a node's displacement
+  int control = 0;       ///< c
+  int equality = 0;      ///< of phi, with the conditions on the end, which the last stage alone has
+  int end_equality = 0;  ///< how many of these are conditions on the end
+  int inequality = 0;    ///< of gamma, with the bounds of the controls
+  long stages = 0;       ///< N
+
+  int variables() const { return 2 * node + control + 1; }
+  int equalities_of(long stage) const { return stage + 1 == stages ? equality : equality - end_equality; }
+
+  // Where the variables of a stage begin.
+  static constexpr int at_source = 0;
+  int at_target() const { return node; }
+  int at_control() const { return 2 * node; }
+  int at_duration() const { return 2 * node + control; }
+};
+
+/// Rows of equal length, one for each stage.
+class StageRows {
+ public:
+  StageRows() = default;
+  StageRows(long stages, int length) : length_(length), numbers_(std::size_t(stages) * std::size_t(length)) {}
+  double* operator[](long stage) { return numbers_.data() + stage * length_; }
+  const double* operator[](long stage) const { return numbers_.data() + stage * length_; }
+  int length() const { return int(length_); }
+  std::vector<double>& numbers() { return numbers_; }
+  const std::vector<double>& numbers() const { return numbers_; }
+
+ private:
+  long length_ = 0;
+  std::vector<double> numbers_;
+};
+
+/// A displacement of the trajectory: of node k = 0 ... N, of the control of stage k = 0 ... N-1, of the logarithm
+/// of the duration, which so stays positive.
+struct TrajectoryDisplacement {
+  TrajectoryDisplacement() = default;
+  explicit TrajectoryDisplacement(const TranscriptionSizes& sizes)
+      : nodes(sizes.stages + 1, sizes.node), controls(sizes.stages, sizes.control) {}
+  StageRows nodes;
+  StageRows controls;
+  double duration = 0;
+};
+
+inline void set_all(StageRows& rows, double x) { std::fill(rows.numbers().begin(), rows.numbers().end(), x); }
+/// a += factor * b.
+inline void add(StageRows& a, double factor, const StageRows& b) {
+  for (std::size_t i = 0; i < a.numbers().size(); ++i) a.numbers()[i] += factor * b.numbers()[i];
+}
+inline double dot(const StageRows& a, const StageRows& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.numbers().size(); ++i) sum += a.numbers()[i] * b.numbers()[i];
+  return sum;
+}
+/// The largest magnitude; infinite where an entry is no number.
+inline double largest_entry(const StageRows& rows) {
+  double most = 0;
+  for (const double x : rows.numbers()) most = std::isnan(x) ? HUGE_VAL : std::max(most, std::abs(x));
+  return most;
+}
+
+inline void add(TrajectoryDisplacement& a, double factor, const TrajectoryDisplacement& b) {
+  add(a.nodes, factor, b.nodes);
+  add(a.controls, factor, b.controls);
+  a.duration += factor * b.duration;
+}
+inline double dot(const TrajectoryDisplacement& a, const TrajectoryDisplacement& b) {
+  return dot(a.nodes, b.nodes) + dot(a.controls, b.controls) + a.duration * b.duration;
+}
+inline double largest_entry(const TrajectoryDisplacement& x) {
+  return std::max({std::abs(x.duration), largest_entry(x.nodes), largest_entry(x.controls)});
+}
+inline void negate(TrajectoryDisplacement& x) {
+  for (double& each : x.nodes.numbers()) each = -each;
+  for (double& each : x.controls.numbers()) each = -each;
+  x.duration = -x.duration;
+}
+
+}  // namespace lagroid
