@@ -11,9 +11,11 @@
 ///
 /// Requires a positive radius; `infeasible` has the reason where parameters admit no motion. [G] 6.2, (8)
 
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/groupoids/morphisms.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -117,6 +119,10 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// Turning the table and all on it about its centre; with the plate at rest, moving them.
   std::vector<Symmetry<PlateBall>> symmetries() const;
   std::vector<Quantity<PlateBall>> quantities() const;
+  static auto reductions() {
+    return std::tuple(reduction("translations", ProductMorphism<Difference<2>, IdentityMorphism<SO3>>{},
+                                "translations, where the plate is at rest"));
+  }
 
  private:
   /// Of the forms that are one.

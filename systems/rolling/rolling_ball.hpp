@@ -13,11 +13,13 @@
 /// Requires positive mass, radius and inertia factor, and starts that roll, which `rolling` makes. (Neimark and Fufaev,
 /// Dynamics of Nonholonomic Systems, 1972.)
 
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
+#include <lagroid/groupoids/rotated_plane.hpp>
 #include <lagroid/systems/instances.hpp>
 
 #include <vector>
@@ -110,6 +112,9 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
   /// Marsden, Murray, Arch. Rational Mech. Anal. 136, 1996).
   std::vector<Symmetry<RollingBall>> symmetries() const;
   std::vector<Quantity<RollingBall>> quantities() const;
+  static auto reductions() {
+    return std::tuple(reduction("rotations", RotatedPlaneQuotient{}, "rotations of plate and ball about its centre"));
+  }
 };
 
 LAGROID_STEPS(extern template, RollingBall);

@@ -55,6 +55,10 @@ TEST_F(CommandLine, ReductionsAreExaminedAndTheOneOfTheSceneHasItsLaws) {
   EXPECT_EQ(full.at("reductions").at(0).at("descends"), true);
   EXPECT_EQ(reduced_suites(full), 0);
   EXPECT_GT(reduced_suites(of(example("kepler") + " --set reduce=rotations")), 0);
+  // A plate that turns is not invariant under translations: said, but no law of the scene.
+  const auto turning = of(example("plate_ball_initial_value")).at("reductions").at(0);
+  EXPECT_EQ(turning.at("descends"), false);
+  EXPECT_NE(turning.at("message").get<std::string>().find("constraint"), std::string::npos) << turning;
 }
 
 TEST_F(CommandLine, StatesWithoutAStepArePassedOver) {
