@@ -27,7 +27,7 @@
 
 #include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/derivatives/two_sided.hpp>
-#include <lagroid/core/matrices/decompositions.hpp>
+#include <lagroid/core/matrices/scaling.hpp>
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/core/reduction/full_system.hpp>
 #include <lagroid/core/reduction/not_free.hpp>
@@ -168,10 +168,10 @@ struct MomentumLevel
 
   /// The full state over one of the base: p = <mu, hor>, level = <mu, along the fibre>.
   State<G> state_over(const State<B>& s) const {
-    Vector<double, G::dimension> components;
+    AlgebroidVector<G> components;
     components << s.momentum, level;
-    return {full_groupoid().source(horizontal(this->groupoid.unit(s.object))),
-            solve_regular(adapted_basis(s.object).transpose(), components)};
+    const Matrix<double, G::dimension, G::dimension> rows = adapted_basis(s.object).transpose();
+    return {full_groupoid().source(horizontal(this->groupoid.unit(s.object))), solve_equilibrated(rows, components)};
   }
   /// The state of the base below a full one. Its momentum along the fibres is not looked at: `momentum_of` has it.
   State<B> state_below(const State<G>& z) const {
