@@ -63,6 +63,14 @@ class Motion {
 
   /// Adds what describes the whole run: panels, shapes, conventions, notes, what the ledger counts.
   virtual void describe(RunResult& result) const = 0;
+  /// Why steps cannot be made in part, as what happens inside of one is looked for (run/events/); empty where they can.
+  virtual std::string why_not_cut() const { return "steps of this motion cannot be made in part"; }
+  /// Keeps this node, from which the next step can be made in part.
+  virtual void keep_node() {}
+  /// What is to be seen where a share of the last step leads to from the node that was kept before it, by the same
+  /// method; shares may lie outside of 0 to 1. Null where that does not converge. The motion stays where it is, but has
+  /// to be looked at anew.
+  virtual const Observables* look_within(double /*share*/) { return nullptr; }
   /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
   /// bits.
   virtual void serialize(NumberArchive& archive) = 0;

@@ -117,6 +117,16 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
     observed_ = point.index;
     return node_;
   }
+  std::string why_not_cut() const override {
+    return integrator_->cuts() ? "" : "steps of this method cannot be made in part: " + traits().name;
+  }
+  void keep_node() override { integrator_->keep_node(); }
+  const Observables* look_within(double share) override {
+    TrajectoryPoint<Sys> inside;
+    if (!integrator_->cut(share, inside).converged()) return nullptr;
+    node_.see(inside);
+    return &node_;
+  }
   std::vector<NamedVector> state() const override {
     const TrajectoryPoint<Sys>& point = integrator_->point();
     return {named("configuration", system_.groupoid.coordinates_of_arrow(point.configuration)),

@@ -65,6 +65,13 @@ template <DiscreteSystem Sys> class Integrator {
   /// The arrows before the last that make up the last step, where there are any: each with its start and its size.
   using Visit = std::function<void(const Step<Sys>&, double start, double size)>;
   virtual void for_each_inner_stage(const Visit&) const {}
+  /// Whether steps can be made in part.
+  virtual bool cuts() const { return false; }
+  /// Keeps this node, from which the next step can be made in part.
+  virtual void keep_node() {}
+  /// The point that a share of the last step leads to from the node that was kept before it, by a step of the same
+  /// method; shares may lie outside of 0 to 1. Nothing else changes, and nothing at all where it does not converge.
+  virtual StepReport cut(double /*share*/, TrajectoryPoint<Sys>& /*to*/) { return {}; }
   /// Steps so far whose size is not that of the mode.
   virtual long without_root() const { return 0; }
   /// Visits all that the next step goes on from: an integrator begun with the same arguments, to which it is restored,
