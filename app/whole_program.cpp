@@ -1,5 +1,6 @@
 #include "whole_program.hpp"
 
+#include "control/control.hpp"
 #include "learn/draw.hpp"
 #include "learn/learn.hpp"
 #include "optimise/optimise.hpp"
@@ -24,12 +25,25 @@ ProgramCommand optimize_command() {
   return command;
 }
 
+ProgramCommand control_command() {
+  ProgramCommand command = command_of("control", "solve an optimal control problem (see docs/optimal_control.md)",
+                                      add_control_options, control);
+  command.run_scene = [](const SceneOptions& scene, const std::optional<std::string>& out) {
+    ControlCommandOptions options;
+    static_cast<SceneOptions&>(options) = scene;
+    options.out = out;
+    return control(options);
+  };
+  return command;
+}
+
 }  // namespace
 
 ProgramParts whole_program() {
-  return {{&systems_family(), &spheres_family(), &bodies_family(), &optimisation_family(), &sweeps_family()},
+  return {{&systems_family(), &spheres_family(), &bodies_family(), &optimisation_family(), &control_family(),
+           &sweeps_family()},
           library_systems(),
-          {new_command(), sweep_command(), optimize_command(),
+          {new_command(), sweep_command(), optimize_command(), control_command(),
            command_of("learn", "fit a Hamiltonian on (T*S^2)^k to trajectories (see docs/learning.md)",
                       add_learn_options, learn),
            command_of("trajectories", "draw trajectories of a pendulum chain into a file, to learn from",

@@ -76,6 +76,8 @@ const SceneFamily& systems_family();
 const SystemModule& module_of_scene(const Section& scene);
 /// Functions to be minimised on manifolds.
 const SceneFamily& optimisation_family();
+/// Optimal control with bounds and inequalities.
+const SceneFamily& control_family();
 /// Many members of a scene.
 const SceneFamily& sweeps_family();
 

@@ -9,6 +9,7 @@ namespace lagroid::app::keys {
 inline constexpr std::string_view system = "system";
 inline constexpr std::string_view bodies = "body";
 inline constexpr std::string_view optimisation = "problem";
+inline constexpr std::string_view control = "control";
 inline constexpr std::string_view sweep = "scene";
 
 /// The values of `system` for scenes on (T*S^2)^k.

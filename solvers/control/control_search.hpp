@@ -2,7 +2,7 @@
 /// Optimal control from many starts: one start finds one local minimum, and which one is chance. The first start is the
 /// straight trajectory; the others wind about the loops of the groupoid and are bent by sine modes.
 ///
-///     const ControlSearch<Dubins> found = search_control(task, 100, {.starts = 12});
+///     const ControlSearch<DubinsCar> found = search_control(task, 100, {.starts = 12});
 ///     for (const auto& each : found.minima) std::cout << each.report.cost << '\n';  // cheapest first
 ///
 /// Requires what `solve_control` requires. Returns the distinct solutions, cheapest first, and how every start ended;
@@ -12,8 +12,10 @@
 #include <lagroid/solvers/control/solve_control.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <random>
@@ -25,7 +27,7 @@ struct ControlSearchOptions {
   int starts = 10;
   std::uint64_t seed = 1;
   double amplitude = 0;  ///< of bends, in coordinates of AG; 0: the length of the straight trajectory, or one
-  ControlOptions solver;
+  ControlOptions solver = {};
 };
 
 template <class Sys> struct ControlSearch {
@@ -80,10 +82,13 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
   return path;
 }
 
+/// Before each start `keep_going(start)` decides whether it is made.
 template <class Sys>
-ControlSearch<Sys> search_control(const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {}) {
+ControlSearch<Sys> search_control(
+    const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {},
+    const std::function<bool(int start)>& keep_going = [](int) { return true; }) {
   ControlSearch<Sys> found;
-  for (int i = 0; i < options.starts; ++i) {
+  for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
     ControlSolution<Sys> solution = solve_control(task, control_guess(task, stages, i, options), options.solver);
     ++found.outcomes[solution.report.status];
     found.iterations += solution.report.iterations;

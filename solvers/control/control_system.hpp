@@ -9,7 +9,7 @@
 ///     struct Dubins : ControlSystem<Dubins, SE2, /*controls*/ 1, /*equalities*/ 3> {
 ///       template <class S> S cost(const Arrow<S>&, const Controls<S>&, const S& h) const { return h; }
 ///       template <class S> Vector<S, 3> constraint(const Arrow<S>& g, const Controls<S>& u, const S& h) const {
-///         return SE2::log(g) - Vector<S, 3>(h, S(0), h * u(0));
+///         return SE2::log(g) - Vector<S, 3>(h * u(0), h, S(0.0));  // turn, ahead, aside
 ///       }
 ///     };
 ///

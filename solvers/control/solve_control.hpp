@@ -1,7 +1,7 @@
 #pragma once
 /// Solves an optimal control problem on a groupoid, with bounds, inequalities and free duration.
 ///
-///     ControlTask<Dubins> task{{}, SE2::exp(Vector<double, 3>(4, 2, 1)), 5, /*duration_is_free*/ true};
+///     ControlTask<DubinsCar> task{{}, FlowStates<SE2>::arrow({0, 0, 0}, {4, 2, 1}), 5, /*duration_is_free*/ true};
 ///     task.lower(0) = -1, task.upper(0) = 1;
 ///     const auto found = solve_control(task, 200);
 ///     if (!found.report.converged()) std::cerr << found.report.message;

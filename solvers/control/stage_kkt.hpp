@@ -8,7 +8,7 @@
 ///
 ///     StageKkt kkt(transcription);
 ///     kkt.assemble(derivatives, sigma);
-///     const StageKkt::Inertia inertia = kkt.factor(0, 0);
+///     const StageKkt::Inertia inertia = kkt.factor(0, dual);
 ///     kkt.solve(right, step);
 ///
 /// Requires numbers that are finite; others show in `smallest`. No allocation after construction. Nothing throws.

@@ -6,7 +6,7 @@
 ///
 /// All that solves such problems is compiled once: it knows a Transcription, never the groupoid.
 ///
-///     TranscriptionOf<Dubins> transcription(task);  // transcription_of.hpp
+///     TranscriptionOf<DubinsCar> transcription(task, straight_trajectory(task, 100));  // transcription_of.hpp
 ///     StageValues at(transcription.sizes());
 ///     transcription.values(at);  // of the trajectory as it stands
 ///

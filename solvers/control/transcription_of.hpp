@@ -1,10 +1,10 @@
 #pragma once
 /// The Transcription of a ControlSystem: its arrows and controls behind the interface that solvers know.
 ///
-///     TranscriptionOf<Dubins> transcription(task, straight_trajectory(task, 100));
+///     TranscriptionOf<DubinsCar> transcription(task, straight_trajectory(task, 100));
 ///     InteriorPoint solver(transcription);
 ///     solver.solve();
-///     const ControlTrajectory<Dubins>& found = transcription.trajectory();
+///     const ControlTrajectory<DubinsCar>& found = transcription.trajectory();
 ///
 /// A stage's derivatives, exact second ones included, are automatic: in one pass along the arrow's frame where the
 /// groupoid has one, else in a pass for every variable. Nothing throws.
@@ -191,12 +191,12 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     const auto place = [&]<End First, End Second>(const Matrix<double, f, f>& form) {
       const Matrix<double, n, f> rows = groupoid.template frame_to_end<First>(g, form);
       const Matrix<double, f, n> columns = rows.transpose();
-      const Matrix<double, n, n> block = groupoid.template frame_to_end<Second>(g, columns).transpose();
+      const Matrix<double, n, n> transposed = groupoid.template frame_to_end<Second>(g, columns);
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
           const int row = (First == End::source ? 0 : n) + i;
           const int column = (Second == End::source ? 0 : n) + j;
-          square[row * d + column] = square[column * d + row] = block(i, j);
+          square[row * d + column] = square[column * d + row] = transposed(j, i);
         }
     };
     place.template operator()<End::source, End::source>(hessian);

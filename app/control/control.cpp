@@ -1,0 +1,81 @@
+#include "control.hpp"
+
+#include "../command/written.hpp"
+#include "../families/family.hpp"
+#include "control_files.hpp"
+#include "control_problem.hpp"
+
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/progress.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace lagroid::app {
+
+namespace {
+
+std::string listing() {
+  std::string out;
+  for (const ControlProblem* each : control_problems()) {
+    out += fmt::format("{:<18} {}\n    state    {}\n    controls {}\n", each->name(), each->summary(),
+                       fmt::join(each->states(), ", "), fmt::join(each->controls(), ", "));
+    for (const Key& key : each->parameters())
+      out += fmt::format("    {:<24} {}\n", "parameters." + key.name, listed(key));
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_control_options(CLI::App& command, ControlCommandOptions& options) {
+  command.add_option("scene", options.scene, "the scene, a TOML file");
+  command.add_option("--set", options.overrides, "override a key: --set horizon.stages=200 (repeatable)")
+      ->allow_extra_args(false);
+  command.add_flag("--json", options.json, "print one JSON object and nothing else on standard output");
+  command.add_option("--out", options.out, "write trajectory, plot and summary files into this folder");
+  command.add_flag("--list", options.list, "list the problems with their states, controls and parameters");
+}
+
+int control(const ControlCommandOptions& options) {
+  if (options.list) {
+    print(listing());
+    return 0;
+  }
+  if (options.scene.empty())
+    return refuse(options.json, exit_bad_input, "invalid_command_line", "name a scene; see lagroid control --help");
+  const Section scene = read_scene(options.scene, options.overrides);
+  require_command(scene, "control");
+  const ControlProblem& problem = control_problem(scene);
+  std::optional<OutputFolder> folder;
+  if (options.out) folder.emplace(folder_for_control(*options.out, scene));
+  const InterruptGuard guard;
+  ControlResult found;
+  {
+    Progress progress(std::string(problem.name()), 0, !options.json);
+    found = problem.solve(scene, [&](int start) {
+      progress.update(start);
+      return !guard.interrupted();
+    });
+  }
+  std::string text = control_text(found);
+  auto json = control_json(found);
+  if (options.out) {
+    std::string note;
+    const auto files = write_control(found, *options.out, note);
+    tell_written(files, note, text, json);
+  } else {
+    text += "  (no files written; --out DIR writes trajectory, plot and summary)\n";
+  }
+  print(options.json ? json_text(json) + "\n" : text);
+  if (guard.interrupted()) {
+    complain(fmt::format("{}: interrupted after {} iterations", options.scene, found.iterations));
+    return exit_interrupted;
+  }
+  if (found.report.converged()) return code_after_writing(0, options.scene);
+  complain(fmt::format("{}: {}: {}", options.scene, to_string(found.report.status), found.report.message));
+  return exit_failed;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,141 @@
+#include "control_files.hpp"
+
+#include <lagroid/run/files/output.hpp>
+#include <lagroid/run/reports/clock.hpp>
+#include <lagroid/run/reports/markup.hpp>
+#include <lagroid/run/reports/text.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace lagroid::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 6> files{"trajectory.csv", "summary.json", "summary.txt",
+                                           "plot.gp",        "plot.svg",     "plot.png"};
+
+/// A row for each node; controls and costates are those of the arrow that begins there, and none at the last.
+std::string trajectory_csv(const ControlResult& found) {
+  std::string out = "time";
+  for (const auto& name : found.states) out += "," + name;
+  for (const auto& name : found.controls) out += "," + name;
+  const std::size_t costates = found.costate_rows.empty() ? 0 : found.costate_rows.front().size();
+  for (std::size_t i = 0; i < costates; ++i) out += fmt::format(",costate_{}", i + 1);
+  out += "\n";
+  for (std::size_t k = 0; k < found.times.size(); ++k) {
+    fmt::format_to(std::back_inserter(out), "{:.17g}", found.times[k]);
+    for (const double x : found.state_rows[k]) fmt::format_to(std::back_inserter(out), ",{:.17g}", x);
+    const bool has_arrow = k < found.control_rows.size();
+    for (std::size_t i = 0; i < found.controls.size(); ++i)
+      out += has_arrow ? fmt::format(",{:.17g}", found.control_rows[k][i]) : ",";
+    for (std::size_t i = 0; i < costates; ++i)
+      out += has_arrow ? fmt::format(",{:.17g}", found.costate_rows[k][i]) : ",";
+    out += "\n";
+  }
+  return out;
+}
+
+/// States above, controls below, with their bounds as lines.
+std::string gnuplot_script(const ControlResult& found) {
+  std::string out =
+      "# Draws trajectory.csv; run by lagroid, or by hand: gnuplot plot.gp\n"
+      "set datafile separator ','\nset grid\nset key outside right\nset xlabel 'time'\n";
+  std::string states;
+  for (const auto& name : found.states)
+    states += fmt::format("{}'trajectory.csv' using 'time':'{}' with lines linewidth 1.5 title '{}'",
+                          states.empty() ? "" : ", ", name, name);
+  std::string controls;
+  for (std::size_t i = 0; i < found.controls.size(); ++i) {
+    controls += fmt::format("{}'trajectory.csv' using 'time':'{}' with steps linewidth 1.5 title '{}'",
+                            controls.empty() ? "" : ", ", found.controls[i], found.controls[i]);
+    for (const double bound : {found.lower[i], found.upper[i]})
+      if (std::isfinite(bound))
+        controls += fmt::format(", {:.17g} with lines dashtype 2 linecolor 'gray' notitle", bound);
+  }
+  for (const auto& [file, terminal] : {std::pair("plot.svg", "svg size 900,700 background 'white' noenhanced"),
+                                       std::pair("plot.png", "pngcairo size 900,700 noenhanced")})
+    out += fmt::format(
+        "\nset terminal {}\nset output '{}'\nset multiplot layout 2,1\nset title 'state'\nplot {}\n"
+        "set title 'controls, and their bounds'\nplot {}\nunset multiplot\nset output\n",
+        terminal, file, states, controls);
+  return out;
+}
+
+/// "equality 2 of stage 17 by 0.03".
+std::string in_words(const ConstraintViolation& each) {
+  return fmt::format("{} {} of stage {} by {:.2g}", each.is_equality ? "equality" : "inequality", each.row + 1,
+                     each.stage + 1, each.amount);
+}
+
+}  // namespace
+
+std::string control_text(const ControlResult& found) {
+  const ControlReport& r = found.report;
+  std::string out = fmt::format("{} on {}, {} stages: {}\n", found.problem, found.groupoid, found.control_rows.size(),
+                                to_string(r.status));
+  out += fmt::format("  cost             {:.12g}{}\n", r.cost, r.is_strict_minimum ? ", a strict local minimum" : "");
+  out += fmt::format("  duration         {:.12g}\n", found.times.back());
+  out += fmt::format("  KKT residual     {:.1e} stationarity, {:.1e} constraints, {:.1e} complementarity\n",
+                     r.stationarity, r.violation, r.complementarity);
+  if (found.costs.size() > 1) {
+    std::vector<std::string> others;
+    for (std::size_t i = 1; i < std::min<std::size_t>(found.costs.size(), 6); ++i)
+      others.push_back(fmt::format("{:.8g}", found.costs[i]));
+    out += fmt::format("  other solutions  {}{}\n", fmt::join(others, ", "), found.costs.size() > 6 ? ", ..." : "");
+  }
+  std::vector<std::string> outcomes;
+  for (const auto& [status, count] : found.outcomes) outcomes.push_back(fmt::format("{} {}", count, to_string(status)));
+  out += fmt::format("  starts           {}; {} iterations in all, {} of the best; {}\n", fmt::join(outcomes, ", "),
+                     found.iterations, r.iterations, duration(found.seconds));
+  for (const auto& each : r.worst) out += fmt::format("  violated         {}\n", in_words(each));
+  return out;
+}
+
+nlohmann::ordered_json control_json(const ControlResult& found) {
+  const ControlReport& r = found.report;
+  nlohmann::ordered_json out;
+  out["status"] = to_string(r.status);
+  if (!r.message.empty()) out["message"] = r.message;
+  out["problem"] = found.problem;
+  out["groupoid"] = found.groupoid;
+  out["stages"] = found.control_rows.size();
+  out["cost"] = r.cost;
+  out["duration"] = found.times.back();
+  out["strict_minimum"] = r.is_strict_minimum;
+  out["stationarity"] = r.stationarity;
+  out["violation"] = r.violation;
+  out["complementarity"] = r.complementarity;
+  out["iterations"] = r.iterations;
+  out["costs"] = found.costs;
+  out["starts"] = nlohmann::ordered_json::object();
+  for (const auto& [status, count] : found.outcomes) out["starts"][std::string(to_string(status))] = count;
+  out["violated"] = nlohmann::ordered_json::array();
+  for (const auto& each : r.worst) out["violated"].push_back(in_words(each));
+  out["seconds"] = found.seconds;
+  return out;
+}
+
+OutputFolder folder_for_control(const fs::path& folder, const Section& scene) {
+  return {folder, OutputKind::optimum, OutputSource{{"scene", scene.whole()}}, files};
+}
+
+std::vector<fs::path> write_control(const ControlResult& found, const fs::path& folder, std::string& note) {
+  const auto make = [&](const fs::path& staging) {
+    write_text(trajectory_csv(found), staging / "trajectory.csv");
+    write_text(json_text(control_json(found)) + "\n", staging / "summary.json");
+    write_text(visible(control_text(found), "\n"), staging / "summary.txt");
+    write_text(gnuplot_script(found), staging / "plot.gp");
+    return std::vector<std::string>{"trajectory.csv", "summary.json", "summary.txt", "plot.gp"};
+  };
+  return write_and_draw(folder, files, make, {"plot.gp", {"plot.svg", "plot.png"}}, note);
+}
+
+}  // namespace lagroid::app

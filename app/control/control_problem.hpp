@@ -1,0 +1,60 @@
+#pragma once
+/// The optimal control problems that a scene can pose, each behind one interface: what they are called, which numbers
+/// they take, and how they are solved.
+///
+///     const ControlProblem& problem = control_problem(scene);
+///     const ControlResult found = problem.solve(scene, watch);
+
+#include "../keys/key.hpp"
+
+#include <lagroid/solvers/control/control_search.hpp>
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lagroid::app {
+
+/// A solution in the words of its scene: node by node, what a plot and a file show.
+struct ControlResult {
+  std::string problem;
+  std::string groupoid;
+  std::vector<std::string> states;
+  std::vector<std::string> controls;
+  std::vector<double> times;                         ///< of nodes 0 ... N
+  std::vector<std::vector<double>> state_rows;       ///< of nodes
+  std::vector<std::vector<double>> control_rows;     ///< of stages 0 ... N-1
+  std::vector<std::vector<double>> costate_rows;     ///< of stages: of the equations of each displacement
+  std::vector<std::vector<double>> inequality_rows;  ///< of stages: multipliers z
+  std::vector<double> lower;                         ///< bounds of the controls, infinite where there are none
+  std::vector<double> upper;
+  ControlReport report;
+  std::vector<double> costs;              ///< of all distinct solutions, cheapest first
+  std::map<ControlStatus, int> outcomes;  ///< of the starts
+  int iterations = 0;                     ///< of all starts
+  double seconds = 0;                     ///< of processor time
+};
+
+class ControlProblem {
+ public:
+  virtual ~ControlProblem() = default;
+  virtual std::string_view name() const = 0;
+  virtual std::string_view summary() const = 0;
+  virtual std::vector<std::string> states() const = 0;
+  virtual std::vector<std::string> controls() const = 0;
+  virtual std::vector<Key> parameters() const = 0;
+  /// Reads the scene and solves it. `keep_going` is called before each start. Throws SceneError.
+  virtual ControlResult solve(const Section& scene, const std::function<bool(int start)>& keep_going) const = 0;
+};
+
+/// All of this program.
+std::span<const ControlProblem* const> control_problems();
+/// The one that the scene names. Throws SceneError.
+const ControlProblem& control_problem(const Section& scene);
+/// The keys of such scenes.
+Table control_table();
+
+}  // namespace lagroid::app

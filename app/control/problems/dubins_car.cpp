@@ -1,0 +1,14 @@
+#include <lagroid/systems/control/flows/dubins_car.hpp>
+
+#include "../problem_of.hpp"
+#include "problems.hpp"
+
+namespace lagroid::app {
+
+const ControlProblem& dubins_car_problem() {
+  static const ControlProblemOf<DubinsCar> problem("dubins_car",
+                                                   "a car at unit speed that steers: the shortest way between poses");
+  return problem;
+}
+
+}  // namespace lagroid::app

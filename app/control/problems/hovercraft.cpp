@@ -1,0 +1,13 @@
+#include <lagroid/systems/control/flows/hovercraft.hpp>
+
+#include "../problem_of.hpp"
+#include "problems.hpp"
+
+namespace lagroid::app {
+
+const ControlProblem& hovercraft_problem() {
+  static const ControlProblemOf<Hovercraft> problem("hovercraft", "a hovercraft with one engine and a torque");
+  return problem;
+}
+
+}  // namespace lagroid::app

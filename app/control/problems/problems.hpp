@@ -1,0 +1,18 @@
+#pragma once
+/// The problems of the library, a file each.
+
+#include "../control_problem.hpp"
+
+namespace lagroid::app {
+
+const ControlProblem& double_integrator_problem();
+const ControlProblem& swing_up_problem();
+const ControlProblem& planar_mass_problem();
+const ControlProblem& low_thrust_problem();
+const ControlProblem& dubins_car_problem();
+const ControlProblem& hovercraft_problem();
+const ControlProblem& steered_sleigh_problem();
+const ControlProblem& steered_car_problem();
+const ControlProblem& satellite_turn_problem();
+
+}  // namespace lagroid::app

@@ -1,0 +1,13 @@
+#include <lagroid/systems/control/flows/steered_car.hpp>
+
+#include "../problem_of.hpp"
+#include "problems.hpp"
+
+namespace lagroid::app {
+
+const ControlProblem& steered_car_problem() {
+  static const ControlProblemOf<SteeredCar> problem("steered_car", "a car that accelerates and steers, as to park");
+  return problem;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,203 @@
+#pragma once
+/// Laws of optimal control problems, that their derivatives are those of their values, and of their solutions, by
+/// differences of values alone:
+///
+///     d(l + <lambda, phi> + <z, gamma>) = 0,    phi = 0,    gamma <= 0,    z >= 0,    z gamma = 0.
+///
+/// A solver judges itself by the derivatives that it was given; these laws do not use them.
+///
+///     TranscriptionOf<DubinsCar> transcription(task, straight_trajectory(task, 20));
+///     const laws::LawReport report = laws::transcription_laws(transcription);
+///     std::cout << report;
+///
+/// Requires a trajectory at which all values are finite. Returns a LawReport; nothing throws.
+
+#include <lagroid/core/testing/law_report.hpp>
+#include <lagroid/solvers/control/transcription.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace lagroid::laws {
+
+namespace detail {
+
+inline Law control_law(const std::string& name, double defect, double tolerance, int samples) {
+  Law out;
+  out.name = name;
+  out.samples = samples;
+  out.worst = worst({defect});
+  out.tolerance = tolerance;
+  return out;
+}
+
+inline void randomise(StageRows& rows, std::mt19937_64& generator, double low, double high) {
+  std::uniform_real_distribution<double> uniform(low, high);
+  for (double& x : rows.numbers()) x = uniform(generator);
+}
+
+inline TrajectoryDisplacement random_displacement(const Transcription& of, std::mt19937_64& generator) {
+  TrajectoryDisplacement out(of.sizes());
+  randomise(out.nodes, generator, -1, 1);
+  randomise(out.controls, generator, -1, 1);
+  const long last = of.sizes().stages;
+  for (int i = 0; i < of.sizes().node; ++i) {
+    if (!of.free_start()[std::size_t(i)]) out.nodes[0][i] = 0;
+    if (!of.free_end()[std::size_t(i)]) out.nodes[last][i] = 0;
+  }
+  if (of.duration_is_free()) out.duration = std::uniform_real_distribution<double>(-1, 1)(generator);
+  return out;
+}
+
+/// The displacement of a stage's variables.
+inline std::vector<double> stage_part(const TranscriptionSizes& sizes, const TrajectoryDisplacement& of, long stage) {
+  std::vector<double> x(of.nodes[stage], of.nodes[stage] + sizes.node);
+  x.insert(x.end(), of.nodes[stage + 1], of.nodes[stage + 1] + sizes.node);
+  x.insert(x.end(), of.controls[stage], of.controls[stage] + sizes.control);
+  x.push_back(of.duration);
+  return x;
+}
+
+/// The first and second derivative of f at 0 by central differences, extrapolated.
+struct Differences {
+  double first;
+  double second;
+};
+template <class F> Differences differences(const F& f, double h) {
+  const double middle = f(0);
+  const auto at = [&](double e) -> Differences {
+    const double forward = f(e);
+    const double backward = f(-e);
+    return {(forward - backward) / (2 * e), (forward - 2 * middle + backward) / (e * e)};
+  };
+  const Differences coarse = at(2 * h);
+  const Differences fine = at(h);
+  return {(4 * fine.first - coarse.first) / 3, (4 * fine.second - coarse.second) / 3};
+}
+
+/// l + <lambda, phi> + <z, gamma> of one stage.
+inline double stage_lagrangian(const TranscriptionSizes& sizes, const StageValues& at, const StageRows& lambda,
+                               const StageRows& z, long stage) {
+  double sum = at.cost[stage][0];
+  for (int i = 0; i < sizes.equalities_of(stage); ++i) sum += lambda[stage][i] * at.equality[stage][i];
+  for (int i = 0; i < sizes.inequality; ++i) sum += z[stage][i] * at.inequality[stage][i];
+  return sum;
+}
+
+}  // namespace detail
+
+/// Of the derivatives of a problem, at the trajectory where it stands, along random displacements.
+inline LawReport transcription_laws(Transcription& subject, int samples = 5, std::uint64_t seed = 1) {
+  const TranscriptionSizes sizes = subject.sizes();
+  std::mt19937_64 generator(seed);
+  StageRows lambda(sizes.stages, sizes.equality);
+  StageRows z(sizes.stages, sizes.inequality);
+  detail::randomise(lambda, generator, -1, 1);
+  detail::randomise(z, generator, 0, 1);
+  StageDerivatives derivatives(sizes);
+  StageValues tried(sizes);
+  subject.derivatives(lambda, z, derivatives);
+  const int d = sizes.variables();
+  double cost = 0;
+  double equality = 0;
+  double inequality = 0;
+  double hessian = 0;
+  double symmetry = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    const TrajectoryDisplacement by = detail::random_displacement(subject, generator);
+    const auto along = [&](const auto& value) {
+      return detail::differences(
+          [&](double e) {
+            subject.try_displacement(by, e);
+            subject.values(tried);
+            return value();
+          },
+          1e-3);
+    };
+    for (long k = 0; k < sizes.stages; ++k) {
+      const std::vector<double> x = detail::stage_part(sizes, by, k);
+      const auto slope = [&](const double* row) {
+        double sum = 0;
+        for (int q = 0; q < d; ++q) sum += row[q] * x[std::size_t(q)];
+        return sum;
+      };
+      const auto defect = [](double found, double wanted) { return std::abs(found - wanted) / (1 + std::abs(wanted)); };
+      cost = std::max(cost, defect(slope(derivatives.gradient[k]), along([&] { return tried.cost[k][0]; }).first));
+      for (int i = 0; i < sizes.equalities_of(k); ++i)
+        equality = std::max(equality, defect(slope(derivatives.equality[k] + i * d),
+                                             along([&] { return tried.equality[k][i]; }).first));
+      for (int i = 0; i < sizes.inequality; ++i)
+        inequality = std::max(inequality, defect(slope(derivatives.inequality[k] + i * d),
+                                                 along([&] { return tried.inequality[k][i]; }).first));
+      double curvature = 0;
+      for (int q = 0; q < d; ++q) {
+        curvature += x[std::size_t(q)] * slope(derivatives.hessian[k] + q * d);
+        for (int r = 0; r < q; ++r)
+          symmetry =
+              std::max(symmetry, std::abs(derivatives.hessian[k][q * d + r] - derivatives.hessian[k][r * d + q]));
+      }
+      const auto lagrangian = [&] { return detail::stage_lagrangian(sizes, tried, lambda, z, k); };
+      hessian = std::max(hessian, defect(curvature, along(lagrangian).second));
+    }
+  }
+  const int tested = samples * int(sizes.stages);
+  LawReport report{"optimal control problem", {}};
+  report.laws.push_back(detail::control_law("the cost's gradient is that of its values", cost, 1e-9, tested));
+  report.laws.push_back(
+      detail::control_law("the equalities' derivatives are those of their values", equality, 1e-9, tested));
+  if (sizes.inequality > 0)
+    report.laws.push_back(
+        detail::control_law("the inequalities' derivatives are those of their values", inequality, 1e-9, tested));
+  report.laws.push_back(detail::control_law("the Hessian is that of the stage's Lagrangian", hessian, 1e-6, tested));
+  report.laws.push_back(detail::control_law("the Hessian is symmetric", symmetry, 1e-10, tested));
+  return report;
+}
+
+/// Of a solution with its multipliers, which `subject` stands at.
+inline LawReport optimality_laws(Transcription& subject, const StageRows& lambda, const StageRows& z, int samples = 20,
+                                 std::uint64_t seed = 1) {
+  const TranscriptionSizes sizes = subject.sizes();
+  std::mt19937_64 generator(seed);
+  StageValues tried(sizes);
+  double stationarity = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    const TrajectoryDisplacement by = detail::random_displacement(subject, generator);
+    const auto lagrangian = [&](double e) {
+      subject.try_displacement(by, e);
+      subject.values(tried);
+      double sum = 0;
+      for (long k = 0; k < sizes.stages; ++k) sum += detail::stage_lagrangian(sizes, tried, lambda, z, k);
+      return sum;
+    };
+    stationarity = std::max(stationarity, std::abs(detail::differences(lagrangian, 1e-3).first));
+  }
+  TrajectoryDisplacement none(sizes);
+  subject.try_displacement(none, 0);
+  subject.values(tried);
+  double equality = 0;
+  double inequality = 0;
+  double sign = 0;
+  double complementarity = 0;
+  for (long k = 0; k < sizes.stages; ++k) {
+    for (int i = 0; i < sizes.equalities_of(k); ++i) equality = std::max(equality, std::abs(tried.equality[k][i]));
+    for (int i = 0; i < sizes.inequality; ++i) {
+      inequality = std::max(inequality, tried.inequality[k][i]);
+      sign = std::max(sign, -z[k][i]);
+      complementarity = std::max(complementarity, std::abs(z[k][i] * tried.inequality[k][i]));
+    }
+  }
+  LawReport report{"solution of an optimal control problem", {}};
+  report.laws.push_back(detail::control_law("the Lagrangian is stationary", stationarity, 1e-6, samples));
+  report.laws.push_back(detail::control_law("equalities hold", equality, 1e-9, int(sizes.stages)));
+  if (sizes.inequality > 0) {
+    report.laws.push_back(detail::control_law("inequalities hold", inequality, 1e-9, int(sizes.stages)));
+    report.laws.push_back(detail::control_law("multipliers have their sign", sign, 0, int(sizes.stages)));
+    report.laws.push_back(detail::control_law("complementarity", complementarity, 1e-9, int(sizes.stages)));
+  }
+  return report;
+}
+
+}  // namespace lagroid::laws

@@ -1,0 +1,78 @@
+// `lagroid control`: every example, files, refusals, endings.
+#include "command_line.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace {
+
+class Control : public CommandLine {
+ protected:
+  static std::string scene(const std::string& name) { return "control " + example("control/" + name); }
+};
+
+TEST_F(Control, EveryExampleFindsAMinimum) {
+  int examples = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(LAGROID_EXAMPLES) / "control")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++examples;
+    const std::string name = entry.path().stem();
+    const Outcome r = run(scene(name) + " --json --set horizon.stages=40");
+    ASSERT_EQ(r.code, 0) << name << r.err << r.out;
+    const auto found = nlohmann::json::parse(r.out);
+    EXPECT_EQ(found.at("status"), "converged") << name;
+    EXPECT_TRUE(found.at("strict_minimum").get<bool>()) << name;
+    EXPECT_LT(found.at("violation").get<double>(), 1e-9) << name;
+    EXPECT_EQ(found.at("costs").at(0), found.at("cost")) << name;
+  }
+  EXPECT_GE(examples, 9);
+}
+
+TEST_F(Control, TheShortestWayBesideIsThreeArcs) {
+  const Outcome r = run(scene("shortest_way") + " --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NEAR(nlohmann::json::parse(r.out).at("cost").get<double>(), 7.783185307179586, 1e-4);
+}
+
+TEST_F(Control, WritesTrajectoryAndPlotAndRunHandsOver) {
+  const std::string out = (folder_ / "stop").string();
+  const Outcome r = run("run " + example("control/fastest_stop") + " --out " + out);
+  ASSERT_EQ(r.code, 0) << r.err;
+  for (const char* name : {"trajectory.csv", "summary.json", "summary.txt", "plot.gp"})
+    EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
+  std::ifstream file(fs::path(out) / "trajectory.csv");
+  std::string header;
+  std::getline(file, header);
+  EXPECT_EQ(header, "time,x,v,u,costate_1,costate_2");
+  long rows = 0;
+  for (std::string line; std::getline(file, line);) ++rows;
+  EXPECT_EQ(rows, 101);
+}
+
+TEST_F(Control, WhatCannotBeIsTypedAndNamed) {
+  const Outcome r =
+      run(scene("fastest_stop") + " --json --set horizon.free=false --set horizon.duration=1 --set solver.starts=1");
+  EXPECT_EQ(r.code, 3);
+  const auto found = nlohmann::json::parse(r.out);
+  EXPECT_EQ(found.at("status"), "infeasible");
+  EXPECT_FALSE(found.at("violated").empty());
+  EXPECT_NE(r.err.find("relax the constraints"), std::string::npos) << r.err;
+}
+
+TEST_F(Control, MistakesAreOneLine) {
+  const auto refused = [&](const std::string& set, const std::string& words) {
+    const Outcome r = run(scene("fastest_stop") + " --set " + set);
+    EXPECT_EQ(r.code, 2) << set << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << set << ": " << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  };
+  refused("bounds.u=[1,-1]", "1 is not below -1");
+  refused("bounds.v=[0,1]", "unknown");
+  refused("boundary.end=[0]", "x, v");
+  refused("horizon.duration=-1", "positive");
+  refused("horizon.stages=1", "2");
+  refused("control=dubins", "dubins_car");
+}
+
+}  // namespace

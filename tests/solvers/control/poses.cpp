@@ -1,0 +1,104 @@
+// Optimal control on SE(2) and beside it: Dubins' cars, a hovercraft, a sleigh, a car that steers.
+#include "support.hpp"
+
+#include <lagroid/systems/control/flows/dubins_car.hpp>
+#include <lagroid/systems/control/flows/hovercraft.hpp>
+#include <lagroid/systems/control/flows/steered_car.hpp>
+#include <lagroid/systems/control/flows/steered_sleigh.hpp>
+
+#include <numbers>
+
+namespace lagroid {
+namespace {
+
+using control_tests::expect_laws;
+using control_tests::expect_second_order;
+
+ControlTask<DubinsCar> dubins(Vector<double, 3> from, Vector<double, 3> to, double curvature, double guess) {
+  ControlTask<DubinsCar> task{{}, FlowStates<SE2>::arrow(from, to), guess, true};
+  task.lower(0) = -curvature;
+  task.upper(0) = curvature;
+  return task;
+}
+
+TEST(DubinsCars, FindTheShortestWays) {
+  constexpr double pi = std::numbers::pi;
+  expect_second_order("right, ahead", dubins({0, 0, 0}, {4, 2, pi / 3}, 1, 5), 4.521646683033829, 0.87, false);
+  expect_second_order("back", dubins({0, 0, pi / 2}, {0.5, 0.2, -pi / 2}, 1, 5), 6.7140094618408845, 14.7, false, 12);
+  expect_second_order("beside", dubins({0, 0, 0}, {1, 1, -2.5}, 1, 5), 5.639685109805628, 11, false, 12);
+  expect_second_order("wide", dubins({1, -1, 2}, {-3, 2, 0.5}, 0.5, 10), 14.698627564994403, 86, false);
+  expect_second_order("parallel", dubins({0, 0, 0}, {0, 1.5, 0}, 1, 5), 7.783185307179586, 0.13, false, 12);
+  expect_second_order("away", dubins({0, 0, 0.3}, {3, -3, 3}, 1, 6), 6.61794545883391, 1.6, false, 12);
+}
+
+// The problem is invariant under SE(2): the costate, carried to where the car started, is one momentum all the way.
+TEST(DubinsCars, CostatesConserveTheirMomentum) {
+  const auto task = dubins({0, 0, 0}, {4, 2, 1}, 1, 5);
+  TranscriptionOf<DubinsCar> transcription(task, straight_trajectory(task, 50));
+  InteriorPoint solver(transcription);
+  ASSERT_TRUE(solver.solve().converged());
+  StageDerivatives derivatives(transcription.sizes());
+  transcription.derivatives(solver.costates(), solver.inequality_multipliers(), derivatives);
+  const int d = transcription.sizes().variables();
+  const auto momenta = [&](const StageRows& costates) {
+    std::vector<Vector<double, 3>> all;
+    Matrix<double, 3, 3> reached = Matrix<double, 3, 3>::Identity();
+    for (long k = 0; k < 50; ++k) {
+      reached = SE2::multiply(reached, transcription.trajectory().arrows[std::size_t(k)]);
+      Vector<double, 3> at_target = Vector<double, 3>::Zero();
+      for (int row = 0; row < 3; ++row)
+        for (int i = 0; i < 3; ++i) at_target(i) += costates[k][row] * derivatives.equality[k][row * d + 3 + i];
+      all.emplace_back(SE2::adjoint(SE2::inverse(reached)).transpose() * at_target);
+    }
+    return all;
+  };
+  const auto spread = [](const std::vector<Vector<double, 3>>& all) {
+    double most = 0;
+    for (const auto& each : all) most = std::max(most, (each - all.front()).norm());
+    return most;
+  };
+  const auto kept = momenta(solver.costates());
+  EXPECT_GT(kept.front().norm(), 0.1);
+  EXPECT_LT(spread(kept), 1e-8);
+  StageRows wrong = solver.costates();
+  wrong[25][1] += 1e-3;
+  EXPECT_GT(spread(momenta(wrong)), 1e-4);
+}
+
+TEST(Hovercrafts, TurnAndMove) {
+  using States = FlowStates<Hovercraft::GroupoidType>;
+  States::State end;
+  end << 1, 1, -1.5 * std::numbers::pi, 0, 0, 0;
+  ControlTask<Hovercraft> task{{}, States::arrow(States::State::Zero(), end), 4};
+  expect_second_order("free", task, 2.532569163356292, 52, true);
+  task.lower << -1.1, -0.75;
+  task.upper << 1.1, 0.75;
+  const auto found = search_control(task, 200, {.starts = 6});
+  ASSERT_FALSE(found.minima.empty());
+  EXPECT_NEAR(found.minima.front().report.cost, 2.5368197962538357, 5 * 52.0 / 4e4);
+}
+
+TEST(SteeredSleighs, MoveAside) {
+  using States = FlowStates<SteeredSleigh::GroupoidType>;
+  States::State end;
+  end << 2, 1, 0, 0, 0;
+  ControlTask<SteeredSleigh> task{{}, States::arrow(States::State::Zero(), end), 4};
+  task.lower << -0.8, -0.25;
+  task.upper << 0.8, 0.25;
+  expect_second_order("sleigh", task, 1.1091270307157488, 2.1, true, 1);
+  expect_laws(task, 20);
+}
+
+TEST(SteeredCars, WithABoundOfTheirSteering) {
+  using States = FlowStates<SteeredCar::GroupoidType>;
+  States::State end;
+  end << 3, 1.5, 0, 0, 0;
+  ControlTask<SteeredCar> task{{}, States::arrow(States::State::Zero(), end), 5};
+  task.system.largest_steering = 0.4;
+  expect_second_order("car", task, 6.124938865647869, 116, false, 3);
+}
+
+TEST(ControlOnSE2, DerivativesAndOptimality) { expect_laws(dubins({0, 0, 0}, {4, 2, 1}, 1, 5), 20); }
+
+}  // namespace
+}  // namespace lagroid

@@ -1,0 +1,183 @@
+// The interior point method itself: its linear algebra, what it refuses, what it says of the infeasible; laws that
+// fail.
+#include "support.hpp"
+
+#include <lagroid/systems/control/flows/double_integrator.hpp>
+#include <lagroid/systems/control/flows/dubins_car.hpp>
+
+#include "../../support/allocation_counter.hpp"
+
+#include <Eigen/Dense>
+
+#include <random>
+
+namespace lagroid {
+namespace {
+
+ControlTask<DoubleIntegrator> rest_to_rest() { return {{}, {{0, 0}, {1, 0}}, 1}; }
+
+TEST(SymmetricFactorsSized, SolveAndCountNegativeEigenvalues) {
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  for (const int size : {1, 2, 5, 12, 23}) {
+    SymmetricFactorSized factor(size);
+    for (int sample = 0; sample < 20; ++sample) {
+      Eigen::MatrixXd a(size, size);
+      for (double& x : a.reshaped()) x = normal(generator);
+      a = (a + a.transpose()).eval();
+      if (sample % 2 == 0) a.topLeftCorner(size / 2, size / 2).setZero();  // as in a KKT matrix
+      const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a).eigenvalues();
+      if (eigenvalues.cwiseAbs().minCoeff() < 1e-3) continue;
+      factor.compute(a.data());
+      EXPECT_EQ(factor.negative(), (eigenvalues.array() < 0).count());
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> b(size, 2);
+      for (double& x : b.reshaped()) x = normal(generator);
+      const Eigen::MatrixXd right = b;
+      factor.solve_in_place(b.data(), 2);
+      EXPECT_LT((a * b - right).norm(), 1e-9 * right.norm());
+    }
+  }
+}
+
+TEST(SymmetricFactorsSized, ShowASingularMatrix) {
+  SymmetricFactorSized factor(2);
+  const double singular[] = {1, 1, 1, 1};
+  factor.compute(singular);
+  EXPECT_LT(factor.smallest(), 1e-15);
+  const double none[] = {NAN, 0, 0, 1};
+  factor.compute(none);
+  EXPECT_EQ(factor.smallest(), 0);
+}
+
+TEST(ControlSolvers, BadTasksAreRefusedInWords) {
+  auto task = rest_to_rest();
+  task.lower(0) = 1;
+  task.upper(0) = -1;
+  try {
+    solve_control(task, 10);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("control 1: its lower bound 1 is not below its upper bound -1"),
+              std::string::npos)
+        << error.what();
+  }
+  task = rest_to_rest();
+  task.duration = 0;
+  EXPECT_THROW(solve_control(task, 10), std::invalid_argument);
+  EXPECT_THROW(solve_control(rest_to_rest(), 1), std::invalid_argument);
+}
+
+// One second from rest to rest over a distance of one takes a force of four.
+TEST(ControlSolvers, AnInfeasibleProblemIsTypedAndNamesWhatIsViolated) {
+  auto task = rest_to_rest();
+  task.lower(0) = -3;
+  task.upper(0) = 3;
+  const auto found = solve_control(task, 50);
+  EXPECT_EQ(found.report.status, ControlStatus::infeasible);
+  EXPECT_FALSE(found.report.worst.empty());
+  EXPECT_GT(found.report.violation, 1e-3);
+  EXPECT_FALSE(found.report.message.empty());
+  task.lower(0) = -4.5;
+  task.upper(0) = 4.5;
+  EXPECT_TRUE(solve_control(task, 50).report.converged());
+}
+
+TEST(ControlSolvers, AStartThatIsNotFiniteIsTyped) {
+  auto start = straight_trajectory(rest_to_rest(), 10);
+  start.controls[3](0) = NAN;
+  const auto found = solve_control(rest_to_rest(), start);
+  EXPECT_EQ(found.report.status, ControlStatus::not_finite);
+}
+
+TEST(ControlSolvers, TooFewIterationsAreTypedAndTheLastIterateIsKept) {
+  auto task = rest_to_rest();
+  task.system.largest_speed = 1.25;
+  const auto found = solve_control(task, 50, {.max_iterations = 3});
+  EXPECT_EQ(found.report.status, ControlStatus::not_converged);
+  EXPECT_EQ(found.trajectory.arrows.size(), 50U);
+  EXPECT_TRUE(std::isfinite(found.report.cost));
+}
+
+// A free end costs less, and the momentum there vanishes: transversality.
+TEST(ControlSolvers, AnEndMayBeFreeInPart) {
+  auto task = rest_to_rest();
+  const double to_rest = solve_control(task, 100).report.cost;
+  task.free_end[1] = true;
+  const auto found = solve_control(task, 100);
+  ASSERT_TRUE(found.report.converged());
+  EXPECT_NEAR(found.report.cost, to_rest / 4, 1e-2);  // 12 and 3, by the calculus of variations
+  // lambda is that of the midpoint: carried to the end by half a step it vanishes along what is free.
+  const auto& last = found.costates.back();
+  EXPECT_NEAR(last[1] - 0.5 * found.trajectory.step * last[0], 0, 1e-9);
+  task = rest_to_rest();
+  task.free_start[1] = true;
+  EXPECT_NEAR(solve_control(task, 100).report.cost, to_rest / 4, 1e-2);
+}
+
+TEST(ControlSolvers, AnIterationTakesNoMemory) {
+  auto task = rest_to_rest();
+  task.system.largest_speed = 1.25;
+  const auto allocations = [&](int iterations) {
+    TranscriptionOf<DoubleIntegrator> transcription(task, straight_trajectory(task, 50));
+    InteriorPoint solver(transcription, {.max_iterations = iterations});
+    const long before = allocation_count();
+    solver.solve();
+    return allocation_count() - before;
+  };
+  if (allocation_count() < 0) GTEST_SKIP() << "allocations are not counted here";
+  // The filter keeps a pair of numbers now and then; all else is there before.
+  EXPECT_LE(allocations(10) - allocations(2), 8);
+}
+
+/// A problem whose derivatives are not those of its values.
+class Broken final : public Transcription {
+ public:
+  enum class What { gradient, hessian };
+  Broken(Transcription& of, What what) : of_(of), what_(what) {}
+  const TranscriptionSizes& sizes() const override { return of_.sizes(); }
+  const std::vector<bool>& free_start() const override { return of_.free_start(); }
+  const std::vector<bool>& free_end() const override { return of_.free_end(); }
+  bool duration_is_free() const override { return of_.duration_is_free(); }
+  void values(StageValues& out) const override { of_.values(out); }
+  void derivatives(const StageRows& lambda, const StageRows& z, StageDerivatives& out) const override {
+    of_.derivatives(lambda, z, out);
+    (what_ == What::gradient ? out.equality : out.hessian)[3][0] += 1e-3;
+  }
+  void try_displacement(const TrajectoryDisplacement& by, double fraction) override {
+    of_.try_displacement(by, fraction);
+  }
+  void accept() override { of_.accept(); }
+
+ private:
+  Transcription& of_;
+  What what_;
+};
+
+TEST(BrokenTranscription, FailsTheLawsOfItsDerivatives) {
+  ControlTask<DubinsCar> task{{}, FlowStates<SE2>::arrow({0, 0, 0}, {4, 2, 1}), 5, true};
+  TranscriptionOf<DubinsCar> right(task, control_guess(task, 10, 3));
+  EXPECT_TRUE(laws::transcription_laws(right).holds()) << laws::transcription_laws(right);
+  Broken gradient(right, Broken::What::gradient);
+  EXPECT_FALSE(laws::transcription_laws(gradient).law("the equalities' derivatives are those of their values").holds());
+  Broken hessian(right, Broken::What::hessian);
+  EXPECT_FALSE(laws::transcription_laws(hessian).law("the Hessian is that of the stage's Lagrangian").holds());
+}
+
+TEST(BrokenSolution, FailsTheLawsOfOptimality) {
+  auto task = rest_to_rest();
+  task.system.largest_speed = 1.25;
+  TranscriptionOf<DoubleIntegrator> transcription(task, straight_trajectory(task, 20));
+  InteriorPoint solver(transcription);
+  ASSERT_TRUE(solver.solve().converged());
+  StageRows lambda = solver.costates();
+  StageRows z = solver.inequality_multipliers();
+  EXPECT_TRUE(laws::optimality_laws(transcription, lambda, z).holds());
+  lambda[7][0] += 1e-3;
+  EXPECT_FALSE(laws::optimality_laws(transcription, lambda, z).law("the Lagrangian is stationary").holds());
+  lambda = solver.costates();
+  z[2][0] += 1;
+  EXPECT_FALSE(laws::optimality_laws(transcription, lambda, z).law("complementarity").holds());
+}
+
+}  // namespace
+}  // namespace lagroid
