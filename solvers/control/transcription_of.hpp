@@ -190,7 +190,9 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     double* square = out.hessian[stage];
     const auto place = [&]<End First, End Second>(const Matrix<double, f, f>& form) {
       const Matrix<double, n, f> rows = groupoid.template frame_to_end<First>(g, form);
-      const Matrix<double, f, n> columns = rows.transpose();
+      Matrix<double, f, n> columns;
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < f; ++j) columns(j, i) = rows(i, j);
       const Matrix<double, n, n> transposed = groupoid.template frame_to_end<Second>(g, columns);
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {

@@ -5,7 +5,7 @@
 ///     task.system.largest_speed = 1.25;
 ///     const auto found = solve_control(task, 100);  // cost near 125 / 9
 ///
-/// Requires a positive largest speed. State (x, v).
+/// State (x, v). A largest speed of zero is none.
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/pair.hpp>
@@ -20,11 +20,12 @@
 namespace lagroid {
 
 struct DoubleIntegrator : ControlledFlow<DoubleIntegrator, Pair<2>, 1, 2> {
-  double largest_speed = 1e6;  ///< of |v|
+  double largest_speed = 0;  ///< of |v|; 0: any
   ControlCost cost_of = ControlCost::effort;
   static auto parameters() {
-    return std::tuple(parameter("largest_speed", &DoubleIntegrator::largest_speed, "m/s", "|v| at most", positive),
-                      choice("cost", &DoubleIntegrator::cost_of, control_cost_words, "integral of |u|^2, or time"));
+    return std::tuple(
+        parameter("largest_speed", &DoubleIntegrator::largest_speed, "m/s", "|v| at most; 0: any", nonnegative),
+        choice("cost", &DoubleIntegrator::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 2> states{"x", "v"};
   static constexpr std::array<std::string_view, 1> control_names{"u"};
@@ -34,6 +35,7 @@ struct DoubleIntegrator : ControlledFlow<DoubleIntegrator, Pair<2>, 1, 2> {
     return running_cost_of(cost_of, u);
   }
   template <class S> Vector<S, 2> inequality(const PairArrow<S, 2>& g, const Vector<S, 1>&, const S&) const {
+    if (largest_speed == 0) return {S(-1.0), S(-1.0)};
     return {g.target(1) - largest_speed, -g.target(1) - largest_speed};
   }
 };

@@ -5,7 +5,8 @@
 ///     task.system.largest_thrust = 0.1;
 ///     const auto found = search_control(task, 100);  // control_search.hpp
 ///
-/// Requires positive mu and thrust, and trajectories that stay off the center. State (x, y, vx, vy).
+/// Requires a positive mu, and trajectories that stay off the center. State (x, y, vx, vy). A largest thrust of zero is
+/// none.
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/pair.hpp>
@@ -21,12 +22,12 @@
 namespace lagroid {
 
 struct LowThrust : ControlledFlow<LowThrust, Pair<4>, 2, 1> {
-  double strength = 1;  ///< mu
-  double largest_thrust = 1e6;
+  double strength = 1;        ///< mu
+  double largest_thrust = 0;  ///< 0: any
   ControlCost cost_of = ControlCost::effort;
   static auto parameters() {
     return std::tuple(parameter("strength", &LowThrust::strength, "1", "mu", positive),
-                      parameter("largest_thrust", &LowThrust::largest_thrust, "1", "|u| at most", positive),
+                      parameter("largest_thrust", &LowThrust::largest_thrust, "1", "|u| at most; 0: any", nonnegative),
                       choice("cost", &LowThrust::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 4> states{"x", "y", "vx", "vy"};
@@ -42,6 +43,7 @@ struct LowThrust : ControlledFlow<LowThrust, Pair<4>, 2, 1> {
     return running_cost_of(cost_of, u);
   }
   template <class S> Vector<S, 1> inequality(const PairArrow<S, 4>&, const Vector<S, 2>& u, const S&) const {
+    if (largest_thrust == 0) return Vector<S, 1>(S(-1.0));
     return Vector<S, 1>((u(0) * u(0) + u(1) * u(1)) * (1 / (largest_thrust * largest_thrust)) - 1.0);
   }
 };

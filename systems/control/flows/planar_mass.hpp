@@ -5,7 +5,7 @@
 ///     task.system.disk_radius = 1;
 ///     const auto found = solve_control(task, 200);
 ///
-/// Requires a positive bound of the force; a disk of radius zero is none. State (x, y, vx, vy).
+/// State (x, y, vx, vy). A largest force of zero is none, and so is a disk of radius zero.
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/groupoids/pair.hpp>
@@ -20,12 +20,12 @@
 namespace lagroid {
 
 struct PlanarMass : ControlledFlow<PlanarMass, Pair<4>, 2, 2> {
-  double largest_force = 1e6;
+  double largest_force = 0;  ///< 0: any
   Vector<double, 2> disk_center{0, 0};
   double disk_radius = 0;
   ControlCost cost_of = ControlCost::effort;
   static auto parameters() {
-    return std::tuple(parameter("largest_force", &PlanarMass::largest_force, "1", "|u| at most", positive),
+    return std::tuple(parameter("largest_force", &PlanarMass::largest_force, "1", "|u| at most; 0: any", nonnegative),
                       parameter("disk_center", &PlanarMass::disk_center, "m", "of the disk to keep out of"),
                       parameter("disk_radius", &PlanarMass::disk_radius, "m", "its radius; 0: no disk", nonnegative),
                       choice("cost", &PlanarMass::cost_of, control_cost_words, "integral of |u|^2, or time"));
@@ -40,7 +40,8 @@ struct PlanarMass : ControlledFlow<PlanarMass, Pair<4>, 2, 2> {
     return running_cost_of(cost_of, u);
   }
   template <class S> Vector<S, 2> inequality(const PairArrow<S, 4>& g, const Vector<S, 2>& u, const S&) const {
-    const S force = (u(0) * u(0) + u(1) * u(1)) * (1 / (largest_force * largest_force)) - 1.0;
+    S force(-1.0);
+    if (largest_force > 0) force = (u(0) * u(0) + u(1) * u(1)) * (1 / (largest_force * largest_force)) - 1.0;
     if (disk_radius == 0) return {force, S(-1.0)};
     const S x = g.target(0) - disk_center(0);
     const S y = g.target(1) - disk_center(1);
