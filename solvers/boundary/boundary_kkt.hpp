@@ -112,15 +112,20 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     eliminated_.resize(count);
     Inertia inertia;
     for (std::size_t k = 0; k < count; ++k) {
-      Block s = scale_.asDiagonal() * diagonal_[k] * scale_.asDiagonal();
-      s.diagonal().template head<m>().array() -= dual;
-      s.diagonal().template tail<n>().array() += primal + stiffness;
-      if (k + 1 == count) s.template bottomRightCorner<fixed, fixed>().setIdentity();
+      Block s;
+      for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) s(i, j) = scale_(i) * diagonal_[k](i, j) * scale_(j);
+        s(i, i) += i < m ? -dual : primal + stiffness;
+      }
+      if (k + 1 == count)
+        for (int i = phis; i < size; ++i)
+          for (int j = phis; j < size; ++j) s(i, j) = i == j ? 1 : 0;
       if (k > 0) {
-        Coupling c = scale_.asDiagonal() * coupling_[k] * scale_.template tail<n>().asDiagonal();
-        if (k + 1 < count) c.template bottomRows<n>().diagonal().array() -= 0.5 * stiffness;
-        Block right = Block::Zero();
-        right.template bottomRows<n>() = c.transpose();
+        Block right = zero<Block>();
+        for (int i = 0; i < n; ++i) {
+          for (int j = 0; j < size; ++j) right(m + i, j) = scale_(j) * coupling_[k](j, i) * scale_(m + i);
+          if (k + 1 < count) right(m + i, m + i) -= 0.5 * stiffness;
+        }
         eliminated_[k - 1] = factors_[k - 1].subtract_from(s, right);
       }
       factors_[k].compute(s);
@@ -153,14 +158,17 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   /// out += factor * (the matrix times z).
   void add_product(double factor, const Columns& z, Columns& out) const {
     const std::size_t count = z.size();
-    const auto unscaled = [&](std::size_t k) -> Column { return scale_.cwiseProduct(z[k]); };
-    for (std::size_t k = 0; k < count; ++k) {
-      Column sum = diagonal_[k] * unscaled(k);
-      if (k > 0) sum += coupling_[k] * unscaled(k - 1).template tail<n>();
-      if (k + 1 < count) sum.template tail<n>() += coupling_[k + 1].transpose() * unscaled(k + 1);
-      out[k] += factor * scale_.cwiseProduct(sum);
-    }
-    out.back().template tail<fixed>() += factor * z.back().template tail<fixed>();
+    for (std::size_t k = 0; k < count; ++k)
+      for (int i = 0; i < size; ++i) {
+        double sum = 0;
+        for (int j = 0; j < size; ++j) sum += diagonal_[k](i, j) * (scale_(j) * z[k](j));
+        if (k > 0)
+          for (int j = 0; j < n; ++j) sum += coupling_[k](i, j) * (scale_(m + j) * z[k - 1](m + j));
+        if (k + 1 < count && i >= m)
+          for (int j = 0; j < size; ++j) sum += coupling_[k + 1](j, i - m) * (scale_(j) * z[k + 1](j));
+        out[k](i) += factor * (scale_(i) * sum);
+      }
+    for (int i = phis; i < size; ++i) out.back()(i) += factor * z.back()(i);
   }
 
   /// The equations' residual in scaled form, negated: the right-hand side of a Newton step.
@@ -274,8 +282,7 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     return found;
   }
 
-  static constexpr int phis = Sys::arrow_constraints;
-  static constexpr int fixed = size - phis;  // unknowns of a node that cannot move
+  static constexpr int phis = Sys::arrow_constraints;  // of a node that cannot move, the only unknowns: the first
 
   // Entry by entry, here and above: as expressions of Eigen's these took every file with boundary values of one size
   // more longer than its derivatives did (docs/decisions/72_expressions_cost_their_square.md).
