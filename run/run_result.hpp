@@ -114,8 +114,9 @@ struct Happening {
 struct WatchedEvent {
   std::string name;
   std::string when;
-  long count = 0;    ///< how often it happened
-  long touches = 0;  ///< how often its function came to zero without passing it
+  std::vector<std::string> plot{};  ///< two columns over each other, a section; or none
+  long count = 0;                   ///< how often it happened
+  long touches = 0;                 ///< how often its function came to zero without passing it
 };
 
 /// What happened in a run, in the order of time.
@@ -124,6 +125,15 @@ struct EventTable {
   std::vector<std::string> columns;  ///< of a node: those of the trajectory, without what belongs to arrows
   std::vector<Happening> rows;
 };
+
+/// When an event happened, touches left out.
+struct EventSpan {
+  double first = 0;
+  double last = 0;
+  double mean_interval = 0;  ///< zero where it happened once
+};
+/// None where it did not.
+std::optional<EventSpan> span_of(const EventTable& events, std::size_t event);
 
 /// The status of a run that Ctrl-C or SIGTERM ended.
 inline constexpr const char* interrupted_status = "interrupted";

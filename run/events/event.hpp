@@ -33,8 +33,9 @@ struct Event {
   At at = At::zero;
   Direction direction = Direction::both;  ///< of events at zero
   Then then = Then::record;
-  long count = 1;            ///< the run stops when it has happened so often
-  double tolerance = 1e-10;  ///< nearer to zero, relative to the largest value so far, its function touches it
+  long count = 1;                   ///< the run stops when it has happened so often
+  double tolerance = 1e-10;         ///< nearer to zero, relative to the largest value so far, its function touches it
+  std::vector<std::string> plot{};  ///< two columns, drawn as the points at which it happened: a section; or none
   /// Called where it has happened; the run ends where it returns false.
   std::function<bool(const Happening&, const Observables&)> call{};
 };

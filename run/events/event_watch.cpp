@@ -3,6 +3,7 @@
 #include <lagroid/run/ledger/ledger.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +36,15 @@ void require(const Event& event, std::set<std::string>& names) {
     throw RunError(fmt::format("{}: its tolerance is a share from 0 to 1", named(event)));
 }
 
+void require_plot(const Event& event, const std::vector<std::string>& columns) {
+  if (event.plot.empty()) return;
+  for (const std::string& column : event.plot)
+    if (column != "t" && std::find(columns.begin(), columns.end(), column) == columns.end())
+      throw RunError(fmt::format("{}: it cannot be drawn over \"{}\"; there are t, {}", named(event), column,
+                                 fmt::join(columns, ", ")));
+  if (event.plot.size() != 2) throw RunError(fmt::format("{}: it is drawn in two columns, x and y", named(event)));
+}
+
 }  // namespace
 
 std::string_view to_string(Passing passing) {
@@ -53,6 +63,18 @@ std::string_view to_string(Passing passing) {
   return "";
 }
 
+std::optional<EventSpan> span_of(const EventTable& events, std::size_t event) {
+  std::optional<EventSpan> span;
+  for (const Happening& row : events.rows) {
+    if (row.event != event || row.passing == Passing::touching) continue;
+    if (!span) span = EventSpan{row.time, row.time};
+    span->last = row.time;
+  }
+  const long count = events.watched[event].count;
+  if (span && count > 1) span->mean_interval = (span->last - span->first) / double(count - 1);
+  return span;
+}
+
 EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
     : motion_(motion), time_(motion.time()), arrived_(time_) {
   if (const std::string why = motion.why_not_cut(); !why.empty())
@@ -68,7 +90,8 @@ EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
       throw RunError(fmt::format("{}: {}", named(event), error.what()));
     }
     watches_.back().goes_on_to(node);
-    table_.watched.push_back({event.name, event.when});
+    table_.watched.push_back({event.name, event.when, event.plot});
+    require_plot(event, table_.columns);
   }
 }
 
@@ -194,7 +217,7 @@ bool EventWatch::happens(const Found& found, double step_size) {
   const Event& event = watches_[found.event].event;
   const Observables* inside = motion_.look_within(found.share);
   if (inside == nullptr) throw NoPartialStep{found.share};
-  Happening happening{found.event, motion_.index(), inside->time(), found.passing, false, values_within(*inside)};
+  Happening happening{found.event, step_, inside->time(), found.passing, false, values_within(*inside)};
   happening.together =
       !table_.rows.empty() && std::abs(happening.time - table_.rows.back().time) <= apart * std::abs(step_size);
   table_.rows.push_back(std::move(happening));

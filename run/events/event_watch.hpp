@@ -45,6 +45,7 @@ class EventWatch {
     looked_within_ = false;
     suspects_.clear();
     arrived_ = node.time();
+    step_ = node.index();
     for (std::size_t i = 0; i < watches_.size(); ++i)
       if (watches_[i].goes_on_to(node)) suspects_.push_back(i);
     const Goes goes = suspects_.empty() ? Goes::on : look_into_step();
@@ -129,6 +130,7 @@ class EventWatch {
   EventTable table_;
   double time_;     ///< of the node before
   double arrived_;  ///< at the node after
+  long step_ = 0;   ///< which leads there
   std::vector<std::size_t> suspects_;
   bool looked_within_ = false;
   const Observables* end_ = nullptr;

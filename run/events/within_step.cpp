@@ -30,9 +30,14 @@ double root_within(const StepFunction& g, double a, double b, double at_a, doubl
 double slope_within(const StepFunction& g, double share) {
   // Truncation and round-off of the differences are of the same small size.
   constexpr double apart = 1.0 / 256;
-  const double inner = g(share + apart) - g(share - apart);
-  const double outer = g(share + 2 * apart) - g(share - 2 * apart);
-  return (8 * inner - outer) / (12 * apart);
+  if (share >= 2 * apart && share <= 1 - 2 * apart) {
+    const double inner = g(share + apart) - g(share - apart);
+    const double outer = g(share + 2 * apart) - g(share - 2 * apart);
+    return (8 * inner - outer) / (12 * apart);
+  }
+  const double inwards = share < 0.5 ? apart : -apart;
+  const auto at = [&](int k) { return g(share + k * inwards); };
+  return (-25 * at(0) + 48 * at(1) - 36 * at(2) + 16 * at(3) - 3 * at(4)) / (12 * inwards);
 }
 
 }  // namespace lagroid

@@ -5,8 +5,9 @@
 ///     const double at = root_within(g, 0, 1, -0.25, 0.75);
 ///     const double slope = slope_within(g, at);
 ///
-/// Requires a function that is smooth over the step and a little beyond it: it is made of partial steps. What it
-/// throws goes through. (Alefeld, Potra and Shi, ACM Trans. Math. Softw. 21 (1995) 327, as in Boost.Math.)
+/// Requires a function that is smooth over the step, as one made of partial steps; it is evaluated at shares from 0
+/// to 1. What it throws goes through. (Alefeld, Potra and Shi, ACM Trans. Math. Softw. 21 (1995) 327, as in
+/// Boost.Math.)
 
 #include <functional>
 
@@ -18,7 +19,7 @@ using StepFunction = std::function<double(double)>;
 /// which it was evaluated, that with the smallest value.
 double root_within(const StepFunction& g, double a, double b, double at_a, double at_b);
 
-/// The derivative at a share, by central differences of order four.
+/// The derivative at a share, by differences of order four: central ones and, near the ends, those inwards.
 double slope_within(const StepFunction& g, double share);
 
 }  // namespace lagroid

@@ -67,9 +67,9 @@ class Motion {
   virtual std::string why_not_cut() const { return "steps of this motion cannot be made in part"; }
   /// Keeps this node, from which the next step can be made in part.
   virtual void keep_node() {}
-  /// What is to be seen where a share of the last step leads to from the node that was kept before it, by the same
-  /// method; shares may lie outside of 0 to 1. Null where that does not converge. The motion stays where it is, but has
-  /// to be looked at anew.
+  /// What is to be seen where a share of the last step, 0 to 1, leads to from the node that was kept before it, by the
+  /// same method. Null where that does not converge. The motion stays where it is, but has to be looked at anew before
+  /// anything else is asked of it.
   virtual const Observables* look_within(double /*share*/) { return nullptr; }
   /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
   /// bits.

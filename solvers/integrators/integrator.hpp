@@ -69,8 +69,8 @@ template <DiscreteSystem Sys> class Integrator {
   virtual bool cuts() const { return false; }
   /// Keeps this node, from which the next step can be made in part.
   virtual void keep_node() {}
-  /// The point that a share of the last step leads to from the node that was kept before it, by a step of the same
-  /// method; shares may lie outside of 0 to 1. Nothing else changes, and nothing at all where it does not converge.
+  /// The point that a share of the last step, 0 to 1, leads to from the node that was kept before it, by a step of the
+  /// same method. Nothing else changes, and nothing at all where it does not converge.
   virtual StepReport cut(double /*share*/, TrajectoryPoint<Sys>& /*to*/) { return {}; }
   /// Steps so far whose size is not that of the mode.
   virtual long without_root() const { return 0; }
