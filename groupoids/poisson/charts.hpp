@@ -61,10 +61,6 @@ template <class Sys> struct FrozenChart : MomentumChart<Sys> {
     const auto arc = gauss_arc([&](const Vector<S, size>& at) { return this->system.field(at, p); }, x);
     return {arc.mean, arc.end, arc.to_round_off};
   }
-  /// The flow of <p, .>.
-  template <class S> ChartArc<S, size> flow(const Vector<S, size>& x, const Vector<S, size>& p) const {
-    return from(x, p);
-  }
   /// (x, u) (beta, v) is where the flow of the Hamiltonian <v, beta> leads in a unit of time from (x, u); it leaves the
   /// source alone: u' = (dM/dx)^{-T} (dX_1/dx)^T v.
   template <class S>
@@ -148,7 +144,6 @@ template <class Sys> struct RotationChart : MomentumChart<Sys> {
     }
     return arc;
   }
-  template <class S> ChartArc<S, 3> flow(const Vector<S, 3>& x, const Vector<S, 3>& p) const { return from(x, p); }
   template <class S> Vector<S, 3> product(const Vector<S, 3>&, const Vector<S, 3>& u, const Vector<S, 3>& v) const {
     const Matrix<S, 3, 3> turn = SO3::exp(Vector<S, 3>(v * S(-sign))) * SO3::exp(Vector<S, 3>(u * S(-sign)));
     return SO3::log(turn) * S(-sign);
@@ -200,5 +195,70 @@ template <class Sys> struct CayleyChart : MomentumChart<Sys> {
     return p(j) * y(k) - p(k) * y(j);
   }
 };
+
+/// Where the flow of rate <form, .> leads in a unit of time: by a chart that is exponential, its `from`.
+template <class Chart, class S, int N>
+ChartArc<S, N> linear_flow(const Chart& chart, const Vector<S, N>& x, const S& rate, const Vector<double, N>& form) {
+  Vector<S, N> p;
+  for (int i = 0; i < N; ++i) p(i) = rate * form(i);
+  return chart.from(x, p);
+}
+/// Of populations along one axis i in closed form: x_i stays and x_j' = c_ji x_i p_i x_j.
+template <class Sys, class S, int N>
+ChartArc<S, N> linear_flow(const LogCanonicalChart<Sys>& chart, const Vector<S, N>& x, const S& rate,
+                           const Vector<double, N>& form) {
+  using std::exp;
+  int axis = -1;
+  int entries = 0;
+  for (int i = 0; i < N; ++i)
+    if (form(i) != 0) {
+      axis = i;
+      ++entries;
+    }
+  if (entries != 1) return linear_flow(FrozenChart<Sys>(chart.system), x, rate, form);
+  const S u = x(axis) * rate * form(axis);
+  ChartArc<S, N> arc{x, x};
+  for (int j = 0; j < N; ++j)
+    if (const double c = chart.c(j, axis); c != 0) {
+      const S half = exp(u * (0.5 * c));
+      arc.middle(j) = x(j) * half;
+      arc.end(j) = arc.middle(j) * half;
+    }
+  return arc;
+}
+
+namespace detail {
+
+template <class Sys> auto karasev_chart(const Sys& system) {
+  if constexpr (requires { Sys::rotation_sign; }) {
+    return RotationChart<Sys>(system);
+  } else {
+    return FrozenChart<Sys>(system);
+  }
+}
+template <class Sys> auto natural_chart(const Sys& system) {
+  if constexpr (requires { system.log_coefficients(); }) {
+    return LogCanonicalChart<Sys>(system);
+  } else if constexpr (requires { Sys::rotation_sign; }) {
+    return CayleyChart<Sys>(system);
+  } else {
+    return FrozenChart<Sys>(system);
+  }
+}
+template <class Sys> auto flow_chart(const Sys& system) {
+  if constexpr (requires { system.log_coefficients(); }) {
+    return LogCanonicalChart<Sys>(system);
+  } else {
+    return karasev_chart(system);
+  }
+}
+
+}  // namespace detail
+
+/// Karasev's chart of a system, in closed form where it has one; the chart whose steps cost least; and that whose flows
+/// of linear functions do.
+template <class Sys> using KarasevChart = decltype(detail::karasev_chart(std::declval<const Sys&>()));
+template <class Sys> using NaturalChart = decltype(detail::natural_chart(std::declval<const Sys&>()));
+template <class Sys> using FlowChart = decltype(detail::flow_chart(std::declval<const Sys&>()));
 
 }  // namespace lagroid
