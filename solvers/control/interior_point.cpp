@@ -418,12 +418,22 @@ ControlReport InteriorPoint::solve() {
       report_.message = "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
       break;
     }
-    if (line_search() == Outcome::stuck && !restore()) {
-      report_.status = ControlStatus::infeasible;
-      report_.message =
-          "the violation of the constraints has a local minimum here; start from another trajectory, or "
-          "relax the constraints that are listed";
-      break;
+    if (line_search() == Outcome::stuck) {
+      if (largest_violation() <= options_.tolerance) {
+        report_.status = ControlStatus::stagnated;
+        report_.message =
+            "no step is better, though the KKT residual is above the tolerance: scale the cost, give a "
+            "tolerance that rounding allows, or start elsewhere";
+        break;
+      }
+      if (!restore()) {
+        if (report_.iterations >= options_.max_iterations) break;
+        report_.status = ControlStatus::infeasible;
+        report_.message =
+            "the violation of the constraints has a local minimum here; start from another trajectory, "
+            "or relax the constraints that are listed";
+        break;
+      }
     }
     evaluate();
   }

@@ -28,7 +28,8 @@ namespace lagroid {
 
 enum class ControlStatus {
   converged,
-  infeasible,     ///< a stationary point of the violation: near it no trajectory satisfies the constraints
+  infeasible,  ///< a stationary point of the violation: near it no trajectory satisfies the constraints
+  stagnated,   ///< of a trajectory that satisfies the constraints, no step is better: rounding, or a degenerate minimum
   not_converged,  ///< the iterations are used up
   singular,       ///< no shift of the matrix gave a direction
   not_finite      ///< a value at the start
@@ -40,6 +41,8 @@ constexpr std::string_view to_string(ControlStatus status) {
       return "converged";
     case ControlStatus::infeasible:
       return "infeasible";
+    case ControlStatus::stagnated:
+      return "stagnated";
     case ControlStatus::not_converged:
       return "not_converged";
     case ControlStatus::singular:
