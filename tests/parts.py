@@ -52,6 +52,35 @@ class Parts(unittest.TestCase):
             self.assertEqual(whole.returncode, alone.returncode, f"{scene}: {alone.stderr}")
             self.assertEqual(without_times(whole.stdout), without_times(alone.stdout), str(scene))
 
+    def test_gradients_are_those_of_the_run(self):
+        scene = ("gradient", examples / "pendulum.toml", "--set", "time.steps=50")
+        told = run(of_part("pendulum"), *scene, "--of", "final.position,final.momentum", "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertEqual(found["by"][2:], ["parameters.mass", "parameters.length", "parameters.gravity"])
+        (a, b), (c, d) = (row[:2] for row in found["derivatives"])
+        self.assertAlmostEqual(a * d - b * c, 1, delta=1e-12)
+        self.assertGreater(found["digits_agreed"], 8)
+        table = run(of_part("pendulum"), *scene, "--of", "integral.position,node.3.momentum", "--wrt",
+                    "parameters.length")
+        self.assertIn("by parameters.length", table.stdout)
+        self.assertIn("digits", table.stdout)
+
+    def test_gradients_that_there_are_not_are_refused_in_a_line(self):
+        for words, said in {
+            ("--of", "final.energy"): "nothing of that name is differentiable",
+            ("--of", "node.51.position"): "a node is a number from 0 to 50",
+            ("--of", "energy"): "ask for final.NAME",
+            ("--wrt", "parameters.quadrature"): "nothing of that name is differentiable",
+            ("--wrt", "mass"): "initial.NAME or parameters.NAME",
+            ("--set", "time.mode=adaptive"): "equal steps of order two",
+            ("--set", "time.order=4"): "equal steps of order two",
+        }.items():
+            told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.steps=50", *words)
+            self.assertEqual(told.returncode, 2, f"{words}: {told.stdout}")
+            self.assertEqual(len(told.stderr.splitlines()), 1, told.stderr)
+            self.assertIn(said, told.stderr)
+
     def test_a_folder_needs_no_scene(self):
         self.assertEqual(part_of("view", "out"), "files")
         self.assertEqual(part_of("list"), "whole")

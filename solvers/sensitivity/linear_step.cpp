@@ -1,6 +1,8 @@
 #include <lagroid/core/matrices/scaling.hpp>
 #include <lagroid/solvers/sensitivity/linear_step.hpp>
 
+#include <limits>
+
 namespace lagroid {
 
 LinearStep::LinearStep(int equations, int states, int parameters)
@@ -18,7 +20,7 @@ bool LinearStep::factor() {
   row_scale_ = scaling.row;
   column_scale_ = scaling.column;
   factors_.compute(scaling.apply(equations_by_unknowns));
-  return true;
+  return factors_.rcond() > std::numeric_limits<double>::epsilon();
 }
 
 Eigen::MatrixXd LinearStep::forward(const Eigen::MatrixXd& directions) const {

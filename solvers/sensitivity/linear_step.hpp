@@ -12,7 +12,7 @@
 ///     const Eigen::MatrixXd end = step.forward(start);  // directions, column by column
 ///     const Eigen::MatrixXd back = step.backward(gradients);
 ///
-/// Requires a regular E_z ([G] Def. 3.5); `factor` returns whether its numbers are finite. A step in closed form has no
+/// `factor` returns whether all numbers are finite and E_z is regular ([G] Def. 3.5). A step in closed form has no
 /// equations. Nothing throws. Source: implicit function theorem; the adjoint is that of the discrete map itself.
 
 #include <Eigen/Core>

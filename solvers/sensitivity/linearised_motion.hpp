@@ -34,7 +34,8 @@ class LinearisedMotion {
   virtual double time() const = 0;
 
   virtual StepReport advance() = 0;
-  /// Linearises the last step, of as many stages as it was composed of; false where a derivative is not finite.
+  /// Linearises the last step, of as many stages as it was composed of; false where a derivative is not finite or the
+  /// equations are singular.
   virtual bool linearise() = 0;
   virtual int stages() const = 0;
   virtual const LinearStep& stage(int k) const = 0;

@@ -8,8 +8,9 @@
 /// Requires an integrator of equal, implicit steps at its start, made of an equal system. What is observed is a
 /// function of an ObservedNode over VariedNumber.
 ///
-/// Errors: std::invalid_argument, one line, for a name that is no parameter. WithoutDerivative where a parameter is
-/// read by the system as a plain number, found at the first step by comparison with differences.
+/// Errors: std::invalid_argument, one line, for a name that is no parameter, for steps in closed form and for those
+/// whose sizes vary. WithoutDerivative where a parameter is read by the system as a plain number, found at the first
+/// step by comparison with differences.
 
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
@@ -17,6 +18,8 @@
 #include <lagroid/solvers/sensitivity/varied_momentum.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -65,7 +68,10 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
       : system_(system),
         integrator_(std::move(integrator)),
         places_(places_of_parameters(system_, parameters)),
-        observe_(std::move(observe)) {}
+        observe_(std::move(observe)) {
+    if (integrator_->traits().explicit_)
+      throw std::invalid_argument("steps in closed form have no derivative here: take implicit steps");
+  }
   LinearisedMotionOf(const LinearisedMotionOf&) = delete;  // derivatives know members by their places
   LinearisedMotionOf& operator=(const LinearisedMotionOf&) = delete;
 
@@ -79,6 +85,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   bool linearise() override {
     used_ = 0;
     bool finite = true;
+    double duration = 0;
     const auto stage = [&](const Step<Sys>& step, double start, double size) {
       if (used_ == stages_.size()) stages_.emplace_back(n + m, 2 * n, parameters());
       set_time_step(system_, size);
@@ -86,10 +93,14 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
       linearise_step(system_, step, places_.members, stages_[used_]);
       if (!std::exchange(compared_, true)) compare(step, stages_[used_]);
       finite = stages_[used_].factor() && finite;
+      duration += size;
       ++used_;
     };
     integrator_->for_each_inner_stage(stage);
     stage(point().step, point().time - point().step_size, point().step_size);
+    if (step_size_ == 0) step_size_ = duration;  // zero of a system without a step
+    if (std::abs(duration - step_size_) > 1e-9 * std::abs(step_size_))
+      throw std::invalid_argument("steps whose sizes vary have no derivative here: take equal steps");
     return finite;
   }
   int stages() const override { return int(used_); }
@@ -164,6 +175,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   ObserveNode<Sys> observe_;
   std::vector<LinearStep> stages_;
   std::size_t used_ = 0;
+  double step_size_ = 0;  ///< of the first step
   bool compared_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 namespace lagroid {
@@ -34,6 +35,13 @@ double weight_of(const Observed& observed, long node, long steps, double duratio
   return node == (observed.node < 0 ? steps : observed.node) ? 1.0 : 0.0;
 }
 
+/// Throws std::invalid_argument for a node that the run does not have.
+void require_node(const Observed& observed, long steps) {
+  if (steps < 0) throw std::invalid_argument("a run has zero steps or more");
+  if (observed.kind == Observed::Kind::at_node && observed.node > steps)
+    throw std::invalid_argument(fmt::format("node {} of a run of {} steps", observed.node, steps));
+}
+
 std::string failure(const StepReport& report, double time) {
   return fmt::format("the step at t = {:.6g} failed: {}", time, to_string(report.status));
 }
@@ -55,8 +63,8 @@ bool advance(LinearisedMotion& motion, long steps, Propagated& out) {
 bool advance_linearised(LinearisedMotion& motion, Propagated& out) {
   if (!advance(motion, 1, out)) return false;
   if (motion.linearise()) return true;
-  out.status = SolveStatus::not_finite;
-  out.message = fmt::format("a derivative of the step before t = {:.6g} is not finite", motion.time());
+  out.status = SolveStatus::singular;
+  out.message = fmt::format("the step before t = {:.6g} has no derivative: its equations are singular", motion.time());
   return false;
 }
 
@@ -153,6 +161,7 @@ double Propagated::digits_left() const {
 
 Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::MatrixXd& directions,
                              const Observed& observed) {
+  require_node(observed, steps);
   Propagated out;
   out.states_kept = 1;
   out.end = directions;
@@ -182,6 +191,7 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
 }
 
 Propagated propagate_backward(LinearisedMotion& motion, long steps, const Observed& observed, StateBudget budget) {
+  require_node(observed, steps);
   Propagated out;
   out.states_kept = 1;
   if (budget.states == 0) budget.states = long(std::ceil(2 * std::sqrt(double(steps))));

@@ -8,7 +8,9 @@
 ///     const Propagated end = propagate_forward(motion, 1000, directions);
 ///     const Propagated start = propagate_backward(motion, 1000, Observed::at_end(), {.states = 20});
 ///
-/// Requires a motion at its start. A step that fails ends it, with that step's status and a message. Nothing throws.
+/// Requires a motion at its start. A step that fails ends it, with that step's status and a message.
+///
+/// Errors: std::invalid_argument for a node that the run does not have.
 ///
 /// Source: Griewank and Walther, Algorithm 799, ACM Trans. Math. Softw. 26, 2000 (binomial checkpoints).
 
