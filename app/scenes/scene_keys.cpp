@@ -92,7 +92,8 @@ Table own_time_table(const DeclaredMethod& own) {
 
 KeyOf<Tables> event_key() {
   using namespace event_keys;
-  return {"event", {{{name, when, at, direction, then, count, tolerance, plot}}}, "", "what may happen", {}, "none"};
+  return {"event", {{{name, when, at, direction, then, count, tolerance, kick, plot}}}, "", "what may happen", {},
+          "none"};
 }
 
 Table output_table() { return {{output_keys::every, output_keys::checkpoint}}; }

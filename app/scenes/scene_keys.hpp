@@ -87,6 +87,8 @@ inline const KeyOf<Number> tolerance{"tolerance",
                                      "",
                                      "nearer to zero, relative to its largest value, the function touches it",
                                      1e-10};
+inline const KeyOf<Texts> kick{
+    "kick", {}, "", "added to the momentum there: an expression as `when` for each of its numbers", {}, "none"};
 inline const KeyOf<Texts> plot{
     "plot", {}, "", "two columns: a picture of the points at which it happened, as a Poincare section", {}, "none"};
 

@@ -209,6 +209,7 @@ std::vector<Event> read_events(const Section& scene) {
     event.then = read_key(table, then) == "stop" ? Event::Then::stop : Event::Then::record;
     event.count = read_key(table, count);
     event.tolerance = read_key(table, tolerance);
+    event.kick = read_key_or(table, kick, {});
     event.plot = read_key_or(table, plot, {});
     if (event.at != Event::At::zero && table.has(direction.name))
       table.fail(direction.name, "is that of events at zero; leave it out");

@@ -18,6 +18,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace lagroid {
 
@@ -36,6 +37,9 @@ struct Event {
   long count = 1;                   ///< the run stops when it has happened so often
   double tolerance = 1e-10;         ///< nearer to zero, relative to the largest value so far, its function touches it
   std::vector<std::string> plot{};  ///< two columns, drawn as the points at which it happened: a section; or none
+  /// Added to the momentum there: an expression of the same names for each of its numbers, or none. The rest of the
+  /// step is made from the changed state, and the ledger holds the motion to its promises from there.
+  std::vector<std::string> kick{};
   /// Called where it has happened; the run ends where it returns false.
   std::function<bool(const Happening&, const Observables&)> call{};
 };

@@ -23,6 +23,22 @@ struct NoPartialStep {
 /// Times of one step that differ by less, relative to it, cannot be told apart.
 constexpr double apart = 1e-11;
 
+/// The end of those that happen at the time of the first, as far as shares of the step tell.
+template <class Iterator> Iterator together_with(Iterator first, Iterator end) {
+  return std::find_if(first, end, [first](const auto& each) { return each.share > first->share + apart; });
+}
+
+/// Of every quantity that is known inside of steps its value; of the others zeros.
+std::vector<std::vector<double>> quantities_within(const Observables& node) {
+  std::vector<std::vector<double>> all;
+  for (std::size_t i = 0; i < node.quantities().size(); ++i) {
+    const Watched& quantity = node.quantities()[i];
+    all.emplace_back(quantity.components.size());
+    if (!quantity.on_arrows && !quantity.adds_up) node.measure(i, all.back().data());
+  }
+  return all;
+}
+
 std::string named(const Event& event) { return fmt::format("event \"{}\"", event.name); }
 
 Passing direction_of(double from, double to) { return from < to ? Passing::rising : Passing::falling; }
@@ -34,6 +50,23 @@ void require(const Event& event, std::set<std::string>& names) {
   if (event.count < 1) throw RunError(fmt::format("{}: it counts to {}, to no event", named(event), event.count));
   if (!(event.tolerance >= 0 && event.tolerance < 1))
     throw RunError(fmt::format("{}: its tolerance is a share from 0 to 1", named(event)));
+}
+
+std::vector<EventFunction> kick_of(const Event& event, const Observables& node) {
+  std::vector<EventFunction> out;
+  for (const std::string& number : event.kick) out.emplace_back(Event{.name = event.name, .when = number}, node);
+  return out;
+}
+
+void require_kick(const Event& event, const Motion& motion) {
+  if (event.kick.empty()) return;
+  const std::size_t numbers = motion.kicked_numbers();
+  if (numbers == 0)
+    throw RunError(fmt::format("{}: nothing can be added to the momentum on the way: {}, or no system of a scene",
+                               named(event), motion.traits().name));
+  if (event.kick.size() != numbers)
+    throw RunError(
+        fmt::format("{}: its kick has {} numbers, the momentum has {}", named(event), event.kick.size(), numbers));
 }
 
 void require_plot(const Event& event, const std::vector<std::string>& columns) {
@@ -85,14 +118,25 @@ EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
   for (const Event& event : events) {
     require(event, names);
     try {
-      watches_.push_back({event, EventFunction(event, node)});
+      watches_.push_back({event, EventFunction(event, node), kick_of(event, node)});
     } catch (const std::invalid_argument& error) {
       throw RunError(fmt::format("{}: {}", named(event), error.what()));
     }
+    require_kick(event, motion);
     watches_.back().goes_on_to(node);
     table_.watched.push_back({event.name, event.when, event.plot});
     require_plot(event, table_.columns);
   }
+}
+
+void EventWatch::Watch::see(const Observables& node) {
+  now = function(node);
+  if (std::isfinite(now)) {
+    largest = std::max(largest, std::abs(now));
+    return;
+  }
+  if (undefined++ == 0) undefined_at = node.time();
+  now = unknown;
 }
 
 bool EventWatch::Watch::goes_on_to(const Observables& node) {
@@ -101,14 +145,8 @@ bool EventWatch::Watch::goes_on_to(const Observables& node) {
   before = now;
   slope_before = slope;
   slope = unknown;
-  now = function(node);
-  if (!std::isfinite(now)) {
-    if (undefined++ == 0) undefined_at = node.time();
-    now = unknown;
-    return false;
-  }
-  largest = std::max(largest, std::abs(now));
-  if (std::isnan(before)) return false;
+  see(node);
+  if (std::isnan(now) || std::isnan(before)) return false;
   if (event.at != Event::At::zero) return may_turn();
   constexpr double round_off = 1e-12;
   if (is_first && std::abs(before) <= round_off * std::abs(now - before)) {
@@ -117,6 +155,21 @@ bool EventWatch::Watch::goes_on_to(const Observables& node) {
     return false;
   }
   return passes_zero() || may_touch();
+}
+
+bool EventWatch::Watch::goes_on_from(double kicked, std::optional<Passing> passing, const Observables& node) {
+  constexpr double tiny = std::numeric_limits<double>::min();
+  constexpr double round_off = 1e-9;
+  change = slope = slope_before = unknown;
+  before = kicked;
+  // What has just happened does not happen again there: its function has passed zero, or turned.
+  if (passing == Passing::minimum || passing == Passing::maximum)
+    slope_before = passing == Passing::minimum ? tiny : -tiny;
+  else if (passing && std::abs(before) <= round_off * largest)
+    before = passing == Passing::falling ? -tiny : tiny;
+  see(node);
+  if (std::isnan(now) || std::isnan(before)) return false;
+  return event.at == Event::At::zero ? passes_zero() : may_turn();
 }
 
 /// Over a step a function bends by an eighth of its second difference.
@@ -181,27 +234,44 @@ void EventWatch::look_for_extremum(std::size_t i, std::vector<Found>& found) {
     found.push_back({i, *turn, is_minimum ? Passing::minimum : Passing::maximum});
 }
 
+void EventWatch::find_in_step(std::vector<Found>& found, std::size_t& looking_for) {
+  found.clear();
+  for (const std::size_t i : suspects_) {
+    looking_for = i;
+    watches_[i].event.at == Event::At::zero ? look_for_zeros(i, found) : look_for_extremum(i, found);
+  }
+  // In the order of time and, where that does not tell, in that in which they were written.
+  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.share < b.share; });
+  for (auto first = found.begin(); first != found.end();) {
+    const auto last = together_with(first, found.end());
+    std::stable_sort(first, last, [](const Found& a, const Found& b) { return a.event < b.event; });
+    first = last;
+  }
+}
+
 EventWatch::Goes EventWatch::look_into_step() {
+  constexpr int most_kicks = 100;
   looked_within_ = true;
-  const double step_size = arrived_ - time_;
   std::vector<Found> found;
   std::size_t looking_for = 0;
   try {
-    for (const std::size_t i : suspects_) {
-      looking_for = i;
-      watches_[i].event.at == Event::At::zero ? look_for_zeros(i, found) : look_for_extremum(i, found);
-    }
-    // In the order of time and, where that does not tell, in that in which they were written.
-    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.share < b.share; });
-    for (auto first = found.begin(); first != found.end();) {
-      const auto last =
-          std::find_if(first, found.end(), [&](const Found& f) { return f.share > first->share + apart; });
-      std::stable_sort(first, last, [](const Found& a, const Found& b) { return a.event < b.event; });
-      first = last;
-    }
-    for (const Found& each : found) {
-      looking_for = each.event;
-      if (!happens(each, step_size)) return Goes::ended;
+    for (int kicks = 0; !suspects_.empty(); ++kicks) {
+      if (kicks == most_kicks) {
+        reason_ = fmt::format("{}: follows its own kicks without end, {} times between t = {:.6g} and {:.6g}",
+                              named(watches_[looking_for].event), kicks, time_, arrived_);
+        return Goes::failed;
+      }
+      find_in_step(found, looking_for);
+      suspects_.clear();
+      for (auto first = found.cbegin(); first != found.cend();) {
+        const auto last = together_with(first, found.cend());
+        for (auto each = first; each != last; ++each) {
+          looking_for = each->event;
+          if (!happens(*each)) return Goes::ended;
+        }
+        if (kick({first, last})) break;
+        first = last;
+      }
     }
   } catch (const NoPartialStep& none) {
     reason_ = fmt::format(
@@ -213,13 +283,53 @@ EventWatch::Goes EventWatch::look_into_step() {
   return Goes::on;
 }
 
-bool EventWatch::happens(const Found& found, double step_size) {
+bool EventWatch::kick(std::span<const Found> together) {
+  const double share = std::max_element(together.begin(), together.end(), [](const Found& a, const Found& b) {
+                         return a.share < b.share;
+                       })->share;
+  std::vector<double> by;
+  std::vector<std::vector<double>> before;
+  for (const Found& found : together) {
+    Watch& watch = watches_[found.event];
+    if (watch.kick.empty() || found.passing == Passing::touching) continue;
+    const Observables* inside = motion_.look_within(share);
+    if (inside == nullptr) throw NoPartialStep{share};
+    by.resize(watch.kick.size());
+    for (std::size_t k = 0; k < by.size(); ++k) by[k] += watch.kick[k](*inside);
+    before = quantities_within(*inside);
+  }
+  if (by.empty()) return false;
+  if (!motion_.kick_within(share, by).converged()) throw NoPartialStep{share};
+  const Observables* kicked = motion_.look_within(0);
+  if (kicked == nullptr) throw NoPartialStep{0};
+  const std::vector<std::vector<double>> after = quantities_within(*kicked);
+  if (kicked_.empty())
+    for (const std::vector<double>& each : after) kicked_.emplace_back(each.size());
+  for (std::size_t i = 0; i < after.size(); ++i)
+    for (std::size_t k = 0; k < after[i].size(); ++k) kicked_[i][k] += after[i][k] - before[i][k];
+  std::vector<double> at_kick;
+  for (Watch& watch : watches_) at_kick.push_back(watch.function(*kicked));
+  const Observables& node = motion_.look();
+  for (std::size_t i = 0; i < watches_.size(); ++i) {
+    const auto fired = std::find_if(together.begin(), together.end(), [&](const Found& f) { return f.event == i; });
+    const auto passing = fired == together.end() ? std::nullopt : std::optional(fired->passing);
+    if (watches_[i].goes_on_from(at_kick[i], passing, node)) suspects_.push_back(i);
+  }
+  return true;
+}
+
+void EventWatch::settle(Judge& judge) {
+  for (std::size_t i = 0; i < kicked_.size(); ++i) judge.shift(i, kicked_[i].data());
+  kicked_.clear();
+}
+
+bool EventWatch::happens(const Found& found) {
   const Event& event = watches_[found.event].event;
   const Observables* inside = motion_.look_within(found.share);
   if (inside == nullptr) throw NoPartialStep{found.share};
   Happening happening{found.event, step_, inside->time(), found.passing, false, values_within(*inside)};
   happening.together =
-      !table_.rows.empty() && std::abs(happening.time - table_.rows.back().time) <= apart * std::abs(step_size);
+      !table_.rows.empty() && std::abs(happening.time - table_.rows.back().time) <= apart * std::abs(arrived_ - time_);
   table_.rows.push_back(std::move(happening));
   const Happening& row = table_.rows.back();
   WatchedEvent& watched = table_.watched[found.event];
@@ -242,6 +352,9 @@ void EventWatch::report(RunResult& result) const {
     if (watch.starts_at_zero)
       result.notes.push_back(
           fmt::format("{}: its function is zero at the start, which is not counted", named(watch.event)));
+    if (!watch.kick.empty() && watched.count > 0)
+      result.notes.push_back(fmt::format("{}: kicked the motion {} times; the ledger's first values are moved by it",
+                                         named(watch.event), watched.count));
     if (watched.touches > 0)
       result.notes.push_back(fmt::format("{}: its function came to zero {} times without passing it; not counted",
                                          named(watch.event), watched.touches));
@@ -293,6 +406,7 @@ IntegrationEnd integrate_nodes(WatchedMotion& watched, EventWatch& events, long 
       return {IntegrationEnd::Why::event, report};
     }
     if (events.looked_within()) motion.look();
+    if (watched.judge() != nullptr) events.settle(*watched.judge());
     if (!watched.observe(node)) return {IntegrationEnd::Why::not_finite, report};
     if (goes == EventWatch::Goes::failed) return {IntegrationEnd::Why::event, {SolveStatus::not_converged}};
     if (!goes_on(report)) return {IntegrationEnd::Why::stopped, report};

@@ -14,7 +14,8 @@
 /// tolerance (Passing::touching). A function that is zero at the start has not passed it there.
 ///
 /// Errors: RunError for a function that cannot be read, with the columns there are, for a name or a count that is none,
-/// and for a motion whose steps cannot be made in part. `pass` returns `failed` where a partial step does not converge.
+/// and for a motion whose steps cannot be made in part, or whose momentum cannot be kicked. `pass` returns `failed`
+/// where a partial step does not converge, and where kicks follow each other without end.
 
 #include <lagroid/run/events/event.hpp>
 #include <lagroid/run/events/event_function.hpp>
@@ -26,6 +27,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,8 @@ class EventWatch {
     time_ = arrived_;
     return goes;
   }
+  /// What kicks have changed since is no fault of the motion.
+  void settle(Judge& judge);
   /// Whether the motion has to be looked at anew since.
   bool looked_within() const { return looked_within_; }
   /// Where the run ended; until the motion is looked at anew.
@@ -78,6 +82,7 @@ class EventWatch {
   struct Watch {
     Event event;
     EventFunction function;
+    std::vector<EventFunction> kick;
     double now = unknown;
     double before = unknown;
     double change = unknown;        ///< over the step before
@@ -90,6 +95,9 @@ class EventWatch {
 
     /// Whether something may have happened in the step.
     bool goes_on_to(const Observables& node);
+    /// The same in the rest of a step from where the motion was kicked, with this value; `passing` there, if it did.
+    bool goes_on_from(double kicked, std::optional<Passing> passing, const Observables& node);
+    void see(const Observables& node);
     /// Whether it passed zero in a direction that counts, from the node before to this one.
     bool passes_zero() const { return (before < 0) != (now < 0) && counts(before, now); }
     bool counts(double from, double to) const {
@@ -120,8 +128,11 @@ class EventWatch {
   /// Where in the step the function of an event is smallest or largest, if it is somewhere.
   std::optional<double> turn_of(std::size_t i, const StepFunction& g, bool is_minimum);
   double value_at(std::size_t i, double share);
+  void find_in_step(std::vector<Found>& found, std::size_t& looking_for);
+  /// Adds to the momentum what these, which happen together, add; false where that is nothing.
+  bool kick(std::span<const Found> together);
   /// Records it; false where the run ends.
-  bool happens(const Found& found, double step_size);
+  bool happens(const Found& found);
   std::vector<double> flat_rows() const;
   void restore(const std::vector<double>& rows);
 
@@ -134,6 +145,7 @@ class EventWatch {
   std::vector<std::size_t> suspects_;
   bool looked_within_ = false;
   const Observables* end_ = nullptr;
+  std::vector<std::vector<double>> kicked_;  ///< of every quantity, what kicks have changed since the last node
   std::string reason_;
 };
 

@@ -35,6 +35,7 @@ class WatchedMotion {
   bool observe(const Observables& node);
   /// Sees the last node, where that was passed over.
   bool observe_last();
+  Judge* judge() { return judge_; }
   /// Ends the rows with a point inside of the last step, in place of the node that this leads to.
   void end_at(const Observables& inside);
   /// Visits what it goes on from, beside motion and judge: after the motion.

@@ -16,7 +16,9 @@
 #include <lagroid/solvers/step/step_solver.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -71,6 +73,11 @@ class Motion {
   /// same method. Null where that does not converge. The motion stays where it is, but has to be looked at anew before
   /// anything else is asked of it.
   virtual const Observables* look_within(double /*share*/) { return nullptr; }
+  /// How many numbers its momentum has, to which something can be added inside of a step; none where nothing can.
+  virtual std::size_t kicked_numbers() const { return 0; }
+  /// Adds to the momentum where a share of the last step leads to, and makes the rest of the step from there; shares
+  /// are from now on those of that rest. The motion stays at its node, in another state.
+  virtual StepReport kick_within(double /*share*/, std::span<const double> /*by*/) { return {}; }
   /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
   /// bits.
   virtual void serialize(NumberArchive& archive) = 0;

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -126,6 +127,10 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
     if (!integrator_->cut(share, inside).converged()) return nullptr;
     node_.see(inside);
     return &node_;
+  }
+  std::size_t kicked_numbers() const override { return integrator_->kicks() ? G::dimension : 0; }
+  StepReport kick_within(double share, std::span<const double> by) override {
+    return integrator_->kick(share, Eigen::Map<const AlgebroidVector<G>>(by.data()));
   }
   std::vector<NamedVector> state() const override {
     const TrajectoryPoint<Sys>& point = integrator_->point();

@@ -109,6 +109,11 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
     to.time = from.time + share * h_;
     return report;
   }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) {
+    trajectory_.go_on_from(point);
+    for (Stage& stage : stages_) stage.predictor.forget();
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     for (Stage& stage : stages_) {

@@ -56,6 +56,11 @@ template <DiscreteSystem Sys> class FixedStepIntegrator {
   StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
     return cut_step(predictor_, from, share * time_step(system()), to);
   }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) {
+    trajectory_.go_on_from(point);
+    predictor_.forget();
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     predictor_.serialize(archive);

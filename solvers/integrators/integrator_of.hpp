@@ -40,9 +40,13 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
       return solves_cuts || begins_cuts;
     }
   }
-  void keep_node() override { kept_ = integrator_.point(); }
+  void keep_node() override {
+    kept_ = integrator_.point();
+    rest_ = 1;
+  }
   [[gnu::cold]] StepReport cut(double share, TrajectoryPoint<Sys>& to) override {
     StepReport report;
+    share *= rest_;
     if (share == 0) {
       to = kept_;
       report.status = SolveStatus::converged;
@@ -60,6 +64,29 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
     return report;
   }
 
+  bool kicks() const override {
+    return cuts() && requires(Integrating & all, const TrajectoryPoint<Sys>& point) { all.go_on_from(point); };
+  }
+  [[gnu::cold]] StepReport kick(double share, const AlgebroidVector<typename Sys::GroupoidType>& by) override {
+    StepReport report;
+    if constexpr (requires { integrator_.go_on_from(kept_); }) {
+      TrajectoryPoint<Sys> inside;
+      report = cut(share, inside);
+      if (!report.converged()) return report;
+      inside.index = kept_.index;
+      inside.state.momentum += by;
+      kept_ = inside;
+      rest_ *= 1 - share;
+      TrajectoryPoint<Sys> reached;
+      report = cut(1, reached);
+      if (!report.converged()) return report;
+      reached.index = point().index;
+      reached.time = point().time;
+      integrator_.go_on_from(reached);
+    }
+    return report;
+  }
+
  private:
   static constexpr bool solves_cuts = requires(Integrating & all, TrajectoryPoint<Sys>& point) {
     all.cut(point, 0.5, point);
@@ -70,6 +97,7 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
 
   Integrating integrator_;
   TrajectoryPoint<Sys> kept_;
+  double rest_ = 1;  ///< of a step, that begins at the point that is kept
 };
 
 }  // namespace detail

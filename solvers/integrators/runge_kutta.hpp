@@ -45,6 +45,8 @@ template <HasRates Sys> class RungeKuttaIntegrator {
     system_.h *= share;
     point_ = from;
   }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) { point_ = point; }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) { point_.serialize(system_.groupoid, archive); }
 

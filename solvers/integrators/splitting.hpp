@@ -172,6 +172,8 @@ template <SplitSystem Sys> class SplittingIntegrator {
     system_.h *= share;
     trajectory_ = CompensatedTrajectory<Sys>(system_.groupoid, from.state, from.configuration);
   }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) { trajectory_.go_on_from(point); }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) { trajectory_.serialize(system_.groupoid, archive); }
 
