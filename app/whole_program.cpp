@@ -41,6 +41,7 @@ ProgramCommand control_command() {
 
 ProgramParts whole_program() {
   return {{&systems_family(), &spheres_family(), &bodies_family(), &optimisation_family(), &control_family(),
+  return {{&systems_family(), &spheres_family(), &poisson_family(), &bodies_family(), &optimisation_family(),
            &sweeps_family()},
           library_systems(),
           {new_command(), sweep_command(), optimize_command(), control_command(),

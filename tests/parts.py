@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What `./lagroid` builds for a scene, and that it does what the whole program does: parts.py BIN EXAMPLES.
 
-BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres and parts/files.
+BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres, parts/poisson
+and parts/files.
 """
 import json
 import pathlib
@@ -11,7 +12,7 @@ import tempfile
 import unittest
 
 bin_folder, examples = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-built = ("pendulum", "bodies", "spheres", "files")
+built = ("pendulum", "bodies", "spheres", "poisson", "files")
 
 
 def run(program, *words):
@@ -39,8 +40,8 @@ class Parts(unittest.TestCase):
         found = {scene: part_of("run", scene) for scene in sorted(examples.rglob("*.toml"))}
         self.assertGreater(len(found), 40)
         for scene, part in found.items():
-            self.assertTrue(part in listed or part in ("bodies", "spheres", "whole"), f"{scene}: {part}")
-        self.assertEqual({"pendulum", "bodies", "spheres", "whole"} - set(found.values()), set())
+            self.assertTrue(part in listed or part in ("bodies", "spheres", "poisson", "whole"), f"{scene}: {part}")
+        self.assertEqual({"pendulum", "bodies", "spheres", "poisson", "whole"} - set(found.values()), set())
 
     def test_they_give_what_the_whole_gives(self):
         for scene in sorted(examples.glob("*.toml")):

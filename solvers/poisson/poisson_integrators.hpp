@@ -48,10 +48,9 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
   double time() const override { return double(index_) * options_.step; }
   MethodTraits traits() const override {
     const bool composed = options_.composition.stages() > 1;
-    const bool symmetric = Step::order != 4 || !Step::explicit_step;
     return {composed_name(method_.name, options_.composition),
             composed ? options_.composition.order : Step::order,
-            symmetric,
+            Step::symmetric,
             Step::kept.bracket == 0,
             Step::explicit_step,
             Step::explicit_step ? options_.composition.stages() * method_.stages : 0};
@@ -70,7 +69,8 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
       }
       const Matrix<double, Sys::dimension, Sys::dimension> from = system_.bivector(x_);
       const Matrix<double, Sys::dimension, Sys::dimension> to = system_.bivector(x);
-      return (slope * from * slope.transpose() - to).cwiseAbs().maxCoeff() / to.cwiseAbs().maxCoeff();
+      const double size = to.cwiseAbs().maxCoeff();
+      return (slope * from * slope.transpose() - to).cwiseAbs().maxCoeff() / (size > 0 ? size : 1);
     } else {
       return std::numeric_limits<double>::quiet_NaN();
     }

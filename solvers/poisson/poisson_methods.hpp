@@ -12,8 +12,7 @@
 
 namespace lagroid::poisson_methods {
 
-inline constexpr Source groupoid_source{"cosserat2023", "Poisson integrators from local symplectic groupoids"};
-inline constexpr Source expansion_source{"cabrera2024", "generating functions of Poisson integrators"};
+inline constexpr Source groupoid_source{"cosserat2024", "Poisson integrators from local symplectic groupoids"};
 
 /// The step by the chart that costs least: in closed form where the bracket has one.
 inline constexpr DeclaredMethod groupoid{
@@ -22,15 +21,15 @@ inline constexpr DeclaredMethod groupoid{
 inline constexpr DeclaredMethod karasev{
     .name = "karasev", .other_orders = OtherOrders::composed_steps, .source = groupoid_source};
 inline constexpr DeclaredMethod hamilton_jacobi_4{
-    .name = "hamilton-jacobi-4", .order = 4, .stages = 2, .source = expansion_source};
+    .name = "hamilton-jacobi-4", .order = 4, .stages = 2, .source = groupoid_source};
 inline constexpr DeclaredMethod hamilton_jacobi_6{
-    .name = "hamilton-jacobi-6", .order = 6, .stages = 6, .source = expansion_source};
+    .name = "hamilton-jacobi-6", .order = 6, .stages = 6, .source = groupoid_source};
 /// Where the energy is a sum of functions of linear forms.
 inline constexpr DeclaredMethod splitting{.name = "splitting", .other_orders = OtherOrders::composed_steps};
 /// By trees of up to three orders: Poisson up to h^5 in a step.
 inline constexpr DeclaredMethod truncated{.name = "truncated-groupoid",
                                           .other_orders = OtherOrders::composed_steps,
-                                          .source = expansion_source,
+                                          .source = groupoid_source,
                                           .to_compare = true};
 inline constexpr DeclaredMethod midpoint{
     .name = "midpoint", .other_orders = OtherOrders::composed_steps, .to_compare = true};

@@ -33,6 +33,7 @@ template <class Formula> class ImplicitStep {
   explicit ImplicitStep(Formula of = Formula()) : formula(std::move(of)) {}
   static constexpr KeptStructure kept = Formula::kept;
   static constexpr int order = Formula::order;
+  static constexpr bool symmetric = true;
   static constexpr bool explicit_step = false;
 
   StepReport take(const X& x, double h, X& end) const {
@@ -122,6 +123,7 @@ template <class Step> class ProjectedStep {
   explicit ProjectedStep(Step of = Step()) : step(std::move(of)) {}
   static constexpr KeptStructure kept{Step::kept.bracket, 0};
   static constexpr int order = Step::order;
+  static constexpr bool symmetric = false;
   static constexpr bool explicit_step = false;
 
   StepReport take(const X& x, double h, X& end) const {
@@ -163,6 +165,7 @@ template <class Chart> class SplitStep {
   explicit SplitStep(Chart of = Chart()) : chart(std::move(of)) {}
   static constexpr KeptStructure kept{};
   static constexpr int order = 2;
+  static constexpr bool symmetric = true;
   static constexpr bool explicit_step = true;
 
   StepReport take(const X& x, double h, X& end) const {
@@ -205,6 +208,7 @@ template <class Sys> class RungeKuttaStep {
   explicit RungeKuttaStep(Sys of = {}) : system(std::move(of)) {}
   static constexpr KeptStructure kept{5, 5};
   static constexpr int order = 4;
+  static constexpr bool symmetric = false;
   static constexpr bool explicit_step = true;
 
   StepReport take(const X& x, double h, X& end) const {
