@@ -40,9 +40,8 @@ ProgramCommand control_command() {
 }  // namespace
 
 ProgramParts whole_program() {
-  return {{&systems_family(), &spheres_family(), &bodies_family(), &optimisation_family(), &control_family(),
   return {{&systems_family(), &spheres_family(), &poisson_family(), &bodies_family(), &optimisation_family(),
-           &sweeps_family()},
+           &control_family(), &sweeps_family()},
           library_systems(),
           {new_command(), sweep_command(), optimize_command(), control_command(),
            command_of("learn", "fit a Hamiltonian on (T*S^2)^k to trajectories (see docs/learning.md)",
