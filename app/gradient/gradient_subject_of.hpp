@@ -52,7 +52,8 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   name_all(out.observed, on_pairs ? "position" : "object", G::object_coordinate_count(),
            on_pairs ? value.presentation.position : std::vector<std::string>());
   name_all(out.observed, "momentum", n, value.presentation.momentum);
-  name_all(out.observed, "configuration", G::arrow_coordinate_count(), {});
+  // On pairs it is where the motion began and the position.
+  if (!on_pairs) name_all(out.observed, "configuration", G::arrow_coordinate_count(), {});
   name_all(out.start, on_pairs ? "position" : "displacement", n,
            on_pairs ? value.presentation.position : std::vector<std::string>());
   name_all(out.start, "momentum", n, value.presentation.momentum);

@@ -79,11 +79,29 @@ double duration_of(LinearisedMotion& motion, long steps, const Observed& observe
   return double(steps) * step;
 }
 
-double largest_column(const Eigen::MatrixXd& a) {
-  double largest = 0;
-  for (Eigen::Index j = 0; j < a.cols(); ++j) largest = std::max(largest, a.col(j).norm());
-  return largest;
-}
+/// By which factor directions have grown: those of the start from their size there; those of parameters, which are zero
+/// there, beyond what each step adds as the first one did.
+class Growth {
+ public:
+  explicit Growth(const Eigen::MatrixXd& states) : first_(states.colwise().norm()), steps_(0) {
+    added_ = first_.array() == 0;
+  }
+  double after_a_step(const Eigen::MatrixXd& states) {
+    ++steps_;
+    double largest = 0;
+    for (Eigen::Index j = 0; j < states.cols(); ++j) {
+      const double size = states.col(j).norm();
+      if (first_(j) == 0) first_(j) = size / double(steps_);
+      if (first_(j) > 0) largest = std::max(largest, size / (added_(j) ? double(steps_) * first_(j) : first_(j)));
+    }
+    return largest;
+  }
+
+ private:
+  Eigen::RowVectorXd first_;
+  Eigen::Array<bool, 1, Eigen::Dynamic> added_;
+  long steps_;
+};
 
 /// The motion in reverse, from states kept on the way.
 class Reversal {
@@ -166,7 +184,7 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   out.states_kept = 1;
   out.end = directions;
   const Eigen::Index states = motion.states();
-  const double first = largest_column(directions.topRows(states));
+  Growth growth(directions.topRows(states));
   const double duration = duration_of(motion, steps, observed, out);
   const auto observe = [&](long node) {
     const double weight = weight_of(observed, node, steps, duration);
@@ -184,7 +202,7 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   for (long k = 0; k < steps; ++k) {
     if (!advance_linearised(motion, out)) return out;
     for (int stage = 0; stage < motion.stages(); ++stage) out.end = motion.stage(stage).forward(out.end);
-    if (first > 0) out.growth = std::max(out.growth, largest_column(out.end.topRows(states)) / first);
+    out.growth = std::max(out.growth, growth.after_a_step(out.end.topRows(states)));
     observe(k + 1);
   }
   return out;
