@@ -39,8 +39,10 @@ struct Doubled : FactorConnection<Factors<1>, Pair<1>, SO2> {
 };
 
 TEST(BrokenLevel, InAnotherBasisIsFoundOut) {
-  EXPECT_EQ(broken_laws(laws::level_laws(level_of_the_bead<Doubled>(), draw_bead)),
-            (Names{level_law::momenta, level_law::second, level_law::steps, level_law::both_ends}));
+  EXPECT_EQ(
+      broken_laws(laws::level_laws(level_of_the_bead<Doubled>(), draw_bead)),
+      (Names{"the Routhian and its magnetic term give the momenta", "second derivatives are those of the gradients",
+             "steps are those of the full system", "full arrows have the momentum of the level at both ends"}));
 }
 
 }  // namespace

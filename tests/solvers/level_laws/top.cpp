@@ -36,14 +36,15 @@ struct Stretched : ShortestRotation {
   }
 };
 TEST(BrokenLevel, OfAnotherMagneticTermIsFoundOut) {
-  EXPECT_EQ(broken_laws(laws::level_laws(level_of_the_top<Stretched>(), draw_top)), Names{level_law::momenta});
+  EXPECT_EQ(broken_laws(laws::level_laws(level_of_the_top<Stretched>(), draw_top)),
+            Names{"the Routhian and its magnetic term give the momenta"});
 }
 
 TEST(BrokenLevel, OfAHastySolverIsFoundOut) {
   using Level = MomentumLevel<ShortestRotation, HeavyTop>;
   const auto report = laws::level_laws(level_of_the_top<ShortestRotation>(), draw_top, 1e-10,
                                        [] { return std::make_unique<Hasty<Level>>(); });
-  EXPECT_EQ(broken_laws(report), Names{level_law::poisson});
+  EXPECT_EQ(broken_laws(report), Names{"the computed step is Poisson, with the magnetic term"});
 }
 
 }  // namespace
