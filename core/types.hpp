@@ -70,7 +70,9 @@ template <int N, class F> LAGROID_INLINE constexpr void unrolled(const F& f) {
 /// expression of Eigen's is a class for each scalar and size (docs/decisions/72_expressions_cost_their_square.md).
 template <class A, class X> A with_entries_of(const X& x) {
   A out;
-  unrolled<A::SizeAtCompileTime>([&]<int I>() { out.coeffRef(I) = typename A::Scalar(x.coeff(I)); });
+  unrolled<A::SizeAtCompileTime>([&]<int I>() {
+    out.coeffRef(I) = Eigen::internal::cast_impl<typename X::Scalar, typename A::Scalar>::run(x.coeff(I));
+  });
   return out;
 }
 

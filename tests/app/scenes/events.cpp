@@ -22,7 +22,7 @@ class Events : public Scenes {
   Json summary(const fs::path& run) const { return Json::parse(contents(run / "summary.json")); }
 };
 
-const std::string apsides = R"([[event]]
+const std::string apsides = R"toml([[event]]
 name = "pericentre"
 when = "x*px + y*py"
 direction = "rising"
@@ -32,7 +32,7 @@ plot = ["x", "y"]
 name = "near"
 when = "sqrt(x^2 + y^2)"
 at = "minimum"
-)";
+)toml";
 
 TEST_F(Events, AreInEveryFileOfARun) {
   const fs::path out = folder_ / "out";
