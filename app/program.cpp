@@ -101,17 +101,19 @@ int from_run(const std::function<std::vector<std::filesystem::path>()>& make) {
   }
 }
 
-/// Hands over to lagroid-check, which stands beside lagroid, as NAME-check does beside NAME: the laws of every system
-/// take long to compile, and whoever only runs scenes need not wait for them.
-int check(SceneOptions options, int argc, char** argv) {
+/// Hands over to a program beside lagroid, NAME-check or NAME-gradient beside NAME: what they hold of every system
+/// takes long to compile, and whoever only runs scenes need not wait for it.
+int hand_over_beside(const std::string& command, const std::string& status, const std::string& what,
+                     SceneOptions options, int argc, char** argv) {
   options.json = asks_for_json(argc, argv);
   const std::string program = std::filesystem::canonical("/proc/self/exe").string();
-  const std::string laws = program + "-check";
-  ::execv(laws.c_str(), argv);
-  return refuse(options.json, exit_bad_input, "no_laws",
-                fmt::format("{}: {}; it holds the laws, and was not built: build the target {}_check, or install a "
-                            "package that has it",
-                            laws, std::strerror(errno), std::filesystem::path(program).filename().string()));
+  const std::string beside = program + "-" + command;
+  ::execv(beside.c_str(), argv);
+  return refuse(
+      options.json, exit_bad_input, status,
+      fmt::format("{}: {}; it holds the {}, and was not built: build the target {}_{}, or install a package "
+                  "that has it",
+                  beside, std::strerror(errno), what, std::filesystem::path(program).filename().string(), command));
 }
 
 }  // namespace
@@ -149,6 +151,10 @@ int program(int argc, char** argv, ProgramParts parts) {
       app.add_subcommand("check", "test every law that applies to a scene's system: lagroid check --help");
   check_command->set_help_flag();
   check_command->prefix_command();
+  CLI::App* gradient_command = app.add_subcommand(
+      "gradient", "exact derivatives of a run by its start and its parameters: lagroid gradient --help");
+  gradient_command->set_help_flag();
+  gradient_command->prefix_command();
   CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
   std::string listed_system;
   list_command->add_option("system", listed_system, "one of them alone");
@@ -173,7 +179,9 @@ int program(int argc, char** argv, ProgramParts parts) {
       return 0;
     }
     if (schema_command->parsed()) return schema(schema_options);
-    if (check_command->parsed()) return check(options, argc - 1, argv + 1);
+    if (check_command->parsed()) return hand_over_beside("check", "no_laws", "laws", options, argc - 1, argv + 1);
+    if (gradient_command->parsed())
+      return hand_over_beside("gradient", "no_gradients", "derivatives of runs", options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options, false, commands);
     if (resume_command->parsed()) return run(options, true, commands);
     if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });

@@ -5,6 +5,7 @@
 #include "experiments/constrained_maps.hpp"
 #include "experiments/newton/newton_report.hpp"
 #include "experiments/optimisation/accelerated_report.hpp"
+#include "experiments/poisson_study.hpp"
 #include "experiments/sweep_scaling.hpp"
 #include "experiments/time_steps.hpp"
 
@@ -35,6 +36,7 @@ constexpr const char* accelerated_name = "accelerated-optimization";
 constexpr const char* maps_name = "constrained-maps";
 constexpr const char* learning_name = "learning-hamiltonians";
 constexpr const char* scaling_name = "sweep-scaling";
+constexpr const char* poisson_name = "poisson";
 
 /// Shares of steps solved, by example and method.
 nlohmann::ordered_json solved(const NewtonFindings& findings) {
@@ -225,6 +227,32 @@ int reproduce_learning(const ReproduceOptions& options) {
   return conclude(std::move(result), std::move(text), files, note, json);
 }
 
+int reproduce_poisson(const ReproduceOptions& options) {
+  const bool json = options.json;
+  const OutputFolder folder = folder_for_report(options.poisson_out, poisson_name, poisson_report_files);
+  std::vector<PoissonRow> rows;
+  {
+    Progress progress(poisson_name, 100, !json);
+    rows = run_poisson_study(options.poisson_steps, [&](long done, long all) { progress.update(100 * done / all); });
+  }
+  std::string note;
+  const auto files = write_poisson_report(rows, options.poisson_steps,
+                                          fmt::format("./lagroid reproduce {} --steps {} --out {}", poisson_name,
+                                                      options.poisson_steps, quoted(options.poisson_out)),
+                                          options.poisson_out, note);
+  nlohmann::ordered_json result;
+  result["status"] = "done";
+  result["runs"] = rows.size();
+  std::string text = fmt::format("{}: {} runs of {} steps\n", poisson_name, rows.size(), options.poisson_steps);
+  for (const PoissonRow& row : rows) {
+    result["systems"][row.system][row.method] = {
+        {"order", row.order}, {"poisson_defect", row.defect}, {"casimirs", row.casimir}};
+    text += fmt::format("  {:<18} {:<20} order {:5.2f}, Poisson defect {:8.2g}, Casimirs within {:8.2g}\n", row.system,
+                        row.method, row.order, row.defect, row.casimir);
+  }
+  return conclude(std::move(result), std::move(text), files, note, json);
+}
+
 int reproduce_scaling(const ReproduceOptions& options) {
   const bool json = options.json;
   const double start = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -333,6 +361,13 @@ void learning_options(CLI::App& command, ReproduceOptions& options) {
   command.add_option("--threads", study.threads, "fits at a time")->check(CLI::Range(1, 256))->capture_default_str();
 }
 
+void poisson_options(CLI::App& command, ReproduceOptions& options) {
+  command.add_option("--out", options.poisson_out, "the folder for report.md and CSV")->capture_default_str();
+  command.add_option("--steps", options.poisson_steps, "of size 0.1, over which Casimirs and energy are watched")
+      ->check(CLI::Range(10L, 100'000'000L))
+      ->capture_default_str();
+}
+
 void scaling_options(CLI::App& command, ReproduceOptions& options) {
   command.add_option("--out", options.scaling_out, "the folder for report.md, CSV and the figure")
       ->capture_default_str();
@@ -355,6 +390,8 @@ constexpr Reproduction reproductions[] = {
      map_options, reproduce_maps},
     {accelerated_name, "Duruisseaux and Leok, Figure 1: accelerated optimisation on manifolds, and the competition",
      accelerated_options, reproduce_accelerated},
+    {poisson_name, "orders of integrators on Poisson manifolds, and what they keep of bracket, Casimirs and energy",
+     poisson_options, reproduce_poisson},
     {scaling_name, "what lagroid sweep costs besides its members, and its efficiency on many machines (under mpirun)",
      scaling_options, reproduce_scaling}};
 

@@ -23,6 +23,8 @@ struct ReproduceOptions {
   std::string maps_out = "out/constrained-maps";
   LearningStudy learning;
   std::string learning_out = "out/learning-hamiltonians";
+  std::string poisson_out = "out/poisson";
+  long poisson_steps = 10000;
   std::string scaling_out = "out/sweep-scaling";
 };
 

@@ -118,7 +118,7 @@ Columns read_columns(const fs::path& file, long most_rows) {
     for (const std::size_t row : rows) columns.time.push_back(time[row]);
     for (hsize_t i = 0; i < in.getNumObjs(); ++i) {
       const std::string name = in.getObjnameByIdx(i);
-      if (name == "time") continue;
+      if (name == "time" || in.childObjType(name) == H5O_TYPE_GROUP) continue;
       const H5::DataSet set = in.openDataSet(name);
       const std::vector<double> values = numbers(set);
       const std::vector<std::string> labels = labels_of(set);
@@ -211,7 +211,9 @@ std::vector<fs::path> draw_plots(const PlotOptions& options) {
   const auto held = folder_there(options.run);
   const fs::path file = file_of_run(options.run, "plot.gp");
   const fs::path excerpt = file_of_run(options.run, "trajectory.csv").parent_path() / "plot.csv";
-  const auto its_own = [&](const Json& summary) { return plot_script(panels_of(summary), !fs::exists(excerpt)); };
+  const auto its_own = [&](const Json& summary) {
+    return plot_script(panels_of(summary), events_of(summary), !fs::exists(excerpt));
+  };
   if (!options.own_script && contents(file) != from_summary(options.run, its_own))
     throw RunError(
         fmt::format("{}: is not the script that summary.json gives: someone changed it, or another lagroid wrote it. "

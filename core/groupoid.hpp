@@ -99,11 +99,13 @@ template <class Derived, int Dimension> class LieGroupoid {
 
   /// The arrow g as an arrow over the scalar S, a constant if S has derivatives.
   template <class S, class A> auto cast(const A& g) const {
-    return arrow_at<S>(coordinates_of_arrow(g).template cast<S>().eval());
+    const auto x = coordinates_of_arrow(g);
+    return arrow_at<S>(with_entries_of<Vector<S, arrow_coordinate_count()>>(x));
   }
   /// The object q as an object over the scalar S.
   template <class S, class Q> auto cast_object(const Q& q) const {
-    return object_at<S>(coordinates_of_object(q).template cast<S>().eval());
+    const auto x = coordinates_of_object(q);
+    return object_at<S>(with_entries_of<Vector<S, object_coordinate_count()>>(x));
   }
 
   /// The arrow tau(a)^{-1} g tau(b) over the scalar M, with infinitesimals for a and b: a function evaluated on it
@@ -121,7 +123,8 @@ template <class Derived, int Dimension> class LieGroupoid {
   /// compares the two.
   template <class M, End First, End Second, int LeftOffset, int RightOffset, class A>
   auto seed_by_composition(const A& g) const {
-    Vector<M, Dimension> a = Vector<M, Dimension>::Constant(M(0));
+    Vector<M, Dimension> a;
+    for (int i = 0; i < Dimension; ++i) a(i) = M(0);
     Vector<M, Dimension> b = a;
     for (int i = 0; i < Dimension; ++i) {
       (First == End::source ? a : b)(i).set_left(LeftOffset + i, 1);
@@ -208,14 +211,14 @@ template <class Derived, int Dimension> class LieGroupoid {
 
   template <class A> auto coordinates_of_arrow(const A& g) const {
     if constexpr (detail::EigenValued<A>) {
-      return Vector<typename A::Scalar, A::SizeAtCompileTime>(g.reshaped());
+      return with_entries_of<Vector<typename A::Scalar, A::SizeAtCompileTime>>(g);
     } else {
       return self().coordinates(g);
     }
   }
   template <class Q> auto coordinates_of_object(const Q& q) const {
     if constexpr (detail::EigenValued<Q>) {
-      return Vector<typename Q::Scalar, Q::SizeAtCompileTime>(q.reshaped());
+      return with_entries_of<Vector<typename Q::Scalar, Q::SizeAtCompileTime>>(q);
     } else {
       return self().object_coordinates(q);
     }
@@ -223,7 +226,7 @@ template <class Derived, int Dimension> class LieGroupoid {
   template <class S, class V> auto arrow_at(const V& x) const {
     using A = typename Derived::template Arrow<S>;
     if constexpr (detail::EigenValued<A>) {
-      return A(x.reshaped(Eigen::fix<A::RowsAtCompileTime>, Eigen::fix<A::ColsAtCompileTime>));
+      return with_entries_of<A>(x);
     } else {
       return self().template arrow<S>(x);
     }
@@ -231,7 +234,7 @@ template <class Derived, int Dimension> class LieGroupoid {
   template <class S, class V> auto object_at(const V& x) const {
     using Q = typename Derived::template Object<S>;
     if constexpr (detail::EigenValued<Q>) {
-      return Q(x.reshaped(Eigen::fix<Q::RowsAtCompileTime>, Eigen::fix<Q::ColsAtCompileTime>));
+      return with_entries_of<Q>(x);
     } else {
       return self().template object<S>(x);
     }
@@ -241,8 +244,13 @@ template <class Derived, int Dimension> class LieGroupoid {
   /// this times the unit round-off. The largest coordinate by default; that of products is taken factor by factor.
   template <class A> auto coordinate_scale(const A& g) const {
     const auto x = coordinates_of_arrow(g);
-    using V = Vector<typename decltype(x)::Scalar, Dimension>;
-    return V(V::Constant(x.cwiseAbs().maxCoeff()));
+    using S = typename decltype(x)::Scalar;
+    using std::abs, std::max;
+    S largest = abs(x(0));
+    for (int i = 1; i < x.size(); ++i) largest = max(largest, S(abs(x(i))));
+    Vector<S, Dimension> out;
+    for (int i = 0; i < Dimension; ++i) out(i) = largest;
+    return out;
   }
 
   /// Number of coordinates of an arrow (ambient: nine for a rotation matrix) and of an object.

@@ -2,9 +2,8 @@
 /// Morphisms of Lie groupoids and of discrete constrained Lagrangian systems. [G] 4.1
 
 #include <lagroid/core/derivatives/implicit.hpp>
+#include <lagroid/core/matrices/regular_inverse.hpp>
 #include <lagroid/core/system.hpp>
-
-#include <Eigen/LU>
 
 #include <concepts>
 #include <vector>
@@ -51,15 +50,24 @@ template <class Derived, class From, class To> struct Morphism {
     Matrix<S, To::dimension, From::dimension> out;
     const auto qd = from.template cast_object<D>(q);
     for (int i = 0; i < From::dimension; ++i) {
-      const auto e = infinitesimal(Vector<S, From::dimension>(Vector<S, From::dimension>::Unit(i)));
-      out.col(i) = derivative_of(to.tau_inverse(self()(from.tau(qd, e))));
+      Vector<D, From::dimension> e;
+      for (int j = 0; j < From::dimension; ++j) e(j) = D(S(0.0), S(i == j ? 1.0 : 0.0));
+      const Vector<S, To::dimension> column = derivative_of(to.tau_inverse(self()(from.tau(qd, e))));
+      for (int j = 0; j < To::dimension; ++j) out(j, i) = column(j);
     }
     return out;
   }
 
   /// The state over q that is A*Phi-related to a momentum at Phi_0(q): <mu, v> = <mu', A Phi v>. [G] Def. 4.4
   State<From> related(const ObjectOf<From>& q, const AlgebroidVector<To>& momentum) const {
-    return {q, algebroid(q).transpose() * momentum};
+    const auto map = algebroid(q);
+    State<From> out{q, {}};
+    for (int i = 0; i < From::dimension; ++i) {
+      double sum = 0;
+      for (int j = 0; j < To::dimension; ++j) sum += map(j, i) * momentum(j);
+      out.momentum(i) = sum;
+    }
+    return out;
   }
 
   /// The momentum at Phi_0(q) to which mu at q is related: (A Phi_q)^{-T} mu, where fibres have the same dimension.
@@ -73,9 +81,11 @@ template <class Derived, class From, class To> struct Morphism {
       constexpr int n = To::dimension;
       const Matrix<S, n, n> map = algebroid(q);
       Matrix<double, n, n> values;
-      for (int i = 0; i < n * n; ++i) values.data()[i] = value_of(map.data()[i]);
-      const Matrix<double, n, n> inverse = values.transpose().partialPivLu().inverse();
-      Vector<S, n> x = Vector<S, n>::Constant(S(0.0));
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) values(i, j) = value_of(map(j, i));
+      const Matrix<double, n, n> inverse = regular_inverse(values);
+      Vector<S, n> x;
+      for (int i = 0; i < n; ++i) x(i) = S(0.0);
       for (int order = 0; order <= nilpotency<S>; ++order) {
         Vector<S, n> defect = mu;
         for (int i = 0; i < n; ++i)

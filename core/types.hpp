@@ -17,7 +17,8 @@
 #include <utility>
 
 // Operations on derivatives must be inlined to stay in registers, and all that a step calls with them. Instrumented or
-// unoptimised code has nothing to gain, and would take minutes to compile.
+// unoptimised code has nothing to gain, and would take minutes to compile; nor has one that is run for a moment
+// (LAGROID_COMPACT).
 #if defined(__SANITIZE_ADDRESS__)
 #define LAGROID_SANITIZED
 #elif defined(__has_feature)
@@ -25,7 +26,7 @@
 #define LAGROID_SANITIZED
 #endif
 #endif
-#if defined(__OPTIMIZE__) && !defined(LAGROID_SANITIZED)
+#if defined(__OPTIMIZE__) && !defined(LAGROID_SANITIZED) && !defined(LAGROID_COMPACT)
 #define LAGROID_INLINE [[gnu::always_inline]]
 #define LAGROID_FLATTEN [[gnu::flatten]]
 #else
@@ -63,6 +64,16 @@ template <class S> using MaskOf = typename MaskOfScalar<S>::Type;
 template <int N, class F> LAGROID_INLINE constexpr void unrolled(const F& f) {
   [&]<int... I>(std::integer_sequence<int, I...>) { (f.template operator()<I>(), ...); }
   (std::make_integer_sequence<int, N>{});
+}
+
+/// The numbers of x, in its order, as a vector or matrix A over any scalar that they convert to. Entry by entry: every
+/// expression of Eigen's is a class for each scalar and size (docs/decisions/72_expressions_cost_their_square.md).
+template <class A, class X> A with_entries_of(const X& x) {
+  A out;
+  unrolled<A::SizeAtCompileTime>([&]<int I>() {
+    out.coeffRef(I) = Eigen::internal::cast_impl<typename X::Scalar, typename A::Scalar>::run(x.coeff(I));
+  });
+  return out;
 }
 
 }  // namespace lagroid

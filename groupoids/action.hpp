@@ -14,6 +14,7 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/capabilities/loops.hpp>
+#include <lagroid/core/derivatives/directional.hpp>
 
 #include <string>
 
@@ -43,7 +44,8 @@ template <class Group, class Space> struct Action : LieGroupoid<Action<Group, Sp
   template <class S> using Object = typename Space::template Point<S>;
   template <class S> using Arrow = ActionArrow<Element<S>, Object<S>>;
   static constexpr int object_size = Object<double>::SizeAtCompileTime;
-  static constexpr int arrow_size = Group::arrow_coordinate_count() + object_size;
+  static constexpr int element_size = Group::arrow_coordinate_count();
+  static constexpr int arrow_size = element_size + object_size;
   static constexpr int object_dimension = [] {
     if constexpr (requires { Space::dimension; }) {
       return Space::dimension;
@@ -127,13 +129,11 @@ template <class Group, class Space> struct Action : LieGroupoid<Action<Group, Sp
   }
 
   template <class E, class S> Vector<S, arrow_size> coordinates(const ActionArrow<E, Vector<S, object_size>>& g) const {
-    Vector<S, arrow_size> x;
-    x << group.coordinates_of_arrow(g.element), g.point;
-    return x;
+    return joined<S, element_size, object_size>(group.coordinates_of_arrow(g.element), g.point);
   }
   template <class S, class V> Arrow<S> arrow(const V& x) const {
-    return {group.template arrow_at<S>(x.template head<arrow_size - object_size>().eval()),
-            x.template tail<object_size>()};
+    const Vector<S, arrow_size> numbers = x;
+    return {group.template arrow_at<S>(part<0, element_size>(numbers)), part<element_size, object_size>(numbers)};
   }
 
   static std::string name() { return Group::name() + " on " + Space::name(); }

@@ -22,6 +22,7 @@
 /// magnetic field on a system of fixed momentum (core/reduction/momentum_level.hpp) and is what a geometric phase adds
 /// up (core/reduction/phase.hpp).
 
+#include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/groupoids/pair_of_points.hpp>
 #include <lagroid/groupoids/product.hpp>
@@ -103,7 +104,12 @@ struct FactorConnection
     using S = typename decltype(this->from.coordinates_of_arrow(g))::Scalar;
     Vector<S, angles> theta;
     [&]<std::size_t... I>(Factors<I...>) {
-      ((theta.template segment<Factor<I>::dimension>(offset<I>) = factor<I>().tau_inverse(std::get<I>(g))), ...);
+      (
+          [&] {
+            const Vector<S, Factor<I>::dimension> of_factor = factor<I>().tau_inverse(std::get<I>(g));
+            for (int i = 0; i < Factor<I>::dimension; ++i) theta(offset<I> + i) = of_factor(i);
+          }(),
+          ...);
     }
     (Fibre{});
     return theta;
@@ -111,8 +117,7 @@ struct FactorConnection
   template <class B, class S> ArrowOf<Product<Gs...>, S> attach(const B& b, const Vector<S, angles>& theta) const {
     const auto element = [&]<std::size_t J>(std::integral_constant<std::size_t, J>) {
       if constexpr (constexpr auto at = detail::position<J>(Base{}); at == Base::size()) {
-        return factor<J>().tau(
-            Vector<S, 0>(), Vector<S, Factor<J>::dimension>(theta.template segment<Factor<J>::dimension>(offset<J>)));
+        return factor<J>().tau(Vector<S, 0>(), part<offset<J>, Factor<J>::dimension>(theta));
       } else if constexpr (Base::size() == 1) {
         return b;
       } else {
@@ -126,13 +131,13 @@ struct FactorConnection
   }
   /// The bases of the factors, those of the base first.
   template <class Q> Matrix<double, rank, rank> adapted_basis(const Q&) const {
-    Matrix<double, rank, rank> basis = Matrix<double, rank, rank>::Zero();
+    Matrix<double, rank, rank> basis;
+    for (int i = 0; i < rank * rank; ++i) basis(i) = 0;
     int column = 0;
     const auto append = [&]<std::size_t... I>(Factors<I...>) {
       (
           [&] {
-            basis.template block<Factor<I>::dimension, Factor<I>::dimension>(start<I>, column).setIdentity();
-            column += Factor<I>::dimension;
+            for (int i = 0; i < Factor<I>::dimension; ++i) basis(start<I> + i, column++) = 1;
           }(),
           ...);
     };

@@ -48,10 +48,20 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
 
   template <class S> static Vector<S, arrow_size> coordinates(const Arrow<S>& g) {
     Vector<S, arrow_size> x;
-    x << g.source, g.target;
+    unrolled<N>([&]<int I>() {
+      x(I) = g.source(I);
+      x(N + I) = g.target(I);
+    });
     return x;
   }
-  template <class S, class V> static Arrow<S> arrow(const V& x) { return {x.template head<N>(), x.template tail<N>()}; }
+  template <class S, class V> static Arrow<S> arrow(const V& x) {
+    Arrow<S> g;
+    unrolled<N>([&]<int I>() {
+      g.source(I) = S(x(I));
+      g.target(I) = S(x(N + I));
+    });
+    return g;
+  }
 
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>
   LAGROID_INLINE static Arrow<M> seed(const PairArrow<T, N>& g) {
@@ -89,7 +99,9 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
   }
   template <End Which, class T, int K>
   static Matrix<T, N, K> frame_to_end(const PairArrow<T, N>&, const Matrix<T, 2 * N, K>& rows) {
-    return rows.template middleRows<N>(Which == End::source ? 0 : N);
+    Matrix<T, N, K> out;
+    for (int k = 0; k < K; ++k) unrolled<N>([&]<int I>() { out(I, k) = rows((Which == End::source ? 0 : N) + I, k); });
+    return out;
   }
   template <class T> static Matrix<T, 2 * N, 2 * N> frame_bracket(const Vector<T, 2 * N>&) {
     return Matrix<T, 2 * N, 2 * N>::Zero();

@@ -3,6 +3,7 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/capabilities/loops.hpp>
+#include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/groupoids/pair.hpp>
 
 #include <string>
@@ -27,7 +28,8 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
   static constexpr int object_dimension = rank;
   template <class S> using Object = typename Group::template Arrow<S>;
   template <class S> using Arrow = ElementPair<Object<S>>;
-  static constexpr int arrow_size = 2 * Group::arrow_coordinate_count();
+  static constexpr int half = Group::arrow_coordinate_count();
+  static constexpr int arrow_size = 2 * half;
   static constexpr int object_size = Group::arrow_coordinate_count();
   /// The group's single object.
   template <class S> using Point = typename Group::template Object<S>;
@@ -85,14 +87,12 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
 
   template <class E> auto coordinates(const ElementPair<E>& g) const {
     const auto a = group.coordinates_of_arrow(g.source);
-    Vector<typename decltype(a)::Scalar, arrow_size> x;
-    x << a, group.coordinates_of_arrow(g.target);
-    return x;
+    using S = typename decltype(a)::Scalar;
+    return joined<S, half, half>(a, group.coordinates_of_arrow(g.target));
   }
   template <class S, class V> Arrow<S> arrow(const V& x) const {
-    constexpr int half = arrow_size / 2;
-    return {group.template arrow_at<S>(x.template head<half>().eval()),
-            group.template arrow_at<S>(x.template tail<half>().eval())};
+    const Vector<S, arrow_size> numbers = x;
+    return {group.template arrow_at<S>(part<0, half>(numbers)), group.template arrow_at<S>(part<half, half>(numbers))};
   }
 
   template <class E> auto object_coordinates(const E& a) const { return group.coordinates_of_arrow(a); }

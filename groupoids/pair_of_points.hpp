@@ -11,6 +11,7 @@
 /// Required: Space has a chart (see Action): `dimension`, `displace(m, u)`, `displacement(m, r)`, `project(m)`. Its
 /// basis at m may jump from one m to the next, since momenta are written at each m in the basis there.
 
+#include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/groupoids/pair.hpp>
 
 #include <string>
@@ -50,12 +51,11 @@ template <class Space> struct PairOfPoints : LieGroupoid<PairOfPoints<Space>, Sp
   }
 
   template <class S> static Vector<S, arrow_size> coordinates(const PairArrow<S, size>& g) {
-    Vector<S, arrow_size> x;
-    x << g.source, g.target;
-    return x;
+    return joined(g.source, g.target);
   }
   template <class S, class V> static Arrow<S> arrow(const V& x) {
-    return {x.template head<size>(), x.template tail<size>()};
+    const Vector<S, arrow_size> numbers = x;
+    return {part<0, size>(numbers), part<size, size>(numbers)};
   }
 
   static std::string name() { return "Pair(" + Space::name() + ")"; }

@@ -13,7 +13,8 @@ namespace lagroid {
 struct RotatedVectors {
   template <class S> using Point = Vector<S, 3>;
   template <class S> static Vector<S, 3> act(const Vector<S, 3>& m, const Matrix<S, 3, 3>& r) {
-    return r.transpose() * m;
+    const auto along = [&](int i) -> S { return r(0, i) * m(0) + (r(1, i) * m(1) + r(2, i) * m(2)); };
+    return {along(0), along(1), along(2)};
   }
   static std::string name() { return "R^3"; }
 };
@@ -24,29 +25,36 @@ struct RotatedDirections {
   template <class S> using Point = Vector<S, 3>;
   static constexpr int dimension = 2;
   template <class S> static Vector<S, 3> act(const Vector<S, 3>& m, const Matrix<S, 3, 3>& r) {
-    return r.transpose() * m;
+    const auto along = [&](int i) -> S { return r(0, i) * m(0) + (r(1, i) * m(1) + r(2, i) * m(2)); };
+    return {along(0), along(1), along(2)};
   }
   template <class S> static Vector<S, 3> displace(const Vector<S, 3>& m, const Vector<S, 2>& u) {
     using std::sqrt;
-    return (m + tangent_basis(m) * u) / sqrt(u(0) * u(0) + u(1) * u(1) + 1.0);
+    const Matrix<S, 3, 2> basis = tangent_basis(m);
+    const S length = sqrt(u(0) * u(0) + u(1) * u(1) + 1.0);
+    const auto along = [&](int i) -> S { return (m(i) + (basis(i, 0) * u(0) + basis(i, 1) * u(1))) / length; };
+    return {along(0), along(1), along(2)};
   }
   template <class S> static Vector<S, 2> displacement(const Vector<S, 3>& m, const Vector<S, 3>& r) {
-    return (tangent_basis(m).transpose() * r).eval() / m.dot(r);
+    const Matrix<S, 3, 2> basis = tangent_basis(m);
+    const S height = m(0) * r(0) + (m(1) * r(1) + m(2) * r(2));
+    const auto along = [&](int i) -> S {
+      return (basis(0, i) * r(0) + (basis(1, i) * r(1) + basis(2, i) * r(2))) / height;
+    };
+    return {along(0), along(1)};
   }
   template <class S> static Vector<S, 3> project(const Vector<S, 3>& m) {
     using std::sqrt;
-    return m / sqrt(m.squaredNorm());
+    const S length = sqrt(m(0) * m(0) + (m(1) * m(1) + m(2) * m(2)));
+    return {m(0) / length, m(1) / length, m(2) / length};
   }
   /// The rotation R with m R = v that takes the orthonormal frame (B, v) of `tangent_basis` at v to that at m.
   template <class S> static Matrix<S, 3, 3> carrying(const Vector<double, 3>& m, const Vector<S, 3>& v) {
-    Matrix<S, 3, 3> at_v;
-    at_v << tangent_basis(v), v;
-    Matrix<double, 3, 3> at_m;
-    at_m << tangent_basis(m), m;
+    const Matrix<S, 3, 2> at_v = tangent_basis(v);
+    const Matrix<double, 3, 2> at_m = tangent_basis(m);
     Matrix<S, 3, 3> out;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        out(i, j) = at_v(j, 0) * at_m(i, 0) + at_v(j, 1) * at_m(i, 1) + at_v(j, 2) * at_m(i, 2);
+      for (int j = 0; j < 3; ++j) out(i, j) = at_v(j, 0) * at_m(i, 0) + at_v(j, 1) * at_m(i, 1) + v(j) * m(i);
     return out;
   }
   static std::string name() { return "S^2"; }
@@ -59,7 +67,12 @@ struct RotatedDirections {
     const S a = -1.0 / (m(2) + sign);
     const S b = m(0) * m(1) * a;
     Matrix<S, 3, 2> basis;
-    basis << m(0) * m(0) * a * sign + 1.0, b, b * sign, m(1) * m(1) * a + sign, m(0) * -sign, -m(1);
+    basis(0, 0) = m(0) * m(0) * a * sign + 1.0;
+    basis(1, 0) = b * sign;
+    basis(2, 0) = m(0) * -sign;
+    basis(0, 1) = b;
+    basis(1, 1) = m(1) * m(1) * a + sign;
+    basis(2, 1) = -m(1);
     return basis;
   }
 };

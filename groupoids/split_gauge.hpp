@@ -23,6 +23,7 @@
 /// Tori & Zuccalli, Lagrangian reduction of nonholonomic discrete mechanical systems, J. Geom. Mech. 2 (2010).)
 /// Required: arrows near enough to units for the connection. Nothing throws.
 
+#include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/groupoids/groups/vector_group.hpp>
 #include <lagroid/groupoids/trivial.hpp>
@@ -65,7 +66,8 @@ template <class Connection> struct SplitGauge : LieGroupoid<SplitGauge<Connectio
   static_assert(rank == Connection::Domain::dimension,
                 "a connection splits arrows in those of the base and elements of the group");
   static constexpr int object_dimension = object_dimension_of<Base>();
-  static constexpr int arrow_size = Base::arrow_coordinate_count() + Group::arrow_coordinate_count();
+  static constexpr int base_size = Base::arrow_coordinate_count();
+  static constexpr int arrow_size = base_size + Group::arrow_coordinate_count();
   static constexpr int object_size = Base::object_coordinate_count();
   template <class S> using Object = typename Base::template Object<S>;
   template <class S> using Arrow = SplitArrow<ArrowOf<Base, S>, ArrowOf<Group, S>>;
@@ -110,14 +112,12 @@ template <class Connection> struct SplitGauge : LieGroupoid<SplitGauge<Connectio
     return split(connection.from.multiply(join(g), join(h)));
   }
   template <class Q, class S> Arrow<S> tau(const Q& s, const Vector<S, rank>& v) const {
-    return {base().tau(s, Vector<S, base_rank>(v.template head<base_rank>())),
-            group.tau(Point<S>(), Vector<S, fibre_rank>(v.template tail<fibre_rank>()))};
+    return {base().tau(s, part<0, base_rank>(v)), group.tau(Point<S>(), part<base_rank, fibre_rank>(v))};
   }
   template <class B, class E> auto tau_inverse(const SplitArrow<B, E>& g) const {
     const auto v = base().tau_inverse(g.base);
-    Vector<typename decltype(v)::Scalar, rank> out;
-    out << v, group.tau_inverse(g.element);
-    return out;
+    using S = typename decltype(v)::Scalar;
+    return joined<S, base_rank, fibre_rank>(v, group.tau_inverse(g.element));
   }
   template <class B, class E> SplitArrow<B, E> project(const SplitArrow<B, E>& g) const {
     return {base().project(g.base), group.project(g.element)};
@@ -129,14 +129,13 @@ template <class Connection> struct SplitGauge : LieGroupoid<SplitGauge<Connectio
 
   template <class B, class E> auto coordinates(const SplitArrow<B, E>& g) const {
     const auto x = base().coordinates_of_arrow(g.base);
-    Vector<typename decltype(x)::Scalar, arrow_size> out;
-    out << x, group.coordinates_of_arrow(g.element);
-    return out;
+    using S = typename decltype(x)::Scalar;
+    return joined<S, base_size, arrow_size - base_size>(x, group.coordinates_of_arrow(g.element));
   }
   template <class S, class V> Arrow<S> arrow(const V& x) const {
-    constexpr int first = Base::arrow_coordinate_count();
-    return {base().template arrow_at<S>(x.template head<first>().eval()),
-            group.template arrow_at<S>(x.template tail<arrow_size - first>().eval())};
+    const Vector<S, arrow_size> numbers = x;
+    return {base().template arrow_at<S>(part<0, base_size>(numbers)),
+            group.template arrow_at<S>(part<base_size, arrow_size - base_size>(numbers))};
   }
   template <class Q> auto object_coordinates(const Q& s) const { return base().coordinates_of_object(s); }
   template <class S, class V> Object<S> object(const V& x) const { return base().template object_at<S>(x); }

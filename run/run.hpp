@@ -49,6 +49,7 @@ template <DiscreteSystem Sys> struct RunOptions {
   long every = 1;                             ///< each n-th node is recorded (and the last)
   bool progress = false;                      ///< a bar on the terminal
   std::optional<Presentation<Sys>> presentation{};  ///< labels, panels and shapes of one's own
+  std::vector<Event> events{};                      ///< that are watched for
 };
 
 /// Columns q1, q2, ... of the object and mu1, mu2, ... of the momentum, g1, g2, ... of the configuration where it
@@ -80,7 +81,7 @@ void run_with_files(RunResult& result, const std::filesystem::path& folder, bool
 /// reason. Throws std::invalid_argument for a name that is not one line of text, a start that is not finite, or steps
 /// and every that count nothing; FolderRefused where the folder holds something else or is not to be written in;
 /// RunError where it holds no run, or one of another system, with other parameters, from another start or by another
-/// method, to go on with.
+/// method, to go on with, and for events that cannot be watched for (EventWatch).
 template <DiscreteSystem Sys>
 RunResult run(const Sys& system, std::unique_ptr<Integrator<Sys>> integrator, const IntegratorOptions& how,
               const RunOptions<Sys>& options) {
@@ -104,7 +105,7 @@ RunResult run(const Sys& system, std::unique_ptr<Integrator<Sys>> integrator, co
   RunResult result;
   detail::run_with_files(result, options.folder, options.resume, scene, [&](RunContext context) {
     context.progress = options.progress;
-    drive(motion, {options.steps, options.every, 0, scene}, context, result);
+    drive(motion, {options.steps, options.every, 0, scene, options.events}, context, result);
   });
   return result;
 }

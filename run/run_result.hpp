@@ -16,6 +16,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lagroid {
@@ -89,6 +90,51 @@ struct Panel {
   double y_offset = 0;
 };
 
+/// How the function of an event was where it happened.
+enum class Passing {
+  rising,    ///< it passed zero upwards
+  falling,   ///< downwards
+  touching,  ///< it came to zero, and went back
+  minimum,
+  maximum
+};
+std::string_view to_string(Passing passing);
+
+/// An event that happened.
+struct Happening {
+  std::size_t event = 0;  ///< which of EventTable::watched
+  long step = 0;          ///< in which it did, from 1 on
+  double time = 0;        ///< s
+  Passing passing = Passing::rising;
+  bool together = false;       ///< at the same time as the one before, as far as times can be told apart
+  std::vector<double> values;  ///< of the node's columns, EventTable::columns
+};
+
+/// An event that was watched for.
+struct WatchedEvent {
+  std::string name;
+  std::string when;
+  std::vector<std::string> plot{};  ///< two columns over each other, a section; or none
+  long count = 0;                   ///< how often it happened
+  long touches = 0;                 ///< how often its function came to zero without passing it
+};
+
+/// What happened in a run, in the order of time.
+struct EventTable {
+  std::vector<WatchedEvent> watched;
+  std::vector<std::string> columns;  ///< of a node: those of the trajectory, without what belongs to arrows
+  std::vector<Happening> rows;
+};
+
+/// When an event happened, touches left out.
+struct EventSpan {
+  double first = 0;
+  double last = 0;
+  double mean_interval = 0;  ///< zero where it happened once
+};
+/// None where it did not.
+std::optional<EventSpan> span_of(const EventTable& events, std::size_t event);
+
 /// The status of a run that Ctrl-C or SIGTERM ended.
 inline constexpr const char* interrupted_status = "interrupted";
 
@@ -113,6 +159,7 @@ struct RunResult {
   std::vector<std::string> notes;
   Ledger ledger;
   Trajectory trajectory;
+  EventTable events;
   std::vector<Panel> panels;
   std::vector<Shape> shapes;
 

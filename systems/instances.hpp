@@ -14,13 +14,16 @@
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>
 
+#define LAGROID_STEP_CLASSES(prefix, Sys)  \
+  prefix class NewtonStep<Sys>;            \
+  prefix class StepPredictor<Sys>;         \
+  prefix class CompensatedTrajectory<Sys>; \
+  prefix class FixedStepIntegrator<Sys>
+
 #define LAGROID_STEPS(prefix, Sys)                                                                                     \
   prefix GradientsOf<Sys> automatic_gradients(const Sys&, const ArrowOf<Sys::GroupoidType>&, const Sys::Multipliers&); \
   prefix TwoSidedOf<Sys> automatic_two_sided(const Sys&, const ArrowOf<Sys::GroupoidType>&, const Sys::Multipliers&);  \
-  prefix class NewtonStep<Sys>;                                                                                        \
-  prefix class StepPredictor<Sys>;                                                                                     \
-  prefix class CompensatedTrajectory<Sys>;                                                                             \
-  prefix class FixedStepIntegrator<Sys>
+  LAGROID_STEP_CLASSES(prefix, Sys)
 
 #define LAGROID_STEP_SOLVERS(prefix, Sys)                                                                        \
   prefix std::unique_ptr<StepSolver<Sys>> make_step_solver(const Sys&, StepMethod, StepOptions);                 \

@@ -37,13 +37,13 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   static constexpr bool attractive = true;
   template <class S> S potential(const Vector<S, 2>& q) const {
     using std::sqrt;
-    return S(-strength) / sqrt(q.squaredNorm());
+    return constant<S>(-varied<S>(strength)) / sqrt(q.squaredNorm());
   }
 
   template <class S> Vector<S, 2> gradient(const Vector<S, 2>& q) const {
     using std::sqrt;
     const S square = q.squaredNorm();
-    return q * (S(strength) / (square * sqrt(square)));
+    return q * (constant<S>(varied<S>(strength)) / (square * sqrt(square)));
   }
 
   /// Of sigma = |q|^(3/2), Kepler's third law.

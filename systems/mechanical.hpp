@@ -18,6 +18,7 @@
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/systems/reference.hpp>
@@ -34,7 +35,8 @@ inline constexpr std::array<std::string_view, 2> quadrature_words{"midpoint", "t
 /// L(q0, q1) = m |q1 - q0|^2 / (2 h) - h U, with U the potential by the chosen quadrature. Discretises
 /// L = m |q'|^2 / 2 - U(q).
 ///
-/// The derived class writes `double mass() const` and `S potential(const Vector<S, N>& q) const`, and may write, for
+/// The derived class writes `double mass() const`, or a template on the scalar of a formula that reads it by `varied`
+/// (core/scalars/varied.hpp), and `S potential(const Vector<S, N>& q) const`, and may write, for
 /// speed, `Vector<S, N> gradient(const Vector<S, N>& q) const`, dU/dq.
 template <class Derived, int N, int ObjectConstraints = 0>
 struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
@@ -44,7 +46,7 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
 
   template <class S, class T> S lagrangian(const PairArrow<S, N>& g, const T& step) const {
     const Vector<S, N> dq = g.target - g.source;
-    const S kinetic = dq.squaredNorm() * (0.5 * self().mass() / step);
+    const S kinetic = dq.squaredNorm() * (0.5 * mass_in<S>() / step);
     if (quadrature == Quadrature::midpoint) {
       return kinetic - self().potential(Vector<S, N>((g.source + g.target) * 0.5)) * step;
     }
@@ -68,7 +70,7 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
     if constexpr (Part == 0) {
       return {{q, q}, force(q) * S(t)};
     } else {
-      const Vector<S, N> dq = p * S(t / self().mass());
+      const Vector<S, N> dq = p * constant<S>(t / mass_in<S>());
       const Vector<S, N> target = q + dq;
       return {{q, target}, Vector<S, N>::Constant(S(0.0)), dq - (target - q)};
     }
@@ -88,6 +90,15 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
  protected:
   static constexpr auto quadrature_parameter() {
     return choice("quadrature", &MechanicalSystem::quadrature, quadrature_words, "of the potential over a step");
+  }
+
+  /// The mass in a formula over S.
+  template <class S> auto mass_in() const {
+    if constexpr (requires { self().template mass<S>(); }) {
+      return self().template mass<S>();
+    } else {
+      return self().mass();
+    }
   }
 
   /// -dU/dq: of the derived class' `gradient(q)`, if it has one, else by automatic differentiation.

@@ -3,6 +3,7 @@
 #   own_program.sh LAGROID WORK [whole]   in folders below WORK; whole: also with all methods and with its laws (minutes),
 #                                         and every groupoid that is offered
 set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 lagroid=$1 work=$2 whole=${3:-}
 fail() {
   printf 'own_program: %s\n' "$*" >&2
@@ -89,5 +90,33 @@ if [ -n "$whole" ]; then
   # Steps that fail do not hide it.
   ! "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml --set time.step=1e9 >check.log 2>&1 || fail "a failed run passes"
   grep -q "groupoid is none: .*associat" check.log || { cat check.log >&2; fail "its broken law is not named beside the failure"; }
+
+  # A system that declares reductions runs reduced from a scene: the full motion comes back, and the laws are those of
+  # what it is reduced to.
+  cp "$here/app/own_reduced/"* .
+  "$lagroid" run bob.cpp --out full >run.log 2>&1 || { cat run.log >&2; fail "the bob does not run"; }
+  "$lagroid" run bob.cpp list >list.log
+  grep -q 'reduced by  *angular-momentum' list.log || fail "its reductions are not listed"
+  for by in rotations angular-momentum; do
+    "$lagroid" run bob.cpp --set "reduce=$by" --out "$by" >run.log 2>&1 || { cat run.log >&2; fail "the bob reduced by $by does not run"; }
+    ! grep -q BROKEN run.log || { cat run.log >&2; fail "the bob reduced by $by breaks a promise"; }
+    /usr/bin/python3 - full "$by" <<'PYTHON' || fail "reduced by $by it is not the full motion"
+import csv, sys
+def rows(folder):
+    with open(f"{folder}/trajectory.csv") as file:
+        return list(csv.DictReader(line.lstrip("# ") for line in file))
+full, back = map(rows, sys.argv[1:])
+assert len(full) == len(back) == 1001 and len(back[0]) > len(full[0])
+for a, b in zip(full, back):
+    for name in a:
+        if a[name]: assert abs(float(a[name]) - float(b[name])) <= 1e-10 * (1 + abs(float(a[name]))), (name, a, b)
+PYTHON
+    "$lagroid" run bob.cpp check bob.toml --samples 20 --set "reduce=$by" >check.log 2>&1 || { cat check.log >&2; fail "laws of the bob reduced by $by do not hold"; }
+    grep -q 'reduced: derivatives' check.log || { cat check.log >&2; fail "the bob reduced by $by is asked no laws"; }
+  done
+  grep -q 'reduced: momentum level' check.log || { cat check.log >&2; fail "its momentum level is asked no laws"; }
+  refused 2 '"rotations" is no symmetry of this system: the Lagrangian does not descend: at the arrow' \
+    run bob.cpp --set reduce=rotations --set parameters.wind=0.1
+  refused 2 '"translations" is none of rotations, angular-momentum' run bob.cpp --set reduce=translations
 fi
 echo "own_program: holds"

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What `./lagroid` builds for a scene, and that it does what the whole program does: parts.py BIN EXAMPLES.
 
-BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres and parts/files.
+BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres, parts/poisson
+and parts/files.
 """
 import json
 import pathlib
@@ -11,7 +12,7 @@ import tempfile
 import unittest
 
 bin_folder, examples = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-built = ("pendulum", "bodies", "spheres", "files")
+built = ("pendulum", "bodies", "spheres", "poisson", "files")
 
 
 def run(program, *words):
@@ -39,8 +40,8 @@ class Parts(unittest.TestCase):
         found = {scene: part_of("run", scene) for scene in sorted(examples.rglob("*.toml"))}
         self.assertGreater(len(found), 40)
         for scene, part in found.items():
-            self.assertTrue(part in listed or part in ("bodies", "spheres", "whole"), f"{scene}: {part}")
-        self.assertEqual({"pendulum", "bodies", "spheres", "whole"} - set(found.values()), set())
+            self.assertTrue(part in listed or part in ("bodies", "spheres", "poisson", "whole"), f"{scene}: {part}")
+        self.assertEqual({"pendulum", "bodies", "spheres", "poisson", "whole"} - set(found.values()), set())
 
     def test_they_give_what_the_whole_gives(self):
         for scene in sorted(examples.glob("*.toml")):
@@ -51,6 +52,35 @@ class Parts(unittest.TestCase):
             whole, alone = run(bin_folder / "lagroid", *words), run(of_part(part), *words)
             self.assertEqual(whole.returncode, alone.returncode, f"{scene}: {alone.stderr}")
             self.assertEqual(without_times(whole.stdout), without_times(alone.stdout), str(scene))
+
+    def test_gradients_are_those_of_the_run(self):
+        scene = ("gradient", examples / "pendulum.toml", "--set", "time.steps=50")
+        told = run(of_part("pendulum"), *scene, "--of", "final.position,final.momentum", "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertEqual(found["by"][2:], ["parameters.mass", "parameters.length", "parameters.gravity"])
+        (a, b), (c, d) = (row[:2] for row in found["derivatives"])
+        self.assertAlmostEqual(a * d - b * c, 1, delta=1e-12)
+        self.assertGreater(found["digits_agreed"], 8)
+        table = run(of_part("pendulum"), *scene, "--of", "integral.position,node.3.momentum", "--wrt",
+                    "parameters.length")
+        self.assertIn("by parameters.length", table.stdout)
+        self.assertIn("digits", table.stdout)
+
+    def test_gradients_that_there_are_not_are_refused_in_a_line(self):
+        for words, said in {
+            ("--of", "final.energy"): "nothing of that name is differentiable",
+            ("--of", "node.51.position"): "a node is a number from 0 to 50",
+            ("--of", "energy"): "ask for final.NAME",
+            ("--wrt", "parameters.quadrature"): "nothing of that name is differentiable",
+            ("--wrt", "mass"): "initial.NAME or parameters.NAME",
+            ("--set", "time.mode=adaptive"): "equal steps of order two",
+            ("--set", "time.order=4"): "equal steps of order two",
+        }.items():
+            told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.steps=50", *words)
+            self.assertEqual(told.returncode, 2, f"{words}: {told.stdout}")
+            self.assertEqual(len(told.stderr.splitlines()), 1, told.stderr)
+            self.assertIn(said, told.stderr)
 
     def test_a_folder_needs_no_scene(self):
         self.assertEqual(part_of("view", "out"), "files")

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -144,8 +145,21 @@ class BodiesMotion final : public Motion {
   double time() const override { return motion_->time(); }
   double step_size() const override { return motion_->step(); }
   const Observables& look() override {
+    if (whole_) motion_->restore(*std::exchange(whole_, std::nullopt));
     node_.see(cost_);
     return node_;
+  }
+  std::string why_not_cut() const override { return ""; }
+  void keep_node() override { kept_ = motion_->state(); }
+  const Observables* look_within(double share) override {
+    if (!whole_) {
+      whole_ = motion_->state();
+      whole_step_ = motion_->step();
+    }
+    motion_->restore(kept_);
+    if (share != 0 && !motion_->advance_by(share * whole_step_).converged()) return nullptr;
+    node_.see(cost_);
+    return &node_;
   }
   std::vector<NamedVector> state() const override {
     const auto momenta = motion_->momenta();
@@ -195,6 +209,9 @@ class BodiesMotion final : public Motion {
   SceneNode node_;
   std::vector<std::string> notes_;
   double cost_ = 0;
+  multibody::SceneState kept_;                  ///< from which steps are made in part
+  std::optional<multibody::SceneState> whole_;  ///< where the motion is, while a point inside of its step is looked at
+  double whole_step_ = 0;
 };
 
 }  // namespace

@@ -45,6 +45,8 @@ const FamilyLaws& laws_of(const Section& scene);
 const FamilyLaws& systems_laws();
 /// Of the method of a scene on (T*S^2)^k, beside where it starts.
 const FamilyLaws& spheres_laws();
+/// Of the bracket and the step of a scene of a Poisson system, beside where it starts.
+const FamilyLaws& poisson_laws();
 /// Of the step of a scene of bodies, where it starts.
 const FamilyLaws& bodies_laws();
 

@@ -5,5 +5,6 @@
 
 int main(int argc, char** argv) {
   using namespace lagroid::app;
-  return check_program(argc, argv, whole_program(), {&systems_laws(), &spheres_laws(), &bodies_laws()});
+  return check_program(argc, argv, whole_program(),
+                       {&systems_laws(), &spheres_laws(), &poisson_laws(), &bodies_laws()});
 }

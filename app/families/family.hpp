@@ -70,6 +70,8 @@ void require_command(const Section& scene, std::string_view command);
 const SceneFamily& bodies_family();
 /// Scenes on (T*S^2)^k, learned Hamiltonians among them.
 const SceneFamily& spheres_family();
+/// Scenes of Poisson systems.
+const SceneFamily& poisson_family();
 /// Initial and boundary values of systems whose groupoid is a type.
 const SceneFamily& systems_family();
 /// The one of `system_modules` that such a scene names. Throws SceneError where it names none.

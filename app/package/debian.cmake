@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), libfmt-dev (>= 9), libtbb-dev, libxsimd-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "librapidcheck-dev, libhdf5-dev, nlohmann-json3-dev, libcli11-dev, libtomlplusplus-dev, libboost-dev, \
-libopenmpi-dev, g++, cmake, pkg-config")
+libmuparser-dev, libopenmpi-dev, g++, cmake, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS lagroid)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Write a groupoid, a discrete Lagrangian and constraints, and get a
 structure-preserving integrator, an optimal-control solver and a ledger of

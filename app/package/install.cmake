@@ -93,12 +93,12 @@ install(FILES ${PROJECT_BINARY_DIR}/lagroid.pc DESTINATION ${CMAKE_INSTALL_LIBDI
 set(documentation ${CMAKE_INSTALL_DATAROOTDIR}/doc/lagroid)
 if(LAGROID_APP)
   # Libraries outside the places that a loader looks in are found by what is installed too, one component at a time.
-  set_target_properties(lagroid_cli lagroid_check PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  set_target_properties(lagroid_cli lagroid_check lagroid_gradient PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
   set_target_properties(lagroid_cli PROPERTIES EXPORT_NAME program)
   install(TARGETS lagroid_cli EXPORT lagroid-program-targets COMPONENT program)
   install(EXPORT lagroid-program-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT program)
   # Where it was built.
-  install(TARGETS lagroid_check COMPONENT program OPTIONAL)
+  install(TARGETS lagroid_check lagroid_gradient COMPONENT program OPTIONAL)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid COMPONENT program
           PATTERN CMakeLists.txt EXCLUDE)
   # Pages that speak of examples/ find them.

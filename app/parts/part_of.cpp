@@ -1,5 +1,5 @@
 /// The program lagroid-part: which part of lagroid a command line needs, so that no more is built (./lagroid). Prints
-/// its name: a system, bodies, spheres, files where no scene is run, or whole.
+/// its name: a system, bodies, spheres, poisson, files where no scene is run, or whole.
 
 #include "../command/command.hpp"
 #include "../reading/kinds.hpp"
@@ -27,9 +27,11 @@ std::string part_of(const Section& scene) {
   std::vector<std::string> names(systems_with_parts.begin(), systems_with_parts.end());
   const std::size_t of_types = names.size();
   names.insert(names.end(), keys::on_spheres.begin(), keys::on_spheres.end());
+  const std::size_t before_brackets = names.size();
+  names.insert(names.end(), keys::of_brackets.begin(), keys::of_brackets.end());
   const std::string name = scene.choice(keys::system, names);
   const auto found = std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
-  return found < of_types ? name : "spheres";
+  return found < of_types ? name : found < before_brackets ? "spheres" : "poisson";
 }
 
 }  // namespace
@@ -48,7 +50,8 @@ int main(int argc, char** argv) {
     command->set_help_flag();
     return command;
   };
-  const std::array scenes{with_scene("run", "scene"), with_scene("study", "scene"), with_scene("check", "scene")};
+  const std::array scenes{with_scene("run", "scene"), with_scene("study", "scene"), with_scene("check", "scene"),
+                          with_scene("gradient", "scene")};
   const std::array folders{with_scene("view", "run"), with_scene("plot", "run")};
   const CLI::App* resume = with_scene("resume", "run");
   app.allow_extras();

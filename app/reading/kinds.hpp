@@ -17,4 +17,18 @@ inline constexpr std::string_view pendulum_chain = "pendulum_chain";
 inline constexpr std::string_view learned_hamiltonian = "learned_hamiltonian";
 inline constexpr std::array on_spheres{pendulum_chain, learned_hamiltonian};
 
+/// The values of `system` for Poisson systems.
+inline constexpr std::string_view lotka_volterra = "lotka_volterra";
+inline constexpr std::string_view three_species = "three_species";
+inline constexpr std::string_view volterra_ring = "volterra_ring";
+inline constexpr std::string_view euler_top = "euler_top";
+inline constexpr std::string_view kirchhoff = "kirchhoff";
+inline constexpr std::string_view toda = "toda";
+inline constexpr std::string_view toda_ring = "toda_ring";
+inline constexpr std::string_view maxwell_bloch = "maxwell_bloch";
+inline constexpr std::string_view sklyanin = "sklyanin";
+inline constexpr std::string_view magnetic_particle = "magnetic_particle";
+inline constexpr std::array of_brackets{lotka_volterra, three_species, volterra_ring, euler_top, kirchhoff,
+                                        toda,           toda_ring,     maxwell_bloch, sklyanin,  magnetic_particle};
+
 }  // namespace lagroid::app::keys

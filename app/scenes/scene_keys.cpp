@@ -90,6 +90,12 @@ Table own_time_table(const DeclaredMethod& own) {
   return table;
 }
 
+KeyOf<Tables> event_key() {
+  using namespace event_keys;
+  return {"event", {{{name, when, at, direction, then, count, tolerance, kick, plot}}}, "", "what may happen", {},
+          "none"};
+}
+
 Table output_table() { return {{output_keys::every, output_keys::checkpoint}}; }
 
 Table step_solver_table() { return {{solver_keys::method(), solver_keys::max_iterations, solver_keys::tolerance}}; }
@@ -112,8 +118,10 @@ const KeyOf<Text> methods{
 
 std::vector<Table> initial_values(const std::vector<Key>& keys, const Table& time) {
   Table stepped{keys};
+  stepped.keys.push_back(event_key());
   stepped.keys.push_back(KeyOf<Table>{"time", time, "", "steps, and by which method"});
   Table aimed{keys};
+  aimed.keys.push_back(event_key());
   Table span;
   const std::array spans{time_keys::steps.name, time_keys::step.name, time_keys::duration.name, time_keys::start.name};
   for (Key key : time.keys) {

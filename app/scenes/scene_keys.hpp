@@ -69,6 +69,32 @@ inline const KeyOf<Whole> checkpoint{"checkpoint", {1, most_apart}, "", "steps f
 
 /// Of [time] in every scene: which steps, if they are equal.
 std::vector<Key> grid_keys();
+/// [[event]]: what may happen in a run.
+namespace event_keys {
+
+inline const KeyOf<Text> name{"name", {}, "", "what files and reports call it, unlike the others"};
+inline const KeyOf<Text> when{
+    "when", {}, "", "the function that is watched: of columns, quantities and `t`, as \"sqrt(x^2 + y^2) - 1\""};
+inline const KeyOf<OneOf> at{
+    "at", {{"zero", "minimum", "maximum"}}, "", "where it happens: where the function passes zero, or turns", "zero"};
+inline const KeyOf<OneOf> direction{
+    "direction", {{"both", "rising", "falling"}}, "", "in which it passes zero", "both"};
+inline const KeyOf<OneOf> then{
+    "then", {{"record", "stop"}}, "", "what follows: a row of the table alone, or the end", "record"};
+inline const KeyOf<Whole> count{"count", {1, most_steps}, "", "of `then = \"stop\"`: at which time", 1};
+inline const KeyOf<Number> tolerance{"tolerance",
+                                     {{"between 0 and 0.1", [](double x) { return x >= 0 && x <= 0.1; }}},
+                                     "",
+                                     "nearer to zero, relative to its largest value, the function touches it",
+                                     1e-10};
+inline const KeyOf<Texts> kick{
+    "kick", {}, "", "added to the momentum there: an expression as `when` for each of its numbers", {}, "none"};
+inline const KeyOf<Texts> plot{
+    "plot", {}, "", "two columns: a picture of the points at which it happened, as a Poincare section", {}, "none"};
+
+}  // namespace event_keys
+KeyOf<Tables> event_key();
+
 /// [time] of an initial value, by a method that is declared for every system.
 Table time_table(bool depends_on_time);
 /// [time] of an initial value, by a method of the system's own, whose highest order is the usual one.

@@ -195,11 +195,37 @@ std::string kept_scene(const Section& scene) {
 
 }  // namespace
 
+std::vector<Event> read_events(const Section& scene) {
+  using namespace event_keys;
+  std::vector<Event> events;
+  for (const Section& table : scene.tables(event_key().name)) {
+    Event event{read_key(table, name), read_key(table, when)};
+    const std::string place = read_key(table, at);
+    const std::string way = read_key(table, direction);
+    event.at = place == "zero" ? Event::At::zero : place == "minimum" ? Event::At::minimum : Event::At::maximum;
+    event.direction = way == "both"     ? Event::Direction::both
+                      : way == "rising" ? Event::Direction::rising
+                                        : Event::Direction::falling;
+    event.then = read_key(table, then) == "stop" ? Event::Then::stop : Event::Then::record;
+    event.count = read_key(table, count);
+    event.tolerance = read_key(table, tolerance);
+    event.kick = read_key_or(table, kick, {});
+    event.plot = read_key_or(table, plot, {});
+    if (event.at != Event::At::zero && table.has(direction.name))
+      table.fail(direction.name, "is that of events at zero; leave it out");
+    if (event.then == Event::Then::record && table.has(count.name))
+      table.fail(count.name, "goes with then = \"stop\"; every time is counted");
+    events.push_back(std::move(event));
+  }
+  return events;
+}
+
 RunExtent read_extent(const Section& scene, const RunContext& context) {
   RunExtent extent;
   extent.steps = read_time(scene).steps;
   extent.every = read_every(scene);
   extent.checkpoint = read_key_or(scene.section_or_empty("output"), output_keys::checkpoint, 0);
+  extent.events = read_events(scene);
   if (!context.folder.empty() && !context.resume) extent.scene = kept_scene(scene);
   return extent;
 }

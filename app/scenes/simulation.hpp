@@ -23,6 +23,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -73,7 +74,10 @@ long read_every(const Section& scene);
 /// Where the sizes of steps vary.
 void refuse_duration(const Section& time);
 
-/// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint.
+/// [[event]]: what is watched for.
+std::vector<Event> read_events(const Section& scene);
+
+/// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint, [[event]].
 RunExtent read_extent(const Section& scene, const RunContext& context);
 
 template <DiscreteSystem Sys> struct NewtonInitialValue {
@@ -153,7 +157,7 @@ PreparedScene<Sys> simulation(const Section& scene, const RunContext& context, c
   const RunExtent extent = read_extent(scene, context);
   scene.finish();
   std::shared_ptr<const NewtonInitialValue<Sys>> plain;
-  if (is_plain(choice))
+  if (is_plain(choice) && extent.events.empty())
     plain = std::make_shared<const NewtonInitialValue<Sys>>(
         NewtonInitialValue<Sys>{initial, configuration, presentation, extent});
   return {system,

@@ -71,6 +71,23 @@ class SphereMotion final : public Motion {
     node_.see(index_, time(), integrator_->point());
     return node_;
   }
+  std::string why_not_cut() const override { return ""; }
+  void keep_node() override {
+    kept_ = integrator_->point();
+    kept_time_ = time();
+  }
+  const Observables* look_within(double share) override {
+    SphereIntegratorOptions part = options_;
+    part.step *= share;
+    if (share == 0) {
+      node_.see(index_, kept_time_, kept_);
+      return &node_;
+    }
+    const auto step = system_->begin(kept_, part);
+    if (!step->advance().converged()) return nullptr;
+    node_.see(index_, kept_time_ + part.step, step->point());
+    return &node_;
+  }
   std::vector<NamedVector> state() const override {
     const auto z = system_->in_form(integrator_->point(), options_.form, SphereForm::momenta);
     NamedVector directions{"directions", {}}, momenta{"momenta", {}};
@@ -104,6 +121,8 @@ class SphereMotion final : public Motion {
   int stages_;
   SphereNode node_;
   long index_ = 0;
+  SphereIntegrator::Points kept_;  ///< from which steps are made in part
+  double kept_time_ = 0;
 };
 
 }  // namespace

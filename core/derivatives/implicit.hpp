@@ -68,22 +68,29 @@ template <int N, class At> Root<N> newton_iteration(const At& at, const Vector<d
   for (int iteration = 0; iteration < most_iterations && std::isfinite(now.largest); ++iteration) {
     root.inverse = now.jacobian.inverse();
     const Vector<double, N> step = root.inverse * now.value;
-    if (!step.allFinite()) break;
+    bool finite = true;
+    for (double x : step) finite = finite && std::isfinite(x);
+    if (!finite) break;
+    const auto moved = [&](double part) {
+      Vector<double, N> x;
+      for (int i = 0; i < N; ++i) x(i) = root.x(i) - part * step(i);
+      return x;
+    };
     if (now.roundoff_ratio <= 1 || (now.roundoff_ratio <= floor && now.roundoff_ratio >= last / 2)) {
-      root.x -= step;
+      root.x = moved(1);
       return root;
     }
     last = now.roundoff_ratio;
     double part = 1;
-    EquationsAt<N> next = at(root.x - step);
+    EquationsAt<N> next = at(moved(1));
     for (int halving = 0; halving < most_halvings && !(next.largest < now.largest) && !(next.roundoff_ratio <= floor);
          ++halving)
-      next = at(root.x - (part /= 2) * step);
-    root.x -= part * step;
+      next = at(moved(part /= 2));
+    root.x = moved(part);
     now = next;
   }
-  root.x.setConstant(std::numeric_limits<double>::quiet_NaN());
-  root.inverse.setConstant(std::numeric_limits<double>::quiet_NaN());
+  for (double& x : root.x) x = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < N * N; ++i) root.inverse(i) = std::numeric_limits<double>::quiet_NaN();
   return root;
 }
 
@@ -101,9 +108,13 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
     for (int i = 0; i < N; ++i) {
       const Vector<double, N + M> slope = f(i).gradient();
       out.value(i) = f(i).value;
-      out.jacobian.row(i) = slope.template head<N>().transpose();
-      out.measure(i, slope.template head<N>().cwiseAbs().dot(x.cwiseAbs()) +
-                         slope.template tail<M>().cwiseAbs().dot(parameters.cwiseAbs()));
+      double terms = 0;
+      for (int j = 0; j < N; ++j) {
+        out.jacobian(i, j) = slope(j);
+        terms += std::abs(slope(j) * x(j));
+      }
+      for (int j = 0; j < M; ++j) terms += std::abs(slope(N + j) * parameters(j));
+      out.measure(i, terms);
     }
     return out;
   };

@@ -1,5 +1,6 @@
 #include <lagroid/core/matrices/decompositions.hpp>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -8,6 +9,11 @@ namespace lagroid {
 
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& a) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+}
+
+SingularVectors singular_vectors(const Eigen::MatrixXd& a) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
 RightSingularVectors right_singular_vectors(const Eigen::MatrixXd& a, double threshold) {
@@ -28,6 +34,14 @@ Eigen::MatrixXd orthonormal_span(const Eigen::MatrixXd& a) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
   const Eigen::MatrixXd q = qr.householderQ();
   return q.leftCols(qr.rank());
+}
+
+SymmetricEigenvectors symmetric_eigenvectors(const Eigen::MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& a) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 Eigen::MatrixXd solve_regular(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

@@ -18,7 +18,15 @@ namespace lagroid {
 /// Decreasing.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& a);
 
-/// A = U diag(values) V^T with the square V; the first `rank` values are above `threshold` times the largest.
+/// A = U diag(values) V^T with square U and V.
+struct SingularVectors {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd u;
+  Eigen::MatrixXd v;
+};
+SingularVectors singular_vectors(const Eigen::MatrixXd& a);
+
+/// The same without U; the first `rank` values are above `threshold` times the largest.
 struct RightSingularVectors {
   Eigen::VectorXd values;
   Eigen::MatrixXd v;
@@ -35,6 +43,14 @@ Eigen::MatrixXd orthogonal_factor(const Eigen::MatrixXd& a);
 
 /// An orthonormal basis of the span of the columns, as many as the rank.
 Eigen::MatrixXd orthonormal_span(const Eigen::MatrixXd& a);
+
+/// A = V diag(values) V^T of a symmetric A, of which the lower half is read; values increase.
+struct SymmetricEigenvectors {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigenvectors symmetric_eigenvectors(const Eigen::MatrixXd& a);
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& a);
 
 /// A^{-1} B, A^{-1} and det A, with partial pivoting; the first two of a regular A.
 Eigen::MatrixXd solve_regular(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);

@@ -1,5 +1,6 @@
 #pragma once
-/// e^A, the principal logarithm and the eigenvalues of square matrices whose size is known at run time.
+/// e^A, the principal logarithm, the eigenvalues of square matrices whose size is known at run time, and a Lyapunov
+/// equation with them.
 ///
 /// Eigen's templates for them are the most expensive there are to compile: they are compiled here alone.
 ///
@@ -17,5 +18,7 @@ Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& a);
 /// The principal logarithm of A, which has no eigenvalue on the negative real axis or at 0.
 Eigen::MatrixXd matrix_logarithm(const Eigen::MatrixXd& a);
 Eigen::VectorXcd matrix_eigenvalues(const Eigen::MatrixXd& a);
+/// D with D K + K^T D = F, F symmetric. False where K and -K^T share an eigenvalue.
+bool solve_lyapunov(const Eigen::MatrixXd& k, const Eigen::MatrixXd& f, Eigen::MatrixXd& d);
 
 }  // namespace lagroid

@@ -1,5 +1,8 @@
 #include <lagroid/core/reduction/descent.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
 #include <string_view>
 
@@ -31,6 +34,23 @@ Words words_of(Ingredient ingredient) {
 }
 
 }  // namespace
+
+void detail::DescentTally::add(const double* there, const double* here, int count, std::span<const double> sample) {
+  double difference = 0;
+  double of_there = 0;
+  double of_here = 0;
+  for (int i = 0; i < count; ++i) {
+    difference += (there[i] - here[i]) * (there[i] - here[i]);
+    of_there += there[i] * there[i];
+    of_here += here[i] * here[i];
+  }
+  difference = std::sqrt(difference);
+  size_ = std::max({size_, std::sqrt(of_there), std::sqrt(of_here)});
+  if (difference > largest_ || !std::isfinite(difference) || finding_.sample.empty()) {
+    largest_ = std::isfinite(difference) ? difference : std::numeric_limits<double>::infinity();
+    finding_.sample.assign(sample.begin(), sample.end());
+  }
+}
 
 const DescentFinding* DescentReport::worst() const {
   const DescentFinding* found = nullptr;

@@ -67,12 +67,7 @@ class DescentTally {
 
   /// A value at a sample and what it should be, as it is at the arrow that stands for its image.
   template <class V, class X> void add(const V& there, const V& here, const X& sample) {
-    const double difference = (there - here).norm();
-    size_ = std::max({size_, there.norm(), here.norm()});
-    if (difference > largest_ || !std::isfinite(difference) || finding_.sample.empty()) {
-      largest_ = std::isfinite(difference) ? difference : std::numeric_limits<double>::infinity();
-      finding_.sample.assign(sample.data(), sample.data() + sample.size());
-    }
+    add(there.data(), here.data(), int(there.size()), {sample.data(), std::size_t(sample.size())});
   }
   DescentFinding finding() {
     finding_.defect = largest_ > 0 ? largest_ / size_ : 0;
@@ -81,6 +76,8 @@ class DescentTally {
   }
 
  private:
+  void add(const double* there, const double* here, int count, std::span<const double> sample);
+
   DescentFinding finding_;
   double largest_ = 0;
   double size_ = 0;

@@ -27,7 +27,7 @@
 
 #include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/derivatives/two_sided.hpp>
-#include <lagroid/core/matrices/decompositions.hpp>
+#include <lagroid/core/matrices/scaling.hpp>
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/core/reduction/full_system.hpp>
 #include <lagroid/core/reduction/not_free.hpp>
@@ -100,31 +100,51 @@ struct MomentumLevel
   // A base arrow's displacements are those of the full arrow along the horizontal directions, while the angle keeps its
   // momentum: in adapted bases the full gradients' first part, magnetic term included, and the Schur complement of the
   // mixed derivative's last block.
-  GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b, const Multipliers& lambda) const {
+  // (Compiled once, not into each place of a step that asks for it: there is little to win and much to compile.)
+  [[gnu::noinline]] GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b, const Multipliers& lambda) const {
     const Vector<double, angles> theta = root_of(b, level).x;
     const auto d = lagroid::gradients(this->full, ArrowOf<G>(connection.attach(b, theta)), lambda);
-    return {d.value - theta.dot(level),
-            adapted_basis(this->groupoid.source(b)).template leftCols<n>().transpose() * d.source_gradient,
-            adapted_basis(this->groupoid.target(b)).template leftCols<n>().transpose() * d.target_gradient,
-            d.constraint};
+    return {d.value - work_of(theta), along<0, n>(adapted_basis(this->groupoid.source(b)), d.source_gradient),
+            along<0, n>(adapted_basis(this->groupoid.target(b)), d.target_gradient), d.constraint};
   }
-  TwoSidedOf<MomentumLevel> two_sided(const ArrowOf<B>& b, const Multipliers& lambda) const {
+  [[gnu::noinline]] TwoSidedOf<MomentumLevel> two_sided(const ArrowOf<B>& b, const Multipliers& lambda) const {
     const Vector<double, angles> theta = root_of(b, level).x;
     const auto d = lagroid::two_sided(this->full, ArrowOf<G>(connection.attach(b, theta)), lambda);
-    const auto source = adapted_basis(this->groupoid.source(b));
-    const auto target = adapted_basis(this->groupoid.target(b));
-    const Matrix<double, G::dimension, G::dimension> mixed = source.transpose() * d.mixed * target;
+    const Basis source = adapted_basis(this->groupoid.source(b));
+    const Basis target = adapted_basis(this->groupoid.target(b));
+    Basis mixed;
+    for (int j = 0; j < rank; ++j) {
+      AlgebroidVector<G> column;
+      for (int i = 0; i < rank; ++i) {
+        column(i) = 0;
+        for (int k = 0; k < rank; ++k) column(i) += d.mixed(i, k) * target(k, j);
+      }
+      const AlgebroidVector<G> there = along<0, rank>(source, column);
+      for (int i = 0; i < rank; ++i) mixed(i, j) = there(i);
+    }
+    Matrix<double, angles, angles> fibre;
+    for (int i = 0; i < angles; ++i)
+      for (int j = 0; j < angles; ++j) fibre(i, j) = mixed(n + i, n + j);
+    const Matrix<double, angles, angles> inverse = fibre.inverse();
     TwoSidedOf<MomentumLevel> out;
-    out.value = d.value - theta.dot(level);
-    out.source_gradient = source.template leftCols<n>().transpose() * d.source_gradient;
-    out.target_gradient = target.template leftCols<n>().transpose() * d.target_gradient;
-    out.mixed =
-        mixed.template topLeftCorner<n, n>() - mixed.template topRightCorner<n, angles>() *
-                                                   mixed.template bottomRightCorner<angles, angles>().inverse() *
-                                                   mixed.template bottomLeftCorner<angles, n>();
+    out.value = d.value - work_of(theta);
+    out.source_gradient = along<0, n>(source, d.source_gradient);
+    out.target_gradient = along<0, n>(target, d.target_gradient);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        out.mixed(i, j) = mixed(i, j);
+        for (int k = 0; k < angles; ++k)
+          for (int l = 0; l < angles; ++l) out.mixed(i, j) -= mixed(i, n + k) * inverse(k, l) * mixed(n + l, j);
+      }
     out.constraint = d.constraint;
-    out.constraint_source = source.template leftCols<n>().transpose() * d.constraint_source;
-    out.constraint_target = d.constraint_target * target.template leftCols<n>();
+    for (int a = 0; a < Sys::object_constraints; ++a)
+      for (int i = 0; i < n; ++i) {
+        out.constraint_source(i, a) = out.constraint_target(a, i) = 0;
+        for (int k = 0; k < rank; ++k) {
+          out.constraint_source(i, a) += source(k, i) * d.constraint_source(k, a);
+          out.constraint_target(a, i) += d.constraint_target(a, k) * target(k, i);
+        }
+      }
     return out;
   }
   bool admissible(const ArrowOf<B>& b) const requires(HasBranch<Sys> || FreeInPart<Connection>) {
@@ -163,31 +183,53 @@ struct MomentumLevel
   ArrowOf<G> full_arrow(const ArrowOf<B>& b) const { return connection.attach(b, angle_of(b, level)); }
   template <class A> auto horizontal(const A& b) const {
     using S = ScalarOf<A>;
-    return ArrowOf<G, S>(connection.attach(b, Vector<S, angles>(Vector<S, angles>::Constant(S(0.0)))));
+    Vector<S, angles> zero;
+    for (int i = 0; i < angles; ++i) zero(i) = S(0.0);
+    return ArrowOf<G, S>(connection.attach(b, zero));
   }
 
   /// The full state over one of the base: p = <mu, hor>, level = <mu, along the fibre>.
   State<G> state_over(const State<B>& s) const {
-    Vector<double, G::dimension> components;
+    AlgebroidVector<G> components;
     components << s.momentum, level;
-    return {full_groupoid().source(horizontal(this->groupoid.unit(s.object))),
-            solve_regular(adapted_basis(s.object).transpose(), components)};
+    const Matrix<double, G::dimension, G::dimension> rows = adapted_basis(s.object).transpose();
+    return {full_groupoid().source(horizontal(this->groupoid.unit(s.object))), solve_equilibrated(rows, components)};
   }
   /// The state of the base below a full one. Its momentum along the fibres is not looked at: `momentum_of` has it.
   State<B> state_below(const State<G>& z) const {
     const ObjectOf<B> m = connection.object(z.object);
     require_free(connection, m);
-    return {m, (adapted_basis(m).transpose() * z.momentum).template head<n>()};
+    return {m, along<0, n>(adapted_basis(m), z.momentum)};
   }
   /// The momentum of the symmetry at a full state.
   Vector<double, angles> momentum_of(const State<G>& z) const {
-    return (adapted_basis(connection.object(z.object)).transpose() * z.momentum).template tail<angles>();
+    return along<n, angles>(adapted_basis(connection.object(z.object)), z.momentum);
   }
 
  private:
+  static constexpr int rank = G::dimension;
+  using Basis = Matrix<double, rank, rank>;
+
   const G& full_groupoid() const { return this->full.groupoid; }
+  /// <v, column i>, i = First ... First + Count - 1. (By entries: see
+  /// docs/decisions/72_expressions_cost_their_square.md.)
+  template <int First, int Count> static Vector<double, Count> along(const Basis& basis, const AlgebroidVector<G>& v) {
+    Vector<double, Count> out;
+    for (int i = 0; i < Count; ++i) {
+      out(i) = 0;
+      for (int j = 0; j < rank; ++j) out(i) += basis(j, First + i) * v(j);
+    }
+    return out;
+  }
+  /// <level, theta>
+  double work_of(const Vector<double, angles>& theta) const {
+    double sum = 0;
+    for (int i = 0; i < angles; ++i) sum += theta(i) * level(i);
+    return sum;
+  }
   template <class D, int K> static Vector<D, K> direction(int i) {
-    Vector<D, K> e = Vector<D, K>::Constant(D(0.0));
+    Vector<D, K> e;
+    for (int j = 0; j < K; ++j) e(j) = D(0.0);
     e(i).derivative = 1.0;
     return e;
   }
@@ -210,29 +252,34 @@ struct MomentumLevel
       }
       const M value = this->full.lagrangian(connection.attach(over, varied));
       detail::EquationsAt<angles> at;
-      at.value = value.left() - momentum;
+      at.value = value.left();
       at.jacobian = value.mixed();
-      for (int i = 0; i < angles; ++i)
-        at.measure(i, at.jacobian.row(i).cwiseAbs().dot(theta.cwiseAbs()) + std::abs(momentum(i)));
+      for (int i = 0; i < angles; ++i) {
+        at.value(i) -= momentum(i);
+        double terms = std::abs(momentum(i));
+        for (int j = 0; j < angles; ++j) terms += std::abs(at.jacobian(i, j) * theta(j));
+        at.measure(i, terms);
+      }
       return at;
     };
-    return detail::newton_iteration<angles>(equations, Vector<double, angles>(Vector<double, angles>::Zero()));
+    Vector<double, angles> zero;
+    for (double& x : zero) x = 0;
+    return detail::newton_iteration<angles>(equations, zero);
   }
   /// The horizontal lifts of the base's basis, then the angles' directions, as columns in A_qG.
-  Matrix<double, G::dimension, G::dimension> adapted_basis(const ObjectOf<B>& m) const {
+  Basis adapted_basis(const ObjectOf<B>& m) const {
     if constexpr (requires { connection.adapted_basis(m); }) return connection.adapted_basis(m);
     using D = Dual<double>;
     const ObjectOf<B, D> md = this->groupoid.template cast_object<D>(m);
-    Matrix<double, G::dimension, G::dimension> basis;
+    Basis basis;
+    const auto set = [&](int column, const auto& moved) {
+      for (int j = 0; j < rank; ++j) basis(j, column) = moved(j).derivative;
+    };
     for (int i = 0; i < n; ++i)
-      basis.col(i) = derivative_of(
-          full_groupoid().tau_inverse(horizontal(ArrowOf<B, D>(this->groupoid.tau(md, direction<D, n>(i))))));
-    for (int i = 0; i < angles; ++i) {
-      Vector<D, angles> theta = Vector<D, angles>::Constant(D(0.0));
-      theta(i).derivative = 1.0;
-      basis.col(n + i) =
-          derivative_of(full_groupoid().tau_inverse(connection.attach(ArrowOf<B, D>(this->groupoid.unit(md)), theta)));
-    }
+      set(i, full_groupoid().tau_inverse(horizontal(ArrowOf<B, D>(this->groupoid.tau(md, direction<D, n>(i))))));
+    for (int i = 0; i < angles; ++i)
+      set(n + i, full_groupoid().tau_inverse(
+                     connection.attach(ArrowOf<B, D>(this->groupoid.unit(md)), direction<D, angles>(i))));
     return basis;
   }
 };

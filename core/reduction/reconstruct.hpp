@@ -12,9 +12,12 @@
 ///     for (const auto& quantity : full_quantities(reduced, q)) ledger.watch(quantity);      // both momenta
 ///
 /// Required: q over the source of the run's initial configuration, so that the lift of that arrow from q ends at the
-/// initial object of the full motion; the object that stands for the source, where none is given. The multipliers are
-/// those at the arrows that stand for the images: a constraint of which the zeros alone are invariant has others.
+/// initial object of the full motion; the object that stands for the source, where none is given. Of a constraint of
+/// which the zeros alone are invariant the multipliers are those that make the same reaction.
 
+#include <lagroid/core/derivatives/annihilator.hpp>
+#include <lagroid/core/derivatives/directional.hpp>
+#include <lagroid/core/matrices/scaling.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/reduction/reduced_system.hpp>
 
@@ -24,6 +27,53 @@
 #include <vector>
 
 namespace lagroid {
+
+namespace detail {
+
+/// What the multipliers of arrow constraints multiply: covectors of the distribution at the source of g, or derivatives
+/// of the constraints as its target moves.
+template <DiscreteSystem Sys>
+Matrix<double, Sys::dimension, Sys::arrow_constraints> reactions(const Sys& system,
+                                                                 const ArrowOf<typename Sys::GroupoidType>& g) {
+  constexpr int n = Sys::dimension;
+  const auto& groupoid = system.groupoid;
+  if constexpr (Nonholonomic<Sys>) {
+    return annihilator(system, ObjectOf<typename Sys::GroupoidType>(groupoid.source(g)));
+  } else {
+    Matrix<double, n, Sys::arrow_constraints> out;
+    for (int i = 0; i < n; ++i) {
+      const auto w = infinitesimal(Vector<double, n>(Vector<double, n>::Unit(i)));
+      out.row(i) =
+          derivative_of(system.constraint(groupoid.extend(groupoid.template cast<Dual<double>>(g), w))).transpose();
+    }
+    return out;
+  }
+}
+
+/// Those at the arrow g over the last one of p, for the same reaction.
+template <class Phi, class Sys>
+typename Sys::Multipliers full_multipliers(const ReducedSystem<Phi, Sys>& reduced,
+                                           const TrajectoryPoint<ReducedSystem<Phi, Sys>>& p,
+                                           const ArrowOf<typename Phi::Domain>& g) {
+  constexpr int k = Sys::arrow_constraints;
+  typename Sys::Multipliers lambda = p.step.multipliers;
+  if constexpr (k > 0) {
+    if (p.index == 0) return lambda;
+    ReducedSystem<Phi, Sys> there = reduced;
+    set_time_step(there, p.step_size);
+    if constexpr (TimeDependent<Sys>) there.time = p.time - p.step_size;
+    const auto& groupoid = there.full.groupoid;
+    const ObjectOf<typename Phi::Domain> q = Nonholonomic<Sys> ? groupoid.source(g) : groupoid.target(g);
+    const AlgebroidVector<typename Phi::Codomain> below = reactions(there, p.step.arrow) * lambda.template head<k>();
+    const auto above = reactions(there.full, g);
+    const Matrix<double, k, k> products = above.transpose() * above;
+    lambda.template head<k>() = lagroid::solve_equilibrated(
+        products, Vector<double, k>(above.transpose() * there.morphism.related(q, below).momentum));
+  }
+  return lambda;
+}
+
+}  // namespace detail
 
 /// The point of the full trajectory over a point of the reduced one; its configuration starts at `start`.
 template <class Phi, class Sys>
@@ -39,8 +89,9 @@ TrajectoryPoint<Sys> full_point(const ReducedSystem<Phi, Sys>& reduced,
   const auto q = phi.from.target(out.configuration);
   out.state = phi.related(q, p.state.momentum);
   // The step that led here, found from its end.
-  out.step = {phi.from.inverse(phi.lift(q, phi.to.inverse(p.index > 0 ? p.step.arrow : phi.to.unit(p.state.object)))),
-              p.step.multipliers};
+  out.step.arrow =
+      phi.from.inverse(phi.lift(q, phi.to.inverse(p.index > 0 ? p.step.arrow : phi.to.unit(p.state.object))));
+  out.step.multipliers = detail::full_multipliers(reduced, p, out.step.arrow);
   return out;
 }
 

@@ -50,6 +50,7 @@ template <DiscreteSystem Sys> class Reconstruction<Sys, Unreduced> {
   const State<G>& state_below(const State<G>& z) const { return z; }
   DescentReport examine(std::span<const ArrowOf<G>>) const { return {}; }
   TrajectoryPoint<Sys> full(const TrajectoryPoint<Below>& point) const { return point; }
+  Step<Sys> full_step(const Step<Below>& step, double) const { return step; }
 
  private:
   Sys system_;
@@ -175,9 +176,9 @@ class Reconstruction<Sys, FixedMomentum<Connection, First>> {
     return {{"fixed " + std::string(name_), std::move(labels), Promise::conserved, true,
              [on](const Point& point, double* out) {
                Eigen::Map<Vector<double, Below::angles>> values(out);
-               values = momentum_of_arrow(on(point), point.step.arrow);
+               values = momentum_of(on(point), point.step);
              },
-             [on](const Point& point) { return size_of_terms(on(point), point.step.arrow); }}};
+             [on](const Point& point) { return size_of_terms(on(point), point.step); }}};
   }
 
   void join(const Step<Below>& step, double size) {
@@ -196,8 +197,13 @@ class Reconstruction<Sys, FixedMomentum<Connection, First>> {
     out.step_size = point.step_size;
     out.state = system_.state_over(point.state);
     out.configuration = lifted_;
-    out.step.arrow = step_;
+    out.step = {step_, point.step.multipliers};
     return upper_.full(out);
+  }
+  Step<Sys> full_step(const Step<Below>& step, double size) const {
+    Below there = system_;
+    set_time_step(there, size);
+    return upper_.full_step(above(there, step), size);
   }
   const Phases& phases() const { return phases_; }
   void serialize(NumberArchive& archive) {
@@ -213,14 +219,17 @@ class Reconstruction<Sys, FixedMomentum<Connection, First>> {
     const Below zero(connection, upper.system(), Vector<double, Below::angles>::Zero());
     return Below(connection, upper.system(), zero.momentum_of(upper.initial()));
   }
-  static Vector<double, Below::angles> momentum_of_arrow(const Below& level, const ArrowOf<H>& b) {
-    return level.momentum_of(legendre_minus(level.full, Step<Middle>{level.full_arrow(b), {}}));
+  static Step<Middle> above(const Below& level, const Step<Below>& step) {
+    return {level.full_arrow(step.arrow), step.multipliers};
+  }
+  static Vector<double, Below::angles> momentum_of(const Below& level, const Step<Below>& step) {
+    return level.momentum_of(legendre_minus(level.full, above(level, step)));
   }
   /// Of the coordinates of the full arrow, each with the digits that it has, in its momentum.
-  static double size_of_terms(const Below& level, const ArrowOf<H>& b) {
-    const ArrowOf<M> g = level.full_arrow(b);
-    const auto d = two_sided(level.full, g, {});
-    return (d.mixed.cwiseAbs() * level.full.groupoid.coordinate_scale(g)).norm() + d.source_gradient.norm();
+  static double size_of_terms(const Below& level, const Step<Below>& step) {
+    const Step<Middle> g = above(level, step);
+    const auto d = two_sided(level.full, g.arrow, g.multipliers);
+    return (d.mixed.cwiseAbs() * level.full.groupoid.coordinate_scale(g.arrow)).norm() + d.source_gradient.norm();
   }
 
   Upper upper_;

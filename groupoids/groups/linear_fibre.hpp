@@ -10,6 +10,7 @@
 /// Requires an invertible z. `coordinates` returns nothing where z^{-1} y has no principal logarithm or, on SL(n),
 /// another determinant. Nothing throws.
 
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/source_fibre.hpp>
 
 namespace lagroid {
@@ -35,7 +36,7 @@ class LinearFibre {
   std::optional<Vector> coordinates(const Point& y) const;
   Point moved(const Point& y, const Vector& u) const;
   Matrix dtau(const Vector& v) const;
-  Matrix dtau_inverse(const Vector& v) const { return dtau(v).partialPivLu().inverse(); }
+  Matrix dtau_inverse(const Vector& v) const { return inverse_of(dtau(v)); }
   /// The matrix of [v, .].
   Matrix ad(const Vector& v) const;
   /// The Euclidean norm of the coordinates.

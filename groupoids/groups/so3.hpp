@@ -28,7 +28,13 @@ template <Retraction Tau = Retraction::exponential>
 struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   template <class S> static Matrix<S, 3, 3> hat(const Vector<S, 3>& w) {
     Matrix<S, 3, 3> x;
-    x << S(0), -w(2), w(1), w(2), S(0), -w(0), -w(1), w(0), S(0);
+    x(0, 0) = x(1, 1) = x(2, 2) = S(0);
+    x(1, 0) = w(2);
+    x(2, 0) = -w(1);
+    x(2, 1) = w(0);
+    x(0, 1) = -w(2);
+    x(0, 2) = w(1);
+    x(1, 2) = -w(0);
     return x;
   }
   static constexpr int basis(int i, int r, int c) { return (r - c) * (c - i) * (r - i) / 2; }
@@ -36,12 +42,36 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   template <class S> static Vector<S, 3> vee(const Matrix<S, 3, 3>& x) {
     return Vector<S, 3>((x(2, 1) - x(1, 2)) * 0.5, (x(0, 2) - x(2, 0)) * 0.5, (x(1, 0) - x(0, 1)) * 0.5);
   }
-  template <class S> static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) { return g.transpose(); }
+  template <class S> static Matrix<S, 3, 3> inverse(const Matrix<S, 3, 3>& g) {
+    Matrix<S, 3, 3> out;
+    unrolled<3>([&]<int R>() { unrolled<3>([&]<int C>() { out(R, C) = g(C, R); }); });
+    return out;
+  }
   /// Rodrigues: I + c_1(|w|^2) hat(w) + c_2(|w|^2) hat(w)^2.
   template <class S> static Matrix<S, 3, 3> exp(const Vector<S, 3>& w) {
-    const S x = w.squaredNorm();
-    const Matrix<S, 3, 3> h = hat(w);
-    return Matrix<S, 3, 3>::Identity() + stumpff<1>(x) * h + stumpff<2>(x) * (h * h).eval();
+    const S xx = w(0) * w(0);
+    const S yy = w(1) * w(1);
+    const S zz = w(2) * w(2);
+    const S square = xx + (yy + zz);
+    const S sine = stumpff<1>(square);
+    const S versine = stumpff<2>(square);
+    const S x = sine * w(0);
+    const S y = sine * w(1);
+    const S z = sine * w(2);
+    const S xy = versine * (w(0) * w(1));
+    const S xz = versine * (w(0) * w(2));
+    const S yz = versine * (w(1) * w(2));
+    Matrix<S, 3, 3> g;
+    g(0, 0) = 1.0 - versine * (yy + zz);
+    g(1, 0) = xy + z;
+    g(2, 0) = xz - y;
+    g(0, 1) = xy - z;
+    g(1, 1) = 1.0 - versine * (xx + zz);
+    g(2, 1) = yz + x;
+    g(0, 2) = xz + y;
+    g(1, 2) = yz - x;
+    g(2, 2) = 1.0 - versine * (xx + yy);
+    return g;
   }
 
   /// The unit quaternion (w, x, y, z) with w >= 0 of a rotation matrix, from its largest component (stable at every
@@ -77,7 +107,8 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
   /// The rotation vector, of norm at most pi; from the quaternion, hence accurate near 0 and near pi.
   template <class S> static Vector<S, 3> log(const Matrix<S, 3, 3>& g) {
     const Vector<S, 4> q = quaternion(g);
-    return q.template tail<3>() * angle_ratio<0>(q(0));
+    const S ratio = angle_ratio<0>(q(0));
+    return {q(1) * ratio, q(2) * ratio, q(3) * ratio};
   }
 
   /// cay(w) = I + (hat(w) + hat(w)^2 / 2) / (1 + |w|^2 / 4): the rotation by 2 atan(|w|/2) about w.
@@ -92,8 +123,15 @@ struct SpecialOrthogonal3 : MatrixGroup<SpecialOrthogonal3<Tau>, 3, 3, Tau> {
     const S xz = half * w(0) * w(2);
     const S yz = half * w(1) * w(2);
     Matrix<S, 3, 3> g;
-    g << 1.0 - half * (y + z), xy - a(2), xz + a(1), xy + a(2), 1.0 - half * (x + z), yz - a(0), xz - a(1), yz + a(0),
-        1.0 - half * (x + y);
+    g(0, 0) = 1.0 - half * (y + z);
+    g(1, 0) = xy + a(2);
+    g(2, 0) = xz - a(1);
+    g(0, 1) = xy - a(2);
+    g(1, 1) = 1.0 - half * (x + z);
+    g(2, 1) = yz + a(0);
+    g(0, 2) = xz + a(1);
+    g(1, 2) = yz - a(0);
+    g(2, 2) = 1.0 - half * (x + y);
     return g;
   }
   /// w = 2 tan(angle/2) axis = 4 vee(g) / (1 + tr g). Requires an angle below pi.

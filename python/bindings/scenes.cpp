@@ -77,6 +77,23 @@ py::array column(const py::object& self, const std::string& label) {
   throw py::key_error(trajectory.series.empty() ? label + ": nothing was recorded" : label);
 }
 
+/// What happened: a dict each, with the columns of the state there.
+py::list events(const RunResult& result) {
+  const lagroid::EventTable& table = result.events;
+  py::list out;
+  for (const lagroid::Happening& row : table.rows) {
+    py::dict each;
+    each["event"] = table.watched[row.event].name;
+    each["t"] = row.time;
+    each["step"] = row.step;
+    each["passing"] = std::string(to_string(row.passing));
+    each["together"] = row.together;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) each[py::str(table.columns[i])] = row.values[i];
+    out.append(std::move(each));
+  }
+  return out;
+}
+
 std::vector<std::string> columns(const RunResult& result) {
   std::vector<std::string> out;
   if (result.trajectory.series.empty()) return out;
@@ -223,6 +240,10 @@ void bind_scenes(py::module_& module) {
             return out;
           },
           "All that was recorded, in the order of the files.")
+      .def_property_readonly(
+          "events", events,
+          "What happened of what the scene watches for, in the order of time: a dict each, of event, "
+          "t, step, passing, together and the columns of the state there.")
       .def_property_readonly(
           "conventions", [](const RunResult& r) { return r.trajectory.conventions; }, "What the numbers mean.")
       .def_property_readonly(

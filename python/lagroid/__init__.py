@@ -27,7 +27,7 @@ from .learning import LearnedHamiltonian, Measures, Trajectories, learn, traject
 from .optimisation import Manifold, Optimum, ProductManifold, Sphere, Stiefel, minimise, optimize
 from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
 from .scenes import require, resume, run, scene_text, systems
-from .studies import Method, check, methods, study
+from .studies import Gradient, Method, check, gradient, methods, study
 from .sweeps import Sweep, sweep
 
 __all__ = [
@@ -36,6 +36,7 @@ __all__ = [
     "DataError",
     "Endpoint",
     "Error",
+    "Gradient",
     "Groupoid",
     "Integrator",
     "Interrupted",
@@ -68,6 +69,7 @@ __all__ = [
     "Trajectory",
     "__version__",
     "check",
+    "gradient",
     "learn",
     "methods",
     "minimise",

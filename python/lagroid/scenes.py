@@ -80,18 +80,22 @@ def run(
     *,
     set: Optional[Mapping[str, Any]] = None,
     reduce: Optional[str] = None,
+    events: Optional[Sequence[Mapping[str, Any]]] = None,
     record: bool = True,
     out: Optional[str | os.PathLike[str]] = None,
 ) -> RunResult:
     """Runs a scene (docs/scenes.md): a file, a TOML text (a str with more than one line) or a dict.
 
     `set` holds other values by dotted keys, as in {"time.steps": 100}. `reduce` names one of the system's reductions
-    (`systems()` has them): its steps are then those of the reduced system, its motion the full one. Without `record` only the ledger and the end
-    points are kept. `out` is a folder for checkpoints and the files of `lagroid run --out`.
+    (`systems()` has them): its steps are then those of the reduced system, its motion the full one. `events` are the
+    tables [[event]] of the scene (docs/events.md), as in [{"name": "bottom", "when": "q"}]; RunResult.events has what
+    happened. Without `record` only the ledger and the end points are kept. `out` is a folder for checkpoints and the
+    files of `lagroid run --out`.
 
     Returns also where a step failed: see `status`, or call `require`. Raises SceneError, OutputError, and Interrupted
     after Ctrl-C. Other threads of Python go on meanwhile."""
-    given = {**(set or {}), "reduce": reduce} if reduce is not None else set
+    named = {"reduce": reduce, "event": events}
+    given = {**(set or {}), **{key: value for key, value in named.items() if value is not None}}
     return _finished(_lagroid.run(made(scene, given), record, out))
 
 

@@ -1,4 +1,4 @@
-"""What accuracy costs a scene, and the laws asked of its system."""
+"""What accuracy costs a scene, the laws asked of its system, and how its run depends on where it starts."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Optional
 
+import numpy as np
+from numpy.typing import NDArray
+
 from . import _lagroid
+from .errors import SolveError
 from .programs import output_of, program
 from .scenes import SceneLike, is_file, made, settings
 
-__all__ = ["Method", "check", "methods", "study"]
+__all__ = ["Gradient", "Method", "check", "gradient", "methods", "study"]
 
 
 class Method(NamedTuple):
@@ -64,10 +68,59 @@ def check(
     """Asks the scene's system every law, from groupoid axioms to Noether, by the program lagroid-check, in which the
     laws are compiled: the certificate that it prints with --json. `arguments` go to it as they are. Raises ProgramError
     where it is missing, SceneError where it refuses the scene."""
+    return told_by(program("lagroid-check", "LAGROID_CHECK", "lagroid_check"), scene, set, arguments)
+
+
+class Gradient(NamedTuple):
+    """Exact derivatives of a run: a row for each function, a column for each of what they are taken by."""
+
+    of: list[str]
+    by: list[str]
+    values: NDArray[np.float64]
+    derivatives: NDArray[np.float64]
+    growth: float
+    digits_left: float
+    differences: Optional[NDArray[np.float64]]
+    digits_agreed: Optional[float]
+
+
+def gradient(
+    scene: SceneLike,
+    *,
+    of: Sequence[str] = ("final",),
+    wrt: Sequence[str] = ("initial", "parameters"),
+    set: Optional[Mapping[str, Any]] = None,
+    check: bool = False,
+) -> Gradient:
+    """The derivatives of a scene's run by its start and its parameters, exact, by the program lagroid-gradient
+    (docs/gradients.md): `of` what, as "final.position", "node.10.px" or "integral.x", and `wrt` what, as
+    "initial.momentum" or "parameters.strength". `check` compares with extrapolated differences of runs. Raises
+    ProgramError where the program is missing, SceneError where it refuses, SolveError where a step of the run fails."""
+    arguments = ["--of", ",".join(of), "--wrt", ",".join(wrt)] + (["--check"] if check else [])
+    found = told_by(program("lagroid-gradient", "LAGROID_GRADIENT", "lagroid_gradient"), scene, set, arguments)
+    if found.get("status") == "failed":
+        raise SolveError(found["message"])
+    differences = found.get("differences")
+    return Gradient(
+        found["of"],
+        found["by"],
+        np.array(found["values"]),
+        np.array(found["derivatives"]),
+        found["growth"],
+        found["digits_left"],
+        None if differences is None else np.array(differences),
+        found.get("digits_agreed"),
+    )
+
+
+def told_by(
+    path: str, scene: SceneLike, set: Optional[Mapping[str, Any]], arguments: Sequence[str]
+) -> dict[str, Any]:
+    """What a program that stands beside lagroid prints of a scene with --json."""
     asked = made(scene, set)
     text = asked.toml()  # what is mistaken in it is told here
     with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
-        command = [program("lagroid-check", "LAGROID_CHECK", "lagroid_check")]
+        command = [path]
         if is_file(scene):  # itself, because what it names stands beside it
             name = asked.name
             command += [name, "--json", *arguments]
@@ -78,5 +131,5 @@ def check(
             file.flush()
             name = file.name
             command += [name, "--json", *arguments]
-        certificate: dict[str, Any] = json.loads(output_of(command, asked.name, name))
-    return certificate
+        found: dict[str, Any] = json.loads(output_of(command, asked.name, name))
+    return found

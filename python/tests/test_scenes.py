@@ -45,6 +45,20 @@ class Scenes(unittest.TestCase):
         with self.assertRaisesRegex(lagroid.SceneError, "none of rotations, angular-momentum"):
             lagroid.run(scene, reduce="translations")
 
+    def test_events_are_found_inside_of_steps(self) -> None:
+        events = [
+            {"name": "bottom", "when": "q"},
+            {"name": "out", "when": "abs(q)", "at": "maximum", "then": "stop", "count": 3},
+        ]
+        run = lagroid.run(PENDULUM, set={"time.steps": 1000}, events=events)
+        found = [event["event"] for event in run.events]
+        self.assertEqual(found, ["out", "bottom", "out", "bottom", "out"])
+        self.assertEqual(run.final.time, run.events[-1]["t"])
+        self.assertAlmostEqual(run.events[1]["q"], 0, delta=1e-14)
+        np.testing.assert_array_equal(lagroid.run(PENDULUM, events=events[:1])["q"], lagroid.run(PENDULUM)["q"])
+        with self.assertRaisesRegex(lagroid.OutputError, 'there is no "height"; there are t, q, p'):
+            lagroid.run(PENDULUM, events=[{"name": "high", "when": "height"}])
+
     def test_arrays_of_tables(self) -> None:
         run = lagroid.run(EXAMPLES / "chain_drop.toml", set={"time.steps": 2})
         self.assertTrue(run.converged)

@@ -81,6 +81,23 @@ class Studies(unittest.TestCase):
                 with self.assertRaises(lagroid.ProgramError):
                     lagroid.check(EXAMPLES / "kepler.toml")
 
+    def test_gradient_hands_over_to_its_program(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "lagroid-gradient"
+            program.write_text(
+                '#!/bin/sh\n[ "$2 $3 $4 $5 $6" = "--json --of final.x --wrt initial,parameters.strength" ] || exit 1\n'
+                'echo \'{"of": ["final.x"], "by": ["initial.x", "parameters.strength"], "values": [1.5],'
+                ' "derivatives": [[2, 3]], "growth": 4, "digits_left": 15}\'\n'
+            )
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
+                found = lagroid.gradient(
+                    EXAMPLES / "kepler.toml", of=["final.x"], wrt=["initial", "parameters.strength"]
+                )
+        self.assertEqual(found.derivatives.tolist(), [[2, 3]])
+        self.assertEqual(found.by[1], "parameters.strength")
+        self.assertIsNone(found.differences)
+
     def test_check_without_its_program_says_how_to_build_it(self) -> None:
         with mock.patch("lagroid.programs._lagroid.__file__", "/nowhere/python/lagroid/_lagroid.so", create=True):
             with mock.patch.dict(os.environ, {"PATH": "/nowhere"}):

@@ -22,8 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// All that a run can leave in its folder.
-constexpr std::array<const char*, 8> output_files{"trajectory.h5", "trajectory.csv", "summary.json", "summary.txt",
-                                                  "plot.csv",      "plot.gp",        "plot.svg",     "plot.png"};
+constexpr std::array<const char*, 9> output_files{"trajectory.h5", "trajectory.csv", "events.csv",
+                                                  "summary.json",  "summary.txt",    "plot.csv",
+                                                  "plot.gp",       "plot.svg",       "plot.png"};
 
 /// gnuplot reads the whole file for every curve, and looks for its columns by their names in every row: of long and of
 /// wide files it gets what can be seen.
@@ -66,6 +67,19 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
   if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", file.string()));
 }
 
+void write_events(const EventTable& events, const fs::path& file) {
+  std::string out = "event,t,step,passing,together";
+  for (const std::string& column : events.columns) out += "," + in_csv(column);
+  out += '\n';
+  for (const Happening& row : events.rows) {
+    out += fmt::format("{},{:.17g},{},{},{}", in_csv(events.watched[row.event].name), row.time, row.step,
+                       to_string(row.passing), int(row.together));
+    for (const double value : row.values) out += fmt::format(",{:.17g}", value);
+    out += '\n';
+  }
+  write_text(out, file);
+}
+
 /// Joined by ", ", in as many parts as attributes of 64 KiB have to be.
 std::vector<std::string> joined_in_parts(const std::vector<std::string>& labels) {
   constexpr std::size_t most = 60'000;
@@ -75,6 +89,27 @@ std::vector<std::string> joined_in_parts(const std::vector<std::string>& labels)
     parts.back() += parts.back().empty() ? label : ", " + label;
   }
   return parts;
+}
+
+/// The group "events": which, when, how, and the columns of the state there.
+void add_events(const H5::H5File& out, const EventTable& events) {
+  const H5::Group group = out.createGroup("events");
+  std::vector<std::string> names, passing;
+  std::vector<double> time, values;
+  for (const Happening& row : events.rows) {
+    names.push_back(events.watched[row.event].name);
+    passing.emplace_back(to_string(row.passing));
+    time.push_back(row.time);
+    values.insert(values.end(), row.values.begin(), row.values.end());
+  }
+  set_attribute(add_dataset(group, "time", time, 1), "unit", "s");
+  if (events.rows.empty()) return;
+  add_texts(group, "event", names);
+  add_texts(group, "passing", passing);
+  const H5::DataSet state = add_dataset(group, "values", values, events.columns.size());
+  const auto labels = joined_in_parts(events.columns);
+  for (std::size_t part = 0; part < labels.size(); ++part)
+    set_attribute(state, components_attribute(part), labels[part]);
 }
 
 void write_trajectory(const RunResult& result, const fs::path& file) {
@@ -93,6 +128,7 @@ void write_trajectory(const RunResult& result, const fs::path& file) {
         set_attribute(set, components_attribute(part), labels[part]);
       set_attribute(set, "rows", s.on_arrows ? "one per recorded arrow" : "one per recorded node");
     }
+    if (!result.events.watched.empty()) add_events(out, result.events);
   });
 }
 
@@ -114,12 +150,45 @@ std::string gnuplot_columns(const Panel& panel, std::size_t curve, bool by_name)
   return shown(x, panel.x_offset) + ":" + shown(y, panel.y_offset);
 }
 
+/// The events that are drawn as sections, and happened.
+std::vector<std::size_t> sections_of(const EventTable& events) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < events.watched.size(); ++i)
+    if (!events.watched[i].plot.empty() && events.watched[i].count > 0) out.push_back(i);
+  return out;
+}
+
+/// Where something happened on a curve, if its columns are known there.
+std::string marks_on(const Panel& panel, const std::string& curve, const EventTable& events) {
+  const auto known = [&](const std::string& column) {
+    return column == "t" || std::find(events.columns.begin(), events.columns.end(), column) != events.columns.end();
+  };
+  const bool happened = std::any_of(events.watched.begin(), events.watched.end(),
+                                    [](const WatchedEvent& e) { return e.count + e.touches > 0; });
+  if (!happened || !known(panel.x) || !known(curve)) return "";
+  return fmt::format(
+      ", 'events.csv' using (column({})-({})):(column({})-({})) with points pointtype 6 pointsize 0.6 "
+      "linecolor 'black' notitle",
+      gnuplot_string(panel.x), panel.x_offset, gnuplot_string(curve), panel.y_offset);
+}
+
+std::string section(const WatchedEvent& event) {
+  return fmt::format(
+      "unset key\nset title {}\nset xlabel {}\nset ylabel {}\nset size noratio\n"
+      "plot 'events.csv' using (stringcolumn('event') eq {} ? column({}) : NaN):(column({})) "
+      "with points pointtype 7 pointsize 0.4\n",
+      gnuplot_string(event.name), gnuplot_string(event.plot[0]), gnuplot_string(event.plot[1]),
+      gnuplot_string(event.name), gnuplot_string(event.plot[0]), gnuplot_string(event.plot[1]));
+}
+
 }  // namespace
 
-std::string plot_script(const std::vector<Panel>& panels, bool by_name) {
+std::string plot_script(const std::vector<Panel>& panels, const EventTable& events, bool by_name) {
   const std::string data = by_name ? "trajectory.csv" : "plot.csv";
-  const std::size_t columns = panels.size() > 1 ? 2 : 1;
-  const std::size_t rows = (panels.size() + columns - 1) / columns;
+  const std::vector<std::size_t> sections = sections_of(events);
+  const std::size_t pictures = panels.size() + sections.size();
+  const std::size_t columns = pictures > 1 ? 2 : 1;
+  const std::size_t rows = (pictures + columns - 1) / columns;
   std::string out = fmt::format("# Draws {}; run by lagroid, or by hand: gnuplot plot.gp\n", data);
   // A constant at the end of an axis is not to lie on the frame.
   out += "set datafile separator ','\nset grid\nset offsets graph 0, 0, 0.03, 0.03\n";
@@ -140,8 +209,10 @@ std::string plot_script(const std::vector<Panel>& panels, bool by_name) {
         out += fmt::format("{}'{}'{} using {} with lines linewidth 1.5 title {}", i ? ", " : "", data,
                            by_name ? "" : fmt::format(" index {}", p), gnuplot_columns(panel, i, by_name),
                            gnuplot_string(panel.curves[i]));
+      for (const std::string& curve : panel.curves) out += marks_on(panel, curve, events);
       out += "\n";
     }
+    for (const std::size_t i : sections) out += section(events.watched[i]);
     out += "unset multiplot\nset output\n";
   }
   return out;
@@ -174,13 +245,17 @@ std::vector<fs::path> write_outputs(RunResult& result, const fs::path& folder) {
     names.insert(names.end(), {"trajectory.h5", "trajectory.csv"});
     write_trajectory(result, staging / "trajectory.h5");
     write_csv(result.trajectory, staging / "trajectory.csv");
+    if (!result.events.watched.empty()) {
+      write_events(result.events, staging / "events.csv");
+      names.emplace_back("events.csv");
+    }
     if (moves) {
       const bool by_name = is_for_gnuplot(result.trajectory);
       if (!by_name) {
         write_text(table_of_visible(result.panels, result.trajectory), staging / "plot.csv");
         names.emplace_back("plot.csv");
       }
-      write_text(plot_script(result.panels, by_name), staging / "plot.gp");
+      write_text(plot_script(result.panels, result.events, by_name), staging / "plot.gp");
       names.emplace_back("plot.gp");
       drawing = {"plot.gp", {"plot.svg", "plot.png"}};
     }

@@ -19,9 +19,9 @@
 namespace lagroid {
 
 /// The script that draws the panels, from the columns of trajectory.csv by their names or from what is to be seen of
-/// them, plot.csv: what a run's plot.gp holds. It follows from the summary, so that a script that someone else
-/// wrote can be distinguished from it.
-std::string plot_script(const std::vector<Panel>& panels, bool by_name);
+/// them, plot.csv: what a run's plot.gp holds, with marks where an event happened and a panel for each that is drawn as
+/// a section. It follows from the summary, so that a script that someone else wrote can be distinguished from it.
+std::string plot_script(const std::vector<Panel>& panels, const EventTable& events, bool by_name);
 
 /// The folder for a run of that scene (what was run, as text), or that of a run which is there, to go on with it or to
 /// show it; for this process alone. Throws as OutputFolder does.
@@ -30,7 +30,8 @@ OutputFolder folder_of_run(const std::filesystem::path& folder);
 /// The same for a result whose scene is not known: it may be written again, another one may not.
 OutputFolder folder_for_result(const std::filesystem::path& folder, const RunResult& result);
 
-/// Writes trajectory.h5, trajectory.csv, summary.json, summary.txt, plot.gp, plot.svg and plot.png into `folder`
+/// Writes trajectory.h5, trajectory.csv, events.csv where events were watched for, summary.json, summary.txt, plot.gp,
+/// plot.svg and plot.png into `folder`
 /// (`write_and_draw`), which the caller holds. Returns the files written; a missing or failing gnuplot, or a signal
 /// while it draws, costs the pictures only and is added to the result's notes.
 std::vector<std::filesystem::path> write_outputs(RunResult& result, const std::filesystem::path& folder);

@@ -46,6 +46,10 @@ class QuantityWatch {
   /// `size` is the size of the terms the quantity is made of; round-off is relative to it. `noise` is what one
   /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not updated by steps.
   void observe(const double* values, double size, double noise = 0);
+  /// Something changed the quantity by so much; it is held to its promise from there.
+  void shift(const double* by) {
+    for (std::size_t i = 0; i < first_.size(); ++i) first_[i] += by[i];
+  }
   LedgerEntry entry() const;
   /// The norm of the last deviation from the first value.
   double drift() const;

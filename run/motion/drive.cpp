@@ -1,3 +1,4 @@
+#include <lagroid/run/events/event_watch.hpp>
 #include <lagroid/run/files/archive.hpp>
 #include <lagroid/run/files/checkpoint.hpp>
 #include <lagroid/run/files/output_folder.hpp>
@@ -39,11 +40,13 @@ class Clock {
 struct Kept {
   WatchedMotion& watched;
   Judge& judge;
+  EventWatch* events;  ///< or null
 
   void serialize(Archive& archive) {
     archive.numbers("motion", [&](NumberArchive& numbers) { watched.motion().serialize(numbers); });
     archive("judge", judge);
     archive("watched", watched);
+    if (events != nullptr) archive("events", *events);
   }
 };
 
@@ -89,7 +92,9 @@ void drive(Motion& motion, const RunExtent& extent, const RunContext& context, R
   Judge judge(first);
   Recorder recorder(first);
   WatchedMotion watched(motion, &judge, context.record ? &recorder : nullptr, extent.every);
-  Kept run{watched, judge};
+  std::optional<EventWatch> events;
+  if (!extent.events.empty()) events.emplace(extent.events, motion);
+  Kept run{watched, judge, events ? &*events : nullptr};
   std::optional<Checkpoint> checkpoint;
   if (!context.folder.empty()) checkpoint.emplace(context.folder, extent.checkpoint);
   const auto keep = [&] {
@@ -123,14 +128,16 @@ void drive(Motion& motion, const RunExtent& extent, const RunContext& context, R
   {
     Progress progress(result.system, extent.steps, context.progress);
     const InterruptGuard guard;
-    end = integrate_nodes(watched, extent.steps - result.steps, [&](const StepReport& report) {
+    const auto goes_on = [&](const StepReport& report) {
       count(report);
       ++result.steps;
       progress.update(result.steps);
       if (guard.interrupted() && result.steps < extent.steps) return false;
       if (checkpoint && checkpoint->due(result.steps)) keep();
       return true;
-    });
+    };
+    const long steps = extent.steps - result.steps;
+    end = events ? integrate_nodes(watched, *events, steps, goes_on) : integrate_nodes(watched, steps, goes_on);
     // In the middle of a step, too, which was then not made.
     interrupted = (end.why == Why::stopped || end.why == Why::failed) && guard.interrupted();
   }
@@ -146,6 +153,15 @@ void drive(Motion& motion, const RunExtent& extent, const RunContext& context, R
     result.status = std::string(to_string(end.report.status));
     result.residual = end.report.residual;
     result.message = motion.failure(end.report, result.steps + 1);
+  } else if (end.why == Why::event) {
+    if (end.report.converged()) count(end.report);
+    ++result.steps;
+    if (end.report.converged()) {
+      result.notes.push_back(events->reason());
+    } else {
+      result.status = std::string(to_string(end.report.status));
+      result.message = events->reason();
+    }
   } else if (end.why == Why::not_finite) {
     count(end.report);
     ++result.steps;
@@ -159,8 +175,9 @@ void drive(Motion& motion, const RunExtent& extent, const RunContext& context, R
   }
   judge.report(result.ledger);
   if (context.record) result.trajectory = std::move(recorder.trajectory());
-  result.final = motion.look().endpoint();
+  result.final = end.why == Why::event && end.report.converged() ? events->end().endpoint() : motion.look().endpoint();
   motion.describe(result);
+  if (events) events->report(result);
   result.ledger.mean_iterations = result.steps > 0 ? double(result.iterations) / double(result.steps) : 0;
   result.seconds = clock.seconds();
 }

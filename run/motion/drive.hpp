@@ -4,23 +4,27 @@
 ///     RunResult result;
 ///     drive(motion, {.steps = 1000}, {.record = true}, result);
 ///
-/// Requires a motion at its first node. The result has the trajectory, the ledger and how the run ended. Errors:
-/// RunError where the checkpoint to go on from is of another run, OutputError where the folder cannot be used.
+/// Requires a motion at its first node. The result has the trajectory, the ledger, what happened and how the run ended.
+/// Errors: RunError where the checkpoint to go on from is of another run, or an event cannot be watched for;
+/// OutputError where the folder cannot be used.
 
+#include <lagroid/run/events/event.hpp>
 #include <lagroid/run/motion/motion.hpp>
 #include <lagroid/run/run_result.hpp>
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lagroid {
 
-/// How far a run goes and what it leaves: [time] steps, [output] every and checkpoint.
+/// How far a run goes and what it leaves: [time] steps, [output] every and checkpoint, [[event]].
 struct RunExtent {
   long steps = 0;
-  long every = 1;       ///< each n-th node is recorded (and the last)
-  long checkpoint = 0;  ///< steps from one checkpoint to the next; 0: by the clock
-  std::string scene;    ///< to be kept, so that the run can be taken up
+  long every = 1;               ///< each n-th node is recorded (and the last)
+  long checkpoint = 0;          ///< steps from one checkpoint to the next; 0: by the clock
+  std::string scene;            ///< to be kept, so that the run can be taken up
+  std::vector<Event> events{};  ///< that are watched for
 };
 
 /// Options of a run.
@@ -34,7 +38,7 @@ struct RunContext {
 /// Runs the motion, which is at its first node, from there or from its checkpoint, and keeps checkpoints where
 /// `context` names a folder. The result has its trajectory, its ledger and all else that reports need. A step that
 /// fails, Ctrl-C or SIGTERM ends it with what was computed so far. Throws RunError where the checkpoint is of another
-/// run, OutputError where the folder cannot be used.
+/// run or an event cannot be watched for (EventWatch), OutputError where the folder cannot be used.
 void drive(Motion& motion, const RunExtent& extent, const RunContext& context, RunResult& result);
 
 }  // namespace lagroid

@@ -6,18 +6,32 @@ namespace lagroid {
 
 bool WatchedMotion::observe() {
   if (!std::isfinite(motion_.time())) return false;
-  const bool is_recorded = motion_.index() == next_;
-  if (is_recorded) next_ += every_;
-  return !(is_recorded || is_judged_at_every_node_) || see(is_recorded);
+  const bool is_recorded = takes_row();
+  return !(is_recorded || is_judged_at_every_node_) || see(motion_.look(), is_recorded);
+}
+
+bool WatchedMotion::observe(const Observables& node) {
+  const bool is_recorded = takes_row();
+  return !(is_recorded || is_judged_at_every_node_) || see(node, is_recorded);
 }
 
 bool WatchedMotion::observe_last() {
   const bool was_recorded = motion_.index() == next_ - every_;
-  return was_recorded || !std::isfinite(motion_.time()) || see(true);
+  return is_ended_ || was_recorded || !std::isfinite(motion_.time()) || see(motion_.look(), true);
 }
 
-bool WatchedMotion::see(bool is_recorded) {
-  const Observables& node = motion_.look();
+void WatchedMotion::end_at(const Observables& inside) {
+  is_ended_ = true;
+  if (recorder_ != nullptr) recorder_->record(inside, judge_);
+}
+
+bool WatchedMotion::takes_row() {
+  if (motion_.index() != next_) return false;
+  next_ += every_;
+  return true;
+}
+
+bool WatchedMotion::see(const Observables& node, bool is_recorded) {
   if (judge_ != nullptr && judged_ < node.index()) judge_->observe(node);
   judged_ = node.index();
   if (recorder_ != nullptr && is_recorded) recorder_->record(node, judge_);

@@ -31,8 +31,13 @@ class WatchedMotion {
   Motion& motion() { return motion_; }
   /// Sees the node where the motion is; false where its numbers are not finite.
   bool observe();
+  /// The same of that node, which has been looked at.
+  bool observe(const Observables& node);
   /// Sees the last node, where that was passed over.
   bool observe_last();
+  Judge* judge() { return judge_; }
+  /// Ends the rows with a point inside of the last step, in place of the node that this leads to.
+  void end_at(const Observables& inside);
   /// Visits what it goes on from, beside motion and judge: after the motion.
   template <class Archive> void serialize(Archive& archive) {
     archive("judged", judged_);
@@ -40,7 +45,9 @@ class WatchedMotion {
   }
 
  private:
-  bool see(bool is_recorded);
+  /// Whether the node is one that is recorded; the next one to be is then a later one.
+  bool takes_row();
+  bool see(const Observables& node, bool is_recorded);
 
   Motion& motion_;
   Judge* judge_;
@@ -50,11 +57,12 @@ class WatchedMotion {
   long first_;
   long next_;    ///< the node to be recorded next
   long judged_;  ///< the last node that the judge saw
+  bool is_ended_ = false;
 };
 
 /// How a loop over steps ended.
 struct IntegrationEnd {
-  enum class Why { whole, failed, not_finite, stopped };
+  enum class Why { whole, failed, not_finite, stopped, event };
   Why why = Why::whole;
   StepReport report;  ///< of the last step, unless all were made
 };

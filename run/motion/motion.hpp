@@ -16,7 +16,9 @@
 #include <lagroid/solvers/step/step_solver.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,6 +65,19 @@ class Motion {
 
   /// Adds what describes the whole run: panels, shapes, conventions, notes, what the ledger counts.
   virtual void describe(RunResult& result) const = 0;
+  /// Why steps cannot be made in part, as what happens inside of one is looked for (run/events/); empty where they can.
+  virtual std::string why_not_cut() const { return "steps of this motion cannot be made in part"; }
+  /// Keeps this node, from which the next step can be made in part.
+  virtual void keep_node() {}
+  /// What is to be seen where a share of the last step, 0 to 1, leads to from the node that was kept before it, by the
+  /// same method. Null where that does not converge. The motion stays where it is, but has to be looked at anew before
+  /// anything else is asked of it.
+  virtual const Observables* look_within(double /*share*/) { return nullptr; }
+  /// How many numbers its momentum has, to which something can be added inside of a step; none where nothing can.
+  virtual std::size_t kicked_numbers() const { return 0; }
+  /// Adds to the momentum where a share of the last step leads to, and makes the rest of the step from there; shares
+  /// are from now on those of that rest. The motion stays at its node, in another state.
+  virtual StepReport kick_within(double /*share*/, std::span<const double> /*by*/) { return {}; }
   /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
   /// bits.
   virtual void serialize(NumberArchive& archive) = 0;

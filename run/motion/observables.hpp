@@ -40,6 +40,7 @@ struct Watched {
   bool on_arrows = false;  ///< evaluated on the arrow that led to a node: the first node has none
   SizeOf size_of = SizeOf::terms;
   bool is_promised = true;  ///< by the method; else the ledger has how far the quantity went
+  bool adds_up = false;     ///< from node to node: it is known there alone
 };
 
 /// What the ledger holds of constraints.

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -116,6 +117,20 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
     if (observer_ && point.index > observed_) observer_(node_.point());
     observed_ = point.index;
     return node_;
+  }
+  std::string why_not_cut() const override {
+    return integrator_->cuts() ? "" : "steps of this method cannot be made in part: " + traits().name;
+  }
+  void keep_node() override { integrator_->keep_node(); }
+  const Observables* look_within(double share) override {
+    TrajectoryPoint<Sys> inside;
+    if (!integrator_->cut(share, inside).converged()) return nullptr;
+    node_.see(inside);
+    return &node_;
+  }
+  std::size_t kicked_numbers() const override { return integrator_->kicks() ? G::dimension : 0; }
+  StepReport kick_within(double share, std::span<const double> by) override {
+    return integrator_->kick(share, Eigen::Map<const AlgebroidVector<G>>(by.data()));
   }
   std::vector<NamedVector> state() const override {
     const TrajectoryPoint<Sys>& point = integrator_->point();

@@ -63,7 +63,8 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
   SystemNode(const Sys& system, std::vector<FieldOf<Sys>> fields, std::vector<Quantity<Sys>> quantities)
       : system_(system), quantities_(std::move(quantities)) {
     for (const auto& q : quantities_)
-      watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size ? SizeOf::terms : SizeOf::value});
+      watched_.push_back({q.name, q.components, q.promise, q.needs_step, q.size ? SizeOf::terms : SizeOf::value, true,
+                          q.serialize != nullptr});
     for (auto& f : fields) add(std::move(f.field), std::move(f.evaluate));
   }
   SystemNode(const SystemNode&) = delete;

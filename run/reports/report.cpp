@@ -64,6 +64,31 @@ Json json(const Panel& p) {
           {"curves", p.curves}, {"equal_axes", p.equal_axes}, {"x_offset", p.x_offset}, {"y_offset", p.y_offset}};
 }
 
+/// `events_of` reads all but the rows.
+Json json(const EventTable& events) {
+  Json watched = Json::array();
+  for (std::size_t i = 0; i < events.watched.size(); ++i) {
+    const WatchedEvent& event = events.watched[i];
+    Json each{{"name", event.name}, {"when", event.when}, {"count", event.count}, {"touches", event.touches}};
+    if (const auto span = span_of(events, i)) {
+      each["first"] = span->first;
+      each["last"] = span->last;
+      if (event.count > 1) each["mean_interval"] = span->mean_interval;
+    }
+    if (!event.plot.empty()) each["plot"] = event.plot;
+    watched.push_back(std::move(each));
+  }
+  Json rows = Json::array();
+  for (const Happening& row : events.rows)
+    rows.push_back({{"event", events.watched[row.event].name},
+                    {"t", row.time},
+                    {"step", row.step},
+                    {"passing", to_string(row.passing)},
+                    {"together", row.together},
+                    {"values", row.values}});
+  return {{"watched", watched}, {"columns", events.columns}, {"rows", rows}};
+}
+
 template <class T> Json array_of(const std::vector<T>& items) {
   Json out = Json::array();
   for (const auto& item : items) out.push_back(json(item));
@@ -124,6 +149,13 @@ std::string text_report(const RunResult& r) {
                        path.starts, r.starts, numbers(path.momentum)));
   }
   for (const auto& note : r.notes) line("  note: " + note);
+  for (std::size_t i = 0; i < r.events.watched.size(); ++i)
+    if (const auto span = span_of(r.events, i)) {
+      const WatchedEvent& event = r.events.watched[i];
+      line(fmt::format("  event \"{}\": {} times, first at t {:.10g}, last at {:.10g}{}", event.name, event.count,
+                       span->first, span->last,
+                       event.count > 1 ? fmt::format(", mean interval {:.10g}", span->mean_interval) : ""));
+    }
   line("  ledger");
   for (const auto& e : r.ledger.entries) {
     if (e.promise == "counted") {
@@ -173,6 +205,7 @@ std::string json_report(const RunResult& r) {
       {"mean", r.ledger.mean_iterations}, {"max", r.ledger.most_iterations}, {"verdict", solver_verdict(r)}};
   ledger["solver"] = {{"status", r.status}, {"verdict", solver_verdict(r)}};
   out["ledger"] = ledger;
+  if (!r.events.watched.empty()) out["events"] = json(r.events);
   out["notes"] = r.notes;
   out["picture"] = {{"shapes", array_of(r.shapes)}, {"panels", array_of(r.panels)}};
   return json_text(out);
@@ -184,6 +217,19 @@ std::vector<Panel> panels_of(const Json& summary) {
     out.push_back({p.at("title"), p.at("x_label"), p.at("y_label"), p.at("x"), p.at("curves"), p.at("equal_axes"),
                    p.at("x_offset"), p.at("y_offset")});
   return out;
+}
+
+EventTable events_of(const Json& summary) {
+  EventTable events;
+  if (!summary.contains("events")) return events;
+  const Json& table = summary.at("events");
+  events.columns = table.at("columns").get<std::vector<std::string>>();
+  for (const Json& each : table.at("watched")) {
+    WatchedEvent event{each.at("name"), each.at("when"), {}, each.at("count"), each.at("touches")};
+    if (each.contains("plot")) event.plot = each.at("plot").get<std::vector<std::string>>();
+    events.watched.push_back(std::move(event));
+  }
+  return events;
 }
 
 std::string json_error(const std::string& status, const std::string& message) {

@@ -22,6 +22,9 @@ std::string json_report(const RunResult& result);
 /// The plot panels in such a summary. Throws nlohmann::json::exception where there are none.
 std::vector<Panel> panels_of(const nlohmann::ordered_json& summary);
 
+/// What was watched for in such a summary, without what happened; nothing where there is none. Throws as `panels_of`.
+EventTable events_of(const nlohmann::ordered_json& summary);
+
 /// The JSON object for a run that never began: status "invalid_scene" and the message.
 std::string json_error(const std::string& status, const std::string& message);
 

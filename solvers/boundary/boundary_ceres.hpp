@@ -10,6 +10,7 @@
 /// `ill_conditioned` (a solution is near, but the normal equations are too ill-conditioned to reach it), `stagnated`,
 /// `not_converged`, `not_finite`. It looks for stationary paths of any kind, whatever kind is wanted.
 
+#include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/derivatives/gradient_derivative.hpp>
 #include <lagroid/solvers/boundary/boundary_newton.hpp>
 #include <lagroid/solvers/ceres_solve.hpp>
@@ -111,7 +112,7 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
     for (std::size_t k = 0; k < count; ++k) {
       product = k + 1 == count ? problem.boundary : groupoid.project(groupoid.compose(product, path[k].arrow));
       reach[k + 1] = groupoid.coordinates_of_arrow(product);
-      multipliers[k].template head<m>() = path[k].multipliers;
+      for (int a = 0; a < m; ++a) multipliers[k](a) = path[k].multipliers(a);
     }
     std::deque<NodeCost> costs;
     ceres::Problem::Options ownership;
@@ -139,7 +140,7 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
     for (std::size_t k = 0; k < count; ++k) {
       path[k].arrow = groupoid.project(
           groupoid.compose(groupoid.inverse(manifold.arrow(reach[k].data())), manifold.arrow(reach[k + 1].data())));
-      path[k].multipliers = multipliers[k].template head<m>();
+      for (int a = 0; a < m; ++a) path[k].multipliers(a) = multipliers[k](a);
     }
     return summary;
   }
@@ -194,9 +195,7 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
       const ArrowOf<G> g = groupoid.compose(groupoid.inverse(before), node);
       const typename Sys::Multipliers lambda = multipliers(0);
       const auto d = two_sided(*system_, g, lambda);
-      Vector<double, m + n> r;
-      r.template head<m>() = d.constraint;
-      r.template tail<n>() = d.target_gradient;
+      Vector<double, m + n> r = joined<double, m, n>(d.constraint, d.target_gradient);
       TwoSidedOf<Sys> e;
       ArrowOf<G> after;
       ArrowOf<G> next;
@@ -206,7 +205,7 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
         next = groupoid.compose(groupoid.inverse(node), after);
         next_lambda = multipliers(1);
         e = two_sided(*system_, next, next_lambda);
-        r.template tail<n>() += e.source_gradient;
+        for (int i = 0; i < n; ++i) r(m + i) += e.source_gradient(i);
       }
       const int rows = num_residuals();
       for (int i = 0; i < rows; ++i) {
@@ -215,37 +214,47 @@ template <DiscreteSystem Sys> class BoundaryCeres final : public BoundarySolver<
       }
       if (jacobians == nullptr) return true;
 
+      // Blocks by rows; entry by entry (docs/decisions/72_expressions_cost_their_square.md).
       const auto put = [&](int block, const Matrix<double, m + n, n>& derivative, const ArrowOf<G>& at) {
         if (jacobians[block] == nullptr) return;
-        using J = Eigen::Matrix<double, Eigen::Dynamic, ambient, ambient == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-        Eigen::Map<J>(jacobians[block], rows, ambient) =
-            scale_.head(rows).asDiagonal() * derivative.topRows(rows) * manifold_->coframe(at);
+        const auto coframe = manifold_->coframe(at);
+        for (int i = 0; i < rows; ++i)
+          for (int j = 0; j < ambient; ++j) {
+            double sum = 0;
+            for (int k = 0; k < n; ++k) sum += derivative(i, k) * coframe(k, j);
+            jacobians[block][i * ambient + j] = scale_(i) * sum;
+          }
       };
-      Matrix<double, m + n, n> by_node = Matrix<double, m + n, n>::Zero();
-      by_node.template topRows<phis>() = d.constraint_source.template leftCols<phis>().transpose();
-      by_node.template bottomRows<n>() = d.mixed.transpose();
+      Matrix<double, m + n, n> by_node;
+      for (int j = 0; j < n; ++j) {
+        for (int a = 0; a < m; ++a) by_node(a, j) = a < phis ? d.constraint_source(j, a) : 0;
+        for (int i = 0; i < n; ++i) by_node(m + i, j) = d.mixed(j, i);
+      }
       put(0, by_node, before);
-      by_node.template topRows<m>() = d.constraint_target;
-      if (!last_)
-        by_node.template bottomRows<n>() = gradient_derivative(*system_, g, lambda, End::target) +
-                                           gradient_derivative(*system_, next, next_lambda, End::source);
+      for (int j = 0; j < n; ++j)
+        for (int a = 0; a < m; ++a) by_node(a, j) = d.constraint_target(a, j);
+      if (!last_) {
+        const Matrix<double, n, n> of_first = gradient_derivative(*system_, g, lambda, End::target);
+        const Matrix<double, n, n> of_second = gradient_derivative(*system_, next, next_lambda, End::source);
+        for (int j = 0; j < n; ++j)
+          for (int i = 0; i < n; ++i) by_node(m + i, j) = of_first(i, j) + of_second(i, j);
+      }
       put(1, by_node, node);
       if (!last_) {
-        by_node.template topRows<m>().setZero();
-        by_node.template bottomRows<n>() = e.mixed;
+        for (int j = 0; j < n; ++j) {
+          for (int a = 0; a < m; ++a) by_node(a, j) = 0;
+          for (int i = 0; i < n; ++i) by_node(m + i, j) = e.mixed(i, j);
+        }
         put(2, by_node, after);
       }
       if constexpr (m > 0) {
-        const auto put_multipliers = [&](int block, const Matrix<double, n, m>& derivative) {
+        const auto put_multipliers = [&](int block, const auto& derivative) {
           if (jacobians[block] == nullptr) return;
-          using J = Eigen::Matrix<double, Eigen::Dynamic, m, m == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-          Eigen::Map<J> j(jacobians[block], rows, m);
-          j.setZero();
-          if (!last_) j.template bottomRows<n>() = scale_.template tail<n>().asDiagonal() * derivative;
+          for (int i = 0; i < rows; ++i)
+            for (int a = 0; a < m; ++a)
+              jacobians[block][i * m + a] = i < m || last_ ? 0 : scale_(i) * derivative(i - m, a);
         };
-        Matrix<double, n, m> by_multiplier = Matrix<double, n, m>::Zero();
-        by_multiplier.template leftCols<phis>() = d.constraint_target.template topRows<phis>().transpose();
-        put_multipliers(lambdas, by_multiplier);
+        put_multipliers(lambdas, [&](int i, int a) { return a < phis ? d.constraint_target(a, i) : 0; });
         if (!last_) put_multipliers(lambdas + 1, e.constraint_source);
       }
       return true;

@@ -45,47 +45,57 @@ template <DiscreteSystem Sys> class BoundaryKkt {
 
   void evaluate(const Sys& system, const Path<Sys>& path, Hessian hessian = Hessian::exact) {
     const std::size_t count = path.size();
-    diagonal_.assign(count, Block::Zero());
-    coupling_.assign(count, Coupling::Zero());
-    residual_.assign(count, Column::Zero());
-    gradient_.assign(count, Vector<double, n>::Zero());
+    diagonal_.assign(count, zero<Block>());
+    coupling_.assign(count, zero<Coupling>());
+    residual_.assign(count, zero<Column>());
+    gradient_.assign(count, zero<Vector<double, n>>());
     const double metric = 1 / time_step(system);
     for (std::size_t k = 0; k < count; ++k) {
       if (hessian == Hessian::exact) {
         const auto d = second_derivatives(system, path[k].arrow, path[k].multipliers);
         add_equations(k, d, path[k].multipliers);
-        coupling_[k].template bottomRows<n>() = d.mixed.transpose();
-        diagonal_[k].template bottomRightCorner<n, n>() += d.target_hessian;
-        if (k > 0) diagonal_[k - 1].template bottomRightCorner<n, n>() += d.source_hessian;
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < n; ++j) {
+            coupling_[k](m + i, j) = d.mixed(j, i);
+            diagonal_[k](m + i, m + j) += d.target_hessian(i, j);
+            if (k > 0) diagonal_[k - 1](m + i, m + j) += d.source_hessian(i, j);
+          }
       } else {
         add_equations(k, two_sided(system, path[k].arrow, path[k].multipliers), path[k].multipliers);
-        const Matrix<double, n, n> unit = metric * Matrix<double, n, n>::Identity();
-        diagonal_[k].template bottomRightCorner<n, n>() += unit;
-        if (hessian == Hessian::stiffness && k > 0) {
-          diagonal_[k - 1].template bottomRightCorner<n, n>() += unit;
-          coupling_[k].template bottomRows<n>() = -unit;
+        for (int i = 0; i < n; ++i) {
+          diagonal_[k](m + i, m + i) += metric;
+          if (hessian == Hessian::stiffness && k > 0) {
+            diagonal_[k - 1](m + i, m + i) += metric;
+            coupling_[k](m + i, i) = -metric;
+          }
         }
       }
     }
     // The end node does not move: its unknowns are decoupled and kept at zero.
-    residual_.back().template tail<fixed>().setZero();
-    gradient_.back().setZero();
-    diagonal_.back().template rightCols<fixed>().setZero();
-    diagonal_.back().template bottomRows<fixed>().setZero();
-    coupling_.back().template bottomRows<fixed>().setZero();
+    gradient_.back() = zero<Vector<double, n>>();
+    for (int i = 0; i < size; ++i) {
+      if (i >= phis) residual_.back()(i) = 0;
+      for (int j = 0; j < size; ++j)
+        if (i >= phis || j >= phis) diagonal_.back()(i, j) = 0;
+      for (int j = 0; j < n; ++j)
+        if (i >= phis) coupling_.back()(i, j) = 0;
+    }
   }
 
   /// Chooses the scale from the blocks: symmetric equilibration of their entrywise maximum over the path.
   void choose_scale() {
-    Block largest = Block::Zero();
-    for (const Block& b : diagonal_) largest = largest.cwiseMax(b.cwiseAbs());
-    scale_.setOnes();
+    Block largest = zero<Block>();
+    for (const Block& b : diagonal_)
+      for (int i = 0; i < size * size; ++i) largest.data()[i] = std::max(largest.data()[i], std::abs(b.data()[i]));
+    scale_ = ones();
     for (int sweep = 0; sweep < 10; ++sweep)
       for (int i = 0; i < size; ++i) {
-        const double entry = (largest.row(i).transpose().cwiseProduct(scale_)).maxCoeff() * scale_(i);
+        double entry = 0;
+        for (int j = 0; j < size; ++j) entry = std::max(entry, largest(i, j) * scale_(j));
+        entry *= scale_(i);
         if (entry > 0) scale_(i) /= std::sqrt(entry);
       }
-    scale_ = scale_.unaryExpr([](double x) { return std::exp2(std::round(std::log2(x))); });
+    for (double& x : scale_) x = std::exp2(std::round(std::log2(x)));
   }
 
   /// What a factorisation shows of the matrix.
@@ -102,15 +112,20 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     eliminated_.resize(count);
     Inertia inertia;
     for (std::size_t k = 0; k < count; ++k) {
-      Block s = scale_.asDiagonal() * diagonal_[k] * scale_.asDiagonal();
-      s.diagonal().template head<m>().array() -= dual;
-      s.diagonal().template tail<n>().array() += primal + stiffness;
-      if (k + 1 == count) s.template bottomRightCorner<fixed, fixed>().setIdentity();
+      Block s;
+      for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) s(i, j) = scale_(i) * diagonal_[k](i, j) * scale_(j);
+        s(i, i) += i < m ? -dual : primal + stiffness;
+      }
+      if (k + 1 == count)
+        for (int i = phis; i < size; ++i)
+          for (int j = phis; j < size; ++j) s(i, j) = i == j ? 1 : 0;
       if (k > 0) {
-        Coupling c = scale_.asDiagonal() * coupling_[k] * scale_.template tail<n>().asDiagonal();
-        if (k + 1 < count) c.template bottomRows<n>().diagonal().array() -= 0.5 * stiffness;
-        Block right = Block::Zero();
-        right.template bottomRows<n>() = c.transpose();
+        Block right = zero<Block>();
+        for (int i = 0; i < n; ++i) {
+          for (int j = 0; j < size; ++j) right(m + i, j) = scale_(j) * coupling_[k](j, i) * scale_(m + i);
+          if (k + 1 < count) right(m + i, m + i) -= 0.5 * stiffness;
+        }
         eliminated_[k - 1] = factors_[k - 1].subtract_from(s, right);
       }
       factors_[k].compute(s);
@@ -136,49 +151,55 @@ template <DiscreteSystem Sys> class BoundaryKkt {
 
   /// The matrix (without regularisation) times a vector, in scaled unknowns.
   Columns multiply(const Columns& z) const {
-    Columns out(z.size(), Column::Zero());
+    Columns out(z.size(), zero<Column>());
     add_product(1, z, out);
     return out;
   }
   /// out += factor * (the matrix times z).
   void add_product(double factor, const Columns& z, Columns& out) const {
     const std::size_t count = z.size();
-    const auto unscaled = [&](std::size_t k) -> Column { return scale_.cwiseProduct(z[k]); };
-    for (std::size_t k = 0; k < count; ++k) {
-      Column sum = diagonal_[k] * unscaled(k);
-      if (k > 0) sum += coupling_[k] * unscaled(k - 1).template tail<n>();
-      if (k + 1 < count) sum.template tail<n>() += coupling_[k + 1].transpose() * unscaled(k + 1);
-      out[k] += factor * scale_.cwiseProduct(sum);
-    }
-    out.back().template tail<fixed>() += factor * z.back().template tail<fixed>();
+    for (std::size_t k = 0; k < count; ++k)
+      for (int i = 0; i < size; ++i) {
+        double sum = 0;
+        for (int j = 0; j < size; ++j) sum += diagonal_[k](i, j) * (scale_(j) * z[k](j));
+        if (k > 0)
+          for (int j = 0; j < n; ++j) sum += coupling_[k](i, j) * (scale_(m + j) * z[k - 1](m + j));
+        if (k + 1 < count && i >= m)
+          for (int j = 0; j < size; ++j) sum += coupling_[k + 1](j, i - m) * (scale_(j) * z[k + 1](j));
+        out[k](i) += factor * (scale_(i) * sum);
+      }
+    for (int i = phis; i < size; ++i) out.back()(i) += factor * z.back()(i);
   }
 
   /// The equations' residual in scaled form, negated: the right-hand side of a Newton step.
   void newton_side(Columns& out) const {
     out.resize(residual_.size());
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = -scale_.cwiseProduct(residual_[k]);
+    for (std::size_t k = 0; k < out.size(); ++k)
+      for (int i = 0; i < size; ++i) out[k](i) = -(scale_(i) * residual_[k](i));
   }
   /// The right-hand side of a step back to the constraints at `path`: their scaled values, negated. Returns the
   /// largest, or whatever is not finite.
   double constraint_side(const Sys& system, const Path<Sys>& path, Columns& out) const {
-    out.assign(path.size(), Column::Zero());
+    out.assign(path.size(), zero<Column>());
     double violation = 0;
     for (std::size_t k = 0; k < path.size(); ++k) {
-      out[k].template head<m>() = -scale_.template head<m>().cwiseProduct(constraint_values(system, path[k].arrow));
-      if (k + 1 == path.size()) out[k].template tail<fixed>().setZero();
-      const double largest = out[k].cwiseAbs().maxCoeff();
-      if (!out[k].allFinite()) return std::numeric_limits<double>::quiet_NaN();
-      violation = std::max(violation, largest);
+      const Vector<double, m> values = constraint_values(system, path[k].arrow);
+      for (int i = 0; i < (k + 1 == path.size() ? phis : m); ++i) {
+        out[k](i) = -(scale_(i) * values(i));
+        if (!std::isfinite(out[k](i))) return std::numeric_limits<double>::quiet_NaN();
+        violation = std::max(violation, std::abs(out[k](i)));
+      }
     }
     return violation;
   }
   /// The largest scaled residual; a NaN where anything is not finite.
   double residual_norm() const {
     double norm = 0;
-    for (const Column& c : residual_) {
-      if (!c.allFinite()) return std::numeric_limits<double>::quiet_NaN();
-      norm = std::max(norm, scale_.cwiseProduct(c).cwiseAbs().maxCoeff());
-    }
+    for (const Column& c : residual_)
+      for (int i = 0; i < size; ++i) {
+        if (!std::isfinite(c(i))) return std::numeric_limits<double>::quiet_NaN();
+        norm = std::max(norm, std::abs(scale_(i) * c(i)));
+      }
     return norm;
   }
 
@@ -187,12 +208,12 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     const std::size_t count = z.size();
     out.nodes.resize(count);
     out.multipliers.resize(count);
-    if constexpr (m > 0) out.multipliers.front().setZero();
+    for (int i = 0; i < m; ++i) out.multipliers.front()(i) = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      const Column x = scale_.cwiseProduct(z[k]);
-      out.nodes[k] = x.template tail<n>();
-      out.multipliers[k].template head<phis>() = x.template head<phis>();
-      if (k + 1 < count) out.multipliers[k + 1].template tail<m - phis>() = x.template segment<m - phis>(phis);
+      for (int i = 0; i < n; ++i) out.nodes[k](i) = scale_(m + i) * z[k](m + i);
+      for (int i = 0; i < phis; ++i) out.multipliers[k](i) = scale_(i) * z[k](i);
+      if (k + 1 < count)
+        for (int i = phis; i < m; ++i) out.multipliers[k + 1](i) = scale_(i) * z[k](i);
     }
   }
 
@@ -214,7 +235,8 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     kind.is_minimum = kind.negative_directions == 0;
     for (const Columns& z : null_vectors(null, 6)) {
       double primal = 0;
-      for (const Column& c : z) primal += c.template tail<n>().squaredNorm();
+      for (const Column& c : z)
+        for (int i = m; i < size; ++i) primal += c(i) * c(i);
       if (primal > 1e-3) kind.isolated = false;
     }
     if constexpr (m == 0) return kind;
@@ -230,7 +252,8 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   std::vector<Columns> null_vectors(double threshold, int most) const {
     const auto dot = [](const Columns& a, const Columns& b) {
       double sum = 0;
-      for (std::size_t k = 0; k < a.size(); ++k) sum += a[k].dot(b[k]);
+      for (std::size_t k = 0; k < a.size(); ++k)
+        for (int i = 0; i < size; ++i) sum += a[k](i) * b[k](i);
       return sum;
     };
     std::mt19937_64 generator(1);
@@ -240,15 +263,17 @@ template <DiscreteSystem Sys> class BoundaryKkt {
       Columns z(diagonal_.size());
       for (Column& c : z)
         for (int i = 0; i < size; ++i) c(i) = uniform(generator);
-      z.back().template tail<fixed>().setZero();
+      for (int i = phis; i < size; ++i) z.back()(i) = 0;
       for (int iteration = 0; iteration < 5; ++iteration) {
         solve_in_place(z);
         for (const Columns& f : found) {
           const double overlap = dot(z, f);
-          for (std::size_t k = 0; k < z.size(); ++k) z[k] -= overlap * f[k];
+          for (std::size_t k = 0; k < z.size(); ++k)
+            for (int i = 0; i < size; ++i) z[k](i) -= overlap * f[k](i);
         }
         const double norm = std::sqrt(dot(z, z));
-        for (Column& c : z) c /= norm;
+        for (Column& c : z)
+          for (double& x : c) x /= norm;
       }
       const Columns image = multiply(z);
       if (!(std::sqrt(dot(image, image)) < threshold)) break;
@@ -257,21 +282,41 @@ template <DiscreteSystem Sys> class BoundaryKkt {
     return found;
   }
 
-  static constexpr int phis = Sys::arrow_constraints;
-  static constexpr int fixed = size - phis;  // unknowns of a node that cannot move
+  static constexpr int phis = Sys::arrow_constraints;  // of a node that cannot move, the only unknowns: the first
+
+  // Entry by entry, here and above: as expressions of Eigen's these took every file with boundary values of one size
+  // more longer than its derivatives did (docs/decisions/72_expressions_cost_their_square.md).
+  template <class M> static M zero() {
+    M out;
+    for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] = 0;
+    return out;
+  }
+  static Column ones() {
+    Column out;
+    for (double& x : out) x = 1;
+    return out;
+  }
 
   /// The equations of arrow k and their derivatives in the multipliers.
   void add_equations(std::size_t k, const TwoSidedOf<Sys>& d, const typename Sys::Multipliers& lambda) {
-    residual_[k].template head<m>() = d.constraint;
-    diagonal_[k].template topRightCorner<m, n>() = d.constraint_target;
-    diagonal_[k].template bottomLeftCorner<n, m>() = d.constraint_target.transpose();
-    coupling_[k].template topRows<phis>() = d.constraint_source.template leftCols<phis>().transpose();
-    residual_[k].template tail<n>() += d.target_gradient;
-    gradient_[k] +=
-        d.target_gradient - d.constraint_target.template topRows<phis>().transpose() * lambda.template head<phis>();
-    if (k > 0) {
-      residual_[k - 1].template tail<n>() += d.source_gradient;
-      gradient_[k - 1] += d.source_gradient - d.constraint_source * lambda;
+    for (int a = 0; a < m; ++a) {
+      residual_[k](a) = d.constraint(a);
+      for (int i = 0; i < n; ++i) diagonal_[k](a, m + i) = diagonal_[k](m + i, a) = d.constraint_target(a, i);
+    }
+    for (int a = 0; a < phis; ++a)
+      for (int i = 0; i < n; ++i) coupling_[k](a, i) = d.constraint_source(i, a);
+    for (int i = 0; i < n; ++i) {
+      residual_[k](m + i) += d.target_gradient(i);
+      double by_constraints = 0;
+      for (int a = 0; a < phis; ++a) by_constraints += d.constraint_target(a, i) * lambda(a);
+      gradient_[k](i) += d.target_gradient(i) - by_constraints;
+    }
+    if (k == 0) return;
+    for (int i = 0; i < n; ++i) {
+      residual_[k - 1](m + i) += d.source_gradient(i);
+      double by_constraints = 0;
+      for (int a = 0; a < m; ++a) by_constraints += d.constraint_source(i, a) * lambda(a);
+      gradient_[k - 1](i) += d.source_gradient(i) - by_constraints;
     }
   }
 
@@ -279,7 +324,7 @@ template <DiscreteSystem Sys> class BoundaryKkt {
   std::vector<Coupling> coupling_;  // k: rows z_k, columns v_{k-1}
   Columns residual_;
   std::vector<Vector<double, n>> gradient_;  // of the cost alone
-  Column scale_ = Column::Ones();
+  Column scale_ = ones();
   std::vector<Block> eliminated_;  // k: the inverse of the k-th pivot block times its coupling to z_{k+1}
   std::vector<SymmetricFactor<size>> factors_;
 };

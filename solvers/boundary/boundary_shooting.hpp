@@ -17,10 +17,10 @@
 #include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/solvers/boundary/boundary_newton.hpp>
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/linear_algebra/factored_square.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>
 
 #include <fmt/format.h>
-#include <Eigen/LU>
 
 #include <memory>
 #include <optional>
@@ -56,10 +56,16 @@ Matrix<double, Sys::dimension, Sys::dimension> end_sensitivity(const Sys& system
     } else {
       right.template topRows<n>().setIdentity();
     }
-    const Matrix<double, n + m, n> solved = StepEquations<Sys>::jacobian(d).partialPivLu().solve(right);
+    FactoredSquare<n + m> lu;
+    lu.compute(StepEquations<Sys>::jacobian(d));
     before = u;
-    u = solved.template topRows<n>();
-    dlambda = solved.template bottomRows<m>();
+    for (int j = 0; j < n; ++j) {
+      typename FactoredSquare<n + m>::Column column;
+      for (int i = 0; i < n + m; ++i) column(i) = right(i, j);
+      const auto solved = lu.solve(column);
+      for (int i = 0; i < n; ++i) u(i, j) = solved(i);
+      for (int i = 0; i < m; ++i) dlambda(i, j) = solved(n + i);
+    }
     last = d;
   }
   return u;
@@ -163,7 +169,7 @@ template <DiscreteSystem Sys> class BoundaryShooting final : public BoundarySolv
   static AlgebroidVector<G> least_change(const Matrix<double, Sys::dimension, Sys::dimension>& sensitivity,
                                          const AlgebroidVector<G>& miss) {
     if constexpr (Sys::object_constraints == 0) {
-      return sensitivity.partialPivLu().solve(miss);
+      return solve_regular(sensitivity, miss);
     } else {
       return least_squares(sensitivity, miss);
     }

@@ -19,6 +19,7 @@
 
 #include <lagroid/core/scalars/compensation.hpp>
 #include <lagroid/groupoids/time_extended.hpp>
+#include <lagroid/solvers/integrators/cut_step.hpp>
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/integrators/step_control.hpp>
 
@@ -77,6 +78,10 @@ template <Timed Sys> class AdaptiveIntegrator {
   long without_root() const { return without_root_; }
 
   StepReport advance();
+  /// A share of the last step from a point, of that size whatever the energy (cut_step.hpp); nothing changes.
+  StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
+    return cut_step(fixed_, from, share * point().step_size, to);
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     archive(last_size_, time_momentum_, time_momentum_compensation_.lost, degenerate_, without_root_);

@@ -56,6 +56,13 @@ template <DiscreteSystem Sys> class CompensatedTrajectory {
     point_.time = time;
   }
 
+  /// Goes on from a point that it did not lead to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) {
+    point_ = point;
+    momentum_compensation_.lost.setZero();
+    place_compensation_.setZero();
+  }
+
   /// Visits all that it goes on from.
   void serialize(const G& groupoid, NumberArchive& archive) {
     point_.serialize(groupoid, archive);

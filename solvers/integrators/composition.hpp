@@ -21,6 +21,7 @@
 #include <lagroid/solvers/integrators/compensated_trajectory.hpp>
 #include <lagroid/solvers/integrators/composed_step.hpp>
 #include <lagroid/solvers/integrators/compositions.hpp>
+#include <lagroid/solvers/integrators/cut_step.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/solvers/step/step_predictor.hpp>
 
@@ -95,6 +96,24 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
   }
 
   StepReport advance();
+  /// A share of a step from a point, of the same stages, each cut by it (cut_step.hpp); nothing changes.
+  StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
+    TrajectoryPoint<Sys> at = from;
+    const auto cut = [&](Stage& stage) {
+      return cut_step(stage.predictor, at, share * stage.predictor.system().h, at);
+    };
+    const StepReport report = step_by_stages(stages_, cut, [] {});
+    if (!report.converged()) return report;
+    to = at;
+    to.index = from.index + 1;
+    to.time = from.time + share * h_;
+    return report;
+  }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) {
+    trajectory_.go_on_from(point);
+    for (Stage& stage : stages_) stage.predictor.forget();
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     for (Stage& stage : stages_) {

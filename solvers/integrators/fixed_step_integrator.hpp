@@ -17,6 +17,7 @@
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/solvers/generating/constrained_momentum.hpp>
 #include <lagroid/solvers/integrators/compensated_trajectory.hpp>
+#include <lagroid/solvers/integrators/cut_step.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/solvers/step/step_predictor.hpp>
 
@@ -49,6 +50,17 @@ template <DiscreteSystem Sys> class FixedStepIntegrator {
   }
 
   StepReport advance();
+  /// Whether a step can be made in part: where it has a size.
+  bool cuts() const { return has_time_step(system()); }
+  /// A share of a step from a point, by the same equations (cut_step.hpp); nothing changes.
+  StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
+    return cut_step(predictor_, from, share * time_step(system()), to);
+  }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) {
+    trajectory_.go_on_from(point);
+    predictor_.forget();
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     predictor_.serialize(archive);

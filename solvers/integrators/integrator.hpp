@@ -65,6 +65,19 @@ template <DiscreteSystem Sys> class Integrator {
   /// The arrows before the last that make up the last step, where there are any: each with its start and its size.
   using Visit = std::function<void(const Step<Sys>&, double start, double size)>;
   virtual void for_each_inner_stage(const Visit&) const {}
+  /// Whether steps can be made in part.
+  virtual bool cuts() const { return false; }
+  /// Keeps this node, from which the next step can be made in part.
+  virtual void keep_node() {}
+  /// The point that a share of the last step, 0 to 1, leads to from the node that was kept before it, by a step of the
+  /// same method. Nothing else changes, and nothing at all where it does not converge.
+  virtual StepReport cut(double /*share*/, TrajectoryPoint<Sys>& /*to*/) { return {}; }
+  /// Whether the momentum can be changed inside of a step.
+  virtual bool kicks() const { return false; }
+  /// Adds to the momentum where a share of the last step leads to, and makes the rest of the step from there, which is
+  /// from now on the step that is cut. It stays at this node, in another state; where the rest does not converge, in
+  /// the one that it had.
+  virtual StepReport kick(double /*share*/, const AlgebroidVector<typename Sys::GroupoidType>& /*by*/) { return {}; }
   /// Steps so far whose size is not that of the mode.
   virtual long without_root() const { return 0; }
   /// Visits all that the next step goes on from: an integrator begun with the same arguments, to which it is restored,

@@ -1,5 +1,8 @@
 #pragma once
 /// Puts an integrator of a known type behind the interface `Integrator`, at the cost of one virtual call a step.
+///
+/// Its steps can be made in part where it has `cut(from, share, to)` or, if it can be copied, `begin_cut(from, share)`,
+/// after which its next step is that part.
 
 #include <lagroid/solvers/integrators/integrator.hpp>
 
@@ -30,8 +33,71 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
 
   void serialize(NumberArchive& archive) override { integrator_.serialize(archive); }
 
+  bool cuts() const override {
+    if constexpr (requires { integrator_.cuts(); }) {
+      return integrator_.cuts();
+    } else {
+      return solves_cuts || begins_cuts;
+    }
+  }
+  void keep_node() override {
+    kept_ = integrator_.point();
+    rest_ = 1;
+  }
+  [[gnu::cold]] StepReport cut(double share, TrajectoryPoint<Sys>& to) override {
+    StepReport report;
+    share *= rest_;
+    if (share == 0) {
+      to = kept_;
+      report.status = SolveStatus::converged;
+    } else if constexpr (solves_cuts) {
+      report = integrator_.cut(kept_, share, to);
+    } else if constexpr (begins_cuts) {
+      const Integrating whole = integrator_;
+      integrator_.begin_cut(kept_, share);
+      report = advance();
+      to = point();
+      integrator_ = whole;
+      to.index = kept_.index + 1;
+      to.time = kept_.time + to.step_size;
+    }
+    return report;
+  }
+
+  bool kicks() const override {
+    return cuts() && requires(Integrating & all, const TrajectoryPoint<Sys>& point) { all.go_on_from(point); };
+  }
+  [[gnu::cold]] StepReport kick(double share, const AlgebroidVector<typename Sys::GroupoidType>& by) override {
+    StepReport report;
+    if constexpr (requires { integrator_.go_on_from(kept_); }) {
+      TrajectoryPoint<Sys> inside;
+      report = cut(share, inside);
+      if (!report.converged()) return report;
+      inside.index = kept_.index;
+      inside.state.momentum += by;
+      kept_ = inside;
+      rest_ *= 1 - share;
+      TrajectoryPoint<Sys> reached;
+      report = cut(1, reached);
+      if (!report.converged()) return report;
+      reached.index = point().index;
+      reached.time = point().time;
+      integrator_.go_on_from(reached);
+    }
+    return report;
+  }
+
  private:
+  static constexpr bool solves_cuts = requires(Integrating & all, TrajectoryPoint<Sys>& point) {
+    all.cut(point, 0.5, point);
+  };
+  static constexpr bool begins_cuts = requires(Integrating & all, const TrajectoryPoint<Sys>& point) {
+    all.begin_cut(point, 0.5);
+  };
+
   Integrating integrator_;
+  TrajectoryPoint<Sys> kept_;
+  double rest_ = 1;  ///< of a step, that begins at the point that is kept
 };
 
 }  // namespace detail

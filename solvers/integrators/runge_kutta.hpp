@@ -40,6 +40,13 @@ template <HasRates Sys> class RungeKuttaIntegrator {
 
   /// `converged`, or `not_finite`, which leaves everything as it was.
   StepReport advance();
+  /// Goes to a point, from which the next step is a share of what it was.
+  void begin_cut(const TrajectoryPoint<Sys>& from, double share) {
+    system_.h *= share;
+    point_ = from;
+  }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) { point_ = point; }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) { point_.serialize(system_.groupoid, archive); }
 

@@ -167,6 +167,13 @@ template <SplitSystem Sys> class SplittingIntegrator {
 
   /// `converged`, or `not_finite` (at a singularity of a flow), which leaves everything as it was.
   StepReport advance();
+  /// Goes to a point, from which the next step is a share of what it was.
+  void begin_cut(const TrajectoryPoint<Sys>& from, double share) {
+    system_.h *= share;
+    trajectory_ = CompensatedTrajectory<Sys>(system_.groupoid, from.state, from.configuration);
+  }
+  /// Goes on from a point of the same index and time, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) { trajectory_.go_on_from(point); }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) { trajectory_.serialize(system_.groupoid, archive); }
 

@@ -19,6 +19,7 @@
 #include <lagroid/core/capabilities/time_scale.hpp>
 #include <lagroid/solvers/generating/constrained_momentum.hpp>
 #include <lagroid/solvers/integrators/compensated_trajectory.hpp>
+#include <lagroid/solvers/integrators/cut_step.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/solvers/step/step_predictor.hpp>
 
@@ -87,6 +88,10 @@ class ControlledIntegrator {
     return report;
   }
 
+  /// A share of the last step from a point, by the same equations (cut_step.hpp); nothing changes.
+  StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
+    return cut_step(predictor_, from, share * point().step_size, to);
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     predictor_.serialize(archive);

@@ -58,6 +58,11 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
   /// `converged`; `left_domain` where U is not negative or T - E not positive, `not_finite`: both leave everything as
   /// it was.
   StepReport advance();
+  /// Goes to a point, from which the next step is a share of what it was, in its own time.
+  void begin_cut(const TrajectoryPoint<Sys>& from, double share) {
+    step_ *= share;
+    trajectory_ = CompensatedTrajectory<Sys>(system_.groupoid, from.state, from.configuration);
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     archive(energy_, step_);

@@ -7,6 +7,10 @@
 
 namespace lagroid::learning {
 
+extern template class ParametricModel<NetworkPotential, 1>;
+extern template class ParametricModel<NetworkPotential, 2>;
+extern template class ParametricModel<NetworkPotential, Eigen::Dynamic>;
+
 std::unique_ptr<Model> network_model(int bodies, std::vector<int> hidden) {
   const std::string name = hidden.empty() ? "network" : fmt::format("network:{}", fmt::join(hidden, ","));
   NetworkPotential potential(bodies, std::move(hidden));

@@ -5,6 +5,10 @@
 
 namespace lagroid::learning {
 
+extern template class ParametricModel<PolynomialPotential, 1>;
+extern template class ParametricModel<PolynomialPotential, 2>;
+extern template class ParametricModel<PolynomialPotential, Eigen::Dynamic>;
+
 std::unique_ptr<Model> polynomial_model(int bodies, int degree) {
   const std::string name = fmt::format("polynomial:{}", degree);
   PolynomialPotential potential(bodies, degree);

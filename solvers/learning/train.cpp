@@ -1,5 +1,6 @@
 #include <lagroid/solvers/learning/train.hpp>
 
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/solvers/ceres_solve.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/compressed.hpp>
@@ -9,7 +10,6 @@
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <atomic>
@@ -99,8 +99,7 @@ bool determines_mass(const Eigen::MatrixXd& triangle, double total, Eigen::Index
   const Eigen::MatrixXd turned = qr.householderQ().adjoint() * triangle.leftCols(masses);
   const Eigen::MatrixXd left = turned.bottomRows(turned.rows() - qr.rank());
   if (left.rows() < masses) return false;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(left);
-  return svd.singularValues()(masses - 1) > felt * std::sqrt(total);
+  return singular_values(left)(masses - 1) > felt * std::sqrt(total);
 }
 
 constexpr double first_radius = 0.1;

@@ -78,10 +78,16 @@ template <int Size> class SmallInverse {
     return order;
   }();
 
+  static Column ones() {
+    Column out;
+    for (double& x : out) x = 1;
+    return out;
+  }
+
   Order row_of_ = in_order;     ///< place i takes this row of the matrix ...
   Order column_of_ = in_order;  ///< ... and this column
-  Column row_scale_ = Column::Ones();
-  Column column_scale_ = Column::Ones();
+  Column row_scale_ = ones();
+  Column column_scale_ = ones();
   std::array<Pack<double, Size>, std::size_t(Size)> columns_;  ///< of -a^{-1}
 };
 

@@ -6,9 +6,9 @@
 /// All uses of Ceres go through it; it knows nothing of Ceres itself. `plus` and `minus` return false where the result
 /// is not finite.
 
+#include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/groupoid.hpp>
-
-#include <Eigen/LU>
+#include <lagroid/core/matrices/regular_inverse.hpp>
 
 #include <utility>
 
@@ -46,14 +46,29 @@ template <Groupoid G> class SourceFibreCoordinates {
   /// The left-invariant fields of the basis of AG at g, column by column, in arrow coordinates.
   ToAmbient frame(const ArrowOf<G>& g) const {
     ToAmbient f;
-    for (int i = 0; i < tangent; ++i) f.col(i) = groupoid_.left_invariant(g, Tangent(Tangent::Unit(i)));
+    for (int i = 0; i < tangent; ++i) {
+      const Ambient field = groupoid_.left_invariant(g, unit_vector<double, tangent>(i));
+      for (int j = 0; j < ambient; ++j) f(j, i) = field(j);
+    }
     return f;
   }
   /// The left inverse of `frame` of least norm: turns a derivative along the fibre into one in arrow coordinates.
   ToTangent coframe(const ArrowOf<G>& g) const {
     const ToAmbient f = frame(g);
-    const Matrix<double, tangent, tangent> gram = f.transpose() * f;
-    return gram.inverse() * f.transpose();
+    Matrix<double, tangent, tangent> gram;
+    for (int i = 0; i < tangent; ++i)
+      for (int j = 0; j < tangent; ++j) {
+        gram(i, j) = 0;
+        for (int k = 0; k < ambient; ++k) gram(i, j) += f(k, i) * f(k, j);
+      }
+    const Matrix<double, tangent, tangent> inverse = regular_inverse(gram);
+    ToTangent out;
+    for (int i = 0; i < tangent; ++i)
+      for (int k = 0; k < ambient; ++k) {
+        out(i, k) = 0;
+        for (int j = 0; j < tangent; ++j) out(i, k) += inverse(i, j) * f(k, j);
+      }
+    return out;
   }
   ArrowOf<G> arrow(const double* x) const {
     return groupoid_.template arrow_at<double>(Ambient(Eigen::Map<const Ambient>(x)));

@@ -14,6 +14,7 @@
 /// iterations and status: `left_domain` (y has no coordinates any more), `singular` (df has no inverse), `stagnated`
 /// (damping found no smaller residual), `not_finite`, `not_converged`. [N] sections 3 and 5
 
+#include <lagroid/core/matrices/factored_matrix.hpp>
 #include <lagroid/core/source_fibre.hpp>
 #include <lagroid/solvers/status.hpp>
 
@@ -22,6 +23,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 namespace lagroid {
@@ -133,14 +135,22 @@ LieNewtonResult<typename E::Fibre> lie_newton(const E& equation, const typename 
   out.y = fibre.at(start);
   out.v = start;
 
+  const auto solved = [](const auto& matrix, const Vector& f) -> Vector {
+    using Matrix = std::remove_cvref_t<decltype(matrix)>;
+    if constexpr (Matrix::SizeAtCompileTime == Eigen::Dynamic) {
+      return FactoredMatrix<typename Matrix::Scalar>(matrix).solve(f);
+    } else {
+      return matrix.partialPivLu().solve(f);
+    }
+  };
   const auto update = [&](const Vector& f) -> Vector {
     switch (options.iteration) {
       case LieIteration::version1:
-        return -equation.differential(out.y, out.v).partialPivLu().solve(f);
+        return -solved(equation.differential(out.y, out.v), f);
       case LieIteration::version1_by_chart:
-        return -(fibre.dtau(out.v) * equation.chart_differential(out.y, out.v).partialPivLu().solve(f));
+        return -(fibre.dtau(out.v) * solved(equation.chart_differential(out.y, out.v), f));
       case LieIteration::version2:
-        return -equation.chart_differential(out.y, out.v).partialPivLu().solve(f);
+        return -solved(equation.chart_differential(out.y, out.v), f);
       case LieIteration::fixed_point:
         break;
     }

@@ -16,6 +16,7 @@
 /// std::invalid_argument for a step nearer to zero than one already reached. The equation is [N] (1.1); the
 /// continuation is ours.
 
+#include <lagroid/core/matrices/factored_matrix.hpp>
 #include <lagroid/solvers/newton/lie_newton.hpp>
 
 #include <algorithm>
@@ -111,9 +112,6 @@ template <SourceFibre F, class Field> class SolutionPath {
     /// The sign of det(Df, tangent), constant along a path of regular points: that of h at its start.
     double orientation = 0;
   };
-  static double sign_of_determinant(const Eigen::PartialPivLU<Square>& lu) {
-    return lu.permutationP().determinant() * lu.matrixLU().diagonal().array().sign().prod();
-  }
   Corrected correct(Column& x, const Column& normal, long& factorisations) const {
     Corrected result;
     const Column plane = x;
@@ -128,7 +126,7 @@ template <SourceFibre F, class Field> class SolutionPath {
       matrix.topRightCorner(n_, 1) = -std::cosh(x(n_)) * field_.g(y);
       matrix.bottomRows(1) = normal.transpose();
       right << equation.residual(y, v), normal.dot(x - plane);
-      const Eigen::PartialPivLU<Square> lu(matrix);
+      const FactoredMatrix<Scalar> lu(matrix);
       ++factorisations;
       const Column move = lu.solve(right);
       const Scalar size = move.norm();
@@ -140,7 +138,7 @@ template <SourceFibre F, class Field> class SolutionPath {
       if (size < 1e-7 * (1 + x.norm())) {
         result.converged = true;
         result.tangent = lu.solve(Column::Unit(n_ + 1, n_)).normalized();
-        result.orientation = sign_of_determinant(lu);
+        result.orientation = lu.sign_of_determinant();
         return result;
       }
     }

@@ -87,10 +87,14 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
 
   static void move(const Sys& system, Step<Sys>& step, const Residual& correction) {
     // Copied, not moved or constructed: Eigen moves its storage in pieces larger than the stores they must wait for.
-    const ArrowOf<G> there =
-        system.groupoid.extend(step.arrow, AlgebroidVector<G>(correction.template head<Sys::dimension>()));
+    const ArrowOf<G> there = system.groupoid.extend(step.arrow, of_the_arrow(correction));
     step.arrow = there;
-    step.multipliers += correction.template tail<Sys::constraints>();
+    unrolled<Sys::constraints>([&]<int I>() { step.multipliers(I) += correction(Sys::dimension + I); });
+  }
+  static AlgebroidVector<G> of_the_arrow(const Residual& correction) {
+    AlgebroidVector<G> out;
+    unrolled<Sys::dimension>([&]<int I>() { out(I) = correction(I); });
+    return out;
   }
   static Step<Sys> moved(const Sys& system, Step<Sys> step, const Residual& correction) {
     move(system, step, correction);
@@ -148,8 +152,13 @@ LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G
     residual = E::residual(d, state.momentum);
   }
   // The level follows the step even where the matrix does not: terms may shrink along the trajectory.
-  chord_.floor = round_off_level(system, state, step, chord_.jacobian).cwiseInverse();
-  if (!(chord_.floor.minCoeff() > 0)) return false;  // of a level that overflows
+  const Residual level = round_off_level(system, state, step, chord_.jacobian);
+  bool measured = true;
+  unrolled<E::size>([&]<int I>() {
+    chord_.floor(I) = 1 / level(I);
+    measured = measured && chord_.floor(I) > 0;
+  });
+  if (!measured) return false;  // of a level that overflows
   double roundoff_ratio = roundoff_ratio_of(residual);
   chord_.first = roundoff_ratio;
   double rate = chord_.age == 0 ? std::min(0.1, 10 * epsilon * roundoff_ratio) : chord_.rate;
@@ -167,12 +176,14 @@ LAGROID_FLATTEN bool NewtonStep<Sys>::by_chords(const Sys& system, const State<G
     const bool tolerated = options_.tolerance > 0 && norm_of(residual) <= options_.tolerance;
     if ((roundoff_ratio <= 1 && remains <= iteration_error) || tolerated) {
       finish(report, system, step);
-      if (!report.converged() || !residual.allFinite()) return false;
+      bool finite = true;
+      unrolled<E::size>([&]<int I>() { finite = finite && std::isfinite(residual(I)); });
+      if (!report.converged() || !finite) return false;
       chord_.rate = rate;
       chord_.iterations = iteration;
       solution.step = step;
       const Residual correction = inverse_.correction(residual);
-      solution.remainder = correction.template head<Sys::dimension>();
+      solution.remainder = of_the_arrow(correction);
       solution.momentum_change = momentum_change(system, step, there);
       report.residual = norm_of(residual);
       report.roundoff_ratio = roundoff_ratio;
@@ -225,14 +236,15 @@ template <DiscreteSystem Sys>
   ScaledResidual<Sys> current(system, state, step, derivative, scaling_, /*rescale=*/true);
   const auto at = [&](SolveStatus status, const Residual& correction) {
     solution.momentum_change = momentum_change(system, step, derivative);
-    solution.remainder = correction.template head<Sys::dimension>();
+    solution.remainder = of_the_arrow(correction);
     report.residual = current.norm;
     report.roundoff_ratio = current.roundoff_ratio;
     report.status = status;
     if (status == SolveStatus::converged) finish(report, system, step);
     return current.jacobian;
   };
-  const Residual none = Residual::Zero();
+  Residual none;
+  for (double& x : none) x = 0;
   for (const int before = report.iterations;; ++report.iterations) {
     if (!std::isfinite(current.norm)) return at(SolveStatus::not_finite, none);
     lu_.compute(scaling_.apply(current.jacobian));
@@ -253,7 +265,9 @@ template <DiscreteSystem Sys>
     bool advanced = false;
     double fraction = 1;
     for (int halving = 0; halving <= options_.max_halvings && !advanced; ++halving, fraction /= 2) {
-      const Step<Sys> trial = moved(system, step, fraction * correction);
+      Residual part = correction;
+      for (double& x : part) x *= fraction;
+      const Step<Sys> trial = moved(system, step, part);
       const auto d = two_sided(system, trial.arrow, trial.multipliers);
       const ScaledResidual<Sys> next(system, state, trial, d, scaling_, /*rescale=*/false);
       if (next.norm < current.norm || next.roundoff_ratio < current.roundoff_ratio) {
@@ -271,8 +285,11 @@ template <DiscreteSystem Sys>
 
 /// The Newton correction for a residual, with the factors at hand.
 template <DiscreteSystem Sys> auto NewtonStep<Sys>::corrected(const ScaledResidual<Sys>& at) const -> Residual {
-  const Residual right = at.residual.cwiseProduct(scaling_.row);
-  return -lu_.solve(right).cwiseProduct(scaling_.column);
+  Residual right;
+  for (int i = 0; i < E::size; ++i) right(i) = at.residual(i) * scaling_.row(i);
+  Residual out = lu_.solve(right);
+  for (int i = 0; i < E::size; ++i) out(i) = -(out(i) * scaling_.column(i));
+  return out;
 }
 
 }  // namespace lagroid

@@ -75,7 +75,15 @@ template <DiscreteSystem Sys> class StepPredictor {
 
   /// Whether a solve stayed on the branch it was continued along: the arrow within half its own size of its prediction.
   static bool near(const AlgebroidVector<G>& predicted, const AlgebroidVector<G>& solved) {
-    return (solved - predicted).squaredNorm() <= 0.25 * std::max(solved.squaredNorm(), predicted.squaredNorm());
+    double difference = 0;
+    double of_solved = 0;
+    double of_predicted = 0;
+    unrolled<Sys::dimension>([&]<int I>() {
+      difference += (solved(I) - predicted(I)) * (solved(I) - predicted(I));
+      of_solved += solved(I) * solved(I);
+      of_predicted += predicted(I) * predicted(I);
+    });
+    return difference <= 0.25 * std::max(of_solved, of_predicted);
   }
 
   using Unknowns = Vector<double, Sys::dimension + Sys::constraints>;
@@ -84,7 +92,8 @@ template <DiscreteSystem Sys> class StepPredictor {
   /// `chart` is the arrow in the groupoid's chart.
   void remember(const AlgebroidVector<G>& chart, const typename Sys::Multipliers& multipliers) {
     Unknowns unknowns;
-    unknowns << chart, multipliers;
+    unrolled<Sys::dimension>([&]<int I>() { unknowns(I) = chart(I); });
+    unrolled<Sys::constraints>([&]<int I>() { unknowns(Sys::dimension + I) = multipliers(I); });
     past_.push(unknowns);
   }
 
@@ -97,10 +106,11 @@ template <DiscreteSystem Sys>
 LAGROID_FLATTEN StepReport StepPredictor<Sys>::solve(const State<G>& state, StepSolution<Sys>& solution) {
   if (past_.empty()) return restart(state, solution, {});
   const Unknowns predicted = past_.next();
-  const AlgebroidVector<G> v = predicted.template head<Sys::dimension>();
+  AlgebroidVector<G> v;
+  unrolled<Sys::dimension>([&]<int I>() { v(I) = predicted(I); });
   const ArrowOf<G> arrow = system_.groupoid.arrow_in_chart(state.object, v);
   solution.step.arrow = arrow;
-  solution.step.multipliers = predicted.template tail<Sys::constraints>();
+  unrolled<Sys::constraints>([&]<int I>() { solution.step.multipliers(I) = predicted(Sys::dimension + I); });
   const StepReport report = solver_->solve(system_, state, solution);
   if (report.converged()) {
     const AlgebroidVector<G> solved = system_.groupoid.chart(solution.step.arrow);

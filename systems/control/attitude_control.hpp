@@ -37,10 +37,12 @@ struct AttitudeControl : GroupControl<AttitudeControl, SO3, /*constraints*/ 1> {
   }
 
   template <class S> S l(const Vector<S, 3>& w) const {
-    return (w(0) * w(0) * weights(0) + w(1) * w(1) * weights(1) + w(2) * w(2) * weights(2)) * 0.5;
+    const auto& cost = varied<S>(weights);
+    return (w(0) * w(0) * cost(0) + w(1) * w(1) * cost(1) + w(2) * w(2) * cost(2)) * 0.5;
   }
   template <class S> Vector<S, 1> psi(const Vector<S, 3>& w) const {
-    return Vector<S, 1>(w(0) * forbidden(0) + w(1) * forbidden(1) + w(2) * forbidden(2));
+    const auto& axis = varied<S>(forbidden);
+    return Vector<S, 1>(w(0) * axis(0) + w(1) * axis(1) + w(2) * axis(2));
   }
   Control<3, 1> control(const Vector<double, 3>& mu) const {
     const Vector<double, 3> free = mu.cwiseQuotient(weights);

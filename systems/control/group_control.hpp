@@ -16,6 +16,7 @@
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/matrix_group.hpp>
 #include <lagroid/systems/reference.hpp>
 

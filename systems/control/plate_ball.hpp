@@ -11,9 +11,12 @@
 ///
 /// Requires a positive radius; `infeasible` has the reason where parameters admit no motion. [G] 6.2, (8)
 
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/groupoids/morphisms.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -67,8 +70,10 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
     const Vector<S, 2> d = move.target - move.source;
     const Vector<S, 2> middle = (move.source + move.target) * 0.5;
     const Vector<S, 3> w = rotation_vector(turn);
-    return {d(1) + w(0) * radius - middle(0) * (step * plate_rate),
-            d(0) - w(1) * radius + middle(1) * (step * plate_rate), S(step * spin) - w(2)};
+    const auto r = varied<S>(radius);
+    const auto rate = varied<S>(plate_rate);
+    return {d(1) + w(0) * r - middle(0) * (step * rate), d(0) - w(1) * r + middle(1) * (step * rate),
+            constant<S>(step * varied<S>(spin)) - w(2)};
   }
   template <class S> Vector<S, 3> constraint(const Arrow<S>& g) const { return constraint(g, h); }
 
@@ -117,6 +122,10 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// Turning the table and all on it about its centre; with the plate at rest, moving them.
   std::vector<Symmetry<PlateBall>> symmetries() const;
   std::vector<Quantity<PlateBall>> quantities() const;
+  static auto reductions() {
+    return std::tuple(reduction("translations", ProductMorphism<Difference<2>, IdentityMorphism<SO3>>{},
+                                "translations, where the plate is at rest"));
+  }
 
  private:
   /// Of the forms that are one.

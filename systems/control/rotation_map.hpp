@@ -6,6 +6,7 @@
 /// [G] 6.1
 
 #include <lagroid/core/parameter.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
 
 namespace lagroid {
@@ -22,8 +23,8 @@ template <class Sys> constexpr auto rotation_parameter(RotationMap Sys::*rotatio
 }
 
 /// h l(tau^{-1}(g) / h), l(w) = w.I w / 2, with I the principal moments of inertia. [G] 6.1
-template <class S, class T>
-S rotational_action(const Matrix<S, 3, 3>& g, const Vector<double, 3>& inertia, const T& h, RotationMap map) {
+template <class S, class T, class I>
+S rotational_action(const Matrix<S, 3, 3>& g, const Vector<I, 3>& inertia, const T& h, RotationMap map) {
   const Vector<S, 3> w = SO3::retract_inverse(map, g);
   return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * (0.5 / h);
 }

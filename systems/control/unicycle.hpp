@@ -33,7 +33,7 @@ struct Unicycle : GroupControl<Unicycle, SE2, /*constraints*/ 2> {
   }
 
   template <class S> S l(const Vector<S, 3>& xi) const { return xi(0) * xi(0) * 0.5; }
-  template <class S> Vector<S, 2> psi(const Vector<S, 3>& xi) const { return {xi(1) - speed, xi(2)}; }
+  template <class S> Vector<S, 2> psi(const Vector<S, 3>& xi) const { return {xi(1) - varied<S>(speed), xi(2)}; }
   Control<3, 2> control(const Vector<double, 3>& mu) const { return {{mu(0), speed, 0}, mu.tail<2>()}; }
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -230,6 +231,34 @@ void Multibody::compose(const Composition& composition) {
 StepReport Multibody::advance() {
   const double end = step_ * double(state_.index + 1);
   const StepReport report = stage_steps_.empty() ? advance_to(end) : advance_by_stages(end);
+  if (report.converged()) ++state_.index;
+  return report;
+}
+
+StepReport Multibody::advance_by(double size) {
+  const double share = size / step();
+  const double end = state_.at.time + size;
+  const auto shorten = [&](SceneState::Guess& guess) {
+    for (auto& multipliers : guess.multipliers)
+      for (double& lambda : multipliers) lambda *= share;
+    for (Vec& turn : guess.turns) turn *= share;
+  };
+  std::optional<StepController> control;
+  std::swap(control, state_.control);
+  shorten(state_.guess);
+  StepReport report;
+  if (stage_steps_.empty()) {
+    workspace_.inertia.set_step(model_.factors, size);
+    report = advance_to(end);
+  } else {
+    std::vector<double> stages = stage_steps_;
+    for (double& stage : stages) stage *= share;
+    stages.swap(stage_steps_);
+    for (SceneState::Guess& stage : state_.stages) shorten(stage);
+    report = advance_by_stages(end);
+    stages.swap(stage_steps_);
+  }
+  std::swap(control, state_.control);
   if (report.converged()) ++state_.index;
   return report;
 }

@@ -60,6 +60,9 @@ class Multibody {
 
   /// One step. Where it does not converge nothing changes, and the report has the status.
   StepReport advance();
+  /// One step of another size, positive and not above the usual one, whatever controls these. Steps go on from a state
+  /// that is restored.
+  StepReport advance_by(double size);
 
   const SceneState& state() const { return state_; }
   /// Goes on from a state with the same bits. Throws std::invalid_argument where it is none of this scene.

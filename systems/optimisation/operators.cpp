@@ -1,7 +1,7 @@
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/systems/optimisation/operators.hpp>
 
 #include <Spectra/SymEigsSolver.h>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ constexpr Eigen::Index small = 24;
 Eigen::VectorXd dense_eigenvalues(const SymmetricOperator& a) {
   Eigen::MatrixXd matrix(a.size, a.size);
   a.apply(Eigen::MatrixXd::Identity(a.size, a.size), matrix);
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  return symmetric_eigenvalues(matrix);
 }
 
 /// A Rayleigh quotient and the residual that goes with it, of a vector that is orthogonal to nothing in particular.

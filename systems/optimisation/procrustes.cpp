@@ -1,8 +1,7 @@
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/systems/optimisation/procrustes.hpp>
 
 #include <fmt/format.h>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <stdexcept>
 
@@ -44,11 +43,10 @@ void Procrustes::hessian(const Point&, const Vector& v, Vector& h) const {
 }
 
 Eigen::MatrixXd balanced_procrustes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int component) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a.transpose() * b, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::MatrixXd u = svd.matrixU();
-  const double sign = (u * svd.matrixV().transpose()).determinant();
+  auto [values, u, v] = singular_vectors(a.transpose() * b);
+  const double sign = determinant_of(u * v.transpose());
   if (component != 0 && sign * component < 0) u.col(u.cols() - 1) *= -1;
-  return u * svd.matrixV().transpose();
+  return u * v.transpose();
 }
 
 }  // namespace lagroid::optimisation

@@ -25,7 +25,7 @@ struct DampedPendulum : Pendulum {
   }
 
   template <class S, class T> Forces<S, 1> forces(const PairArrow<S, 1>& g, const T& /*step*/) const {
-    const Vector<S, 1> half = (g.target - g.source) * (-0.5 * damping);
+    const Vector<S, 1> half = (g.target - g.source) * (-0.5 * varied<S>(damping));
     return {half, half};
   }
   template <class S> Forces<S, 1> forces(const PairArrow<S, 1>& g) const { return forces(g, h); }

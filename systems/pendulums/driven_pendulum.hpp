@@ -9,6 +9,7 @@
 
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/systems/instances.hpp>
 
@@ -45,19 +46,23 @@ struct DrivenPendulum : System<DrivenPendulum, Pair<1>> {
     return refuse_lost_digits({"length", "mass"}, "the inertia m l^2", bob_mass * length * length);
   }
 
-  double mass() const { return bob_mass * length * length; }
+  template <class S = double> ParameterScalar<S> mass() const {
+    return varied<S>(bob_mass) * varied<S>(length) * varied<S>(length);
+  }
 
   template <class S, class T> S potential(const S& q, const T& t) const {
     using std::cos;
-    const T drive = cos(t * frequency);
-    return cos(q) * (drive * (amplitude * frequency * frequency) - gravity) * (bob_mass * length) -
-           q * (drive * torque);
+    const auto nu = varied<S>(frequency);
+    const auto drive = cos(t * nu);
+    return cos(q) * (drive * (varied<S>(amplitude) * nu * nu) - varied<S>(gravity)) *
+               (varied<S>(bob_mass) * varied<S>(length)) -
+           q * (drive * varied<S>(torque));
   }
 
   template <class S, class T> S lagrangian(const PairArrow<S, 1>& g, const T& start, const T& step) const {
     const S dq = g.target(0) - g.source(0);
     const S middle = (g.source(0) + g.target(0)) * 0.5;
-    return dq * dq * (0.5 * mass() / step) - potential(middle, T(start + step * 0.5)) * step;
+    return dq * dq * (0.5 * mass<S>() / step) - potential(middle, T(start + step * 0.5)) * step;
   }
   template <class S> S lagrangian(const PairArrow<S, 1>& g) const { return lagrangian(g, time, h); }
 

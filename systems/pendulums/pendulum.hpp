@@ -35,15 +35,17 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
   }
 
   /// The inertia m l^2.
-  double mass() const { return bob_mass * length * length; }
+  template <class S = double> ParameterScalar<S> mass() const {
+    return varied<S>(bob_mass) * varied<S>(length) * varied<S>(length);
+  }
   template <class S> S potential(const Vector<S, 1>& q) const {
     using std::cos;
-    return cos(q(0)) * (-bob_mass * gravity * length);
+    return cos(q(0)) * (-varied<S>(bob_mass) * varied<S>(gravity) * varied<S>(length));
   }
 
   template <class S> Vector<S, 1> gradient(const Vector<S, 1>& q) const {
     using std::sin;
-    return Vector<S, 1>(sin(q(0)) * (bob_mass * gravity * length));
+    return Vector<S, 1>(sin(q(0)) * (varied<S>(bob_mass) * varied<S>(gravity) * varied<S>(length)));
   }
 
   /// Of sigma = (w0^2 + w^2)^(-1/2), w = q', w0^2 = |g| / l.

@@ -40,10 +40,12 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
     return refuse_lost_digits({"length", "mass"}, "the inertia m l^2", bob_mass * length * length);
   }
 
-  double mass() const { return bob_mass; }
-  template <class S> S potential(const Vector<S, 3>& q) const { return q(2) * (bob_mass * gravity); }
+  template <class S = double> ParameterScalar<S> mass() const { return varied<S>(bob_mass); }
+  template <class S> S potential(const Vector<S, 3>& q) const {
+    return q(2) * (varied<S>(bob_mass) * varied<S>(gravity));
+  }
   template <class S> Vector<S, 1> object_constraint(const Vector<S, 3>& q) const {
-    return Vector<S, 1>((q.squaredNorm() - length * length) * 0.5);
+    return Vector<S, 1>((q.squaredNorm() - varied<S>(length) * varied<S>(length)) * 0.5);
   }
 
   /// The energy split, on T*S^2, into the potential, whose tangent part kicks, and the kinetic energy, whose flow goes

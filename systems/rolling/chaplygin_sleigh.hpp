@@ -45,8 +45,9 @@ struct ChaplyginSleigh : GroupControl<ChaplyginSleigh, SE2, /*constraints*/ 1> {
   }
 
   template <class S> S l(const Vector<S, 3>& xi) const {
-    const S across = xi(2) + xi(0) * offset;
-    return (xi(1) * xi(1) * mass + across * across * mass + xi(0) * xi(0) * inertia) * 0.5;
+    const S across = xi(2) + xi(0) * varied<S>(offset);
+    const auto m = varied<S>(mass);
+    return (xi(1) * xi(1) * m + across * across * m + xi(0) * xi(0) * varied<S>(inertia)) * 0.5;
   }
   template <class S> Vector<S, 1> psi(const Vector<S, 3>& xi) const { return Vector<S, 1>(xi(2)); }
 

@@ -13,11 +13,14 @@
 /// Requires positive mass, radius and inertia factor, and starts that roll, which `rolling` makes. (Neimark and Fufaev,
 /// Dynamics of Nonholonomic Systems, 1972.)
 
+#include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
+#include <lagroid/groupoids/rotated_plane.hpp>
 #include <lagroid/systems/instances.hpp>
 
 #include <vector>
@@ -61,7 +64,7 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
   template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const auto& [move, turn] = g;
     const Vector<S, 2> d = move.target - move.source;
-    return (d.squaredNorm() * mass + SO3::log(turn).squaredNorm() * inertia()) * (0.5 / step);
+    return (d.squaredNorm() * varied<S>(mass) + SO3::log(turn).squaredNorm() * inertia<S>()) * (0.5 / step);
   }
   template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
 
@@ -70,23 +73,26 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
     const Vector<S, 2> d = move.target - move.source;
     const Vector<S, 2> middle = (move.source + move.target) * 0.5;
     const Vector<S, 3> w = -SO3::log(turn);
-    return {d(1) + w(0) * radius - middle(0) * (step * plate_rate),
-            d(0) - w(1) * radius + middle(1) * (step * plate_rate)};
+    const auto r = varied<S>(radius);
+    const auto rate = varied<S>(plate_rate);
+    return {d(1) + w(0) * r - middle(0) * (step * rate), d(0) - w(1) * r + middle(1) * (step * rate)};
   }
   template <class S> Vector<S, 2> constraint(const Arrow<S>& g) const { return constraint(g, h); }
 
   /// dy + r w1 and dx - r w2, as covectors: the same at every object.
-  Matrix<double, 5, 2> annihilator(const ObjectOf<GroupoidType>&) const {
-    Matrix<double, 5, 2> omega = Matrix<double, 5, 2>::Zero();
+  template <class S> Matrix<S, 5, 2> annihilator(const std::tuple<Vector<S, 2>, Vector<S, 0>>&) const {
+    Matrix<S, 5, 2> omega = Matrix<S, 5, 2>::Constant(S(0));
     omega(1, 0) = 1;
-    omega(2, 0) = -radius;
+    omega(2, 0) = -varied<S>(radius);
     omega(0, 1) = 1;
-    omega(3, 1) = radius;
+    omega(3, 1) = varied<S>(radius);
     return omega;
   }
 
   /// k m r^2.
-  double inertia() const { return inertia_factor * mass * radius * radius; }
+  template <class S = double> ParameterScalar<S> inertia() const {
+    return varied<S>(inertia_factor) * varied<S>(mass) * varied<S>(radius) * varied<S>(radius);
+  }
   /// The angular velocity in space, w = -M / (k m r^2).
   Vector<double, 3> angular_velocity(const State<GroupoidType>& s) const { return s.momentum.tail<3>() / -inertia(); }
   /// The state of a ball that rolls: w1 and w2 follow from the velocity of its centre.
@@ -110,6 +116,9 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
   /// Marsden, Murray, Arch. Rational Mech. Anal. 136, 1996).
   std::vector<Symmetry<RollingBall>> symmetries() const;
   std::vector<Quantity<RollingBall>> quantities() const;
+  static auto reductions() {
+    return std::tuple(reduction("rotations", RotatedPlaneQuotient{}, "rotations of plate and ball about its centre"));
+  }
 };
 
 LAGROID_STEPS(extern template, RollingBall);

@@ -14,6 +14,7 @@
 
 #include <lagroid/core/capabilities/balance.hpp>
 #include <lagroid/core/parameter.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/se2.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -54,8 +55,8 @@ struct RollingDisk : System<RollingDisk, Product<SE2, SO2>, /*arrow constraints*
     const auto& [move, roll] = g;
     const Vector<S, 3> d = SE2::log(move);
     const S angle = SO2::log(roll)(0);
-    return (d.template tail<2>().squaredNorm() * mass + d(0) * d(0) * turning_inertia +
-            angle * angle * rolling_inertia) *
+    return (d.template tail<2>().squaredNorm() * varied<S>(mass) + d(0) * d(0) * varied<S>(turning_inertia) +
+            angle * angle * varied<S>(rolling_inertia)) *
            (0.5 / step);
   }
   template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
@@ -64,7 +65,7 @@ struct RollingDisk : System<RollingDisk, Product<SE2, SO2>, /*arrow constraints*
   template <class S, class T> Vector<S, 2> constraint(const Arrow<S>& g, const T& /*step*/) const {
     const auto& [move, roll] = g;
     const Vector<S, 3> d = SE2::log(move);
-    return {d(1) - SO2::log(roll)(0) * radius, d(2)};
+    return {d(1) - SO2::log(roll)(0) * varied<S>(radius), d(2)};
   }
   template <class S> Vector<S, 2> constraint(const Arrow<S>& g) const { return constraint(g, h); }
 

@@ -31,8 +31,9 @@ struct DrivenBody : RigidBody {
 
   template <class S, class T> Forces<S, 3> forces(const Matrix<S, 3, 3>& g, const T& step) const {
     const Vector<S, 3> turn = SO3::retract_inverse(rotation, g);
-    Vector<S, 3> half = turn * (-0.5 * drag);
-    for (int i = 0; i < 3; ++i) half(i) += step * (0.5 * torque(i));
+    const auto& thrust = varied<S>(torque);
+    Vector<S, 3> half = turn * (-0.5 * varied<S>(drag));
+    for (int i = 0; i < 3; ++i) half(i) += step * (0.5 * thrust(i));
     return {half, half};
   }
   template <class S> Forces<S, 3> forces(const Matrix<S, 3, 3>& g) const { return forces(g, h); }

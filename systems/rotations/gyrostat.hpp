@@ -54,9 +54,11 @@ struct Gyrostat : System<Gyrostat, Product<SO3, SO2, SO2, SO2>> {
     const auto& [turn, rotor1, rotor2, rotor3] = g;
     const Vector<S, 3> w = SO3::retract_inverse(rotation, turn);
     const Vector<S, 3> t(SO2::log(rotor1)(0), SO2::log(rotor2)(0), SO2::log(rotor3)(0));
-    S twice = w(0) * w(0) * inertia(0);
-    for (int i = 1; i < 3; ++i) twice += w(i) * w(i) * inertia(i);
-    for (int i = 0; i < 3; ++i) twice += (w(i) + t(i)) * (w(i) + t(i)) * rotors(i);
+    const auto& body = varied<S>(inertia);
+    const auto& turning = varied<S>(rotors);
+    S twice = w(0) * w(0) * body(0);
+    for (int i = 1; i < 3; ++i) twice += w(i) * w(i) * body(i);
+    for (int i = 0; i < 3; ++i) twice += (w(i) + t(i)) * (w(i) + t(i)) * turning(i);
     return twice * (0.5 / step);
   }
   template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }

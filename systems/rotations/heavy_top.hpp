@@ -40,8 +40,9 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
 
   template <class S, class T> S lagrangian(const Arrow<S>& g, const T& step) const {
     const Vector<S, 3> verticals = g.point + groupoid.target(g);
-    return rotational_action(g.element, inertia, step, rotation) -
-           (verticals(0) * weight(0) + verticals(1) * weight(1) + verticals(2) * weight(2)) * (0.5 * step);
+    const auto& w = varied<S>(weight);
+    return rotational_action(g.element, varied<S>(inertia), step, rotation) -
+           (verticals(0) * w(0) + verticals(1) * w(1) + verticals(2) * w(2)) * (0.5 * step);
   }
   template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
 

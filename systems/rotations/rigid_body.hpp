@@ -31,7 +31,7 @@ struct RigidBody : System<RigidBody, SO3> {
   }
 
   template <class S, class T> S lagrangian(const Matrix<S, 3, 3>& g, const T& step) const {
-    return rotational_action(g, inertia, step, rotation);
+    return rotational_action(g, varied<S>(inertia), step, rotation);
   }
   template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const { return lagrangian(g, h); }
 

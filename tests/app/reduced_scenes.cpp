@@ -85,7 +85,10 @@ TEST_F(ReducedScenes, HaveTheFullMotion) {
       {kepler + " --set time.order=4", "angular-momentum", "initial.momentum=[0,2.0000002]"},
       {example("heavy_top") + " --set time.steps=1000", "vertical-momentum", "initial.momentum=[0,0,2.50000025]"},
       {example("gyrostat") + " --set time.steps=1000", "rotor-momenta",
-       "initial.momentum=[0.3,1.50000015,0.4,0.2,-0.1,0.3]"}};
+       "initial.momentum=[0.3,1.50000015,0.4,0.2,-0.1,0.3]"},
+      {example("rolling_ball") + " --set time.steps=1000", "rotations", "initial.velocity=[0,0.30000003]"},
+      {example("plate_ball_initial_value") + " --set parameters.plate_rate=0 --set time.steps=1000", "translations",
+       "initial.momentum=[0.90000009,0.2,0.6,-0.4,0.8]"}};
   for (const Reduced& each : scenes) {
     SCOPED_TRACE(each.scene + " by " + each.by);
     const std::string number = std::to_string(entries());
@@ -148,6 +151,10 @@ TEST_F(ReducedScenes, RefuseWhatTheyCannotDo) {
   expect_refused(kepler + "translations", "\"translations\" is none of rotations, angular-momentum");
   expect_refused(kepler + "rotations --set time.method=splitting", "the system reduced by \"rotations\" has no");
   expect_refused(kepler + "angular-momentum --set time.mode=adaptive", "reduced by \"angular-momentum\" has no");
+  expect_refused("run " + example("plate_ball_initial_value") + " --set reduce=translations",
+                 "\"translations\" is no symmetry of this system: the constraint does not descend: at the arrow");
+  expect_refused("run " + example("rolling_ball") + " --set initial.position=[0,0] --set reduce=rotations",
+                 "does not act freely at the object");
   expect_refused("run " + example("kepler_boundary") + " --set reduce=rotations", "reduce: goes with [initial]");
   expect_refused("run " + example("pendulum") + " --set reduce=rotations", "declares nothing by which it is reduced");
 }

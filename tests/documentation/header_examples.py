@@ -16,7 +16,8 @@ import unittest
 root = pathlib.Path(__file__).resolve().parents[2]
 units = ["core", "groupoids", "solvers/boundary solvers/ensemble solvers/step solvers/integrators solvers/methods",
          "solvers/generating solvers/learning solvers/lie_group solvers/linear_algebra solvers/newton "
-         "solvers/control solvers/optimisation solvers/testing solvers/status.hpp", "systems", "run"]
+         "solvers/optimisation solvers/poisson solvers/testing solvers/status.hpp",
+         "solvers/control solvers/sensitivity", "systems", "run"]
 contexts_file = pathlib.Path(__file__).with_name("header_contexts.txt")
 always = ["<lagroid/systems/kepler.hpp>", "<gtest/gtest.h>", "<cmath>", "<iostream>"]
 

@@ -16,11 +16,11 @@ TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathem
 
 TEST(Mathematics, ItNamesEveryLaw) {
   // It and the pages of what is not [G]'s.
-  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +
-                                 read("docs/higher_order.md") + read("docs/multibody.md") +
-                                 read("docs/lie_group_integrators.md") + read("docs/ensembles.md") +
-                                 prose_of(read("docs/optimisation.md")) + prose_of(read("docs/optimal_control.md")),
-                             "\"([^\"]+)\"");
+  const auto named = matches(
+      read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") + read("docs/higher_order.md") +
+          read("docs/multibody.md") + read("docs/lie_group_integrators.md") + read("docs/ensembles.md") +
+          read("docs/poisson.md") + prose_of(read("docs/optimisation.md")) + prose_of(read("docs/optimal_control.md")),
+      "\"([^\"]+)\"");
   const auto laws = matches(text_of({"core/testing", "solvers/testing", "solvers/optimisation/testing",
                                      "systems/multibody/testing", "systems/testing"},
                                     ".hpp"),
@@ -30,6 +30,12 @@ TEST(Mathematics, ItNamesEveryLaw) {
 }
 
 TEST(Mathematics, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/mathematics.md")), none); }
+
+TEST(Mathematics, ThePageOnPoissonManifoldsNamesWhatThereIs) {
+  const std::string page = read("docs/poisson.md");
+  EXPECT_EQ(unknown_names(page), none);
+  EXPECT_EQ(unfounded_failures(page), none);
+}
 
 /// The files in tests/ that only the nightly tests build.
 std::vector<std::string> nightly_files() {

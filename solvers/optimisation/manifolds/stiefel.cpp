@@ -1,10 +1,9 @@
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/matrices/matrix_functions.hpp>
 #include <lagroid/solvers/optimisation/manifolds/stiefel.hpp>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -28,33 +27,9 @@ template <class A, class B> void symmetric_product(const A& a, const B& b, Matri
   out.template triangularView<Eigen::StrictlyUpper>() = out.transpose();
 }
 
-/// D with D K + K^T D = F, F symmetric: in the Schur form K = U R U^H, column by column. False where K and -K^T share
-/// an eigenvalue.
-bool solve_lyapunov(const Matrix& k, const Matrix& f, Matrix& d) {
-  const Eigen::Index m = k.rows();
-  const Eigen::ComplexSchur<Matrix> schur(k);
-  if (schur.info() != Eigen::Success) return false;
-  const Eigen::MatrixXcd& u = schur.matrixU();
-  const Eigen::MatrixXcd& r = schur.matrixT();
-  Eigen::MatrixXcd y = u.transpose() * f * u;
-  const double least_pivot = 1e-14 * (1 + r.norm());
-  for (Eigen::Index j = 0; j < m; ++j)
-    for (Eigen::Index i = 0; i < m; ++i) {
-      std::complex<double> sum = y(i, j);
-      for (Eigen::Index l = 0; l < i; ++l) sum -= r(l, i) * y(l, j);
-      for (Eigen::Index l = 0; l < j; ++l) sum -= y(i, l) * r(l, j);
-      const std::complex<double> pivot = r(i, i) + r(j, j);
-      if (std::abs(pivot) < least_pivot) return false;
-      y(i, j) = sum / pivot;
-    }
-  d = (u.conjugate() * y * u.adjoint()).real();
-  return true;
-}
-
 /// The largest singular value of V, of which `gram` is V^T V.
 double spectral_norm(const Matrix& gram) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()(gram.rows() - 1)));
+  return std::sqrt(std::max(0.0, symmetric_eigenvalues(gram)(gram.rows() - 1)));
 }
 
 }  // namespace
@@ -96,11 +71,10 @@ bool Stiefel::nearest(Point& x) const {
   tall_ = matrix;
   factorisation_.compute(tall_);
   const Matrix r = factorisation_.matrixQR().topRows(m_).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Matrix> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const auto& values = svd.singularValues();
+  const auto [values, u, v] = singular_vectors(r);
   if (!(values(m_ - 1) > double(n_) * 1e-16 * values(0))) return false;
   tall_.setZero();
-  tall_.topRows(m_) = svd.matrixU() * svd.matrixV().transpose();
+  tall_.topRows(m_) = u * v.transpose();
   tall_.applyOnTheLeft(factorisation_.householderQ());
   matrix = tall_;
   polish(x);
@@ -150,9 +124,8 @@ bool Stiefel::retract(ManifoldRetraction retraction, const Point& x, const Vecto
     case ManifoldRetraction::polar: {
       symmetric_product(vector, vector, gram_);
       if (!gram_.allFinite()) return false;
-      const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram_);
-      const auto& u = eigen.eigenvectors();
-      const Eigen::VectorXd roots = (1 + eigen.eigenvalues().array().max(0)).rsqrt();
+      const auto [values, u] = symmetric_eigenvectors(gram_);
+      const Eigen::VectorXd roots = (1 + values.array().max(0)).rsqrt();
       tall_ = point + vector;
       square_.noalias() = u * roots.asDiagonal() * u.transpose();
       end.noalias() = tall_ * square_;
@@ -233,10 +206,9 @@ bool Stiefel::multipliers() const {
   if (spectral_norm(square_) >= 1) return false;
   if (n_ == m_) {
     // S = (I - W^T W)^(1/2).
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram_);
-    const Eigen::VectorXd t =
-        eigen.eigenvalues().unaryExpr([](double w) { return -w / (1 + std::sqrt(std::max(0.0, 1 - w))); });
-    normal_.noalias() = eigen.eigenvectors() * t.asDiagonal() * eigen.eigenvectors().transpose();
+    auto [t, u] = symmetric_eigenvectors(gram_);
+    for (double& w : t) w = -w / (1 + std::sqrt(std::max(0.0, 1 - w)));
+    normal_.noalias() = u * t.asDiagonal() * u.transpose();
     return true;
   }
   for (int k = 0; k < most; ++k) {
@@ -250,8 +222,7 @@ bool Stiefel::multipliers() const {
     if (!solve_lyapunov(sum, square_, change)) return false;
     normal_ -= 0.5 * (change + change.transpose());
     if (change.norm() <= 4e-16 * double(m_)) {
-      const Eigen::SelfAdjointEigenSolver<Matrix> eigen(normal_, Eigen::EigenvaluesOnly);
-      return eigen.eigenvalues()(0) > -1;
+      return symmetric_eigenvalues(normal_)(0) > -1;
     }
   }
   return false;

@@ -4,9 +4,13 @@
 #include <lagroid/groupoids/groups/so2.hpp>
 #include <lagroid/groupoids/pair.hpp>
 
+#include <lagroid/solvers/integrators/integrator_methods.hpp>
+#include <lagroid/solvers/integrators/reduced_integrator.hpp>
+
 #include "../../support/level_runs.hpp"
 
 #include <cmath>
+#include <vector>
 
 using namespace lagroid;
 
@@ -60,6 +64,65 @@ TEST(ConstrainedLevel, HasTheMultipliersOfTheFullSystem) {
     const auto& [distance, height] = below.point().state.object;
     EXPECT_NEAR(std::hypot(distance(0), height(0)), 1, 1e-14);
   }
+}
+
+/// The run at the fixed momentum of the angle, as the full motion over it.
+using Reduced = ReducedIntegrator<Bob, FixedMomentum<ByTheAngle>>;
+Reduced reduced_run(const Bob& bob, const Composition& composition) {
+  const auto declared = fixed_momentum("angle", ByTheAngle{}, "distance and height move");
+  return {Reduced::Down(declared, bob, start(), bob.groupoid.unit(start().object)), {.composition = composition}};
+}
+
+TEST(ComposedConstrainedLevel, IsTheFullSystemComposed) {
+  const Bob bob;
+  const auto& cylinder = bob.groupoid;
+  const auto full = make_integrator(bob, start(), cylinder.unit(start().object), {.composition = compositions::suzuki});
+  Reduced reduced = reduced_run(bob, compositions::suzuki);
+  const auto stages = [](const Integrator<Bob>& run) {
+    std::vector<Step<Bob>> out;
+    run.for_each_inner_stage([&](const Step<Bob>& step, double, double) { out.push_back(step); });
+    out.push_back(run.point().step);
+    return out;
+  };
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_TRUE(full->advance().converged());
+    ASSERT_TRUE(reduced.advance().converged());
+    const auto above = stages(*full);
+    const auto back = stages(reduced);
+    ASSERT_EQ(above.size(), 5U);
+    ASSERT_EQ(back.size(), 5U);
+    for (std::size_t i = 0; i < above.size(); ++i) {
+      EXPECT_NEAR(back[i].multipliers(0), above[i].multipliers(0), 1e-12);
+      EXPECT_LT((cylinder.coordinates_of_arrow(back[i].arrow) - cylinder.coordinates_of_arrow(above[i].arrow)).norm(),
+                1e-12);
+    }
+    const auto tangent = [&](const Integrator<Bob>& run) { return tangent_momentum(bob, run.point().state); };
+    EXPECT_LT((tangent(reduced) - tangent(*full)).norm(), 1e-11);
+    EXPECT_LT((cylinder.coordinates_of_arrow(reduced.point().configuration) -
+               cylinder.coordinates_of_arrow(full->point().configuration))
+                  .norm(),
+              1e-11);
+  }
+}
+
+/// Where the height is after a second, by steps of that size.
+double height_after_a_second(double step, const Composition& composition) {
+  Bob bob;
+  bob.h = step;
+  Reduced run = reduced_run(bob, composition);
+  for (long k = std::lround(1 / step); k > 0; --k) EXPECT_TRUE(run.advance().converged());
+  return std::get<2>(run.point().state.object)(0);
+}
+
+TEST(ComposedConstrainedLevel, IsOfOrderFour) {
+  const auto order = [](const Composition& composition) {
+    const double coarse = height_after_a_second(0.1, composition);
+    const double middle = height_after_a_second(0.05, composition);
+    const double fine = height_after_a_second(0.025, composition);
+    return std::log2(std::abs((coarse - middle) / (middle - fine)));
+  };
+  EXPECT_NEAR(order(compositions::suzuki), 4, 0.3);
+  EXPECT_NEAR(order(compositions::single), 2, 0.3);
 }
 
 TEST(BrokenConstrainedLevel, OfAnotherMomentumIsSeen) {

@@ -1,0 +1,34 @@
+#pragma once
+/// What integrators on Poisson manifolds keep, and at which order they converge, measured on the library's systems.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// One system by one method.
+struct PoissonRow {
+  std::string system;
+  std::string method;
+  double order = 0;    ///< from two step sizes, against a finer one; not a number where both errors are rounding
+  double defect = 0;   ///< of a step of size 0.1: from a Poisson map, relative
+  double casimir = 0;  ///< how far the Casimirs go over the run
+  double energy_first = 0;
+  double energy_last = 0;   ///< how far the energy goes over its first and its last tenth
+  double microseconds = 0;  ///< a step
+  std::string ended;        ///< why the run ended early; empty where it did not
+};
+
+/// Every method of each system, over runs of so many steps of size 0.1. `report(done, all)` is called after each.
+std::vector<PoissonRow> run_poisson_study(long steps, const std::function<void(long, long)>& report);
+
+extern const std::vector<const char*> poisson_report_files;
+
+/// report.md and poisson.csv.
+std::vector<std::filesystem::path> write_poisson_report(const std::vector<PoissonRow>& rows, long steps,
+                                                        const std::string& command, const std::filesystem::path& folder,
+                                                        std::string& note);
+
+}  // namespace lagroid::app

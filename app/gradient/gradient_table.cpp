@@ -1,0 +1,273 @@
+#include "gradient_table.hpp"
+
+#include <lagroid/solvers/sensitivity/propagate.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+/// A word of the command line: where, and what there.
+struct Asked {
+  std::string place;  ///< final, node.10, integral; initial or parameters
+  std::string name;
+};
+constexpr const char* places_of_rows = "final.NAME, node.K.NAME or integral.NAME";
+
+std::optional<Asked> split_after(const std::string& word, const std::string& place) {
+  if (word == place) return Asked{place, ""};
+  if (!word.starts_with(place + ".")) return std::nullopt;
+  return Asked{place, word.substr(place.size() + 1)};
+}
+
+Asked row_of(const std::string& word, long steps) {
+  for (const char* place : {"final", "integral"})
+    if (const auto asked = split_after(word, place)) return *asked;
+  if (word.starts_with("node.")) {
+    const std::size_t dot = word.find('.', 5);
+    const std::string number = word.substr(5, dot - 5);
+    long node = -1;
+    const auto read = std::from_chars(number.data(), number.data() + number.size(), node);
+    if (read.ec != std::errc() || read.ptr != number.data() + number.size() || node < 0 || node > steps)
+      throw GradientRefused(fmt::format("{}: a node is a number from 0 to {}", word, steps));
+    return {word.substr(0, dot), dot == std::string::npos ? "" : word.substr(dot + 1)};
+  }
+  throw GradientRefused(fmt::format("{}: ask for {}", word, places_of_rows));
+}
+
+/// What `name` chooses: all, those of a group, or one.
+std::vector<int> chosen(const std::vector<GradientName>& all, const std::string& word, const std::string& name) {
+  std::vector<int> out;
+  for (int i = 0; i < int(all.size()); ++i) {
+    const GradientName& each = all[std::size_t(i)];
+    if (name.empty() || each.group == name || each.name == name || each.name.starts_with(name + ".")) out.push_back(i);
+  }
+  if (!out.empty()) return out;
+  std::vector<std::string> names;
+  for (const GradientName& each : all)
+    for (const std::string& one : {each.group, each.name})
+      if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
+  throw GradientRefused(
+      fmt::format("{}: nothing of that name is differentiable here; there are {}", word, fmt::join(names, ", ")));
+}
+
+/// The columns: directions of the start, then parameters.
+struct Columns {
+  std::vector<int> start;
+  std::vector<int> parameters;
+};
+Columns columns_of(const GradientSubject& subject, const std::vector<std::string>& words) {
+  Columns out;
+  for (const std::string& word : words) {
+    std::vector<int>* into = nullptr;
+    std::vector<int> more;
+    if (const auto of_start = split_after(word, "initial")) {
+      into = &out.start;
+      more = chosen(subject.start, word, of_start->name);
+    } else if (const auto of_system = split_after(word, "parameters")) {
+      into = &out.parameters;
+      more = chosen(subject.parameters, word, of_system->name);
+    } else {
+      throw GradientRefused(fmt::format("{}: derivatives are by initial.NAME or parameters.NAME", word));
+    }
+    for (const int each : more)
+      if (std::find(into->begin(), into->end(), each) == into->end()) into->push_back(each);
+  }
+  return out;
+}
+
+Observed observed_at(const std::string& place) {
+  if (place == "final") return Observed::at_end();
+  if (place == "integral") return Observed::integral();
+  return Observed::at_node(std::stol(place.substr(5)));
+}
+
+std::vector<std::string> names_of(const GradientSubject& subject, const Columns& columns) {
+  std::vector<std::string> out;
+  for (const int i : columns.parameters) out.push_back(subject.parameters[std::size_t(i)].name);
+  return out;
+}
+
+/// Functions at a place, by all columns, in the direction that costs less.
+Propagated propagated(const GradientSubject& subject, const Columns& columns, const Observed& observed,
+                      std::size_t rows) {
+  const auto motion = subject.begin(names_of(subject, columns), {});
+  const Eigen::Index states = motion->states();
+  const auto from_start = Eigen::Index(columns.start.size());
+  const auto count = from_start + Eigen::Index(columns.parameters.size());
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(states + Eigen::Index(columns.parameters.size()), count);
+  for (Eigen::Index j = 0; j < from_start; ++j) directions(columns.start[std::size_t(j)], j) = 1;
+  for (Eigen::Index j = from_start; j < count; ++j) directions(states + j - from_start, j) = 1;
+  if (4 * rows >= std::size_t(count)) return propagate_forward(*motion, subject.steps, directions, observed);
+  Propagated out = propagate_backward(*motion, subject.steps, observed);
+  if (out.converged()) out.derivatives = Eigen::MatrixXd(out.derivatives * directions);
+  return out;
+}
+
+/// The values at a place, of a run from a start that differs.
+Eigen::VectorXd values_of(const GradientSubject& subject, const Nudge& nudge, const Observed& observed) {
+  const auto motion = subject.begin({}, nudge);
+  const Propagated out =
+      propagate_forward(*motion, subject.steps, Eigen::MatrixXd::Zero(motion->states(), 0), observed);
+  if (!out.converged()) throw GradientRefused("a run beside this one ended early: " + out.message);
+  return out.values;
+}
+
+/// By central differences of runs, three widths, extrapolated.
+Eigen::VectorXd difference(const GradientSubject& subject, Nudge nudge, double size, const Observed& observed) {
+  double width = 2e-3 * std::max(std::abs(size), 1e-2);
+  std::vector<Eigen::VectorXd> row;
+  for (int level = 0; level < 3; ++level, width /= 2) {
+    nudge.by = width;
+    const Eigen::VectorXd above = values_of(subject, nudge, observed);
+    nudge.by = -width;
+    Eigen::VectorXd next = (above - values_of(subject, nudge, observed)) / (2 * width);
+    double power = 4;
+    for (Eigen::VectorXd& each : row) {
+      const Eigen::VectorXd better = next + (next - each) / (power - 1);
+      each = std::exchange(next, better);
+      power *= 4;
+    }
+    row.push_back(next);
+  }
+  return row.back();
+}
+
+}  // namespace
+
+GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
+                            const std::vector<std::string>& by, bool check) {
+  GradientTable out;
+  out.system = subject.system;
+  out.steps = subject.steps;
+  out.checked = check;
+  const Columns columns = columns_of(subject, by);
+  for (const int i : columns.start) out.columns.push_back("initial." + subject.start[std::size_t(i)].name);
+  for (const std::string& name : names_of(subject, columns)) out.columns.push_back("parameters." + name);
+  std::vector<std::pair<std::string, std::vector<int>>> places;
+  for (const std::string& word : of) {
+    const Asked asked = row_of(word, subject.steps);
+    const std::vector<int> rows = chosen(subject.observed, word, asked.name);
+    auto place =
+        std::find_if(places.begin(), places.end(), [&](const auto& each) { return each.first == asked.place; });
+    if (place == places.end()) place = places.insert(places.end(), {asked.place, {}});
+    for (const int row : rows)
+      if (std::find(place->second.begin(), place->second.end(), row) == place->second.end())
+        place->second.push_back(row);
+  }
+  std::size_t count = 0;
+  for (const auto& [place, rows] : places) count += rows.size();
+  const auto width = Eigen::Index(out.columns.size());
+  out.values.resize(Eigen::Index(count));
+  out.derivatives.resize(Eigen::Index(count), width);
+  if (check) out.differences.resize(Eigen::Index(count), width);
+  for (const auto& [place, rows] : places) {
+    const Observed observed = observed_at(place);
+    const Propagated found = propagated(subject, columns, observed, rows.size());
+    out.steps_solved += found.steps_solved;
+    out.states_kept = std::max(out.states_kept, found.states_kept);
+    if (!found.converged()) {
+      out.failure = found.message;
+      return out;
+    }
+    if (found.growth >= out.growth) out.digits_left = found.digits_left();
+    out.growth = std::max(out.growth, found.growth);
+    const auto first = Eigen::Index(out.rows.size());
+    for (const int row : rows) {
+      const auto at = Eigen::Index(out.rows.size());
+      out.rows.push_back(place + "." + subject.observed[std::size_t(row)].name);
+      out.values(at) = found.values(row);
+      out.derivatives.row(at) = found.derivatives.row(row);
+    }
+    if (!check) continue;
+    for (Eigen::Index j = 0; j < width; ++j) {
+      const auto from_start = Eigen::Index(columns.start.size());
+      const bool of_start = j < from_start;
+      const int index = of_start ? columns.start[std::size_t(j)] : columns.parameters[std::size_t(j - from_start)];
+      Nudge nudge;
+      if (of_start) {
+        nudge.index = index;
+      } else {
+        nudge.parameter = subject.parameters[std::size_t(index)].name;
+      }
+      const double size = subject.sizes[std::size_t(index) + (of_start ? 0 : subject.start.size())];
+      const Eigen::VectorXd all = difference(subject, nudge, size, observed);
+      for (std::size_t i = 0; i < rows.size(); ++i) out.differences(first + Eigen::Index(i), j) = all(rows[i]);
+    }
+  }
+  if (check) {
+    out.digits_agreed = 16;
+    for (Eigen::Index i = 0; i < out.derivatives.rows(); ++i) {
+      const double size = out.derivatives.row(i).cwiseAbs().maxCoeff();
+      const double off = (out.derivatives.row(i) - out.differences.row(i)).cwiseAbs().maxCoeff();
+      if (off > 0 && size > 0) out.digits_agreed = std::min(out.digits_agreed, std::max(0.0, std::log10(size / off)));
+    }
+  }
+  return out;
+}
+
+std::string text_of(const GradientTable& table) {
+  std::string out = fmt::format("{}: exact derivatives of a run of {} steps\n\n", table.system, table.steps);
+  std::size_t first = 0;
+  for (const std::string& row : table.rows) first = std::max(first, row.size());
+  out += fmt::format("  {:{}}  {:>18}", "", first, "value");
+  std::vector<std::size_t> widths;
+  for (const std::string& column : table.columns) {
+    widths.push_back(std::max<std::size_t>(18, column.size() + 3));
+    out += fmt::format("  {:>{}}", "by " + column, widths.back());
+  }
+  out += "\n";
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto row = Eigen::Index(i);
+    out += fmt::format("  {:{}}  {:18.10g}", table.rows[i], first, table.values(row));
+    for (std::size_t j = 0; j < widths.size(); ++j)
+      out += fmt::format("  {:{}.10g}", table.derivatives(row, Eigen::Index(j)), widths[j]);
+    out += "\n";
+  }
+  out += fmt::format("\n  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
+                     table.digits_left);
+  if (table.checked)
+    out += fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
+  return out;
+}
+
+std::string json_of(const GradientTable& table) {
+  using Json = nlohmann::ordered_json;
+  const auto matrix = [](const Eigen::MatrixXd& a) {
+    Json rows = Json::array();
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      Json row = Json::array();
+      for (Eigen::Index j = 0; j < a.cols(); ++j) row.push_back(a(i, j));
+      rows.push_back(row);
+    }
+    return rows;
+  };
+  Json out = {
+      {"system", table.system},   {"steps", table.steps}, {"status", table.failure.empty() ? "converged" : "failed"},
+      {"message", table.failure}, {"of", table.rows},     {"by", table.columns}};
+  if (table.failure.empty()) {
+    out["values"] = std::vector<double>(table.values.data(), table.values.data() + table.values.size());
+    out["derivatives"] = matrix(table.derivatives);
+    out["growth"] = table.growth;
+    out["digits_left"] = table.digits_left;
+    out["steps_solved"] = table.steps_solved;
+    out["states_kept"] = table.states_kept;
+    if (table.checked) {
+      out["differences"] = matrix(table.differences);
+      out["digits_agreed"] = table.digits_agreed;
+    }
+  }
+  return out.dump(2);
+}
+
+}  // namespace lagroid::app

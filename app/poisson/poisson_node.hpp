@@ -1,0 +1,56 @@
+#pragma once
+/// What is to be seen and shown of a motion on a Poisson manifold.
+
+#include "poisson_entry.hpp"
+
+#include <lagroid/run/motion/observables.hpp>
+
+#include <vector>
+
+namespace lagroid::app {
+
+/// Fields: the state by its labels, energy, Casimirs, the Poisson defect of the next step, drifts. Promised are the
+/// Casimirs where the method keeps them, energy and bracket where it keeps the bracket.
+class PoissonNode final : public Observables {
+ public:
+  /// Of every n-th node something is seen: over those between rounding walks on. The system must outlive this.
+  PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& system, const PoissonIntegrator& method, long every);
+
+  void see(long index, const PoissonIntegrator& at);
+
+  long index() const override { return index_; }
+  double time() const override { return time_; }
+  Endpoint endpoint() const override {
+    Endpoint end;
+    end.time = time_;
+    end.position = x_;
+    return end;
+  }
+  bool finite() const override;
+  const std::vector<Field>& fields() const override { return fields_; }
+  void read(std::size_t field, double* row) const override;
+  const std::vector<Watched>& quantities() const override { return watched_; }
+  double measure(std::size_t quantity, double* value) const override {
+    *value = measured_[quantity].value;
+    return measured_[quantity].size;
+  }
+  double noise() const override { return rounding_; }
+  Constrained constrained() const override { return Constrained::no; }
+  std::optional<double> residual() const override { return {}; }
+
+ private:
+  const AnyPoissonSystem& system_;
+  double rounding_;  ///< of rounding between nodes that are seen, relative to the terms
+  bool has_defect_;
+  std::vector<Field> fields_;
+  std::vector<Watched> watched_;
+  long index_ = 0;
+  double time_ = 0;
+  std::vector<double> x_;
+  std::vector<MeasuredFunction> measured_;
+};
+
+/// Adds shapes, panels and conventions.
+void describe_poisson(const PoissonEntry& entry, RunResult& result);
+
+}  // namespace lagroid::app

@@ -1,0 +1,172 @@
+#include "poisson_run.hpp"
+
+#include "../scenes/scene_keys.hpp"
+#include "../scenes/simulation.hpp"
+#include "poisson_node.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+/// Why a step failed, and what to do.
+std::string poisson_failure(const StepReport& report, long step, double time) {
+  const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
+  switch (report.status) {
+    case SolveStatus::left_domain:
+      return fmt::format(
+          "{}: left the domain in which the symplectic groupoid's chart and the energy are known; use a smaller "
+          "time.step",
+          where);
+    case SolveStatus::singular:
+      return fmt::format("{}: the step's equations fold, so that there are two steps or none; use a smaller time.step",
+                         where);
+    case SolveStatus::not_finite:
+      return fmt::format("{}: a number overflowed or became NaN; use a smaller time.step", where);
+    default:
+      return fmt::format(
+          "{}: the step's equations were not solved ({}, residual {:.3g} after {} iterations); use a "
+          "smaller time.step",
+          where, to_string(report.status), report.residual, report.iterations);
+  }
+}
+
+class PoissonMotion final : public Motion {
+ public:
+  PoissonMotion(const PoissonEntry& entry, const PoissonToCheck& asked, long every)
+      : entry_(entry),
+        system_(asked.system),
+        step_(asked.options.step),
+        integrator_(system_->begin(asked.start, asked.options)),
+        stages_(integrator_->traits().stages),
+        node_(entry, *system_, *integrator_, every) {}
+
+  std::string name() const override { return std::string(entry_.name); }
+  MethodTraits traits() const override { return integrator_->traits(); }
+
+  StepReport advance() override {
+    const StepReport report = integrator_->advance();
+    if (report.converged()) ++index_;
+    return report;
+  }
+  std::string failure(const StepReport& report, long step) const override {
+    return poisson_failure(report, step, time());
+  }
+  long evaluations(const StepReport& report) const override {
+    return stages_ > 0 ? stages_ : std::max(report.iterations, 1);
+  }
+
+  long index() const override { return index_; }
+  double time() const override { return integrator_->time(); }
+  double step_size() const override { return step_; }
+  const Observables& look() override {
+    node_.see(index_, *integrator_);
+    return node_;
+  }
+  std::vector<NamedVector> state() const override { return {{"state", integrator_->point()}}; }
+  std::optional<double> defect() const override { return {}; }
+  bool is_judged_at_every_node() const override { return false; }
+
+  void describe(RunResult& result) const override {
+    const KeptStructure kept = integrator_->kept();
+    const auto words = [](int power) {
+      return power == 0 ? std::string("exactly") : fmt::format("up to h^{} in a step", power);
+    };
+    result.notes.push_back(
+        fmt::format("the bracket is kept {}, Casimirs {}", words(kept.bracket), words(kept.casimirs)));
+    describe_poisson(entry_, result);
+  }
+  void serialize(NumberArchive& archive) override {
+    integrator_->serialize(archive);
+    archive(index_);
+  }
+
+ private:
+  const PoissonEntry& entry_;
+  std::shared_ptr<const AnyPoissonSystem> system_;
+  double step_;
+  std::unique_ptr<PoissonIntegrator> integrator_;
+  int stages_;
+  PoissonNode node_;
+  long index_ = 0;
+};
+
+KeyOf<NumberArray> state_key(const PoissonEntry& entry) {
+  return {"state", {entry.labels.size()}, "", fmt::format("{} at the start", fmt::join(entry.labels, ", "))};
+}
+KeyOf<OneOf> method_key(const PoissonEntry& entry) {
+  std::vector<std::string> names;
+  for (const DeclaredMethod* each : entry.methods) names.emplace_back(each->name);
+  return time_keys::method(std::move(names));
+}
+
+std::vector<Method> methods_of(const PoissonEntry& entry) {
+  std::vector<Method> all;
+  for (const DeclaredMethod* each : entry.methods) {
+    std::vector<Method> made;
+    if (each->other_orders == OtherOrders::composed_steps) {
+      made = composed_methods(each->name, compositions::all);
+    } else {
+      made.push_back(
+          {std::string(each->name), each->order, each->stages, true, {fmt::format("time.method={}", each->name)}});
+    }
+    for (Method& method : made) {
+      method.to_compare = each->to_compare;
+      all.push_back(std::move(method));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+Table poisson_start_table(const PoissonEntry& entry) { return {{state_key(entry)}}; }
+
+Table poisson_time_table(const PoissonEntry& entry) {
+  Table table{grid_keys()};
+  table.keys.insert(table.keys.end(),
+                    {method_key(entry), time_keys::order(), time_keys::composition(compositions::all)});
+  return table;
+}
+
+ReadMethod read_poisson_method(const Section& time, const PoissonEntry& entry) {
+  const std::string name = read_key(time, method_key(entry));
+  const auto found = std::find_if(entry.methods.begin(), entry.methods.end(),
+                                  [&](const DeclaredMethod* each) { return each->name == name; });
+  const DeclaredMethod& declared = **found;
+  if (declared.other_orders == OtherOrders::composed_steps)
+    return {&declared, read_composition(time, compositions::all)};
+  if (time.has("composition")) time.fail("composition", fmt::format("is of steps of order two, not of {}", name));
+  if (time.has("order") && read_key(time, time_keys::order()) != declared.order)
+    time.fail("order", fmt::format("{} is of order {}", name, declared.order));
+  return {&declared, compositions::single};
+}
+
+PoissonScene read_poisson(const PoissonEntry& entry, const Section& scene, const RunContext& context) {
+  PoissonScene out;
+  PoissonToCheck& read = out.to_check;
+  read.system = entry.read(scene);
+  const Section initial = scene.section("initial", "state");
+  read.start = read_key(initial, state_key(entry));
+  if (const std::string why = read.system->refusal(read.start); !why.empty()) initial.fail("state", why);
+  const Section time = scene.section("time", "step and steps, or duration and steps");
+  read.options.step = read_time(scene).step;
+  refuse_accuracy(scene);
+  const ReadMethod method = read_poisson_method(time, entry);
+  read.options.method = method.declared->name;
+  read.options.composition = method.composition;
+  out.extent = read_extent(scene, context);
+  scene.choice("system", {std::string(entry.name)});
+  scene.finish();
+  out.methods = methods_of(entry);
+  out.motion = std::make_unique<PoissonMotion>(entry, read, out.extent.every);
+  return out;
+}
+
+}  // namespace lagroid::app

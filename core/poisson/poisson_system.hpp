@@ -1,0 +1,166 @@
+#pragma once
+/// Poisson systems: numbers x in R^N, a Poisson bivector pi(x) and a Hamiltonian H(x), which move by
+///
+///     x'^i = pi^{ij}(x) d_j H(x),    {f, g} = d_i f pi^{ij} d_j g.
+///
+/// Most brackets are not those of an A*G, which are linear on its fibres: populations, lattices, lasers and systems
+/// that were reduced have others. Bivector, Hamiltonian and Casimirs are all that is written of one; its local
+/// symplectic groupoid and its integrators follow.
+///
+///     struct Populations : PoissonSystem<Populations, 2> {
+///       template <class S> Matrix<S, 2, 2> bivector(const Vector<S, 2>& x) const {
+///         const S xy = x(0) * x(1);
+///         return skew<S, 2>({{0, 1, xy}});
+///       }
+///       template <class S> S hamiltonian(const Vector<S, 2>& x) const { return log(x(0) * x(1)) - x(0) - x(1); }
+///     };
+///
+/// Requires an antisymmetric pi that satisfies the Jacobi identity (laws::poisson_laws asks both), smooth where the
+/// motion goes. A system may also have
+///
+///     template <class S> Vector<S, K> casimirs(const Vector<S, N>& x) const     functions that commute with all others
+///     static std::array<std::string, N> labels()                                what the numbers are called
+///     bool contains(const Vector<double, N>& x) const                           where pi and H are smooth
+///     static constexpr int parts = F;                                           H = sum_i H_i(<l_i, x>), F terms:
+///     template <class S> S part(int i, const S& s) const                        H_i, in place of `hamiltonian`
+///     Vector<double, N> form(int i) const                                       l_i; the i-th axis unless it is
+///     written
+///
+/// and parameters as other systems declare them (core/parameter.hpp). Returns derivatives that are exact, by jets.
+/// Nothing throws.
+///
+/// Source: Weinstein, The local structure of Poisson manifolds, 1983.
+
+#include <lagroid/core/derivatives/directional.hpp>
+#include <lagroid/core/scalars/jet.hpp>
+#include <lagroid/core/scalars/second_jet.hpp>
+#include <lagroid/core/types.hpp>
+
+#include <array>
+#include <concepts>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace lagroid {
+
+/// A bivector is there, for numbers.
+template <class Sys>
+concept PoissonStructure = requires(const Sys& system, const Vector<double, Sys::dimension>& x) {
+  { system.bivector(x) } -> std::convertible_to<Matrix<double, Sys::dimension, Sys::dimension>>;
+};
+template <class Sys>
+concept HasCasimirs = requires(const Sys& system, const Vector<double, Sys::dimension>& x) {
+  system.casimirs(x)(0);
+};
+/// The energy is a sum of functions of linear forms.
+template <class Sys>
+concept SumOfForms = requires(const Sys& system) {
+  { Sys::parts } -> std::convertible_to<int>;
+  { system.part(0, 1.0) } -> std::convertible_to<double>;
+};
+
+/// One entry above the diagonal of an antisymmetric matrix.
+template <class S> struct SkewEntry {
+  int row;
+  int column;
+  S value;
+};
+/// The antisymmetric matrix with these entries, and zeros elsewhere.
+template <class S, int N> Matrix<S, N, N> skew(std::initializer_list<SkewEntry<S>> entries) {
+  Matrix<S, N, N> out;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) out(i, j) = S(0.0);
+  for (const SkewEntry<S>& e : entries) {
+    out(e.row, e.column) = e.value;
+    out(e.column, e.row) = -e.value;
+  }
+  return out;
+}
+
+/// Base of Poisson systems: what follows from bivector and Hamiltonian.
+template <class Derived, int N> struct PoissonSystem {
+  static constexpr int dimension = N;
+
+  /// pi(x) p: how the Hamiltonian <p, x> moves x. Both scalars may have derivatives, or one alone.
+  template <class S> Vector<S, N> field(const Vector<S, N>& x, const Vector<S, N>& p) const {
+    return applied(self().bivector(x), p);
+  }
+  /// pi(x) dH(x).
+  template <class S> Vector<S, N> velocity(const Vector<S, N>& x) const { return field(x, gradient(x)); }
+
+  /// The sum of the parts, for systems that write these.
+  template <class S> S hamiltonian(const Vector<S, N>& x) const {
+    S sum(0.0);
+    for (int i = 0; i < Derived::parts; ++i) {
+      const Vector<double, N> l = self().form(i);
+      S along(0.0);
+      for (int j = 0; j < N; ++j)
+        if (l(j) != 0) along += x(j) * l(j);
+      sum += self().part(i, along);
+    }
+    return sum;
+  }
+  Vector<double, N> form(int i) const { return Vector<double, N>::Unit(i); }
+
+  /// dH(x). A system that has it in closed form supplies its own.
+  template <class S> Vector<S, N> gradient(const Vector<S, N>& x) const {
+    if constexpr (std::same_as<S, double>) {
+      Vector<Jet<double, N>, N> at;
+      for (int i = 0; i < N; ++i) at(i) = Jet<double, N>::variable(x(i), i);
+      return self().hamiltonian(at).gradient();
+    } else {
+      return gradient_of([this](const auto& y) { return self().hamiltonian(y); }, x);
+    }
+  }
+
+  /// Where the system has a smooth bracket and energy: everywhere, unless it says otherwise.
+  bool contains(const Vector<double, N>&) const { return true; }
+  /// x1, x2, ..., unless the system names its numbers.
+  static std::array<std::string, N> labels() {
+    std::array<std::string, N> out;
+    for (int i = 0; i < N; ++i) out[std::size_t(i)] = "x" + std::to_string(i + 1);
+    return out;
+  }
+
+  /// a p, entry by entry.
+  template <class S> static Vector<S, N> applied(const Matrix<S, N, N>& a, const Vector<S, N>& p) {
+    Vector<S, N> out;
+    for (int i = 0; i < N; ++i) {
+      S sum = a(i, 0) * p(0);
+      for (int j = 1; j < N; ++j) sum += a(i, j) * p(j);
+      out(i) = sum;
+    }
+    return out;
+  }
+
+ private:
+  const Derived& self() const { return static_cast<const Derived&>(*this); }
+};
+
+/// How many Casimirs the system names.
+template <class Sys> constexpr int casimir_count() {
+  if constexpr (HasCasimirs<Sys>) {
+    using X = Vector<double, Sys::dimension>;
+    return std::remove_cvref_t<decltype(std::declval<const Sys&>().casimirs(
+        std::declval<const X&>()))>::SizeAtCompileTime;
+  } else {
+    return 0;
+  }
+}
+
+/// dH and the second derivatives of H, from one evaluation.
+template <int N> struct EnergyDerivatives {
+  Vector<double, N> gradient;
+  Matrix<double, N, N> hessian;
+};
+template <class Sys>
+EnergyDerivatives<Sys::dimension> energy_derivatives(const Sys& system, const Vector<double, Sys::dimension>& x) {
+  constexpr int n = Sys::dimension;
+  Vector<SecondJet<double, n>, n> at;
+  for (int i = 0; i < n; ++i) at(i) = SecondJet<double, n>::variable(x(i), i);
+  const SecondJet<double, n> h = system.hamiltonian(at);
+  return {h.gradient(), h.hessian()};
+}
+
+}  // namespace lagroid

@@ -1,0 +1,55 @@
+#include <lagroid/run/events/expression.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+namespace lagroid {
+
+namespace {
+
+/// A number that is read, and one that is added to it.
+class Shifted final : public Expression {
+ public:
+  Shifted(std::size_t name, const double* value, double shift) : name_(name), value_(value), shift_(shift) {}
+  double value() const override { return *value_ + shift_; }
+  std::vector<std::size_t> used() const override { return {name_}; }
+
+ private:
+  std::size_t name_;
+  const double* value_;
+  double shift_;
+};
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+/// The number that "", "- 0.5" or "+ 2" adds.
+std::optional<double> shift_of(std::string_view rest) {
+  if (rest.empty()) return 0;
+  if (rest.front() != '-' && rest.front() != '+') return std::nullopt;
+  const double sign = rest.front() == '-' ? -1 : 1;
+  const std::string_view digits = trimmed(rest.substr(1));
+  double number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool whole = error == std::errc() && end == digits.data() + digits.size() && digits.front() != '-';
+  return whole ? std::optional(sign * number) : std::nullopt;
+}
+
+}  // namespace
+
+std::unique_ptr<Expression> parse_expression(const std::string& text, const std::vector<std::string>& names,
+                                             const double* values) {
+  const std::string_view expression = trimmed(text);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (expression.starts_with(names[i]))
+      if (const auto shift = shift_of(trimmed(expression.substr(names[i].size()))))
+        return std::make_unique<Shifted>(i, values + i, *shift);
+  return detail::parse_any_expression(text, names, values);
+}
+
+}  // namespace lagroid

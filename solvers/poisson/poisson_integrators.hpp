@@ -1,0 +1,146 @@
+#pragma once
+/// What `make_poisson_integrator` makes of a system: every method that it has.
+///
+///     const auto motion = make_poisson_integrator(Mine{}, start, {.method = "hamilton-jacobi-4", .step = 0.1});
+///
+/// Include it for a system of your own, once: it compiles some seconds. Requires and throws as poisson_integrator.hpp.
+
+#include <lagroid/solvers/integrators/composed_step.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
+#include <lagroid/solvers/poisson/poisson_integrator.hpp>
+#include <lagroid/solvers/poisson/poisson_methods.hpp>
+#include <lagroid/solvers/poisson/steps.hpp>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace lagroid {
+
+namespace detail {
+
+/// Equal steps, each composed of stages.
+template <class Sys, class Step> class PoissonSteps final : public PoissonIntegrator {
+ public:
+  using X = Vector<double, Sys::dimension>;
+
+  PoissonSteps(const Sys& system, Step step, const DeclaredMethod& method, const X& start,
+               const PoissonOptions& options)
+      : system_(system), step_(std::move(step)), method_(method), options_(options), x_(start) {}
+
+  StepReport advance() override {
+    const X before = x_;
+    const StepReport report = step_by_stages(
+        options_.composition.coefficients,
+        [&](double gamma) {
+          X end;
+          const StepReport found = step_.take(x_, gamma * options_.step, end);
+          if (found.converged()) x_ = end;
+          return found;
+        },
+        [&] { x_ = before; });
+    if (report.converged()) ++index_;
+    return report;
+  }
+  std::vector<double> point() const override { return {x_.data(), x_.data() + x_.size()}; }
+  double time() const override { return double(index_) * options_.step; }
+  MethodTraits traits() const override {
+    const bool composed = options_.composition.stages() > 1;
+    return {composed_name(method_.name, options_.composition),
+            composed ? options_.composition.order : Step::order,
+            Step::symmetric,
+            Step::kept.bracket == 0,
+            Step::explicit_step,
+            Step::explicit_step ? options_.composition.stages() * method_.stages : 0};
+  }
+  KeptStructure kept() const override { return Step::kept; }
+  double poisson_defect() const override {
+    if constexpr (requires { step_.slope(x_, 0.0); }) {
+      X x = x_;
+      Matrix<double, Sys::dimension, Sys::dimension> slope = decltype(slope)::Identity();
+      for (const double gamma : options_.composition.coefficients) {
+        X end;
+        const double h = gamma * options_.step;
+        if (!step_.take(x, h, end).converged()) return std::numeric_limits<double>::quiet_NaN();
+        slope = (step_.slope(x, h) * slope).eval();
+        x = end;
+      }
+      const Matrix<double, Sys::dimension, Sys::dimension> from = system_.bivector(x_);
+      const Matrix<double, Sys::dimension, Sys::dimension> to = system_.bivector(x);
+      const double size = to.cwiseAbs().maxCoeff();
+      return (slope * from * slope.transpose() - to).cwiseAbs().maxCoeff() / (size > 0 ? size : 1);
+    } else {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  void serialize(NumberArchive& archive) override { archive(x_, index_); }
+
+ private:
+  Sys system_;
+  Step step_;
+  DeclaredMethod method_;
+  PoissonOptions options_;
+  X x_;
+  long index_ = 0;
+};
+
+/// Calls visit(method, make) for each method that the system has; make(system) is its step.
+template <class Sys, class Visit> void each_poisson_step(const Visit& visit) {
+  namespace m = poisson_methods;
+  visit(m::groupoid, [](const Sys& s) {
+    return ImplicitStep<GroupoidFormula<NaturalChart<Sys>>>(GroupoidFormula<NaturalChart<Sys>>(NaturalChart<Sys>(s)));
+  });
+  const auto karasev = [&]<int Order>(const DeclaredMethod& method) {
+    visit(method, [](const Sys& s) {
+      using Formula = GroupoidFormula<KarasevChart<Sys>, Order>;
+      return ImplicitStep<Formula>(Formula(KarasevChart<Sys>(s)));
+    });
+  };
+  if constexpr (!std::is_same_v<NaturalChart<Sys>, KarasevChart<Sys>>) karasev.template operator()<2>(m::karasev);
+  karasev.template operator()<4>(m::hamilton_jacobi_4);
+  karasev.template operator()<6>(m::hamilton_jacobi_6);
+  if constexpr (SumOfForms<Sys>)
+    visit(m::splitting, [](const Sys& s) { return SplitStep<FlowChart<Sys>>(FlowChart<Sys>(s)); });
+  visit(m::truncated, [](const Sys& s) { return ImplicitStep<TreeFormula<Sys, 3>>(TreeFormula<Sys, 3>(s)); });
+  const auto midpoint = [](const Sys& s) { return ImplicitStep<TreeFormula<Sys, 1>>(TreeFormula<Sys, 1>(s)); };
+  visit(m::midpoint, midpoint);
+  if constexpr (casimir_count<Sys>() > 0)
+    visit(m::projected, [=](const Sys& s) { return ProjectedStep<ImplicitStep<TreeFormula<Sys, 1>>>(midpoint(s)); });
+  visit(m::runge_kutta, [](const Sys& s) { return RungeKuttaStep<Sys>(s); });
+}
+
+}  // namespace detail
+
+template <class Sys> std::vector<std::string_view> poisson_methods_of() {
+  std::vector<std::string_view> names;
+  detail::each_poisson_step<Sys>([&](const DeclaredMethod& method, const auto&) { names.push_back(method.name); });
+  return names;
+}
+
+template <class Sys>
+std::unique_ptr<PoissonIntegrator> make_poisson_integrator(const Sys& system,
+                                                           const Vector<double, Sys::dimension>& start,
+                                                           const PoissonOptions& options) {
+  if (!std::isfinite(options.step) || options.step == 0)
+    throw std::invalid_argument("the step of an integrator on a Poisson manifold is a finite number, not zero");
+  std::unique_ptr<PoissonIntegrator> made;
+  detail::each_poisson_step<Sys>([&](const DeclaredMethod& method, const auto& make) {
+    if (method.name != options.method) return;
+    if (options.composition.stages() > 1 && method.other_orders != OtherOrders::composed_steps)
+      throw std::invalid_argument("steps of " + options.method + " are not composed");
+    auto step = make(system);
+    made = std::make_unique<detail::PoissonSteps<Sys, decltype(step)>>(system, std::move(step), method, start, options);
+  });
+  if (!made) throw std::invalid_argument("this system has no method \"" + options.method + "\"");
+  return made;
+}
+
+/// For each system of the library: LAGROID_POISSON_INTEGRATORS(extern template, System).
+#define LAGROID_POISSON_INTEGRATORS(prefix, Sys)                          \
+  prefix std::vector<std::string_view> poisson_methods_of<Sys>();         \
+  prefix std::unique_ptr<PoissonIntegrator> make_poisson_integrator<Sys>( \
+      const Sys&, const Vector<double, Sys::dimension>&, const PoissonOptions&)
+
+}  // namespace lagroid

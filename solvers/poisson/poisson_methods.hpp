@@ -1,0 +1,50 @@
+#pragma once
+/// The methods for Poisson systems, each declared once: what scenes, studies and citations know of it.
+///
+///     const DeclaredMethod* method = poisson_methods::named("hamilton-jacobi-4");  // null where there is none
+///
+/// Nothing throws.
+
+#include <lagroid/solvers/methods/declared_methods.hpp>
+
+#include <array>
+#include <string_view>
+
+namespace lagroid::poisson_methods {
+
+inline constexpr Source groupoid_source{"cosserat2024", "Poisson integrators from local symplectic groupoids"};
+
+/// The step by the chart that costs least: in closed form where the bracket has one.
+inline constexpr DeclaredMethod groupoid{
+    .name = "symplectic-groupoid", .other_orders = OtherOrders::composed_steps, .source = groupoid_source};
+/// By Karasev's chart, where that is another one.
+inline constexpr DeclaredMethod karasev{
+    .name = "karasev", .other_orders = OtherOrders::composed_steps, .source = groupoid_source};
+inline constexpr DeclaredMethod hamilton_jacobi_4{
+    .name = "hamilton-jacobi-4", .order = 4, .stages = 2, .source = groupoid_source};
+inline constexpr DeclaredMethod hamilton_jacobi_6{
+    .name = "hamilton-jacobi-6", .order = 6, .stages = 6, .source = groupoid_source};
+/// Where the energy is a sum of functions of linear forms.
+inline constexpr DeclaredMethod splitting{.name = "splitting", .other_orders = OtherOrders::composed_steps};
+/// By trees of up to three orders: Poisson up to h^5 in a step.
+inline constexpr DeclaredMethod truncated{.name = "truncated-groupoid",
+                                          .other_orders = OtherOrders::composed_steps,
+                                          .source = groupoid_source,
+                                          .to_compare = true};
+inline constexpr DeclaredMethod midpoint{
+    .name = "midpoint", .other_orders = OtherOrders::composed_steps, .to_compare = true};
+/// The same, and then back to the old values of the Casimirs.
+inline constexpr DeclaredMethod projected{.name = "projected-midpoint", .to_compare = true};
+inline constexpr DeclaredMethod runge_kutta{.name = "runge-kutta", .order = 4, .stages = 4, .to_compare = true};
+
+inline constexpr std::array all{groupoid,  karasev,  hamilton_jacobi_4, hamilton_jacobi_6, splitting,
+                                truncated, midpoint, projected,         runge_kutta};
+
+/// Null where there is none of the name.
+constexpr const DeclaredMethod* named(std::string_view name) {
+  for (const DeclaredMethod& each : all)
+    if (each.name == name) return &each;
+  return nullptr;
+}
+
+}  // namespace lagroid::poisson_methods

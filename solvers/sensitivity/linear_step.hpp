@@ -1,0 +1,46 @@
+#pragma once
+/// One step, linearised where it is solved. With the step equations E(z; x) = 0 in the unknowns z = (w, lambda), and
+/// x = (v, mu, theta) the displacement of the source, the momentum and the parameters,
+///
+///     E_z dz + E_x dx = 0,    dx' = X_z dz + X_x dx,    x' = (w, F+(g, lambda)).
+///
+/// Solved steps need no derivative of their iterations: the equations that hold at the end say all, and their transpose
+/// takes gradients back. The matrix is that of the solution, not one that an iteration kept.
+///
+///     LinearStep step(equations, states, parameters);  // how many of each
+///     step.factor();                                   // once E_z is filled in
+///     const Eigen::MatrixXd end = step.forward(start);  // directions, column by column
+///     const Eigen::MatrixXd back = step.backward(gradients);
+///
+/// `factor` returns whether all numbers are finite and E_z is regular ([G] Def. 3.5). A step in closed form has no
+/// equations. Nothing throws. Source: implicit function theorem; the adjoint is that of the discrete map itself.
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+namespace lagroid {
+
+class LinearStep {
+ public:
+  LinearStep(int equations, int states, int parameters);
+
+  Eigen::MatrixXd equations_by_unknowns;  ///< E_z
+  Eigen::MatrixXd equations_by_start;     ///< E_x
+  Eigen::MatrixXd end_by_unknowns;        ///< X_z
+  Eigen::MatrixXd end_by_start;           ///< X_x
+
+  /// To be called when the four have been filled in.
+  bool factor();
+
+  /// dx' of directions dx: states, and below them parameters, which a step leaves as they are.
+  Eigen::MatrixXd forward(const Eigen::MatrixXd& directions) const;
+  /// The gradients by x of functions of x', given those by x'.
+  Eigen::MatrixXd backward(const Eigen::MatrixXd& gradients) const;
+
+ private:
+  Eigen::VectorXd row_scale_;
+  Eigen::VectorXd column_scale_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,50 @@
+#pragma once
+/// A motion whose steps are linearised, whatever its system: what propagates derivatives knows nothing else.
+///
+///     if (motion.advance().converged() && motion.linearise())
+///       for (int k = 0; k < motion.stages(); ++k) x = motion.stage(k).forward(x);
+///
+/// States are 2 n numbers: a displacement v of the configuration, g tau(v), and the change of the momentum in the basis
+/// of the displaced object. `LinearisedMotionOf` makes one of a system and its integrator.
+
+#include <lagroid/solvers/sensitivity/linear_step.hpp>
+#include <lagroid/solvers/step/step_solver.hpp>
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// Functions of a node, by their values and their derivatives: a row for each, columns (v, mu, theta).
+struct NodeValues {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd derivatives;
+};
+
+class LinearisedMotion {
+ public:
+  virtual ~LinearisedMotion() = default;
+
+  /// 2 n.
+  virtual int states() const = 0;
+  /// The numbers with respect to which derivatives are taken, beside the start.
+  virtual int parameters() const = 0;
+  virtual double time() const = 0;
+
+  virtual StepReport advance() = 0;
+  /// Linearises the last step, of as many stages as it was composed of; false where a derivative is not finite or the
+  /// equations are singular.
+  virtual bool linearise() = 0;
+  virtual int stages() const = 0;
+  virtual const LinearStep& stage(int k) const = 0;
+  /// What is observed, at the present node.
+  virtual NodeValues observe() const = 0;
+
+  /// All that the next step goes on from, and back to it: the steps from there have the same bits.
+  virtual std::vector<double> save() = 0;
+  virtual void restore(const std::vector<double>& saved) = 0;
+};
+
+}  // namespace lagroid

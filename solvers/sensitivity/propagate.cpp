@@ -1,0 +1,227 @@
+#include <lagroid/solvers/sensitivity/propagate.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace lagroid {
+
+namespace {
+
+/// binomial(s + r, s), or a number too large to matter.
+double binomial(long s, long r) {
+  double out = 1;
+  for (long i = 1; i <= r && out < 1e18; ++i) out = out * double(s + i) / double(i);
+  return std::round(out);
+}
+
+/// Of `steps` steps, more than one, those to take before the next state is kept, with `states` states in all, the one
+/// at the start among them. With r repeats they reach binomial(s + r, s) = binomial(s + r - 1, s) + binomial(s + r - 1,
+/// s - 1) steps: the first term is what is left of them once more, the second what the other states reach.
+long first_part(long steps, long states) {
+  long repeats = 1;
+  while (binomial(states, repeats) < double(steps)) ++repeats;
+  return long(std::clamp(binomial(states, repeats - 1), 1.0, double(steps - 1)));
+}
+
+/// The weight of a node in what is observed, over a run of equal steps.
+double weight_of(const Observed& observed, long node, long steps, double duration) {
+  if (observed.kind == Observed::Kind::integral)
+    return duration / double(steps) * (node == 0 || node == steps ? 0.5 : 1.0);
+  return node == (observed.node < 0 ? steps : observed.node) ? 1.0 : 0.0;
+}
+
+/// Throws std::invalid_argument for a node that the run does not have.
+void require_node(const Observed& observed, long steps) {
+  if (steps < 0) throw std::invalid_argument("a run has zero steps or more");
+  if (observed.kind == Observed::Kind::at_node && observed.node > steps)
+    throw std::invalid_argument(fmt::format("node {} of a run of {} steps", observed.node, steps));
+}
+
+std::string failure(const StepReport& report, double time) {
+  return fmt::format("the step at t = {:.6g} failed: {}", time, to_string(report.status));
+}
+
+/// Goes on by steps until one fails, of which it takes down the reason.
+bool advance(LinearisedMotion& motion, long steps, Propagated& out) {
+  for (long k = 0; k < steps; ++k) {
+    const double time = motion.time();
+    const StepReport report = motion.advance();
+    ++out.steps_solved;
+    if (report.converged()) continue;
+    out.status = report.status;
+    out.message = failure(report, time);
+    return false;
+  }
+  return true;
+}
+/// One step, linearised.
+bool advance_linearised(LinearisedMotion& motion, Propagated& out) {
+  if (!advance(motion, 1, out)) return false;
+  if (motion.linearise()) return true;
+  out.status = SolveStatus::singular;
+  out.message = fmt::format("the step before t = {:.6g} has no derivative: its equations are singular", motion.time());
+  return false;
+}
+
+/// How long the run takes, which the weights of an integral ask for: steps are equal.
+double duration_of(LinearisedMotion& motion, long steps, const Observed& observed, Propagated& out) {
+  if (observed.kind != Observed::Kind::integral || steps == 0) return 0;
+  const std::vector<double> start = motion.save();
+  const double begun = motion.time();
+  if (!advance(motion, 1, out)) return 0;
+  const double step = motion.time() - begun;
+  motion.restore(start);
+  return double(steps) * step;
+}
+
+/// By which factor directions have grown: those of the start from their size there; those of parameters, which are zero
+/// there, beyond what each step adds as the first one did.
+class Growth {
+ public:
+  explicit Growth(const Eigen::MatrixXd& states) : first_(states.colwise().norm()), steps_(0) {
+    added_ = first_.array() == 0;
+  }
+  double after_a_step(const Eigen::MatrixXd& states) {
+    ++steps_;
+    double largest = 0;
+    for (Eigen::Index j = 0; j < states.cols(); ++j) {
+      const double size = states.col(j).norm();
+      if (first_(j) == 0) first_(j) = size / double(steps_);
+      if (first_(j) > 0) largest = std::max(largest, size / (added_(j) ? double(steps_) * first_(j) : first_(j)));
+    }
+    return largest;
+  }
+
+ private:
+  Eigen::RowVectorXd first_;
+  Eigen::Array<bool, 1, Eigen::Dynamic> added_;
+  long steps_;
+};
+
+/// The motion in reverse, from states kept on the way.
+class Reversal {
+ public:
+  Reversal(LinearisedMotion& motion, long steps, const Observed& observed, double duration, Propagated& out)
+      : motion_(motion), steps_(steps), observed_(observed), duration_(duration), out_(out) {}
+
+  /// The steps from `from` to `to`; `start` is the state at `from`, and as many more may be kept.
+  bool reverse(long from, long to, const std::vector<double>& start, long more) {
+    while (to - from > 1) {
+      if (more == 0) {
+        for (; to - from > 1; --to) {
+          motion_.restore(start);
+          if (!advance(motion_, to - from - 1, out_) || !step(to - 1)) return false;
+        }
+        break;
+      }
+      const long middle = from + first_part(to - from, more + 1);
+      motion_.restore(start);
+      if (!advance(motion_, middle - from, out_)) return false;
+      const std::vector<double> kept = motion_.save();
+      out_.states_kept = std::max(out_.states_kept, ++kept_);
+      if (!reverse(middle, to, kept, more - 1)) return false;
+      --kept_;
+      to = middle;
+    }
+    motion_.restore(start);
+    return step(from);
+  }
+
+  /// What is observed at the present node is added.
+  void observe(long node) {
+    const double weight = weight_of(observed_, node, steps_, duration_);
+    if (weight == 0) return;
+    const NodeValues here = motion_.observe();
+    if (gradients_.size() == 0) {
+      gradients_ = Eigen::MatrixXd::Zero(here.derivatives.cols(), here.derivatives.rows());
+      out_.values = Eigen::VectorXd::Zero(here.values.size());
+    }
+    out_.values += weight * here.values;
+    gradients_ += weight * here.derivatives.transpose();
+    first_ = std::max(first_, gradients_.topRows(motion_.states()).norm());
+  }
+  const Eigen::MatrixXd& gradients() const { return gradients_; }
+
+ private:
+  bool step(long from) {
+    if (!advance_linearised(motion_, out_)) return false;
+    observe(from + 1);
+    if (gradients_.size() == 0) return true;
+    for (int k = motion_.stages(); k-- > 0;) gradients_ = motion_.stage(k).backward(gradients_);
+    if (first_ > 0) out_.growth = std::max(out_.growth, gradients_.topRows(motion_.states()).norm() / first_);
+    return true;
+  }
+
+  LinearisedMotion& motion_;
+  long steps_;
+  Observed observed_;
+  double duration_;
+  Propagated& out_;
+  long kept_ = 1;
+  double first_ = 0;
+  Eigen::MatrixXd gradients_;
+};
+
+}  // namespace
+
+StateBudget StateBudget::logarithmic(long steps) {
+  return {std::max(2L, long(std::ceil(2 * std::log2(double(std::max(steps, 2L))))))};
+}
+
+double Propagated::digits_left() const {
+  return std::max(0.0, -std::log10(std::numeric_limits<double>::epsilon() * std::max(growth, 1.0)));
+}
+
+Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::MatrixXd& directions,
+                             const Observed& observed) {
+  require_node(observed, steps);
+  Propagated out;
+  out.states_kept = 1;
+  out.end = directions;
+  const Eigen::Index states = motion.states();
+  Growth growth(directions.topRows(states));
+  const double duration = duration_of(motion, steps, observed, out);
+  const auto observe = [&](long node) {
+    const double weight = weight_of(observed, node, steps, duration);
+    if (weight == 0) return;
+    const NodeValues here = motion.observe();
+    if (out.values.size() == 0) {
+      out.values = Eigen::VectorXd::Zero(here.values.size());
+      out.derivatives = Eigen::MatrixXd::Zero(here.values.size(), directions.cols());
+    }
+    out.values += weight * here.values;
+    out.derivatives += weight * (here.derivatives * out.end);
+  };
+  if (!out.converged()) return out;
+  observe(0);
+  for (long k = 0; k < steps; ++k) {
+    if (!advance_linearised(motion, out)) return out;
+    for (int stage = 0; stage < motion.stages(); ++stage) out.end = motion.stage(stage).forward(out.end);
+    out.growth = std::max(out.growth, growth.after_a_step(out.end.topRows(states)));
+    observe(k + 1);
+  }
+  return out;
+}
+
+Propagated propagate_backward(LinearisedMotion& motion, long steps, const Observed& observed, StateBudget budget) {
+  require_node(observed, steps);
+  Propagated out;
+  out.states_kept = 1;
+  if (budget.states == 0) budget.states = long(std::ceil(2 * std::sqrt(double(steps))));
+  const std::vector<double> start = motion.save();
+  const double duration = duration_of(motion, steps, observed, out);
+  if (!out.converged()) return out;
+  Reversal reversal(motion, steps, observed, duration, out);
+  if (steps > 0 && !reversal.reverse(0, steps, start, std::max(0L, budget.states - 1))) return out;
+  motion.restore(start);
+  reversal.observe(0);
+  out.derivatives = reversal.gradients().transpose();
+  return out;
+}
+
+}  // namespace lagroid

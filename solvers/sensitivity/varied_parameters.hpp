@@ -1,0 +1,62 @@
+#pragma once
+/// The parameters of a system with respect to which derivatives are taken: by their names, number by number.
+///
+///     const std::vector<std::string> names = {"mass", "inertia"};  // of `parameters()`; a vector is all its numbers
+///     const ParameterPlaces places = places_of_parameters(system, names);
+///     const double* first = places.members[0];  // a member of this very system
+///
+/// Errors: std::invalid_argument for a name that is no parameter of the system or a choice of words, one line.
+
+#include <lagroid/core/parameter.hpp>
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace lagroid {
+
+struct ParameterPlaces {
+  std::vector<std::string> names;  ///< mass, inertia.0, inertia.1, ...
+  std::vector<const double*> members;
+};
+
+namespace detail {
+
+/// Takes from `all` those of a name: the name itself, or with a dot and a number; throws where there is none.
+ParameterPlaces chosen_places(const ParameterPlaces& all, const std::vector<std::string>& names,
+                              const std::vector<std::string>& choices);
+
+}  // namespace detail
+
+/// All parameters that are numbers, or vectors of them.
+template <class Sys> ParameterPlaces all_parameters(const Sys& system) {
+  ParameterPlaces out;
+  for_each_parameter<Sys>([&]<class Declared>(const Declared& p) {
+    if constexpr (requires { p.rule; }) {
+      const auto& member = system.*p.member;
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, double>) {
+        out.names.emplace_back(p.name);
+        out.members.push_back(&member);
+      } else if constexpr (requires {
+                             member.data();
+                             member.size();
+                           }) {
+        for (int i = 0; i < int(member.size()); ++i) {
+          out.names.push_back(std::string(p.name) + "." + std::to_string(i));
+          out.members.push_back(member.data() + i);
+        }
+      }
+    }
+  });
+  return out;
+}
+
+template <class Sys> ParameterPlaces places_of_parameters(const Sys& system, const std::vector<std::string>& names) {
+  std::vector<std::string> choices;
+  for_each_parameter<Sys>([&]<class Declared>(const Declared& p) {
+    if constexpr (requires { p.words; }) choices.emplace_back(p.name);
+  });
+  return detail::chosen_places(all_parameters(system), names, choices);
+}
+
+}  // namespace lagroid

@@ -1,0 +1,21 @@
+// Local symplectic groupoids in closed form keep all laws.
+#include "near_units.hpp"
+
+#include <lagroid/systems/poisson/lotka_volterra.hpp>
+#include <lagroid/systems/poisson/rotations.hpp>
+
+namespace lagroid {
+namespace {
+
+TEST(SymplecticGroupoid, OfRotationsByTheExponential) {
+  expect_all_laws(SymplecticGroupoid<RotationChart<EulerTop>>());
+}
+
+TEST(SymplecticGroupoid, OfRotationsByCayleysTransform) {
+  expect_all_laws(SymplecticGroupoid<CayleyChart<EulerTop>>());
+}
+
+TEST(SymplecticGroupoid, OfPopulations) { expect_all_laws(SymplecticGroupoid<LogCanonicalChart<ThreeSpecies>>()); }
+
+}  // namespace
+}  // namespace lagroid

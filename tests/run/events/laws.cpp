@@ -1,0 +1,362 @@
+// What events promise: the run does not notice them, they come in their order, and what cannot be found is said.
+#include "orbits.hpp"
+
+#include <lagroid/run/events/event_watch.hpp>
+#include <lagroid/run/files/output_folder.hpp>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+using namespace lagroid;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using enum Event::Direction;
+
+/// q = cos t, by steps that are exact.
+struct Turning : MechanicalSystem<Turning, 1> {
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 1>& q) const { return q(0) * q(0) * 0.5; }
+};
+
+const State<Pair<2>> ellipse{{1.3, 0}, {0, 0.7}};
+const State<Pair<1>> unit_turn{Vector<double, 1>(1.0), Vector<double, 1>(0.0)};
+
+/// Of exact turns but for the discretisation, here 1e-13 in t.
+RunResult turn(long steps, const std::vector<Event>& events, double h = 0.1) {
+  Turning system;
+  system.h = h;
+  return run_split(system, unit_turn, compositions::kahan_li_8, {.steps = steps, .events = events});
+}
+
+std::string message_of(const std::vector<Event>& events) {
+  try {
+    turn(1, events);
+  } catch (const RunError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Event stop(Event event, long count = 1) {
+  event.then = Event::Then::stop;
+  event.count = count;
+  return event;
+}
+
+std::vector<double> bits_of(const RunResult& result) {
+  std::vector<double> bits = result.trajectory.time;
+  for (const Columns& series : result.trajectory.series)
+    bits.insert(bits.end(), series.values.begin(), series.values.end());
+  for (const LedgerEntry& entry : result.ledger.entries)
+    if (entry.promise != "counted") bits.push_back(entry.drift);
+  return bits;
+}
+
+TEST(Events, RecordingThemChangesNoBit) {
+  const std::vector<Event> events{event_at_zero("x", "q1"),
+                                  event_at_zero("turn", "q1*mu1 + q2*mu2"),
+                                  {.name = "near", .when = "sqrt(q1^2 + q2^2)", .at = Event::At::minimum}};
+  Orbit system;
+  system.h = 0.05;
+  const auto by_solves = [&](std::vector<Event> watched) {
+    return run(system, ellipse, {.steps = 2000, .events = std::move(watched)});
+  };
+  const auto by_flows = [&](std::vector<Event> watched) {
+    return run_split(system, ellipse, compositions::single, {.steps = 2000, .events = std::move(watched)});
+  };
+  EXPECT_EQ(bits_of(by_solves({})), bits_of(by_solves(events)));
+  EXPECT_EQ(bits_of(by_flows({})), bits_of(by_flows(events)));
+  EXPECT_GT(by_solves(events).events.rows.size(), 80u);
+}
+
+TEST(Events, EnergyAndMomentaOfManyAreThoseWithoutThem) {
+  Orbit system;
+  system.h = 0.1;
+  const State<Pair<2>> circle{{1, 0}, {0, 1}};
+  const RunOptions<Orbit> without{.steps = 160'000, .every = 160'000};
+  RunOptions<Orbit> with = without;
+  for (const char* when : {"q1", "q2", "mu1 - 0.3", "q1 - q2", "q1 + q2"}) with.events.push_back({when, when});
+  const RunResult all = run_split(system, circle, compositions::single, with);
+  EXPECT_GT(all.events.rows.size(), 20'000u);
+  EXPECT_EQ(bits_of(all), bits_of(run_split(system, circle, compositions::single, without)));
+}
+
+TEST(Events, AreFoundInsideOfStepsInTheirOrder) {
+  // In the step from 0.8 to 1.6 all of them happen.
+  const RunResult result = turn(2,
+                                {event_at_zero("third", "q"), event_at_zero("first", "q - 0.6"),
+                                 event_at_zero("second", "0.3 - q"), event_at_zero("never", "q - 2")},
+                                0.8);
+  ASSERT_EQ(result.events.rows.size(), 3u);
+  EXPECT_EQ(result.events.watched[result.events.rows[0].event].name, "first");
+  EXPECT_EQ(result.events.watched[result.events.rows[1].event].name, "second");
+  EXPECT_EQ(result.events.watched[result.events.rows[2].event].name, "third");
+  EXPECT_EQ(result.events.rows[0].passing, Passing::falling);
+  EXPECT_EQ(result.events.rows[1].passing, Passing::rising);
+  EXPECT_EQ(result.events.rows[0].step, 2);
+  EXPECT_NEAR(result.events.rows[2].time, std::numbers::pi / 2, 1e-5);
+  EXPECT_EQ(result.events.watched[3].count, 0);
+}
+
+TEST(Events, ThatComeTogetherAreMarkedInTheOrderInWhichTheyWereWritten) {
+  const RunResult result =
+      turn(20, {event_at_zero("b", "2*q - 0.6"), event_at_zero("a", "q - 0.3"), event_at_zero("c", "q - 0.29")});
+  ASSERT_EQ(result.events.rows.size(), 3u);
+  EXPECT_EQ(result.events.rows[0].event, 0u);
+  EXPECT_FALSE(result.events.rows[0].together);
+  EXPECT_EQ(result.events.rows[1].event, 1u);
+  EXPECT_TRUE(result.events.rows[1].together);
+  EXPECT_FALSE(result.events.rows[2].together);
+}
+
+TEST(Events, TwoThatTheSignsAtBothNodesDoNotShowAreFound) {
+  // q = cos t is above 0.999 within 0.0447 of 2 pi, and nodes are 0.1 apart.
+  const RunResult result = turn(70, {event_at_zero("top", "q - 0.9999")});
+  const double away = std::acos(0.9999), round = 2 * std::numbers::pi;
+  const std::vector<double> times = times_of(result, "top");
+  ASSERT_EQ(times.size(), 3u);  // it begins at the top
+  EXPECT_NEAR(times[0], away, 1e-9);
+  EXPECT_NEAR(times[1], round - away, 1e-9);
+  EXPECT_NEAR(times[2], round + away, 1e-9);
+}
+
+TEST(Events, TouchingZeroIsSaidAndNotCounted) {
+  const RunResult result = turn(70, {event_at_zero("grazed", "q^2"), event_at_zero("missed", "q^2 + 1e-6")});
+  const EventTable& table = result.events;
+  EXPECT_EQ(table.watched[0].count, 0);
+  EXPECT_EQ(table.watched[0].touches, 2);
+  EXPECT_EQ(table.watched[1].touches, 0);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0].passing, Passing::touching);
+  EXPECT_NEAR(table.rows[0].time, std::numbers::pi / 2, 1e-8);
+  EXPECT_TRUE(std::any_of(result.notes.begin(), result.notes.end(), [](const std::string& note) {
+    return note == "event \"grazed\": its function came to zero 2 times without passing it; not counted";
+  }));
+}
+
+TEST(Events, AZeroAtTheStartHasNotBeenPassed) {
+  const RunResult result = turn(70, {event_at_zero("rest", "mu"), event_at_zero("top", "q - 1")});
+  EXPECT_EQ(result.events.watched[0].count, 2);
+  EXPECT_NEAR(times_of(result, "rest").front(), std::numbers::pi, 1e-10);
+  EXPECT_EQ(result.events.watched[1].count, 0);
+  EXPECT_EQ(std::count(result.notes.begin(), result.notes.end(),
+                       "event \"rest\": its function is zero at the start, which is not counted"),
+            1);
+}
+
+TEST(Events, EndARunWhereTheyHappen) {
+  const RunResult result = turn(1000, {stop(event_at_zero("down", "q", falling), 3), event_at_zero("any", "q")});
+  ASSERT_TRUE(result.converged());
+  const double there = std::numbers::pi * 4.5;
+  EXPECT_NEAR(result.final.time, there, 1e-10);
+  EXPECT_NEAR(result.final.position[0], 0, 1e-15);
+  EXPECT_EQ(result.trajectory.time.back(), result.final.time);
+  EXPECT_EQ(result.steps, 142);
+  EXPECT_EQ(result.trajectory.time.size(), 143u);
+  EXPECT_EQ(result.events.watched[0].count, 3);
+  EXPECT_EQ(result.events.watched[1].count, 4);  // nothing that follows the end
+}
+
+TEST(Events, FunctionsInCppAreTakenAndCalledBack) {
+  Event event{.name = "functor", .function = [](const Observables& node) {
+                double q = 0;
+                node.read(0, &q);
+                return q;
+              }};
+  std::vector<double> seen;
+  event.call = [&](const Happening& happening, const Observables& inside) {
+    EXPECT_EQ(happening.time, inside.time());
+    seen.push_back(happening.time);
+    return seen.size() < 2;
+  };
+  const RunResult result = turn(1000, {event});
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_NEAR(seen[1], 1.5 * std::numbers::pi, 1e-10);
+  EXPECT_EQ(result.final.time, seen[1]);
+}
+
+TEST(Events, ResumedRunsHaveTheBitsOfWholeOnes) {
+  const fs::path folder = fs::temp_directory_path() / "lagroid_events_resumed";
+  fs::remove_all(folder);
+  Orbit system;
+  system.h = 0.1;
+  RunOptions<Orbit> options{.steps = 300, .events = {event_at_zero("x", "q1"), event_at_zero("near", "q2 - 0.4")}};
+  const RunResult whole = run(system, ellipse, options);
+  options.folder = folder;
+  options.steps = 131;
+  run(system, ellipse, options);
+  options.steps = 300;
+  options.resume = true;
+  const RunResult resumed = run(system, ellipse, options);
+  fs::remove_all(folder);
+  EXPECT_EQ(bits_of(whole), bits_of(resumed));
+  ASSERT_EQ(whole.events.rows.size(), resumed.events.rows.size());
+  for (std::size_t i = 0; i < whole.events.rows.size(); ++i) {
+    EXPECT_EQ(whole.events.rows[i].time, resumed.events.rows[i].time);
+    EXPECT_EQ(whole.events.rows[i].values, resumed.events.rows[i].values);
+    EXPECT_EQ(whole.events.rows[i].event, resumed.events.rows[i].event);
+  }
+  EXPECT_EQ(whole.events.watched[0].count, resumed.events.watched[0].count);
+}
+
+TEST(Events, WhatCannotBeWatchedForIsRefusedInALine) {
+  EXPECT_EQ(message_of({event_at_zero("gone", "height - 1")}),
+            "event \"gone\": \"height - 1\": there is no \"height\"; there are t, q, mu");
+  EXPECT_EQ(message_of({event_at_zero("open", "sin(q")}),
+            "event \"open\": \"sin(q\": Missing parenthesis; there are t, q, mu");
+  EXPECT_EQ(message_of({event_at_zero("set", "q = 1")}),
+            "event \"set\": \"q = 1\": \"=\" sets nothing here: write what is to be zero; there are t, q, mu");
+  EXPECT_EQ(message_of({event_at_zero("twice", "q"), event_at_zero("twice", "mu")}),
+            "event \"twice\": two have this name");
+  EXPECT_EQ(message_of({event_at_zero("", "q")}), "an event has a name of one line");
+  EXPECT_EQ(message_of({stop(event_at_zero("none", "q"), 0)}), "event \"none\": it counts to 0, to no event");
+}
+
+TEST(Events, WithoutAFiniteFunctionAreSaidAndNothingIsLost) {
+  const RunResult result = turn(70, {event_at_zero("root", "sqrt(q) - 0.5"), event_at_zero("never", "log(q - 2)")});
+  ASSERT_TRUE(result.converged());
+  EXPECT_EQ(result.steps, 70);
+  EXPECT_EQ(result.events.watched[0].count, 2);  // where it is defined it is found
+  EXPECT_EQ(std::count(result.notes.begin(), result.notes.end(),
+                       "event \"never\": its function was no finite number at 71 of 71 nodes, the first at t = 0; "
+                       "nothing was found next to them"),
+            1);
+}
+
+/// A bob that a wall at the bottom sends back.
+Event wall() {
+  Event event = event_at_zero("wall", "q", falling);
+  event.kick = {"-2*mu"};
+  return event;
+}
+
+TEST(Events, KicksGoOnFromWhereTheyHappen) {
+  const RunResult result = turn(200, {wall()});
+  ASSERT_TRUE(result.converged()) << result.message;
+  const std::vector<double> times = times_of(result, "wall");
+  ASSERT_EQ(times.size(), 6u);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(times[i], std::numbers::pi * (double(i) + 0.5), 1e-10) << i;
+  const std::vector<double>& q = result.trajectory.series[0].values;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    EXPECT_NEAR(result.trajectory.time[k], 0.1 * double(k), 1e-13);
+    EXPECT_NEAR(q[k], std::abs(std::cos(0.1 * double(k))), 1e-10) << k;
+  }
+}
+
+TEST(Events, AKickAtTheApocentreMakesTheOrbitACircle) {
+  Orbit system;
+  system.h = 0.05;
+  Event fire = event_at_zero("apocentre", "q1*mu1 + q2*mu2", falling);
+  const std::string speed = "sqrt(mu1^2 + mu2^2)";
+  for (const char* each : {"mu1", "mu2"})
+    fire.kick.push_back(fmt::format("{}*(1/(sqrt(sqrt(q1^2 + q2^2))*{}) - 1)", each, speed));
+  const State<Pair<2>> start{{1, 0}, {0, 1.2}};
+  const RunOptions<Orbit> options{.steps = 1000, .events = {fire}};
+  for (const bool by_flows : {false, true}) {
+    const RunResult result =
+        by_flows ? run_split(system, start, compositions::kahan_li_8, options) : run(system, start, options);
+    ASSERT_TRUE(result.converged()) << result.message;
+    const double apocentre = 1.44 / (2 - 1.44), tolerance = by_flows ? 1e-7 : 2e-3;
+    EXPECT_NEAR(std::hypot(result.final.position[0], result.final.position[1]), apocentre, tolerance * apocentre);
+    for (const LedgerEntry& entry : result.ledger.entries) EXPECT_FALSE(entry.broken()) << entry.name;
+    const auto angular = std::find_if(result.ledger.entries.begin(), result.ledger.entries.end(),
+                                      [](const LedgerEntry& entry) { return entry.name == "angular momentum"; });
+    EXPECT_EQ(angular->verdict, "kept");
+    EXPECT_NEAR(angular->initial[0], std::sqrt(apocentre), 2 * tolerance);
+  }
+}
+
+TEST(Events, KicksThatFollowEachOtherWithoutEndAreSaid) {
+  Event event = wall();
+  event.direction = both;
+  const RunResult result = turn(200, {event});
+  EXPECT_FALSE(result.converged());
+  EXPECT_EQ(result.message, "event \"wall\": follows its own kicks without end, 100 times between t = 1.5 and 1.6");
+  EXPECT_EQ(result.steps, 16);
+}
+
+TEST(Events, KicksThatDoNotFitAreRefused) {
+  Event event = wall();
+  event.kick.push_back("1");
+  EXPECT_EQ(message_of({event}), "event \"wall\": its kick has 2 numbers, the momentum has 1");
+  event.kick = {"speed"};
+  EXPECT_EQ(message_of({event}), "event \"wall\": \"speed\": there is no \"speed\"; there are t, q, mu");
+}
+
+TEST(Events, KickedRunsResumeWithTheSameBits) {
+  const fs::path folder = fs::temp_directory_path() / "lagroid_events_kicked";
+  fs::remove_all(folder);
+  Turning system;
+  system.h = 0.1;
+  RunOptions<Turning> options{.steps = 120, .events = {wall()}};
+  const RunResult whole = run(system, unit_turn, options);
+  options.folder = folder;
+  options.steps = 16;  // the step with the kick is the last
+  run(system, unit_turn, options);
+  options.steps = 120;
+  options.resume = true;
+  const RunResult resumed = run(system, unit_turn, options);
+  fs::remove_all(folder);
+  EXPECT_EQ(bits_of(whole), bits_of(resumed));
+  EXPECT_EQ(whole.events.watched[0].count, 4);
+  EXPECT_EQ(resumed.events.watched[0].count, 4);
+}
+
+/// Steps that do not converge when they are cut.
+class Uncut final : public Motion {
+ public:
+  explicit Uncut(Motion& whole) : whole_(whole) {}
+  std::string name() const override { return whole_.name(); }
+  MethodTraits traits() const override { return whole_.traits(); }
+  StepReport advance() override { return whole_.advance(); }
+  std::string failure(const StepReport& report, long step) const override { return whole_.failure(report, step); }
+  long index() const override { return whole_.index(); }
+  double time() const override { return whole_.time(); }
+  double step_size() const override { return whole_.step_size(); }
+  const Observables& look() override { return whole_.look(); }
+  std::vector<NamedVector> state() const override { return whole_.state(); }
+  std::optional<double> defect() const override { return whole_.defect(); }
+  void describe(RunResult& result) const override { whole_.describe(result); }
+  void serialize(NumberArchive& archive) override { whole_.serialize(archive); }
+  std::string why_not_cut() const override { return why; }
+
+  std::string why;
+
+ private:
+  Motion& whole_;
+};
+
+TEST(Events, StepsThatCannotBeCutEndTheRunWithTheReason) {
+  Turning system;
+  system.h = 0.1;
+  IntegratorOptions how;
+  how.fixed = StepKind::splitting;
+  SystemMotion<Turning> whole(system, plain_presentation<Turning>(system, "turning", {}), {},
+                              std::make_unique<detail::IntegratorOf<Turning, SplittingIntegrator<Turning>>>(
+                                  system, unit_turn, Pair<1>::unit(unit_turn.object), compositions::single),
+                              how);
+  Uncut motion(whole);
+  RunResult result;
+  RunExtent extent;
+  extent.steps = 30;
+  extent.events = {event_at_zero("down", "q")};
+  drive(motion, extent, {.record = true}, result);
+  EXPECT_FALSE(result.converged());
+  EXPECT_EQ(result.steps, 16);
+  EXPECT_EQ(result.trajectory.time.size(), 17u);
+  EXPECT_NE(result.message.find("event \"down\": could not be located between t = 1.5 and 1.6"), std::string::npos)
+      << result.message;
+  motion.why = "its steps are whole";
+  EXPECT_THROW(drive(motion, extent, {}, result), RunError);
+}
+
+}  // namespace

@@ -1,0 +1,99 @@
+#pragma once
+// Motions in which something happens, by steps of order eight.
+#include <lagroid/run/run.hpp>
+#include <lagroid/solvers/integrators/splitting.hpp>
+#include <lagroid/solvers/integrators/transformed.hpp>
+#include <lagroid/systems/mechanical.hpp>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// A unit mass about a fixed centre.
+struct Orbit : MechanicalSystem<Orbit, 2> {
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 2>& q) const {
+    using std::sqrt;
+    return S(-1) / sqrt(q.squaredNorm());
+  }
+  template <class S> Vector<S, 2> gradient(const Vector<S, 2>& q) const {
+    using std::sqrt;
+    const S square = q.squaredNorm();
+    return q / (square * sqrt(square));
+  }
+  std::vector<Symmetry<Orbit>> symmetries() const {
+    return {{"angular momentum", [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); }}};
+  }
+  std::vector<Quantity<Orbit>> quantities() const { return {energy_quantity(), symmetries()[0].quantity()}; }
+};
+
+struct HenonHeiles : MechanicalSystem<HenonHeiles, 2> {
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 2>& q) const {
+    return (q(0) * q(0) + q(1) * q(1)) * 0.5 + q(0) * q(0) * q(1) - q(1) * q(1) * q(1) / 3.0;
+  }
+};
+
+/// Three points that attract each other, in the plane and in places times the roots of their masses.
+struct ThreePoints : MechanicalSystem<ThreePoints, 6> {
+  static constexpr bool attractive = true;
+  Vector<double, 3> masses{1, 1, 1};
+  static double mass() { return 1; }
+  template <class S> Vector<S, 2> place(const Vector<S, 6>& q, int i) const {
+    return q.template segment<2>(2 * i) / std::sqrt(masses(i));
+  }
+  template <class S> S potential(const Vector<S, 6>& q) const {
+    using std::sqrt;
+    S u(0.0);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < i; ++j)
+        u -= S(masses(i) * masses(j)) / sqrt(Vector<S, 2>(place(q, i) - place(q, j)).squaredNorm());
+    return u;
+  }
+  template <class S> Vector<S, 6> gradient(const Vector<S, 6>& q) const {
+    using std::sqrt;
+    Vector<S, 6> out = Vector<S, 6>::Constant(S(0.0));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < i; ++j) {
+        const Vector<S, 2> apart = place(q, i) - place(q, j);
+        const S square = apart.squaredNorm();
+        const Vector<S, 2> pull = apart * (S(masses(i) * masses(j)) / (square * sqrt(square)));
+        out.template segment<2>(2 * i) += pull / std::sqrt(masses(i));
+        out.template segment<2>(2 * j) -= pull / std::sqrt(masses(j));
+      }
+    return out;
+  }
+};
+
+/// Runs the system by composed splittings.
+template <class Sys>
+RunResult run_split(const Sys& system, const State<typename Sys::GroupoidType>& start, const Composition& composition,
+                    const RunOptions<Sys>& options) {
+  IntegratorOptions how;
+  how.fixed = StepKind::splitting;
+  how.composition = composition;
+  return run<Sys>(system,
+                  std::make_unique<detail::IntegratorOf<Sys, SplittingIntegrator<Sys>>>(
+                      system, start, Sys::GroupoidType::unit(start.object), composition),
+                  how, options);
+}
+
+/// The times at which an event happened.
+inline std::vector<double> times_of(const RunResult& result, const std::string& name) {
+  std::vector<double> times;
+  for (const Happening& row : result.events.rows)
+    if (result.events.watched[row.event].name == name) times.push_back(row.time);
+  return times;
+}
+
+inline Event event_at_zero(std::string name, std::string when, Event::Direction direction = Event::Direction::both) {
+  Event event{std::move(name), std::move(when)};
+  event.direction = direction;
+  return event;
+}
+
+}  // namespace lagroid
