@@ -70,7 +70,9 @@ class DescentTally {
     add(there.data(), here.data(), int(there.size()), {sample.data(), std::size_t(sample.size())});
   }
   DescentFinding finding() {
-    finding_.defect = largest_ > 0 ? largest_ / size_ : 0;
+    finding_.defect = finding_.sample.empty() ? std::numeric_limits<double>::infinity()
+                      : largest_ > 0          ? largest_ / size_
+                                              : 0;
     if (std::isnan(finding_.defect)) finding_.defect = std::numeric_limits<double>::infinity();
     return finding_;
   }
@@ -165,8 +167,10 @@ DescentReport examine_descent(const ReducedSystem<Phi, Sys>& reduced,
       // Its size is that of its values at the samples.
       using C = Vector<double, Sys::arrow_constraints>;
       const auto h = detail::on_the_constraint(reduced, ArrowOf<typename Phi::Codomain>(phi(g)));
-      const C zero = system.constraint(phi.lift(groupoid.source(g), h));
-      constraint.add(C(system.constraint(g) + zero), C(system.constraint(g)), at);
+      const ArrowOf<G> lifted = phi.lift(groupoid.source(g), h);
+      // The nearest one may be no image (a radius below zero): such a sample tells nothing.
+      const bool no_image = (image_coordinates(phi(lifted)) - image_coordinates(h)).norm() > 1e-8;
+      if (!no_image) constraint.add(C(system.constraint(g) + system.constraint(lifted)), C(system.constraint(g)), at);
     }
     const ObjectOf<G> q = groupoid.source(g);
     const ObjectOf<G> over = groupoid.source(stands);
@@ -199,8 +203,6 @@ DescentReport examine_descent(const ReducedSystem<Phi, Sys>& reduced,
   if constexpr (Sys::object_constraints > 0) report.findings.push_back(object_constraint.finding());
   if constexpr (Forced<Sys>) report.findings.push_back(forces.finding());
   if constexpr (Nonholonomic<Sys>) report.findings.push_back(distribution.finding());
-  if (arrows.empty())
-    for (auto& finding : report.findings) finding.defect = std::numeric_limits<double>::infinity();
   return report;
 }
 
