@@ -69,7 +69,8 @@ PoissonEntry entry(std::string_view name, std::string_view summary, std::string_
   for (const auto& label : Sys::labels()) out.labels.emplace_back(label);
   for (const std::string_view method : poisson_methods_of<Sys>()) out.methods.push_back(poisson_methods::named(method));
   out.read = [](const Section& scene) -> std::unique_ptr<AnyPoissonSystem> {
-    return std::make_unique<Known<Sys>>(read_parameters<Sys>(scene));
+    // A table of no keys is none that a scene may have.
+    return std::make_unique<Known<Sys>>(parameter_keys<Sys>().empty() ? Sys{} : read_parameters<Sys>(scene));
   };
   return out;
 }
