@@ -27,7 +27,7 @@ from .learning import LearnedHamiltonian, Measures, Trajectories, learn, traject
 from .optimisation import Manifold, Optimum, ProductManifold, Sphere, Stiefel, minimise, optimize
 from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
 from .scenes import require, resume, run, scene_text, systems
-from .studies import Gradient, Method, check, gradient, methods, study
+from .studies import GradientTable, Method, check, gradient, methods, study
 from .sweeps import Sweep, sweep
 
 __all__ = [
@@ -36,7 +36,7 @@ __all__ = [
     "DataError",
     "Endpoint",
     "Error",
-    "Gradient",
+    "GradientTable",
     "Groupoid",
     "Integrator",
     "Interrupted",

@@ -16,7 +16,7 @@ from .errors import SolveError
 from .programs import output_of, program
 from .scenes import SceneLike, is_file, made, settings
 
-__all__ = ["Gradient", "Method", "check", "gradient", "methods", "study"]
+__all__ = ["GradientTable", "Method", "check", "gradient", "methods", "study"]
 
 
 class Method(NamedTuple):
@@ -71,7 +71,7 @@ def check(
     return told_by(program("lagroid-check", "LAGROID_CHECK", "lagroid_check"), scene, set, arguments)
 
 
-class Gradient(NamedTuple):
+class GradientTable(NamedTuple):
     """Exact derivatives of a run: a row for each function, a column for each of what they are taken by."""
 
     of: list[str]
@@ -91,7 +91,7 @@ def gradient(
     wrt: Sequence[str] = ("initial", "parameters"),
     set: Optional[Mapping[str, Any]] = None,
     check: bool = False,
-) -> Gradient:
+) -> GradientTable:
     """The derivatives of a scene's run by its start and its parameters, exact, by the program lagroid-gradient
     (docs/gradients.md): `of` what, as "final.position", "node.10.px" or "integral.x", and `wrt` what, as
     "initial.momentum" or "parameters.strength". `check` compares with extrapolated differences of runs. Raises
@@ -101,7 +101,7 @@ def gradient(
     if found.get("status") == "failed":
         raise SolveError(found["message"])
     differences = found.get("differences")
-    return Gradient(
+    return GradientTable(
         found["of"],
         found["by"],
         np.array(found["values"]),
