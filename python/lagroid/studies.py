@@ -68,7 +68,7 @@ def check(
     """Asks the scene's system every law, from groupoid axioms to Noether, by the program lagroid-check, in which the
     laws are compiled: the certificate that it prints with --json. `arguments` go to it as they are. Raises ProgramError
     where it is missing, SceneError where it refuses the scene."""
-    return told_by(program("lagroid-check", "LAGROID_CHECK", "lagroid_check"), scene, set, arguments)
+    return told_by("check", scene, set, arguments)
 
 
 class GradientTable(NamedTuple):
@@ -97,7 +97,7 @@ def gradient(
     "initial.momentum" or "parameters.strength". `check` compares with extrapolated differences of runs. Raises
     ProgramError where the program is missing, SceneError where it refuses, SolveError where a step of the run fails."""
     arguments = ["--of", ",".join(of), "--wrt", ",".join(wrt)] + (["--check"] if check else [])
-    found = told_by(program("lagroid-gradient", "LAGROID_GRADIENT", "lagroid_gradient"), scene, set, arguments)
+    found = told_by("gradient", scene, set, arguments)
     if found.get("status") == "failed":
         raise SolveError(found["message"])
     differences = found.get("differences")
@@ -114,22 +114,23 @@ def gradient(
 
 
 def told_by(
-    path: str, scene: SceneLike, set: Optional[Mapping[str, Any]], arguments: Sequence[str]
+    command: str, scene: SceneLike, set: Optional[Mapping[str, Any]], arguments: Sequence[str]
 ) -> dict[str, Any]:
-    """What a program that stands beside lagroid prints of a scene with --json."""
+    """What the program of a command that stands beside lagroid prints of a scene with --json."""
     asked = made(scene, set)
     text = asked.toml()  # what is mistaken in it is told here
+    path = program(f"lagroid-{command}", f"LAGROID_{command.upper()}", f"lagroid_{command}")
     with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
-        command = [path]
+        words = [path]
         if is_file(scene):  # itself, because what it names stands beside it
             name = asked.name
-            command += [name, "--json", *arguments]
+            words += [name, "--json", *arguments]
             for each in settings(set):
-                command += ["--set", each]
+                words += ["--set", each]
         else:
             file.write(text)
             file.flush()
             name = file.name
-            command += [name, "--json", *arguments]
-        found: dict[str, Any] = json.loads(output_of(command, asked.name, name))
+            words += [name, "--json", *arguments]
+        found: dict[str, Any] = json.loads(output_of(words, asked.name, name))
     return found

@@ -163,10 +163,25 @@ template <class Result> Result converged_run(Result result) {
 
 }  // namespace detail
 
+/// What the laws are about. Another in its place shows that they fail.
+struct RunDerivatives {
+  template <DiscreteSystem Sys>
+  auto forward(const Sys& system, const State<typename Sys::GroupoidType>& start,
+               const SensitivityOptions<Sys>& options) const {
+    return sensitivities(system, start, options);
+  }
+  template <DiscreteSystem Sys, class F>
+  auto backward(const Sys& system, const State<typename Sys::GroupoidType>& start, const F& f,
+                const SensitivityOptions<Sys>& options) const {
+    return gradient(system, start, f, options);
+  }
+};
+
 /// How far the transition matrix of a run is from symplectic, relative to the square of its norm.
-template <DiscreteSystem Sys>
-double symplectic_defect(const Sys& system, const State<typename Sys::GroupoidType>& start, long steps) {
-  const auto found = detail::converged_run(sensitivities(system, start, {.steps = steps}));
+template <DiscreteSystem Sys, class Derivatives = RunDerivatives>
+double symplectic_defect(const Sys& system, const State<typename Sys::GroupoidType>& start, long steps,
+                         const Derivatives& derivatives = {}) {
+  const auto found = detail::converged_run(derivatives.forward(system, start, SensitivityOptions<Sys>{.steps = steps}));
   const auto end = detail::end_of_run(system, start, steps);
   const Eigen::MatrixXd tangent = detail::tangent_directions(system, start);
   const Eigen::MatrixXd moved = found.by_start * tangent;
@@ -176,20 +191,21 @@ double symplectic_defect(const Sys& system, const State<typename Sys::GroupoidTy
 }
 
 /// Of runs of so many steps from random states: `draw()` returns a State.
-template <DiscreteSystem Sys, class Draw>
-LawReport sensitivity_laws(const Sys& system, const Draw& draw, long steps = 5) {
+template <DiscreteSystem Sys, class Draw, class Derivatives = RunDerivatives>
+LawReport sensitivity_laws(const Sys& system, const Draw& draw, long steps = 5, const Derivatives& derivatives = {}) {
   using G = typename Sys::GroupoidType;
   const std::vector<std::string> names = all_parameters(system).names;
   LawReport report{"exact derivatives of runs", {}};
   if constexpr (Variational<Sys>)
     report.laws.push_back(check_law("the transition matrix is symplectic", 1e-12,
-                                    [&] { return symplectic_defect(system, draw(), steps); }));
+                                    [&] { return symplectic_defect(system, draw(), steps, derivatives); }));
   report.laws.push_back(check_law("backward is forward", 1e-12, [&] {
     const State<G> start = draw();
-    const auto forward = detail::converged_run(sensitivities(system, start, {.steps = steps, .parameters = names}));
+    const auto forward = detail::converged_run(
+        derivatives.forward(system, start, SensitivityOptions<Sys>{.steps = steps, .parameters = names}));
     const auto momentum = [](const auto& node) { return node.momentum; };
-    const auto backward =
-        detail::converged_run(gradient(system, start, momentum, {.steps = steps, .parameters = names}));
+    const auto backward = detail::converged_run(
+        derivatives.backward(system, start, momentum, SensitivityOptions<Sys>{.steps = steps, .parameters = names}));
     return worst({detail::relative_defect(backward.by_start, forward.by_start.bottomRows(Sys::dimension)),
                   detail::relative_defect(backward.by_parameters, forward.by_parameters.bottomRows(Sys::dimension))});
   }));
@@ -197,7 +213,8 @@ LawReport sensitivity_laws(const Sys& system, const Draw& draw, long steps = 5) 
     for (const auto& symmetry : system.symmetries())
       report.laws.push_back(check_law(symmetry.name + " keeps its gradient", 1e-8, [&] {
         const State<G> start = draw();
-        const auto found = detail::converged_run(sensitivities(system, start, {.steps = steps}));
+        const auto found =
+            detail::converged_run(derivatives.forward(system, start, SensitivityOptions<Sys>{.steps = steps}));
         const auto slopes = [&](const State<G>& at) {
           Eigen::RowVectorXd out(2 * Sys::dimension);
           for (int k = 0; k < out.size(); ++k)
@@ -216,7 +233,8 @@ LawReport sensitivity_laws(const Sys& system, const Draw& draw, long steps = 5) 
   }
   report.laws.push_back(check_law("differences of the program", 1e-8, [&] {
     const State<G> start = draw();
-    const auto found = detail::converged_run(sensitivities(system, start, {.steps = steps, .parameters = names}));
+    const auto found = detail::converged_run(
+        derivatives.forward(system, start, SensitivityOptions<Sys>{.steps = steps, .parameters = names}));
     Eigen::MatrixXd all(found.by_start.rows(), found.by_start.cols() + found.by_parameters.cols());
     all << found.by_start, found.by_parameters;
     return detail::relative_defect(all, detail::differenced(system, start, steps));

@@ -191,9 +191,9 @@ TEST(Architecture, OneClassForEveryKindOfMotion) {
     return names;
   };
   EXPECT_EQ(sorted(matches(sources, "class (\\w+) (?:final )?: public Motion\\b")),
-            (std::vector<std::string>{"BodiesMotion", "SphereMotion", "SystemMotion"}));
+            (std::vector<std::string>{"BodiesMotion", "PoissonMotion", "SphereMotion", "SystemMotion"}));
   EXPECT_EQ(sorted(matches(sources, "class (\\w+) (?:final )?: public Observables\\b")),
-            (std::vector<std::string>{"SceneNode", "SphereNode", "SystemNode"}));
+            (std::vector<std::string>{"PoissonNode", "SceneNode", "SphereNode", "SystemNode"}));
 }
 
 TEST(BrokenArchitecture, AnUpwardIncludeIsFoundOut) {

@@ -3,6 +3,8 @@
 #include <lagroid/solvers/testing/sensitivity_laws.hpp>
 #include <lagroid/systems/kepler.hpp>
 
+#include "../../support/broken.hpp"
+
 #include <gtest/gtest.h>
 
 namespace lagroid {
@@ -35,6 +37,28 @@ TEST(SensitivityLaws, DifferencesSeeAWrongHessianThatIsSymplectic) {
   EXPECT_GT(laws::detail::relative_defect(found.by_start, laws::detail::differenced(spring, start, 5).leftCols(2)),
             1e-3);
   EXPECT_FALSE(laws::sensitivity_laws(spring, draw).holds());
+}
+
+/// Derivatives of a motion that is pulled to rest.
+struct Damped : laws::RunDerivatives {
+  template <class Sys>
+  auto forward(const Sys& system, const State<typename Sys::GroupoidType>& start,
+               const SensitivityOptions<Sys>& options) const {
+    auto found = laws::RunDerivatives::forward(system, start, options);
+    found.by_start *= 0.99;
+    return found;
+  }
+};
+TEST(BrokenSensitivity, FailsTheLawsOfDerivatives) {
+  Kepler kepler;
+  kepler.h = 0.05;
+  const auto draw = [] {
+    return State<Pair<2>>{{1 + 0.1 * draw_uniform(), 0.1 * draw_uniform()}, {0.1 * draw_uniform(), 1.1}};
+  };
+  const auto report = laws::sensitivity_laws(kepler, draw, 5, Damped());
+  EXPECT_TRUE(laws::seen_broken(report.law("the transition matrix is symplectic"))) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("backward is forward"))) << report;
+  EXPECT_TRUE(laws::seen_broken(report.law("differences of the program"))) << report;
 }
 
 /// A motion that does not go back to the state that it is restored to: what is taken backwards is wrong.

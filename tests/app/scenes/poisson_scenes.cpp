@@ -1,5 +1,5 @@
 // Scenes of Poisson systems on the command line: ledgers, methods, what is refused and in which words.
-#include "command_line.hpp"
+#include "../command_line.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // Scenes that name a reduction: the full motion back, both momenta in the ledger, and what is refused.
-#include "scenes/scenes.hpp"
+#include "scenes.hpp"
 
 #include <nlohmann/json.hpp>
 
