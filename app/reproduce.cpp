@@ -247,8 +247,7 @@ int reproduce_poisson(const ReproduceOptions& options) {
   for (const PoissonRow& row : rows) {
     result["systems"][row.system][row.method] = {
         {"order", row.order}, {"poisson_defect", row.defect}, {"casimirs", row.casimir}};
-    text += fmt::format("  {:<18} {:<20} order {:5.2f}, Poisson defect {:8.2g}, Casimirs within {:8.2g}\n", row.system,
-                        row.method, row.order, row.defect, row.casimir);
+    text += text_of(row);
   }
   return conclude(std::move(result), std::move(text), files, note, json);
 }

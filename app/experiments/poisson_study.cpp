@@ -97,6 +97,12 @@ PoissonRow measured_row(const PoissonEntry& entry, const AnyPoissonSystem& syste
 }
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.2g}", x) : "-"; }
+std::string order_of(const PoissonRow& row) {
+  return std::isfinite(row.order) ? fmt::format("{:.2f}", row.order) : "-";
+}
+std::string casimirs_of(const PoissonRow& row) {
+  return entry_named(row.system).casimirs.empty() ? "-" : number(row.casimir);
+}
 
 std::string report_of(const std::vector<PoissonRow>& rows, long steps, const std::string& command) {
   std::string out = fmt::format(
@@ -115,10 +121,8 @@ std::string report_of(const std::vector<PoissonRow>& rows, long steps, const std
           "|---|---|---|---|---|---|---|\n",
           row.system);
     system = row.system;
-    const std::string order = std::isfinite(row.order) ? fmt::format("{:.2f}", row.order) : "-";
-    const bool has_casimirs = !entry_named(row.system).casimirs.empty();
-    out += fmt::format("| {} | {} | {} | {} | {} | {} | {:.2g} |\n", row.method, order, number(row.defect),
-                       has_casimirs ? number(row.casimir) : "-", number(row.energy_first),
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {:.2g} |\n", row.method, order_of(row), number(row.defect),
+                       casimirs_of(row), number(row.energy_first),
                        row.ended.empty() ? number(row.energy_last) : row.ended, row.microseconds);
   }
   return out;
@@ -147,6 +151,11 @@ std::vector<PoissonRow> run_poisson_study(long steps, const std::function<void(l
     }
   }
   return rows;
+}
+
+std::string text_of(const PoissonRow& row) {
+  return fmt::format("  {:<18} {:<20} order {:>4}, Poisson defect {:>8}, Casimirs within {:>8}\n", row.system,
+                     row.method, order_of(row), number(row.defect), casimirs_of(row));
 }
 
 const std::vector<const char*> poisson_report_files{"report.md", "poisson.csv"};

@@ -13,7 +13,7 @@ struct PoissonRow {
   std::string system;
   std::string method;
   double order = 0;    ///< from two step sizes, against a finer one; not a number where both errors are rounding
-  double defect = 0;   ///< of a step of size 0.1: from a Poisson map, relative
+  double defect = 0;   ///< of a step of size 0.1: from a Poisson map, relative; not a number where none is known
   double casimir = 0;  ///< how far the Casimirs go over the run
   double energy_first = 0;
   double energy_last = 0;   ///< how far the energy goes over its first and its last tenth
@@ -23,6 +23,9 @@ struct PoissonRow {
 
 /// Every method of each system, over runs of so many steps of size 0.1. `report(done, all)` is called after each.
 std::vector<PoissonRow> run_poisson_study(long steps, const std::function<void(long, long)>& report);
+
+/// Its order, defect and Casimirs in a line; a dash for what has no number.
+std::string text_of(const PoissonRow& row);
 
 extern const std::vector<const char*> poisson_report_files;
 
