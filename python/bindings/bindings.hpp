@@ -10,6 +10,7 @@ void bind_integrators(pybind11::module_& module);
 void bind_systems(pybind11::module_& module);
 void bind_studies(pybind11::module_& module);
 void bind_optimisation(pybind11::module_& module);
+void bind_control(pybind11::module_& module);
 void bind_learning(pybind11::module_& module);
 
 }  // namespace lagroid::python

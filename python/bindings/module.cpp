@@ -71,6 +71,7 @@ PYBIND11_MODULE(_lagroid, module) {
   bind_systems(module);
   bind_studies(module);
   bind_optimisation(module);
+  bind_control(module);
   bind_learning(module);
 }
 

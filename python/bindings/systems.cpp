@@ -1,4 +1,4 @@
-/// Systems of the library as classes: each from the one declaration of its parameters (bindings/system.cpp.in).
+/// Systems of the library as classes: each from the one declaration of its parameters (bindings/templates/system.cpp.in).
 
 #include "bindings.hpp"
 #include "library_systems.hpp"

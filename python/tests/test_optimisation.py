@@ -126,5 +126,35 @@ class Optimisation(unittest.TestCase):
             lagroid.optimize(EXAMPLES / "kepler.toml")
 
 
+class Control(unittest.TestCase):
+    def test_the_shortest_way(self) -> None:
+        """Three arcs of a car that cannot turn sharply, from arrays alone."""
+        way = lagroid.control(EXAMPLES / "control/shortest_way.toml", set={"horizon.stages": 60})
+        self.assertTrue(way.converged, way.message)
+        self.assertEqual((way.states.shape, way.controls.shape, way.times.shape), ((61, 3), (60, 1), (61,)))
+        self.assertEqual(way.costates.shape[0], 60)
+        self.assertAlmostEqual(way.cost, way.duration, places=12)
+        self.assertAlmostEqual(way.cost, float(way.times[-1]), places=12)
+        self.assertEqual(way.costs[0], way.cost)
+        steps = np.diff(way.states[:, way.state_names.index("x")]), np.diff(way.states[:, way.state_names.index("y")])
+        self.assertTrue(np.all(np.hypot(*steps) <= np.diff(way.times) * (1 + 1e-9)))
+        self.assertEqual(json.loads(way.summary)["cost"], way.cost)
+
+    def test_no_way(self) -> None:
+        """A mass that cannot stop in time."""
+        late = lagroid.control(
+            EXAMPLES / "control/fastest_stop.toml",
+            set={"horizon.free": False, "horizon.duration": 0.5, "horizon.stages": 20, "solver.starts": 2},
+        )
+        self.assertFalse(late.converged)
+        self.assertEqual(late.status, "infeasible")
+
+    def test_what_is_mistaken(self) -> None:
+        with self.assertRaisesRegex(lagroid.SceneError, "below"):
+            lagroid.control(EXAMPLES / "control/fastest_stop.toml", set={"bounds.u": [1, -1]})
+        with self.assertRaisesRegex(lagroid.SceneError, "run"):
+            lagroid.control(EXAMPLES / "kepler.toml")
+
+
 if __name__ == "__main__":
     unittest.main()
