@@ -17,6 +17,7 @@ class Piece:
     commands: tuple  # of shell, one after another in the root of the project; the first that fails ends the piece
     lacks: object = lambda: ""  # why it cannot run here, or nothing
     goes_on: bool = False  # a build: what an hour left of it is the next run's
+    compiler: str = "g++"
     writes: bool = False  # pages, which must come out as they are; else what was written is put aside
 
 
@@ -65,11 +66,13 @@ def nightly_piece(name, what, chosen, lacks=None):
 
 def shares(preset, what, count):
     """A build, and its tests dealt out to as many pieces."""
+    compiler = "g++" if preset == "debug" else "clang++-14"
     yield Piece(f"{preset}-build", f"{what}: build", (f"cmake --preset {preset}{settings.get(preset, '')}",
-                                                    f"cmake --build --preset {preset}"), goes_on=True)
+                                                    f"cmake --build --preset {preset}"),
+                goes_on=True, compiler=compiler)
     for share in range(1, count + 1):
         yield Piece(f"{preset}-{share}", f"{what}: tests, share {share} of {count}",
-                    (f"ctest --preset {preset} -I {share},,{count}",))
+                    (f"ctest --preset {preset} -I {share},,{count}",), compiler=compiler)
 
 
 settings = {"sanitizers": " -DLAGROID_TEST_LAWS=ON"}
@@ -91,7 +94,8 @@ pieces = (
     Piece("fuzz", "random scenes, for an hour",
           (f"mkdir -p {found}", "build/sanitizers-core/tests/fuzz_scenes -max_total_time=3500 -timeout=10 -rss_limit_mb=4096 "
            f"-max_len=4096 -dict=tests/data/scene.dict -artifact_prefix={found}/ {found} examples"),
-          lambda: "" if (root / "build/sanitizers-core/tests/fuzz_scenes").exists() else "sanitizers-core is not built"),
+          lambda: "" if (root / "build/sanitizers-core/tests/fuzz_scenes").exists() else "sanitizers-core is not built",
+          compiler="clang++-14"),
     *shares("debug", "debug, with composability checks", 2),
     *shares("clang", "clang 14", 2),
     Piece("bench", "kernels by hand agree with the framework", ("./lagroid bench check",)),

@@ -66,7 +66,7 @@ class Release:
             if piece.writes and changed:
                 self.git("stash", "push", "-u", "-m", f"lagroid release {name}", "--", ".", f":!{page_of_it}")
                 said += "; git stash has what was written"
-        self.record(name, result=result, reason=said, when=when, seconds=round(time.monotonic() - start, 1), **machine())
+        self.record(name, result=result, reason=said, when=when, seconds=round(time.monotonic() - start, 1), **machine(piece.compiler))
         return result
 
     def carry_out(self, piece, until):
@@ -105,12 +105,12 @@ class Release:
         lines = ["<!-- Written by `./lagroid release`. -->", "# What was run", "",
                  f"By `./lagroid release`, on commit {self.commit}. A row is a piece of the whole; what its commands are says",
                  "`tests/release/pieces.py`.", ""]
-        on = sorted({f"{entry['machine']}, {entry['compiler']}" for entry in self.done().values()})
-        lines += [f"- {each}" for each in on]
-        lines += ["", "| piece | what | result | took | when | why not |", "|---|---|---|---|---|---|"]
+        lines += [f"- {each}" for each in sorted({entry["machine"] for entry in self.done().values()})]
+        lines += ["", "| piece | what | compiler | result | took | when | why not |", "|---|---|---|---|---|---|---|"]
         for name, result, seconds, when, _ in self.table():
-            reason = self.done().get(name, {}).get("reason", "").replace("|", "\\|")
-            lines.append(f"| {name} | {self.pieces[name].what} | {result} | {seconds} | {when} | {reason} |")
+            entry = self.done().get(name, {})
+            reason, compiler = entry.get("reason", "").replace("|", "\\|"), entry.get("compiler", "")
+            lines.append(f"| {name} | {self.pieces[name].what} | {compiler} | {result} | {seconds} | {when} | {reason} |")
         (self.root / page_of_it).write_text("\n".join(lines) + "\n")
 
 
@@ -124,13 +124,13 @@ def stop(child):
         child.wait()
 
 
-def machine():
+def machine(name):
     cpu = next((line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
                 if line.startswith("model name")), platform.machine())
     try:
-        compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
+        compiler = subprocess.run([name, "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     except OSError:
-        compiler = "no g++"
+        compiler = f"no {name}"
     return {"machine": f"{cpu}, {os.cpu_count()} processors, {platform.system()} {platform.release()}", "compiler": compiler}
 
 
