@@ -21,16 +21,31 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   using States = FlowStates<G>;
   using State = typename States::State;
 
+  /// A system of the library that is actuated has its own parameters.
+  static constexpr bool is_actuated = requires(Sys sys) { sys.system; };
+  static auto parametrised() {
+    if constexpr (is_actuated) {
+      return decltype(Sys::system)();
+    } else {
+      return Sys();
+    }
+  }
+  using Parametrised = decltype(parametrised());
+
   ControlProblemOf(std::string_view name, std::string_view summary) : name_(name), summary_(summary) {}
   std::string_view name() const override { return name_; }
   std::string_view summary() const override { return summary_; }
   std::vector<std::string> states() const override { return {Sys::states.begin(), Sys::states.end()}; }
   std::vector<std::string> controls() const override { return {Sys::control_names.begin(), Sys::control_names.end()}; }
-  std::vector<Key> parameters() const override { return parameter_keys<Sys>(); }
+  std::vector<Key> parameters() const override { return parameter_keys<Parametrised>(); }
 
   ControlResult solve(const Section& scene, const std::function<bool(int)>& keep_going) const override {
     ControlTask<Sys> task;
-    task.system = read_parameters<Sys>(scene);
+    if constexpr (is_actuated) {
+      task.system.system = read_parameters<Parametrised>(scene);
+    } else {
+      task.system = read_parameters<Parametrised>(scene);
+    }
     const ControlScene read = read_control_scene(scene, states(), controls());
     scene.finish();
     const State start = Eigen::Map<const State>(read.start.data());

@@ -14,5 +14,7 @@ const ControlProblem& hovercraft_problem();
 const ControlProblem& steered_sleigh_problem();
 const ControlProblem& steered_car_problem();
 const ControlProblem& satellite_turn_problem();
+const ControlProblem& pendulum_problem();
+const ControlProblem& rigid_body_problem();
 
 }  // namespace lagroid::app

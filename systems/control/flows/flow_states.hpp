@@ -61,6 +61,38 @@ template <int N> struct FlowStates<Product<SE2, Pair<N>>> {
   }
 };
 
+template <int N, int M> struct FlowStates<Product<Pair<N>, Pair<M>>> {
+  static constexpr int size = N + M;
+  using State = Vector<double, size>;
+  using Arrow = ArrowOf<Product<Pair<N>, Pair<M>>>;
+  static Arrow arrow(const State& from, const State& to) {
+    return {{from.template head<N>(), to.template head<N>()}, {from.template tail<M>(), to.template tail<M>()}};
+  }
+  static State reached(const State&, const Arrow& g) {
+    State out;
+    out << std::get<0>(g).target, std::get<1>(g).target;
+    return out;
+  }
+};
+
+/// The attitude exp(rotation vector).
+template <int N> struct FlowStates<Product<SO3, Pair<N>>> {
+  static constexpr int size = 3 + N;
+  using State = Vector<double, size>;
+  using Arrow = ArrowOf<Product<SO3, Pair<N>>>;
+  static Arrow arrow(const State& from, const State& to) {
+    const Matrix<double, 3, 3> start = SO3::exp(Vector<double, 3>(from.template head<3>()));
+    const Matrix<double, 3, 3> end = SO3::exp(Vector<double, 3>(to.template head<3>()));
+    return {start.transpose() * end, {from.template tail<N>(), to.template tail<N>()}};
+  }
+  static State reached(const State& from, const Arrow& g) {
+    const Matrix<double, 3, 3> start = SO3::exp(Vector<double, 3>(from.template head<3>()));
+    State out;
+    out << SO3::log(Matrix<double, 3, 3>(start * std::get<0>(g))), std::get<1>(g).target;
+    return out;
+  }
+};
+
 /// The attitude exp(rotation vector), of a body that sees directions fixed in space.
 template <int N> struct FlowStates<Product<Action<SO3, RotatedDirections>, Pair<N>>> {
   static constexpr int size = 3 + N;

@@ -1,0 +1,14 @@
+#include <lagroid/systems/control/pushed.hpp>
+
+#include "../problem_of.hpp"
+#include "problems.hpp"
+
+namespace lagroid::app {
+
+const ControlProblem& pendulum_problem() {
+  static const ControlProblemOf<PushedPendulum> problem("pendulum",
+                                                        "a pendulum moved by a torque, by its own discrete steps");
+  return problem;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,14 @@
+#include <lagroid/systems/control/pushed.hpp>
+
+#include "../problem_of.hpp"
+#include "problems.hpp"
+
+namespace lagroid::app {
+
+const ControlProblem& rigid_body_problem() {
+  static const ControlProblemOf<PushedBody> problem("rigid_body",
+                                                    "a rigid body turned by torques, by its own discrete steps");
+  return problem;
+}
+
+}  // namespace lagroid::app

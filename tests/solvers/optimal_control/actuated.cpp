@@ -1,0 +1,100 @@
+// Discrete systems of the library moved by controlled forces: their own steps where there are none, and known optima.
+#include "support.hpp"
+
+#include <lagroid/solvers/step/newton_step.hpp>
+#include <lagroid/systems/control/flows/steered_sleigh.hpp>
+#include <lagroid/systems/control/pushed.hpp>
+#include <lagroid/systems/pendulums/damped_pendulum.hpp>
+#include <lagroid/systems/rolling/chaplygin_sleigh.hpp>
+
+#include <numbers>
+
+namespace lagroid {
+namespace {
+
+using control_tests::expect_laws;
+using control_tests::expect_second_order;
+
+/// How far the system's own steps are from the equations, the controls zero.
+template <class Sys> double defect_of_steps(const Sys& system, State<typename Sys::GroupoidType> state) {
+  Pushed<Sys, 1> pushed;
+  pushed.system = system;
+  NewtonStep<Sys> newton;
+  double worst = 0;
+  for (int k = 0; k < 20; ++k) {
+    StepSolution<Sys> found{{system.groupoid.unit(state.object), Sys::Multipliers::Zero()}, {}};
+    EXPECT_TRUE(newton.solve(system, state, found).converged());
+    const auto next = legendre_plus(system, found.step);
+    Vector<double, Pushed<Sys, 1>::all_controls> u;
+    u << 0.0, found.step.multipliers;
+    const auto off = pushed.constraint(
+        std::tuple(found.step.arrow, PairArrow<double, Sys::dimension>{state.momentum, next.momentum}), u, system.h);
+    worst = std::max(worst, off.cwiseAbs().maxCoeff());
+    state = next;
+  }
+  return worst;
+}
+
+TEST(ActuatedSystems, WithoutForcesMakeTheStepsOfTheSystem) {
+  RigidBody body;
+  EXPECT_LE(defect_of_steps(body, {{}, {0.1, 1, 0.2}}), 1e-13);
+  DampedPendulum damped;
+  damped.h = 0.05;
+  damped.damping = 0.3;
+  EXPECT_LE(defect_of_steps(damped, {Vector<double, 1>(1.0), Vector<double, 1>(0.2)}), 1e-13);
+  ChaplyginSleigh sleigh;
+  EXPECT_LE(defect_of_steps(sleigh, sleigh.sliding(0.5, 1)), 1e-13);
+}
+
+ControlTask<Pushed<Pendulum, 1>> swing_up() {
+  const auto point = [](double x) { return Vector<double, 1>(x); };
+  return {{}, {{point(0), point(std::numbers::pi)}, {point(0), point(0)}}, 10};
+}
+
+TEST(ActuatedSystems, SwingUpAtTheKnownCost) {
+  auto task = swing_up();
+  expect_second_order("free", task, 1.1611196661425072, 28.6, true);
+  task.lower(0) = -0.5;
+  task.upper(0) = 0.5;
+  expect_second_order("bounded", task, 1.1639915199984323, 29.3, true);
+  expect_laws(task, 30);
+}
+
+TEST(ActuatedSystems, TurnABodyAtTheKnownCost) {
+  ControlTask<Pushed<RigidBody, 3>> task;
+  task.boundary = {SO3::exp(Vector<double, 3>(2 * Vector<double, 3>(1, 2, 3).normalized())),
+                   {Vector<double, 3>::Zero(), Vector<double, 3>::Zero()}};
+  task.duration = 5;
+  expect_laws(task, 10);
+  const auto found = search_control(task, 40, {.starts = 1});
+  ASSERT_FALSE(found.minima.empty()) << found.best_failure.report.message;
+  EXPECT_NEAR(found.minima.front().report.cost, 2.227141563828326, 5 * 5.6 / 1600);
+}
+
+// A sleigh on a blade, as its equations reduced by hand have it: the reaction is not the control's to make.
+TEST(ActuatedSystems, MoveASleighAsideAtTheCostOfItsFlow) {
+  using States = FlowStates<SteeredSleigh::GroupoidType>;
+  ControlTask<SteeredSleigh> flow{{}, {}, 4};
+  flow.system.inertia = 1;
+  States::State aside = States::State::Zero();
+  aside(1) = 1;
+  flow.boundary = States::arrow(States::State::Zero(), aside);
+  ControlTask<Pushed<ChaplyginSleigh, 2>> task;
+  task.system.system.offset = flow.system.ahead;
+  task.boundary = {std::get<0>(flow.boundary), {Vector<double, 3>::Zero(), Vector<double, 3>::Zero()}};
+  task.duration = 4;
+  task.free_start[5] = task.free_end[5] = true;
+  const auto cheapest = [](const auto& of, long stages) {
+    const auto found = search_control(of, stages, {.starts = 4});
+    EXPECT_FALSE(found.minima.empty()) << found.best_failure.report.message;
+    return found.minima.empty() ? std::nan("") : found.minima.front().report.cost;
+  };
+  const double reference = (4 * cheapest(flow, 100) - cheapest(flow, 50)) / 3;
+  const double coarse = cheapest(task, 20);
+  const double fine = cheapest(task, 40);
+  EXPECT_NEAR((4 * fine - coarse) / 3, reference, 1e-3 * reference);
+  EXPECT_NEAR(std::log2((coarse - reference) / (fine - reference)), 2, 0.2);
+}
+
+}  // namespace
+}  // namespace lagroid
