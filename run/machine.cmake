@@ -7,6 +7,7 @@ file(GLOB_RECURSE sources_of_numbers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/systems/*.[ch]pp
   # How scenes become systems, and what is recorded of them.
   ${PROJECT_SOURCE_DIR}/run/motion/*.[ch]pp
+  ${PROJECT_SOURCE_DIR}/run/followed_run.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/ledger/judge.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/ledger/ledger.[ch]pp
   ${PROJECT_SOURCE_DIR}/run/files/archive.hpp

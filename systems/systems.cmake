@@ -76,6 +76,25 @@ lagroid_system(damped_pendulum DampedPendulum IN pendulums INITIAL_VALUES SOURCE
 lagroid_system(driven_pendulum DrivenPendulum IN pendulums INITIAL_VALUES SOURCES systems/pendulums/driven_pendulum.cpp)
 lagroid_system(driven_body DrivenBody IN rotations INITIAL_VALUES SOURCES systems/rotations/driven_body.cpp)
 
+# lagroid_algebra_of(variable name): the parts of linear algebra that its steps link. They have as many equations as the
+# sum of its sizes, and one more where they adapt; those of systems that say no sizes may have any number.
+function(lagroid_algebra_of variable name)
+  set(algebra ${small_sizes})
+  if(sizes_of_${name})
+    string(REGEX REPLACE "^([0-9]+)_([0-9]+)_([0-9]+).*" "\\1+\\2+\\3" sum ${sizes_of_${name}})
+    math(EXPR equations "${sum}")
+    math(EXPR with_time "${sum}+1")
+    set(numbers ${equations} ${with_time})
+    foreach(variables ${reduced_of_${name}})
+      math(EXPR with_time "${variables}+1")
+      list(APPEND numbers ${variables} ${with_time})
+    endforeach()
+    list(REMOVE_DUPLICATES numbers)
+    list(TRANSFORM numbers PREPEND lagroid_part_small_size_ OUTPUT_VARIABLE algebra)
+  endif()
+  set(${variable} ${algebra} PARENT_SCOPE)
+endfunction()
+
 # lagroid_for_each_system(variable template): the template once for each system, with NAME, CLASS and HEADER replaced.
 function(lagroid_for_each_system variable template)
   set(out)

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <ranges>
 #include <utility>
 
 namespace lagroid::app {
@@ -35,8 +34,9 @@ std::span<const SceneFamily* const> families() { return known(); }
 void use_families(std::vector<const SceneFamily*> families) { known() = std::move(families); }
 
 const SceneFamily& family_of(const Section& scene) {
-  for (const SceneFamily* family : std::views::reverse(families()))
-    if (family->recognises(scene)) return *family;
+  const auto all = families();
+  for (auto family = all.rbegin(); family != all.rend(); ++family)
+    if ((*family)->recognises(scene)) return **family;
   return systems_family();
 }
 

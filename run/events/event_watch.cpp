@@ -269,7 +269,7 @@ EventWatch::Goes EventWatch::look_into_step() {
           looking_for = each->event;
           if (!happens(*each)) return Goes::ended;
         }
-        if (kick({first, last})) break;
+        if (kick({&*first, std::size_t(last - first)})) break;
         first = last;
       }
     }

@@ -1,8 +1,9 @@
 #include <lagroid/run/events/expression.hpp>
 
 #include <algorithm>
-#include <charconv>
+#include <locale>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 namespace lagroid {
@@ -34,10 +35,14 @@ std::optional<double> shift_of(std::string_view rest) {
   if (rest.front() != '-' && rest.front() != '+') return std::nullopt;
   const double sign = rest.front() == '-' ? -1 : 1;
   const std::string_view digits = trimmed(rest.substr(1));
+  constexpr std::string_view begins_a_number = "0123456789.";
+  if (digits.empty() || begins_a_number.find(digits.front()) == std::string_view::npos) return std::nullopt;
+  std::istringstream in{std::string(digits)};
+  in.imbue(std::locale::classic());
   double number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  const bool whole = error == std::errc() && end == digits.data() + digits.size() && digits.front() != '-';
-  return whole ? std::optional(sign * number) : std::nullopt;
+  in >> number;
+  return !in.fail() && in.peek() == std::istringstream::traits_type::eof() ? std::optional(sign * number)
+                                                                           : std::nullopt;
 }
 
 }  // namespace

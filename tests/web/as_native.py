@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+"""Scenes in WebAssembly end where those of the program end, up to what round-off grows to, with the same verdicts.
+
+as_native.py LAGROID GLUE EXAMPLES
+"""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+LAGROID, GLUE, EXAMPLES = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+RUN = pathlib.Path(__file__).with_name("run_scene.mjs")
+
+SCENES = ["pendulum", "pendulum_adaptive", "kepler", "kepler_order_8", "kepler_reduced", "lotka_volterra", "euler_top", "toda"]
+
+
+def changes(scene):
+    """The start with its first number changed by a small share, and that share of the number; where steps adapt, the first
+    step too."""
+    text = tomllib.loads((EXAMPLES / f"{scene}.toml").read_text())
+    share = 1e-9
+    key = next(key for key in ("state", "position") if key in text["initial"])
+    first, *others = text["initial"][key]
+    yield f"initial.{key}={[first * (1 + share), *others]}", share * abs(first)
+    if text["time"].get("mode") == "adaptive":
+        yield f"time.step={text['time']['step'] * (1 + share)}", share
+
+
+def native(scene, settings=()):
+    words = [word for setting in settings for word in ("--set", setting)]
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([LAGROID, "run", EXAMPLES / f"{scene}.toml", *words, "--out", f"{folder}/run"], check=False,
+                       capture_output=True)
+        return json.loads((pathlib.Path(folder) / "run/summary.json").read_text())
+
+
+def compiled(scene, *words):
+    run = subprocess.run(["node", RUN, GLUE, EXAMPLES / f"{scene}.toml", *words], capture_output=True, text=True,
+                         check=False)
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout)
+
+
+def numbers(summary):
+    end = summary["final"]
+    return [*end.get("position", []), *end.get("attitude", []), *end.get("momentum", [])]
+
+
+def apart(one, other):
+    return max(abs(a - b) for a, b in zip(numbers(one), numbers(other), strict=True))
+
+
+class AsNative(unittest.TestCase):
+    def test_ends_and_verdicts(self):
+        for scene in SCENES:
+            with self.subTest(scene):
+                ours, theirs = compiled(scene), native(scene)
+                self.assertEqual(ours["status"], theirs["status"])
+                self.assertEqual(ours["steps"], theirs["steps"])
+                verdicts = [{entry["name"]: entry["verdict"] for entry in run["ledger"]["entries"]}
+                            for run in (ours, theirs)]
+                self.assertEqual(*verdicts)
+                largest = max(map(abs, numbers(theirs)))
+                growth = max([1.0, *(apart(theirs, native(scene, [change])) / size for change, size in changes(scene))])
+                # A random walk of roundings, each made larger by as much as the motion does with a difference at the start;
+                # steps that adapt are roots of an equation of small differences, in which a rounding weighs more.
+                weight = 200 if "adaptive" in scene else 20
+                bound = 2**-53 * largest * growth * weight * (10 + math.sqrt(theirs["steps"]))
+                off = apart(ours, theirs)
+                print(f"{scene}: off by {off:.2g}, allowed {bound:.2g}", file=sys.stderr)
+                self.assertLess(off, bound)
+
+    def test_mistakes_are_told_with_their_line(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+            file.write('system = "pendulum"\n[time]\nstep = 0.1\nsteps = "many"\n')
+            file.flush()
+            run = subprocess.run(["node", RUN, GLUE, file.name], capture_output=True, text=True, check=False)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertIn("scene:4: time.steps", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,131 @@
+#include "live_run.hpp"
+
+#include <lagroid/run/reports/report.hpp>
+
+#include <families/family.hpp>
+#include <study/scene_experiment.hpp>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+namespace lagroid::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using app::Key;
+using app::Section;
+using app::Table;
+
+/// The table of that name among the keys, or among those of one of the kinds; null where there is none.
+const Table* table_of(const Table& keys, std::string_view name) {
+  for (const Key& key : keys.keys)
+    if (key.name == name)
+      if (const auto* table = std::get_if<Table>(&key.value.is)) return table;
+  for (const Table& kind : keys.kinds)
+    if (const Table* table = table_of(kind, name)) return table;
+  return nullptr;
+}
+
+/// The numbers and words of a table, with what the scene has there or what holds without.
+void list(const Section& scene, const std::string& name, const Table& table, Json& out) {
+  const Section here = scene.section_or_empty(name);
+  for (const Key& key : table.keys) {
+    const std::string path = name + "." + key.name;
+    // Four numbers of a rotation cannot be turned one by one.
+    if (std::holds_alternative<app::AnyAttitude>(key.value.is)) continue;
+    const bool is_one = std::holds_alternative<app::Number>(key.value.is);
+    Json one{{"path", path}, {"unit", key.unit}, {"meaning", key.meaning}, {"is_list", !is_one}};
+    if (const auto* words = std::get_if<app::OneOf>(&key.value.is)) {
+      one["words"] = words->words;
+      if (here.has(key.name)) one["value"] = here.choice(key.name, words->words);
+    } else if (const auto given = scene.numbers_at(path); !given.empty()) {
+      one["value"] = given;
+    }
+    if (!one.contains("value"))
+      std::visit(
+          [&](const auto& fallback) {
+            using Fallback = std::decay_t<decltype(fallback)>;
+            if constexpr (std::is_same_v<Fallback, double>)
+              one["value"] = std::vector<double>{fallback};
+            else if constexpr (std::is_same_v<Fallback, std::vector<double>> || std::is_same_v<Fallback, std::string>)
+              one["value"] = fallback;
+          },
+          key.fallback);
+    if (one.contains("value")) out.push_back(std::move(one));
+  }
+}
+
+Json turned_by(const Section& scene) {
+  Json out = Json::array();
+  const app::SceneFamily& family = app::family_of(scene);
+  const std::string name = scene.text(family.key(), "the name of a system");
+  for (const app::SceneKeys& keys : family.keys_of_scenes())
+    if (keys.name == name)
+      for (const char* table : {"parameters", "initial"})
+        if (const Table* found = table_of(keys.table, table)) list(scene, table, *found, out);
+  return out;
+}
+
+Section by_method(const Section& scene, const std::string& name) {
+  const Section plain = app::without_method(scene);
+  const auto methods = app::family_of(scene).read(plain, {}).methods;
+  const auto found = std::find_if(methods.begin(), methods.end(), [&](const Method& m) { return m.name == name; });
+  if (found == methods.end()) scene.fail("time", "cannot be integrated by \"" + name + "\"");
+  return plain.set(found->settings);
+}
+
+}  // namespace
+
+LiveRun::LiveRun(const std::string& text, const std::vector<std::string>& overrides, const std::string& method) {
+  Section scene = app::parse_scene(text, "scene", overrides, "");
+  if (!method.empty()) scene = by_method(scene, method);
+  const app::SceneFamily& family = app::motions_of(scene);
+  if (!scene.has("initial") || scene.section_or_empty("time").has("accuracy")) {
+    result_ = family.run(scene, {.record = true});
+  } else {
+    scene_ = family.read(scene, {});
+    followed_.emplace(*scene_.motion, scene_.extent, true, result_);
+    followed_->begin();
+  }
+  turned_ = turned_by(scene);
+}
+
+void LiveRun::advance(long steps) {
+  if (!goes_on()) return;
+  followed_->advance(steps);
+  if (followed_->goes_on()) return;
+  followed_->tell_end();
+  followed_->finish();
+  followed_.reset();
+}
+
+Json LiveRun::description() {
+  Json columns = Json::array();
+  for (const Columns& series : trajectory().series)
+    columns.push_back({{"labels", series.components},
+                       {"unit", series.unit},
+                       {"meaning", series.meaning},
+                       {"on_arrows", series.on_arrows}});
+  Json methods = Json::array();
+  for (const Method& method : scene_.methods)
+    methods.push_back({{"name", method.name}, {"order", method.order}, {"to_compare", method.to_compare}});
+  return {{"columns", columns}, {"methods", methods}, {"turned", turned_}};
+}
+
+std::string LiveRun::summary() const {
+  if (!followed_) return json_report(result_);
+  RunResult now = result_;
+  now.ledger = followed_->ledger();
+  now.final = scene_.motion->look().endpoint();
+  scene_.motion->describe(now);
+  return json_report(now);
+}
+
+std::span<const double> LiveRun::values(std::size_t series) {
+  const Trajectory& rows = trajectory();
+  return series < rows.series.size() ? rows.series[series].values : rows.time;
+}
+
+}  // namespace lagroid::web

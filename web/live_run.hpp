@@ -1,0 +1,49 @@
+#pragma once
+/// A scene that is run while somebody watches: some steps, a look, and some more.
+///
+///     LiveRun run(text, {"parameters.length=2"});
+///     while (run.goes_on()) run.advance(100), show(run.summary());
+///
+/// Requires families and systems of the program (app/families/family.hpp). A boundary value, and a scene that asks for
+/// an accuracy, are solved at once where they are read. Errors: SceneError for a mistake in the scene.
+
+#include <lagroid/run/followed_run.hpp>
+
+#include <scenes/motion_scene.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lagroid::web {
+
+class LiveRun {
+ public:
+  /// Of a scene with overrides "path=value"; `method` is one of those that it could be integrated by (study/), or empty
+  /// for the scene's own.
+  LiveRun(const std::string& text, const std::vector<std::string>& overrides, const std::string& method);
+
+  void advance(long steps);
+  bool goes_on() const { return followed_ && followed_->goes_on(); }
+
+  /// What does not change: columns, methods, and the numbers that a reader may turn.
+  nlohmann::ordered_json description();
+  /// What `lagroid run` writes as summary.json, of the run up to now.
+  std::string summary() const;
+  /// The rows of a series of the trajectory; of time where there is none such.
+  std::span<const double> values(std::size_t series);
+
+ private:
+  const Trajectory& trajectory() { return followed_ ? followed_->trajectory() : result_.trajectory; }
+
+  app::MotionScene scene_;
+  RunResult result_;
+  std::optional<FollowedRun> followed_;  ///< until it has ended
+  nlohmann::ordered_json turned_;
+};
+
+}  // namespace lagroid::web
