@@ -15,17 +15,23 @@ import unittest
 LAGROID, GLUE, EXAMPLES = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
 RUN = pathlib.Path(__file__).with_name("run_scene.mjs")
 
-SCENES = ["pendulum", "pendulum_adaptive", "kepler", "kepler_order_8", "kepler_reduced", "lotka_volterra", "euler_top", "toda"]
+SCENES = ["pendulum", "pendulum_adaptive", "kepler", "kepler_boundary", "kepler_order_8", "kepler_reduced", "rigid_body",
+          "heavy_top", "rolling_ball", "damped_pendulum", "driven_pendulum", "spherical_pendulum", "lotka_volterra",
+          "euler_top", "toda"]
 
 
 def changes(scene):
-    """The start with its first number changed by a small share, and that share of the number; where steps adapt, the first
-    step too."""
+    """The start, or the end to be reached, with one number changed by a small share, and that share of the number; where
+    steps adapt, the first step too."""
     text = tomllib.loads((EXAMPLES / f"{scene}.toml").read_text())
     share = 1e-9
-    key = next(key for key in ("state", "position") if key in text["initial"])
-    first, *others = text["initial"][key]
-    yield f"initial.{key}={[first * (1 + share), *others]}", share * abs(first)
+    table = "boundary.end" if "boundary" in text else "initial"
+    start = text["boundary"]["end"] if "boundary" in text else text["initial"]
+    # A number that is not zero, and a key that takes any numbers.
+    key = next(key for key in ("state", "momentum", "position") if any(start.get(key, [])))
+    at = next(i for i, value in enumerate(start[key]) if value)
+    changed = [value * (1 + share) if i == at else value for i, value in enumerate(start[key])]
+    yield f"{table}.{key}={changed}", share * abs(start[key][at])
     if text["time"].get("mode") == "adaptive":
         yield f"time.step={text['time']['step'] * (1 + share)}", share
 

@@ -126,6 +126,14 @@ class Page(unittest.TestCase):
         self.assertTrue(eventually(lambda: self.find("refusal").is_displayed()))
         self.assertEqual(DRIVER.find_elements("css selector", "body img, #refusal script"), [])
 
+    def test_what_takes_too_long_is_given_up(self):
+        self.one_file(scene=(EXAMPLES / "kepler_boundary.toml").read_text(),
+                      settings=[["time.steps", "20000"], ["solver.starts", "100000"]])
+        time.sleep(4)
+        self.assertEqual(self.steps(), -1)
+        Select(self.find("scenes")).select_by_value("pendulum")
+        self.assertTrue(eventually(lambda: self.steps() == 0, 20))
+
     def test_a_narrow_screen(self):
         DRIVER.set_window_size(500, 800)
         DRIVER.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",

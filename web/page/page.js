@@ -15,8 +15,12 @@ let plots = [];
 let panelsShown = "";
 let isGoing = false;
 let rate = 0;
+let engine; // {source, wasm}
+let unanswered = 0; // of the scenes that the worker was asked to read
+let askedAt = 0;
+const patience = 3000; // ms; whatever is asked for after that begins with another worker
 
-const ask = (message, transfer = []) => worker.postMessage(message, transfer);
+const ask = (message) => worker.postMessage(message);
 const asked = (method) => ({ scene: state.scene, settings: [...state.settings].map(([k, v]) => `${k}=${v}`), method });
 
 function refuse(message) {
@@ -34,11 +38,16 @@ function prepare() {
   refuse("");
   history.replaceState(null, "", written({
     scene: state.scene, settings: [...state.settings], first: state.first, second: state.second }));
+  if (unanswered > 0 && performance.now() - askedAt > patience) begin();
   go(false);
   places.clear();
-  ask({ kind: "open", place: 0, ...asked(state.first) });
-  if (state.second !== null) ask({ kind: "open", place: 1, ...asked(state.second) });
-  else ask({ kind: "close", place: 1 });
+  ask({ kind: "close", place: 1 });
+  [state.first, state.second].forEach((method, place) => {
+    if (method === null) return;
+    ask({ kind: "open", place, ...asked(method) });
+    ++unanswered;
+  });
+  askedAt = performance.now();
 }
 
 function go(on) {
@@ -106,6 +115,8 @@ function redraw() {
     showPlots();
     const failed = [...places.values()].map(({ summary: { message } }) => message).filter(Boolean);
     const time = columns.t.length ? columns.t[columns.t.length - 1] : 0;
+    // Told once a run rests: nobody wants every frame read out.
+    element("status").setAttribute("aria-live", isGoing ? "off" : "polite");
     element("status").textContent = [
       `${summary.system}: step ${summary.steps} of ${summary.steps_asked}, t = ${Number(time.toPrecision(5))} s`,
       goes_on ? "" : summary.status,
@@ -119,6 +130,7 @@ function redraw() {
 
 const hears = {
   ready({ about }) {
+    if (element("version").textContent !== "") return;
     element("version").textContent = about.version;
     for (const [name, scene] of Object.entries(gallery))
       if (about.systems.includes(/^system = "(\w+)"/m.exec(scene)?.[1])) element("scenes").add(new Option(name, name));
@@ -131,6 +143,7 @@ const hears = {
     prepare();
   },
   opened({ place, opened }) {
+    --unanswered;
     if (place !== 0) return;
     offerMethods(opened.methods);
     if (element("turned").childElementCount === 0)
@@ -146,7 +159,8 @@ const hears = {
     rate = made;
     redraw();
   },
-  refused({ message }) {
+  refused({ message, of }) {
+    if (of === "open") --unanswered;
     go(false);
     refuse(message);
   },
@@ -199,7 +213,7 @@ function listen() {
 }
 
 /** In one file the engine stands in the page, which may then lie on a disk; on a site it is beside it. */
-async function engine() {
+async function findEngine() {
   const inlined = element("wasm");
   if (!inlined) return { source: "worker.js", wasm: await (await fetch("lagroid.wasm")).arrayBuffer() };
   const bytes = Uint8Array.from(atob(inlined.textContent.trim()), (c) => c.charCodeAt(0));
@@ -207,13 +221,20 @@ async function engine() {
   return { source: URL.createObjectURL(blob), wasm: bytes.buffer };
 }
 
-async function start() {
-  listen();
-  const { source, wasm } = await engine();
-  worker = new Worker(source);
+/** With a worker that computes nothing yet; what another one is at is given up. */
+function begin() {
+  worker?.terminate();
+  unanswered = 0;
+  worker = new Worker(engine.source);
   worker.onmessage = ({ data }) => hears[data.kind](data);
   worker.onerror = (event) => refuse(`the engine stopped: ${event.message}; load the page again`);
-  ask({ kind: "begin", wasm }, [wasm]);
+  ask({ kind: "begin", wasm: engine.wasm });
+}
+
+async function start() {
+  listen();
+  engine = await findEngine();
+  begin();
   window.lagroid = { state, places };
 }
 

@@ -33,6 +33,13 @@ export class Plot {
     const figure = document.createElement("figure");
     const caption = document.createElement("figcaption");
     caption.textContent = panel.title;
+    if (panel.curves.length > 1)
+      panel.curves.forEach((name, i) => {
+        const curve = document.createElement("span");
+        curve.textContent = name;
+        curve.style.color = palette[i % palette.length];
+        caption.append(" ", curve);
+      });
     this.canvas = document.createElement("canvas");
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${panel.curves.join(", ")}`);
@@ -54,7 +61,7 @@ export class Plot {
     const curves = runs.flatMap((columns, which) =>
       panel.curves.map((name, i) => ({
         which,
-        colour: palette[i % palette.length],
+        colour: palette[(i + which * panel.curves.length) % palette.length],
         x: less(columns[panel.x], panel.x_offset),
         y: less(columns[name], panel.y_offset),
       })));

@@ -25,7 +25,7 @@ function advance(place, steps) {
     held.goes_on = engine.advance(held.run, steps);
   } catch (error) {
     held.goes_on = false;
-    postMessage({ kind: "refused", place, message: String(error.message) });
+    postMessage({ kind: "refused", of: "advance", message: String(error.message) });
   }
 }
 
@@ -92,10 +92,15 @@ const actions = {
   },
 };
 
-self.onmessage = async ({ data }) => {
+let ready = Promise.resolve();
+
+/** One after another: what is asked before the engine has begun waits for it. */
+self.onmessage = ({ data }) => (ready = ready.then(() => act(data)));
+
+async function act(data) {
   try {
     await actions[data.kind](data);
   } catch (error) {
-    postMessage({ kind: "refused", place: data.place, message: String(error.message) });
+    postMessage({ kind: "refused", of: data.kind, message: String(error.message) });
   }
-};
+}
