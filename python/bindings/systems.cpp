@@ -1,4 +1,5 @@
-/// Systems of the library as classes: each from the one declaration of its parameters (bindings/templates/system.cpp.in).
+/// Systems of the library as classes: each from the one declaration of its parameters
+/// (bindings/templates/system.cpp.in).
 
 #include "bindings.hpp"
 #include "library_systems.hpp"
