@@ -178,6 +178,17 @@ Json data_of_page(const Json& summary, const ViewOptions& options) {
   if (columns.time.size() < columns.recorded)
     run["notes"].push_back(
         fmt::format("{} of {} recorded rows are on this page", columns.time.size(), columns.recorded));
+  if (summary.contains("events")) {
+    Json& events = run["events"] = summary.at("events");
+    Json& rows = events.at("rows");
+    const auto shown = chosen_rows(rows.size(), std::size_t(options.most_rows));
+    if (shown.size() < rows.size()) {
+      run["notes"].push_back(fmt::format("{} of {} events are on this page", shown.size(), rows.size()));
+      Json some = Json::array();
+      for (const std::size_t row : shown) some.push_back(std::move(rows[row]));
+      rows = std::move(some);
+    }
+  }
   run["time"] = std::move(columns.time);
   run["columns"] = std::move(columns.by_label);
   return run;

@@ -64,11 +64,12 @@ struct LedgerEntry {
   std::string promise;  ///< "round-off", "conserved", "bounded", "none", "counted"
   std::vector<double> initial;
   std::vector<double> final;
-  double drift = 0;           ///< largest deviation from the initial value
-  double relative_drift = 0;  ///< the same over the size of the initial value (over one if that vanishes)
-  double bound = 0;           ///< on `drift`; zero where none is promised
-  std::string verdict;        ///< "kept", "BROKEN", "bounded", "growing", "unjudged", "watched", "counted"
-  std::string reason;         ///< of a verdict that drift and bound do not explain; else empty
+  double drift = 0;  ///< largest deviation from the initial value
+  /// The same over the size of the initial value: of its terms where that is round-off of theirs, over 1 where it is 0.
+  double relative_drift = 0;
+  double bound = 0;     ///< on `drift`; zero where none is promised
+  std::string verdict;  ///< "kept", "BROKEN", "bounded", "growing", "unjudged", "watched", "counted"
+  std::string reason;   ///< of a verdict that drift and bound do not explain; else empty
   bool broken() const { return verdict == "BROKEN"; }
 };
 

@@ -108,6 +108,37 @@ class Page(unittest.TestCase):
                 errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
                 self.assertEqual(errors, [])
 
+    def test_what_happened(self):
+        """Events are points on the curves, a section of their own, and a list that leads to their times."""
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "scene.toml"
+            event = '[[event]]\nname = "it\'s far"\nwhen = "x*px + y*py"\ndirection = "falling"\nplot = ["x", "py"]\n'
+            scene.write_text((EXAMPLES / "kepler_order_8.toml").read_text() + event)
+            out = pathlib.Path(folder) / "run"
+            ran = lagroid("run", str(scene), "--set", "time.steps=400", "--out", str(out))
+            self.assertEqual(ran.returncode, 0, ran.stderr)
+            self.assertEqual(lagroid("view", str(out)).returncode, 0)
+            self.open(out / "view.html")
+            drawn = DRIVER.execute_script(
+                """const counts = ({ chart }) => chart.data.datasets.at(-1).data.length;
+                   return [lagroid.plots.plots.map(counts), lagroid.plots.sections.map(counts)];"""
+            )
+            rows = len((out / "events.csv").read_text().splitlines()) - 1
+            self.assertGreater(rows, 5)
+            self.assertIn(rows, drawn[0])
+            self.assertEqual(drawn[1], [rows])
+            options = DRIVER.execute_script("return [...document.getElementById('happened').options].map((o) => o.text)")
+            self.assertEqual(len(options), rows + 1)
+            self.assertTrue(options[1].startswith("it's far, falling, t = "), options[1])
+            at = DRIVER.execute_script(
+                """const list = document.getElementById("happened");
+                   list.selectedIndex = 1;
+                   list.dispatchEvent(new Event("change"));
+                   return [lagroid.player.t, Number(list.value), lagroid.player.playing];"""
+            )
+            self.assertEqual(at[0], at[1])
+            self.assertFalse(at[2])
+
     def test_pause_and_scrub(self):
         with tempfile.TemporaryDirectory() as folder:
             self.open(page_of(pathlib.Path(folder) / "run", "rigid_body"))

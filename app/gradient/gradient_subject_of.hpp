@@ -37,6 +37,8 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   using differentiating::name_all;
   if (!prepared.begin)
     scene.fail("boundary", "gradient takes initial values: how a stationary path depends on its ends is no run");
+  if (scene.has("event"))
+    scene.fail("event", "gradient is of the whole run, step by step, without events; leave them out");
   if (!prepared.plain)
     scene.fail("time",
                "gradient takes equal steps of order two, solved by Newton to round-off; leave out mode, method, "

@@ -46,23 +46,30 @@ PoissonNode::PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& syst
                        .drift_of = i});
 }
 
-void PoissonNode::see(long index, const PoissonIntegrator& at) {
+void PoissonNode::see(long index, double time, const PoissonIntegrator& at) {
   index_ = index;
-  time_ = at.time();
+  time_ = time;
   x_ = at.point();
   measured_ = system_.measure(x_);
-  if (has_defect_) measured_.push_back({at.poisson_defect(), 1});
+  at_ = &at;
+  defect_.reset();
+}
+
+double PoissonNode::defect() const {
+  if (!defect_) defect_ = at_->poisson_defect();
+  return *defect_;
 }
 
 bool PoissonNode::finite() const {
-  return std::all_of(measured_.begin(), measured_.end(), [](const auto& m) { return std::isfinite(m.value); });
+  return std::all_of(measured_.begin(), measured_.end(), [](const auto& m) { return std::isfinite(m.value); }) &&
+         (!has_defect_ || std::isfinite(defect()));
 }
 
 void PoissonNode::read(std::size_t field, double* row) const {
   if (field == 0) {
     std::copy(x_.begin(), x_.end(), row);
   } else {
-    *row = measured_[field - 1].value;
+    measure(field - 1, row);
   }
 }
 

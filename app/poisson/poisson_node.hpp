@@ -5,6 +5,7 @@
 
 #include <lagroid/run/motion/observables.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace lagroid::app {
@@ -16,7 +17,8 @@ class PoissonNode final : public Observables {
   /// Of every n-th node something is seen: over those between rounding walks on. The system must outlive this.
   PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& system, const PoissonIntegrator& method, long every);
 
-  void see(long index, const PoissonIntegrator& at);
+  /// `at` must outlive what is asked of the node.
+  void see(long index, double time, const PoissonIntegrator& at);
 
   long index() const override { return index_; }
   double time() const override { return time_; }
@@ -31,14 +33,17 @@ class PoissonNode final : public Observables {
   void read(std::size_t field, double* row) const override;
   const std::vector<Watched>& quantities() const override { return watched_; }
   double measure(std::size_t quantity, double* value) const override {
-    *value = measured_[quantity].value;
-    return measured_[quantity].size;
+    const MeasuredFunction measured = quantity < measured_.size() ? measured_[quantity] : MeasuredFunction{defect(), 1};
+    *value = measured.value;
+    return measured.size;
   }
   double noise() const override { return rounding_; }
   Constrained constrained() const override { return Constrained::no; }
   std::optional<double> residual() const override { return {}; }
 
  private:
+  double defect() const;
+
   const AnyPoissonSystem& system_;
   double rounding_;  ///< of rounding between nodes that are seen, relative to the terms
   bool has_defect_;
@@ -47,7 +52,9 @@ class PoissonNode final : public Observables {
   long index_ = 0;
   double time_ = 0;
   std::vector<double> x_;
-  std::vector<MeasuredFunction> measured_;
+  std::vector<MeasuredFunction> measured_;  ///< energy and Casimirs
+  const PoissonIntegrator* at_ = nullptr;
+  mutable std::optional<double> defect_;  ///< where it was needed: it costs more than the step
 };
 
 /// Adds shapes, panels and conventions.

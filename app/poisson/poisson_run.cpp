@@ -42,8 +42,8 @@ class PoissonMotion final : public Motion {
   PoissonMotion(const PoissonEntry& entry, const PoissonToCheck& asked, long every)
       : entry_(entry),
         system_(asked.system),
-        step_(asked.options.step),
-        integrator_(system_->begin(asked.start, asked.options)),
+        options_(asked.options),
+        integrator_(system_->begin(asked.start, options_)),
         stages_(integrator_->traits().stages),
         node_(entry, *system_, *integrator_, every) {}
 
@@ -64,10 +64,23 @@ class PoissonMotion final : public Motion {
 
   long index() const override { return index_; }
   double time() const override { return integrator_->time(); }
-  double step_size() const override { return step_; }
+  double step_size() const override { return options_.step; }
   const Observables& look() override {
-    node_.see(index_, *integrator_);
+    node_.see(index_, time(), *integrator_);
     return node_;
+  }
+  std::string why_not_cut() const override { return ""; }
+  void keep_node() override {
+    kept_ = integrator_->point();
+    kept_time_ = time();
+  }
+  const Observables* look_within(double share) override {
+    PoissonOptions part = options_;
+    part.step *= share;
+    inside_ = system_->begin(kept_, part);
+    if (share > 0 && !inside_->advance().converged()) return nullptr;
+    node_.see(index_, kept_time_ + part.step, *inside_);
+    return &node_;
   }
   std::vector<NamedVector> state() const override { return {{"state", integrator_->point()}}; }
   std::optional<double> defect() const override { return {}; }
@@ -90,11 +103,14 @@ class PoissonMotion final : public Motion {
  private:
   const PoissonEntry& entry_;
   std::shared_ptr<const AnyPoissonSystem> system_;
-  double step_;
+  PoissonOptions options_;
   std::unique_ptr<PoissonIntegrator> integrator_;
   int stages_;
   PoissonNode node_;
   long index_ = 0;
+  std::vector<double> kept_;  ///< the node before the last step
+  double kept_time_ = 0;
+  std::unique_ptr<PoissonIntegrator> inside_;  ///< of a share of that step
 };
 
 KeyOf<NumberArray> state_key(const PoissonEntry& entry) {

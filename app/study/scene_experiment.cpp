@@ -32,6 +32,11 @@ Section without_method(const Section& scene) {
 }
 
 Experiment read_experiment(const Section& scene) {
+  for (const Event& event : read_events(scene))
+    if (!event.kick.empty() || event.then == Event::Then::stop)
+      scene.fail("event", fmt::format("\"{}\" changes the motion or ends it, and methods are compared along all of it: "
+                                      "leave out its kick and then",
+                                      event.name));
   const SceneFamily& family = motions_of(scene);
   const TimeGrid grid = read_time(scene);
   const Section plain = without_method(scene);

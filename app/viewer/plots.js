@@ -1,6 +1,7 @@
 // The curves of a run, with a mark that moves in time.
 import { Chart, Legend, LinearScale, LineElement, PointElement, ScatterController, Title } from "chart.js";
 
+import { marksOn, sections } from "./events.js";
 import { reader } from "./frames.js";
 
 Chart.register(Legend, LinearScale, LineElement, PointElement, ScatterController, Title);
@@ -19,16 +20,42 @@ export function tickLabel(value, _, ticks) {
 /** What is shown of an axis: the column less an offset, near which all of its numbers lie, or 0. */
 const less = (label, offset) => (offset === 0 ? label : `${label} ${offset > 0 ? "-" : "+"} ${Math.abs(offset)}`);
 
+/** A frame for a chart, with its canvas. */
+function framed(parent) {
+  const frame = document.createElement("div");
+  frame.className = "plot";
+  const canvas = document.createElement("canvas");
+  frame.append(canvas);
+  parent.append(frame);
+  return { frame, canvas };
+}
+
+function scatter(canvas, datasets, { title, x_label, y_label, x_offset = 0, y_offset = 0 }, legend) {
+  const axis = (label, offset) => ({
+    type: "linear",
+    title: { display: true, text: less(label, offset) },
+    ticks: { maxTicksLimit: 6, callback: tickLabel },
+  });
+  return new Chart(canvas, {
+    type: "scatter",
+    data: { datasets },
+    options: {
+      animation: false,
+      maintainAspectRatio: false,
+      events: [],
+      scales: { x: axis(x_label, x_offset), y: axis(y_label, y_offset) },
+      plugins: { title: { display: true, text: title }, legend },
+    },
+  });
+}
+
 /** One panel: curves over a column, drawn once; the mark is on a canvas above, drawn at every frame. */
 class Plot {
   constructor(run, panel, parent) {
-    const frame = document.createElement("div");
-    frame.className = "plot";
-    const canvas = document.createElement("canvas");
+    const { frame, canvas } = framed(parent);
     this.cursor = document.createElement("canvas");
     this.cursor.className = "cursor";
-    frame.append(canvas, this.cursor);
-    parent.append(frame);
+    frame.append(this.cursor);
     const { x_offset = 0, y_offset = 0 } = panel;
     const x = run.columns[panel.x];
     const readX = reader(run, panel.x);
@@ -38,34 +65,22 @@ class Plot {
       return (row) => readY(row) - y_offset;
     });
     const shown = (xs, y) => (xs === null || y === null ? [] : [{ x: xs - x_offset, y: y - y_offset }]);
-    const axis = (label, offset) => ({
-      type: "linear",
-      title: { display: true, text: less(label, offset) },
-      ticks: { maxTicksLimit: 6, callback: tickLabel },
-    });
-    this.chart = new Chart(canvas, {
-      type: "scatter",
-      data: {
-        datasets: panel.curves.map((curve, i) => ({
-          label: curve,
-          data: run.columns[curve].flatMap((y, row) => shown(x[row], y)),
-          showLine: true,
-          pointRadius: 0,
-          borderWidth: 1.5,
-          borderColor: palette[i % palette.length],
-          backgroundColor: palette[i % palette.length],
-        })),
-      },
-      options: {
-        animation: false,
-        maintainAspectRatio: false,
-        events: [],
-        scales: { x: axis(panel.x_label, x_offset), y: axis(panel.y_label, y_offset) },
-        plugins: {
-          title: { display: true, text: panel.title },
-          legend: { display: panel.curves.length > 1, position: "bottom", labels: { boxWidth: 12 } },
-        },
-      },
+    const curves = panel.curves.map((curve, i) => ({
+      label: curve,
+      data: run.columns[curve].flatMap((y, row) => shown(x[row], y)),
+      showLine: true,
+      pointRadius: 0,
+      borderWidth: 1.5,
+      borderColor: palette[i % palette.length],
+      backgroundColor: palette[i % palette.length],
+    }));
+    const marks = marksOn(run, panel);
+    if (marks.length > 0)
+      curves.push({ label: "events", data: marks, pointRadius: 3, borderColor: "#1c2330", backgroundColor: "transparent" });
+    this.chart = scatter(canvas, curves, panel, {
+      display: curves.length > 1,
+      position: "bottom",
+      labels: { boxWidth: 12 },
     });
     if (panel.equal_axes) this.equalise();
   }
@@ -116,9 +131,19 @@ class Plot {
   }
 }
 
+/** The points at which an event happened, in two columns. */
+class Section {
+  constructor(section, parent) {
+    const colours = { borderColor: palette[0], backgroundColor: palette[0] };
+    const data = [{ label: section.title, data: section.points, pointRadius: 1.5, ...colours }];
+    this.chart = scatter(framed(parent).canvas, data, section, { display: false });
+  }
+}
+
 export class Plots {
   constructor(parent, run) {
     this.plots = run.panels.map((panel) => new Plot(run, panel, parent));
+    this.sections = sections(run).map((section) => new Section(section, parent));
   }
   mark(row) {
     for (const plot of this.plots) plot.mark(row);

@@ -1,5 +1,6 @@
 // The page of a run: animation, curves, ledger, and the time that they share.
 import { Stage } from "./bodies.js";
+import { listHappened } from "./events.js";
 import { rowAt } from "./frames.js";
 import { Plots } from "./plots.js";
 
@@ -60,10 +61,12 @@ function start() {
   const scrub = element("scrub");
   scrub.min = player.first;
   scrub.max = player.last;
-  scrub.addEventListener("input", () => {
+  const goTo = (t) => {
     player.playing = false;
-    player.t = Number(scrub.value);
-  });
+    player.t = t;
+  };
+  scrub.addEventListener("input", () => goTo(Number(scrub.value)));
+  listHappened(run, element("happened"), goTo);
   const toggle = () => (player.playing = !player.playing);
   element("play").addEventListener("click", toggle);
   document.addEventListener("keydown", (event) => {

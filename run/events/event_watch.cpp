@@ -20,6 +20,11 @@ struct NoPartialStep {
   double share;
 };
 
+/// What a kick adds, or what is measured after it, is no finite number.
+struct NoKick {
+  std::string why;
+};
+
 /// Times of one step that differ by less, relative to it, cannot be told apart.
 constexpr double apart = 1e-11;
 
@@ -41,11 +46,10 @@ std::vector<std::vector<double>> quantities_within(const Observables& node) {
 
 std::string named(const Event& event) { return fmt::format("event \"{}\"", event.name); }
 
-Passing direction_of(double from, double to) { return from < to ? Passing::rising : Passing::falling; }
-
 void require(const Event& event, std::set<std::string>& names) {
-  if (event.name.empty() || event.name.find_first_of("\n\r") != std::string::npos)
-    throw RunError("an event has a name of one line");
+  // In tables and in pictures, where these mean something else.
+  if (event.name.empty() || event.name.find_first_of("\n\r,\"\\") != std::string::npos)
+    throw RunError("an event has a name of one line, without commas, quotes and backslashes");
   if (!names.insert(event.name).second) throw RunError(fmt::format("{}: two have this name", named(event)));
   if (event.count < 1) throw RunError(fmt::format("{}: it counts to {}, to no event", named(event), event.count));
   if (!(event.tolerance >= 0 && event.tolerance < 1))
@@ -118,128 +122,32 @@ EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
   for (const Event& event : events) {
     require(event, names);
     try {
-      watches_.push_back({event, EventFunction(event, node), kick_of(event, node)});
+      watches_.push_back({event, EventFunction(event, node), kick_of(event, node), FunctionWatch(event)});
     } catch (const std::invalid_argument& error) {
       throw RunError(fmt::format("{}: {}", named(event), error.what()));
     }
     require_kick(event, motion);
-    watches_.back().goes_on_to(node);
+    watches_.back().function.next(watches_.back().value(node), time_);
     table_.watched.push_back({event.name, event.when, event.plot});
     require_plot(event, table_.columns);
   }
 }
 
-void EventWatch::Watch::see(const Observables& node) {
-  now = function(node);
-  if (std::isfinite(now)) {
-    largest = std::max(largest, std::abs(now));
-    return;
-  }
-  if (undefined++ == 0) undefined_at = node.time();
-  now = unknown;
-}
-
-bool EventWatch::Watch::goes_on_to(const Observables& node) {
-  const bool is_first = std::isnan(before) && !std::isnan(now) && undefined == 0;
-  change = now - before;
-  before = now;
-  slope_before = slope;
-  slope = unknown;
-  see(node);
-  if (std::isnan(now) || std::isnan(before)) return false;
-  if (event.at != Event::At::zero) return may_turn();
-  constexpr double round_off = 1e-12;
-  if (is_first && std::abs(before) <= round_off * std::abs(now - before)) {
-    starts_at_zero = true;
-    before = now;
-    return false;
-  }
-  return passes_zero() || may_touch();
-}
-
-bool EventWatch::Watch::goes_on_from(double kicked, std::optional<Passing> passing, const Observables& node) {
-  constexpr double tiny = std::numeric_limits<double>::min();
-  constexpr double round_off = 1e-9;
-  change = slope = slope_before = unknown;
-  before = kicked;
-  // What has just happened does not happen again there: its function has passed zero, or turned.
-  if (passing == Passing::minimum || passing == Passing::maximum)
-    slope_before = passing == Passing::minimum ? tiny : -tiny;
-  else if (passing && std::abs(before) <= round_off * largest)
-    before = passing == Passing::falling ? -tiny : tiny;
-  see(node);
-  if (std::isnan(now) || std::isnan(before)) return false;
-  return event.at == Event::At::zero ? passes_zero() : may_turn();
-}
-
-/// Over a step a function bends by an eighth of its second difference.
-bool EventWatch::Watch::may_touch() const {
-  const double bend = now - before - change;
-  return (before < 0) == (now < 0) && (bend < 0) == (now < 0) &&
-         std::min(std::abs(before), std::abs(now)) <= 0.5 * std::abs(bend);
-}
-
-/// By the slopes at both nodes of the parabola through the last three.
-bool EventWatch::Watch::may_turn() const {
-  if (std::isnan(change)) return true;
-  const double step = now - before;
-  const double bend = step - change;
-  const double first = step - 0.5 * bend;
-  const double last = step + 0.5 * bend;
-  return (first < 0) != (last < 0) || std::min(std::abs(first), std::abs(last)) <= std::abs(bend);
-}
-
-double EventWatch::value_at(std::size_t i, double share) {
+const Observables& EventWatch::within(double share) {
   const Observables* inside = motion_.look_within(share);
   if (inside == nullptr) throw NoPartialStep{share};
-  return watches_[i].function(*inside);
+  return *inside;
 }
 
-std::optional<double> EventWatch::turn_of(std::size_t i, const StepFunction& g, bool is_minimum) {
-  Watch& watch = watches_[i];
-  const double before = std::isnan(watch.slope_before) ? slope_within(g, 0) : watch.slope_before;
-  watch.slope = slope_within(g, 1);
-  const double sign = is_minimum ? 1 : -1;
-  if (!(sign * before < 0 && sign * watch.slope >= 0)) return std::nullopt;
-  return root_within([&](double share) { return slope_within(g, share); }, 0, 1, before, watch.slope);
-}
-
-void EventWatch::look_for_zeros(std::size_t i, std::vector<Found>& found) {
-  const Watch& watch = watches_[i];
-  const StepFunction g = [&](double share) { return value_at(i, share); };
-  const auto add = [&](double a, double b, double at_a, double at_b) {
-    if (watch.counts(at_a, at_b)) found.push_back({i, root_within(g, a, b, at_a, at_b), direction_of(at_a, at_b)});
-  };
-  if ((watch.before < 0) != (watch.now < 0)) {
-    add(0, 1, watch.before, watch.now);
-    return;
-  }
-  const double sign = watch.now < 0 ? -1 : 1;
-  const std::optional<double> found_turn = turn_of(i, g, sign > 0);
-  if (!found_turn) return;
-  const double turn = *found_turn;
-  const double nearest = g(turn);
-  if (std::abs(nearest) <= watch.event.tolerance * watch.largest) {
-    found.push_back({i, turn, Passing::touching});
-  } else if (sign * nearest < 0) {
-    add(0, turn, watch.before, nearest);
-    add(turn, 1, nearest, watch.now);
-  }
-}
-
-void EventWatch::look_for_extremum(std::size_t i, std::vector<Found>& found) {
-  const bool is_minimum = watches_[i].event.at == Event::At::minimum;
-  const StepFunction g = [&](double share) { return value_at(i, share); };
-  if (const std::optional<double> turn = turn_of(i, g, is_minimum))
-    found.push_back({i, *turn, is_minimum ? Passing::minimum : Passing::maximum});
-}
-
-void EventWatch::find_in_step(std::vector<Found>& found, std::size_t& looking_for) {
-  found.clear();
+std::vector<EventWatch::Found> EventWatch::find_in_step() {
+  std::vector<Found> found;
   for (const std::size_t i : suspects_) {
-    looking_for = i;
-    watches_[i].event.at == Event::At::zero ? look_for_zeros(i, found) : look_for_extremum(i, found);
+    looking_for_ = i;
+    Watch& watch = watches_[i];
+    for (const FoundInStep& each : watch.function.find([&](double share) { return watch.value(within(share)); }))
+      found.push_back({i, each.share, each.passing});
   }
+  suspects_.clear();
   // In the order of time and, where that does not tell, in that in which they were written.
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.share < b.share; });
   for (auto first = found.begin(); first != found.end();) {
@@ -247,43 +155,56 @@ void EventWatch::find_in_step(std::vector<Found>& found, std::size_t& looking_fo
     std::stable_sort(first, last, [](const Found& a, const Found& b) { return a.event < b.event; });
     first = last;
   }
+  return found;
 }
 
 EventWatch::Goes EventWatch::look_into_step() {
   constexpr int most_kicks = 100;
   looked_within_ = true;
-  std::vector<Found> found;
-  std::size_t looking_for = 0;
   try {
     for (int kicks = 0; !suspects_.empty(); ++kicks) {
       if (kicks == most_kicks) {
         reason_ = fmt::format("{}: follows its own kicks without end, {} times between t = {:.6g} and {:.6g}",
-                              named(watches_[looking_for].event), kicks, time_, arrived_);
+                              named(watches_[looking_for_].event), kicks, time_, arrived_);
         return Goes::failed;
       }
-      find_in_step(found, looking_for);
-      suspects_.clear();
-      for (auto first = found.cbegin(); first != found.cend();) {
-        const auto last = together_with(first, found.cend());
-        for (auto each = first; each != last; ++each) {
-          looking_for = each->event;
-          if (!happens(*each)) return Goes::ended;
-        }
-        if (kick({&*first, std::size_t(last - first)})) break;
-        first = last;
-      }
+      std::vector<Found> found = find_in_step();
+      if (look_into_rest(found) == Goes::ended) return Goes::ended;
     }
   } catch (const NoPartialStep& none) {
     reason_ = fmt::format(
         "{}: could not be located between t = {:.6g} and {:.6g}: a step of {:.3g} of that one does "
         "not converge; use a smaller time.step",
-        named(watches_[looking_for].event), time_, arrived_, none.share);
+        named(watches_[looking_for_].event), time_, arrived_, none.share);
+    return Goes::failed;
+  } catch (const NoKick& none) {
+    reason_ = fmt::format("{}: {}", named(watches_[looking_for_].event), none.why);
     return Goes::failed;
   }
   return Goes::on;
 }
 
-bool EventWatch::kick(std::span<const Found> together) {
+EventWatch::Goes EventWatch::look_into_rest(std::vector<Found>& found) {
+  for (auto first = found.cbegin(); first != found.cend();) {
+    const auto last = together_with(first, found.cend());
+    // All that happens at that time has happened, and has changed the motion, before the run ends.
+    const Found* ending = nullptr;
+    for (auto each = first; each != last; ++each) {
+      looking_for_ = each->event;
+      if (!happens(*each) && ending == nullptr) ending = &*each;
+    }
+    const bool is_kicked = kick({first, last});
+    if (ending != nullptr) {
+      end_ = &within(is_kicked ? 0 : ending->share);
+      return Goes::ended;
+    }
+    if (is_kicked) break;
+    first = last;
+  }
+  return Goes::on;
+}
+
+bool EventWatch::kick(Group together) {
   const double share = std::max_element(together.begin(), together.end(), [](const Found& a, const Found& b) {
                          return a.share < b.share;
                        })->share;
@@ -292,30 +213,45 @@ bool EventWatch::kick(std::span<const Found> together) {
   for (const Found& found : together) {
     Watch& watch = watches_[found.event];
     if (watch.kick.empty() || found.passing == Passing::touching) continue;
-    const Observables* inside = motion_.look_within(share);
-    if (inside == nullptr) throw NoPartialStep{share};
+    looking_for_ = found.event;
+    const Observables& inside = within(share);
     by.resize(watch.kick.size());
-    for (std::size_t k = 0; k < by.size(); ++k) by[k] += watch.kick[k](*inside);
-    before = quantities_within(*inside);
+    for (std::size_t k = 0; k < by.size(); ++k) {
+      const double number = watch.kick[k](inside);
+      if (!std::isfinite(number))
+        throw NoKick{fmt::format("its kick is no finite number at t = {:.6g}: \"{}\" is {}", inside.time(),
+                                 watch.event.kick[k], number)};
+      by[k] += number;
+    }
+    before = quantities_within(inside);
+    ++watch.kicks;
   }
   if (by.empty()) return false;
   if (!motion_.kick_within(share, by).converged()) throw NoPartialStep{share};
-  const Observables* kicked = motion_.look_within(0);
-  if (kicked == nullptr) throw NoPartialStep{0};
-  const std::vector<std::vector<double>> after = quantities_within(*kicked);
-  if (kicked_.empty())
-    for (const std::vector<double>& each : after) kicked_.emplace_back(each.size());
-  for (std::size_t i = 0; i < after.size(); ++i)
-    for (std::size_t k = 0; k < after[i].size(); ++k) kicked_[i][k] += after[i][k] - before[i][k];
+  const Observables& kicked = within(0);
+  measure_kick(before, kicked);
   std::vector<double> at_kick;
-  for (Watch& watch : watches_) at_kick.push_back(watch.function(*kicked));
+  for (Watch& watch : watches_) at_kick.push_back(watch.value(kicked));
   const Observables& node = motion_.look();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const auto fired = std::find_if(together.begin(), together.end(), [&](const Found& f) { return f.event == i; });
     const auto passing = fired == together.end() ? std::nullopt : std::optional(fired->passing);
-    if (watches_[i].goes_on_from(at_kick[i], passing, node)) suspects_.push_back(i);
+    if (watches_[i].function.next_from(at_kick[i], passing, watches_[i].value(node), arrived_)) suspects_.push_back(i);
   }
   return true;
+}
+
+void EventWatch::measure_kick(const std::vector<std::vector<double>>& before, const Observables& kicked) {
+  const std::vector<std::vector<double>> after = quantities_within(kicked);
+  if (kicked_.empty())
+    for (const std::vector<double>& each : after) kicked_.emplace_back(each.size());
+  for (std::size_t i = 0; i < after.size(); ++i)
+    for (std::size_t k = 0; k < after[i].size(); ++k) {
+      if (!std::isfinite(after[i][k]))
+        throw NoKick{fmt::format("after its kick at t = {:.6g} {} is no finite number any more; use a smaller one",
+                                 kicked.time(), kicked.quantities()[i].name)};
+      kicked_[i][k] += after[i][k] - before[i][k];
+    }
 }
 
 void EventWatch::settle(Judge& judge) {
@@ -325,9 +261,8 @@ void EventWatch::settle(Judge& judge) {
 
 bool EventWatch::happens(const Found& found) {
   const Event& event = watches_[found.event].event;
-  const Observables* inside = motion_.look_within(found.share);
-  if (inside == nullptr) throw NoPartialStep{found.share};
-  Happening happening{found.event, step_, inside->time(), found.passing, false, values_within(*inside)};
+  const Observables& inside = within(found.share);
+  Happening happening{found.event, step_, inside.time(), found.passing, false, values_within(inside)};
   happening.together =
       !table_.rows.empty() && std::abs(happening.time - table_.rows.back().time) <= apart * std::abs(arrived_ - time_);
   table_.rows.push_back(std::move(happening));
@@ -335,9 +270,9 @@ bool EventWatch::happens(const Found& found) {
   WatchedEvent& watched = table_.watched[found.event];
   const bool counted = found.passing != Passing::touching;
   ++(counted ? watched.count : watched.touches);
-  const bool goes_on = !event.call || event.call(row, *inside);
+  const bool goes_on = !event.call || event.call(row, inside);
   if (goes_on && !(counted && event.then == Event::Then::stop && watched.count >= event.count)) return true;
-  end_ = inside;
+  if (!reason_.empty()) return false;  // the first of those that end it together
   reason_ = fmt::format("ended by {} at t = {:.15g}, in step {}", named(event), row.time, row.step);
   if (watched.count > 1) reason_ += fmt::format(": it happened for the {}. time", watched.count);
   return false;
@@ -349,20 +284,32 @@ void EventWatch::report(RunResult& result) const {
     const Watch& watch = watches_[i];
     const WatchedEvent& watched = table_.watched[i];
     result.ledger.entries.push_back(counted_entry(named(watch.event), watched.count, result.steps));
-    if (watch.starts_at_zero)
-      result.notes.push_back(
-          fmt::format("{}: its function is zero at the start, which is not counted", named(watch.event)));
-    if (!watch.kick.empty() && watched.count > 0)
-      result.notes.push_back(fmt::format("{}: kicked the motion {} times; the ledger's first values are moved by it",
-                                         named(watch.event), watched.count));
+    const auto note = [&](const std::string& text) { result.notes.push_back(named(watch.event) + ": " + text); };
+    const FunctionWatch& function = watch.function;
+    if (function.starts_there())
+      note(fmt::format("its function is {} at the start, which is not counted",
+                       watch.event.at == Event::At::zero      ? "zero"
+                       : watch.event.at == Event::At::minimum ? "smallest"
+                                                              : "largest"));
+    if (watch.kicks > 0)
+      note(fmt::format("kicked the motion {} times; the ledger's first values are moved by it", watch.kicks));
     if (watched.touches > 0)
-      result.notes.push_back(fmt::format("{}: its function came to zero {} times without passing it; not counted",
-                                         named(watch.event), watched.touches));
-    if (watch.undefined > 0)
-      result.notes.push_back(
-          fmt::format("{}: its function was no finite number at {} of {} nodes, the first at t = "
-                      "{:.6g}; nothing was found next to them",
-                      named(watch.event), watch.undefined, result.steps + 1, watch.undefined_at));
+      note(fmt::format("its function came to zero {} times without passing it; not counted", watched.touches));
+    if (function.jumps().times > 0)
+      note(
+          fmt::format("its function changes sign by a jump or a pole, not through zero, {} times, first in the step to "
+                      "t = {:.6g}; not counted",
+                      function.jumps().times, function.jumps().first));
+    if (function.flat().times > 0)
+      note(
+          fmt::format("its function is constant to round-off in {} steps where it seems to turn, first in that to t = "
+                      "{:.6g}; not counted",
+                      function.flat().times, function.flat().first));
+    if (function.undefined().times > 0)
+      note(
+          fmt::format("its function was no finite number at {} of {} nodes, the first at t = {:.6g}; nothing was "
+                      "found next to them",
+                      function.undefined().times, result.steps + 1, function.undefined().first));
   }
 }
 
@@ -402,6 +349,7 @@ IntegrationEnd integrate_nodes(WatchedMotion& watched, EventWatch& events, long 
     const Observables& node = motion.look();
     const EventWatch::Goes goes = events.pass(node);
     if (goes == EventWatch::Goes::ended) {
+      if (watched.judge() != nullptr) events.settle(*watched.judge());
       watched.end_at(events.end());
       return {IntegrationEnd::Why::event, report};
     }

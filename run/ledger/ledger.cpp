@@ -71,6 +71,17 @@ void QuantityWatch::observe(const double* values, double size, double noise) {
   ++samples_;
 }
 
+void QuantityWatch::shift(const double* by) {
+  double square = 0;
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    first_[i] += by[i];
+    square += by[i] * by[i];
+  }
+  if (square == 0) return;
+  ++shifts_;
+  size_ = worse(size_, std::sqrt(square));
+}
+
 double QuantityWatch::drift() const {
   std::vector<double> deviation = last_;
   for (std::size_t i = 0; i < deviation.size(); ++i) deviation[i] -= first_[i];
@@ -82,7 +93,7 @@ double QuantityWatch::typical_size() const { return sized_ > 0 ? std::exp(logari
 /// A random walk of round-off errors, each a few units in the last place of the largest term, or of evaluations'
 /// noise.
 double QuantityWatch::round_off_walk() const {
-  const double steps = std::sqrt(double(samples_));
+  const double steps = std::sqrt(double(samples_ + shifts_));
   return round_off * size_ * (200 + 20 * steps) + noise_ * (3 + 3 * steps);
 }
 
@@ -100,7 +111,9 @@ LedgerEntry QuantityWatch::entry() const {
   }
   e.drift = worse(first_half, second_half);
   const double norm = norm_of(first_);
-  e.relative_drift = e.drift / (norm > 0 ? norm : 1.0);
+  // A first value that is round-off of its terms is no measure.
+  const bool is_rounding = norm > 0 && norm <= 100 * round_off * first_size_;
+  e.relative_drift = e.drift / (is_rounding ? first_size_ : norm > 0 ? norm : 1.0);
   if (samples_ == 0) {
     judge(e, "unjudged", "no node was seen");
   } else if (promise_ == Promise::conserved) {

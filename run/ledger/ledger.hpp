@@ -46,16 +46,15 @@ class QuantityWatch {
   /// `size` is the size of the terms the quantity is made of; round-off is relative to it. `noise` is what one
   /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not updated by steps.
   void observe(const double* values, double size, double noise = 0);
-  /// Something changed the quantity by so much; it is held to its promise from there.
-  void shift(const double* by) {
-    for (std::size_t i = 0; i < first_.size(); ++i) first_[i] += by[i];
-  }
+  /// Something changed the quantity by so much; it is held to its promise from there, with the round-off of the change.
+  void shift(const double* by);
   LedgerEntry entry() const;
   /// The norm of the last deviation from the first value.
   double drift() const;
   /// Visits what it has seen (archive.hpp).
   template <class Archive> void serialize(Archive& archive) {
     archive("samples", samples_);
+    archive("shifts", shifts_);
     archive.list("first", first_);
     archive.list("last", last_);
     archive("envelope", envelope_);
@@ -78,6 +77,7 @@ class QuantityWatch {
   Promise promise_;
   SizeOf size_of_;
   long samples_ = 0;
+  long shifts_ = 0;
   std::vector<double> first_;
   std::vector<double> last_;
   std::vector<double> deviation_;

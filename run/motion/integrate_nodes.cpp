@@ -22,6 +22,7 @@ bool WatchedMotion::observe_last() {
 
 void WatchedMotion::end_at(const Observables& inside) {
   is_ended_ = true;
+  if (judge_ != nullptr) judge_->observe(inside);
   if (recorder_ != nullptr) recorder_->record(inside, judge_);
 }
 

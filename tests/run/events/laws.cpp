@@ -2,9 +2,7 @@
 #include "orbits.hpp"
 
 #include <lagroid/run/events/event_watch.hpp>
-#include <lagroid/run/files/output_folder.hpp>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,46 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using enum Event::Direction;
-
-/// q = cos t, by steps that are exact.
-struct Turning : MechanicalSystem<Turning, 1> {
-  static double mass() { return 1; }
-  template <class S> S potential(const Vector<S, 1>& q) const { return q(0) * q(0) * 0.5; }
-};
-
-const State<Pair<2>> ellipse{{1.3, 0}, {0, 0.7}};
-const State<Pair<1>> unit_turn{Vector<double, 1>(1.0), Vector<double, 1>(0.0)};
-
-/// Of exact turns but for the discretisation, here 1e-13 in t.
-RunResult turn(long steps, const std::vector<Event>& events, double h = 0.1) {
-  Turning system;
-  system.h = h;
-  return run_split(system, unit_turn, compositions::kahan_li_8, {.steps = steps, .events = events});
-}
-
-std::string message_of(const std::vector<Event>& events) {
-  try {
-    turn(1, events);
-  } catch (const RunError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-Event stop(Event event, long count = 1) {
-  event.then = Event::Then::stop;
-  event.count = count;
-  return event;
-}
-
-std::vector<double> bits_of(const RunResult& result) {
-  std::vector<double> bits = result.trajectory.time;
-  for (const Columns& series : result.trajectory.series)
-    bits.insert(bits.end(), series.values.begin(), series.values.end());
-  for (const LedgerEntry& entry : result.ledger.entries)
-    if (entry.promise != "counted") bits.push_back(entry.drift);
-  return bits;
-}
 
 TEST(Events, RecordingThemChangesNoBit) {
   const std::vector<Event> events{event_at_zero("x", "q1"),
@@ -216,7 +174,9 @@ TEST(Events, WhatCannotBeWatchedForIsRefusedInALine) {
             "event \"set\": \"q = 1\": \"=\" sets nothing here: write what is to be zero; there are t, q, mu");
   EXPECT_EQ(message_of({event_at_zero("twice", "q"), event_at_zero("twice", "mu")}),
             "event \"twice\": two have this name");
-  EXPECT_EQ(message_of({event_at_zero("", "q")}), "an event has a name of one line");
+  for (const char* name : {"", "a, b", "a \"b\"", "a\\b", "a\nb"})
+    EXPECT_EQ(message_of({event_at_zero(name, "q")}),
+              "an event has a name of one line, without commas, quotes and backslashes");
   EXPECT_EQ(message_of({stop(event_at_zero("none", "q"), 0)}), "event \"none\": it counts to 0, to no event");
 }
 
@@ -229,86 +189,6 @@ TEST(Events, WithoutAFiniteFunctionAreSaidAndNothingIsLost) {
                        "event \"never\": its function was no finite number at 71 of 71 nodes, the first at t = 0; "
                        "nothing was found next to them"),
             1);
-}
-
-/// A bob that a wall at the bottom sends back.
-Event wall() {
-  Event event = event_at_zero("wall", "q", falling);
-  event.kick = {"-2*mu"};
-  return event;
-}
-
-TEST(Events, KicksGoOnFromWhereTheyHappen) {
-  const RunResult result = turn(200, {wall()});
-  ASSERT_TRUE(result.converged()) << result.message;
-  const std::vector<double> times = times_of(result, "wall");
-  ASSERT_EQ(times.size(), 6u);
-  for (std::size_t i = 0; i < times.size(); ++i)
-    EXPECT_NEAR(times[i], std::numbers::pi * (double(i) + 0.5), 1e-10) << i;
-  const std::vector<double>& q = result.trajectory.series[0].values;
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    EXPECT_NEAR(result.trajectory.time[k], 0.1 * double(k), 1e-13);
-    EXPECT_NEAR(q[k], std::abs(std::cos(0.1 * double(k))), 1e-10) << k;
-  }
-}
-
-TEST(Events, AKickAtTheApocentreMakesTheOrbitACircle) {
-  Orbit system;
-  system.h = 0.05;
-  Event fire = event_at_zero("apocentre", "q1*mu1 + q2*mu2", falling);
-  const std::string speed = "sqrt(mu1^2 + mu2^2)";
-  for (const char* each : {"mu1", "mu2"})
-    fire.kick.push_back(fmt::format("{}*(1/(sqrt(sqrt(q1^2 + q2^2))*{}) - 1)", each, speed));
-  const State<Pair<2>> start{{1, 0}, {0, 1.2}};
-  const RunOptions<Orbit> options{.steps = 1000, .events = {fire}};
-  for (const bool by_flows : {false, true}) {
-    const RunResult result =
-        by_flows ? run_split(system, start, compositions::kahan_li_8, options) : run(system, start, options);
-    ASSERT_TRUE(result.converged()) << result.message;
-    const double apocentre = 1.44 / (2 - 1.44), tolerance = by_flows ? 1e-7 : 2e-3;
-    EXPECT_NEAR(std::hypot(result.final.position[0], result.final.position[1]), apocentre, tolerance * apocentre);
-    for (const LedgerEntry& entry : result.ledger.entries) EXPECT_FALSE(entry.broken()) << entry.name;
-    const auto angular = std::find_if(result.ledger.entries.begin(), result.ledger.entries.end(),
-                                      [](const LedgerEntry& entry) { return entry.name == "angular momentum"; });
-    EXPECT_EQ(angular->verdict, "kept");
-    EXPECT_NEAR(angular->initial[0], std::sqrt(apocentre), 2 * tolerance);
-  }
-}
-
-TEST(Events, KicksThatFollowEachOtherWithoutEndAreSaid) {
-  Event event = wall();
-  event.direction = both;
-  const RunResult result = turn(200, {event});
-  EXPECT_FALSE(result.converged());
-  EXPECT_EQ(result.message, "event \"wall\": follows its own kicks without end, 100 times between t = 1.5 and 1.6");
-  EXPECT_EQ(result.steps, 16);
-}
-
-TEST(Events, KicksThatDoNotFitAreRefused) {
-  Event event = wall();
-  event.kick.push_back("1");
-  EXPECT_EQ(message_of({event}), "event \"wall\": its kick has 2 numbers, the momentum has 1");
-  event.kick = {"speed"};
-  EXPECT_EQ(message_of({event}), "event \"wall\": \"speed\": there is no \"speed\"; there are t, q, mu");
-}
-
-TEST(Events, KickedRunsResumeWithTheSameBits) {
-  const fs::path folder = fs::temp_directory_path() / "lagroid_events_kicked";
-  fs::remove_all(folder);
-  Turning system;
-  system.h = 0.1;
-  RunOptions<Turning> options{.steps = 120, .events = {wall()}};
-  const RunResult whole = run(system, unit_turn, options);
-  options.folder = folder;
-  options.steps = 16;  // the step with the kick is the last
-  run(system, unit_turn, options);
-  options.steps = 120;
-  options.resume = true;
-  const RunResult resumed = run(system, unit_turn, options);
-  fs::remove_all(folder);
-  EXPECT_EQ(bits_of(whole), bits_of(resumed));
-  EXPECT_EQ(whole.events.watched[0].count, 4);
-  EXPECT_EQ(resumed.events.watched[0].count, 4);
 }
 
 /// Steps that do not converge when they are cut.

@@ -1,5 +1,6 @@
 #pragma once
 // Motions in which something happens, by steps of order eight.
+#include <lagroid/run/files/output_folder.hpp>
 #include <lagroid/run/run.hpp>
 #include <lagroid/solvers/integrators/splitting.hpp>
 #include <lagroid/solvers/integrators/transformed.hpp>
@@ -94,6 +95,46 @@ inline Event event_at_zero(std::string name, std::string when, Event::Direction 
   Event event{std::move(name), std::move(when)};
   event.direction = direction;
   return event;
+}
+
+/// q = cos t, by steps that are exact.
+struct Turning : MechanicalSystem<Turning, 1> {
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 1>& q) const { return q(0) * q(0) * 0.5; }
+};
+
+inline const State<Pair<2>> ellipse{{1.3, 0}, {0, 0.7}};
+inline const State<Pair<1>> unit_turn{Vector<double, 1>(1.0), Vector<double, 1>(0.0)};
+
+/// Of exact turns but for the discretisation, here 1e-13 in t.
+inline RunResult turn(long steps, const std::vector<Event>& events, double h = 0.1) {
+  Turning system;
+  system.h = h;
+  return run_split(system, unit_turn, compositions::kahan_li_8, {.steps = steps, .events = events});
+}
+
+inline std::string message_of(const std::vector<Event>& events) {
+  try {
+    turn(1, events);
+  } catch (const RunError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+inline Event stop(Event event, long count = 1) {
+  event.then = Event::Then::stop;
+  event.count = count;
+  return event;
+}
+
+inline std::vector<double> bits_of(const RunResult& result) {
+  std::vector<double> bits = result.trajectory.time;
+  for (const Columns& series : result.trajectory.series)
+    bits.insert(bits.end(), series.values.begin(), series.values.end());
+  for (const LedgerEntry& entry : result.ledger.entries)
+    if (entry.promise != "counted") bits.push_back(entry.drift);
+  return bits;
 }
 
 }  // namespace lagroid

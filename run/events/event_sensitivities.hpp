@@ -1,0 +1,391 @@
+#pragma once
+/// Exact derivatives of a run through events whose times depend on its start and its parameters: where g(t, x) = 0,
+///
+///     dt* = -(g_x dx + g_theta dtheta) / (g_x X_s + g_t),    dx* = X dx + X_s dt*,
+///
+/// X the derivative of the partial step that ends there and X_s that by its duration; after a kick k(t, x) the rest of
+/// the step, which is shorter by dt*, goes on from (q*, mu* + k). These are the saltation matrices of the discrete
+/// motion itself: nothing is differenced, and symplectic steps stay so between events.
+///
+///     SmoothEvent<Bob> floor{"floor", [](const auto& node) { return node.object(1); }};
+///     floor.direction = Event::Direction::falling;
+///     floor.then = Event::Then::stop;
+///     const EventSensitivities fall = event_sensitivities(bob, start, {floor}, {.steps = 100});
+///     const double time_by_height = fall.happened[0].by_start(1);
+///
+/// Requires what `sensitivities` does, and a Lagrangian that takes its step as an argument; events at zero. Returns a
+/// status: `singular` where an event grazes zero, or two happen at once, for there the derivative does not exist; that
+/// of a step that fails; `left_domain` where a function is no finite number.
+///
+/// Errors: std::invalid_argument for a name that is no parameter or an event without a function; WithoutDerivative for
+/// a parameter, or a force's step size, that the system reads as a plain number. Source: implicit function theorem at
+/// the partial step; Hiskens and Pai, IEEE Trans. Circuits Syst. I 47, 2000, 204 (flows).
+
+#include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/run/events/function_watch.hpp>
+#include <lagroid/solvers/sensitivity/sensitivities.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// What a function of an event sees: a node, or a point within a step, and the time there.
+template <class Sys> struct EventNode {
+  using G = typename Sys::GroupoidType;
+  const Sys& system;
+  VariedNumber time;
+  ObjectOf<G, VariedNumber> object;
+  AlgebroidVector<G, VariedNumber> momentum;  ///< the one that is reported
+  ArrowOf<G, VariedNumber> configuration;
+};
+
+/// An event with derivatives: where its function passes zero.
+template <DiscreteSystem Sys> struct SmoothEvent {
+  std::string name;
+  std::function<VariedNumber(const EventNode<Sys>&)> function;
+  Event::Direction direction = Event::Direction::both;
+  Event::Then then = Event::Then::record;
+  long count = 1;                                                ///< the run stops when it has happened so often
+  std::function<VariedVector(const EventNode<Sys>&)> kick = {};  ///< added to the momentum there
+};
+
+struct EventSensitivities {
+  SolveStatus status = SolveStatus::converged;
+  std::string message;
+  std::vector<std::string> parameters;
+  /// An event that happened, and how its time depends on the start, 2 n numbers (displacement, momentum), and on the
+  /// parameters.
+  struct Happened {
+    std::size_t event;
+    double time;
+    Eigen::RowVectorXd by_start;
+    Eigen::RowVectorXd by_parameters;
+  };
+  std::vector<Happened> happened;
+  double time = 0;                ///< of the end: of the last node, or of the event that stopped the run
+  Eigen::MatrixXd by_start;       ///< of (displacement, momentum) at the end, as those of `sensitivities`
+  Eigen::MatrixXd by_parameters;  ///< a column for each
+
+  bool converged() const { return status == SolveStatus::converged; }
+};
+
+namespace detail {
+
+/// A system whose step size and start are varied as its parameters are.
+template <DiscreteSystem Sys> struct VaryingStep : Sys {
+  explicit VaryingStep(const Sys& system) : Sys(system) {}
+  /// It hides the functions that take the step: what looks for them has to look there.
+  Sys& plain() { return *this; }
+  const Sys& plain() const { return *this; }
+
+  template <class A> auto lagrangian(const A& g) const {
+    using S = std::remove_cvref_t<decltype(plain().lagrangian(g))>;
+    return S(over_step<S>([&](const auto&... times) { return plain().lagrangian(g, times...); }));
+  }
+  template <class A> auto constraint(const A& g) const requires(Sys::arrow_constraints > 0) {
+    using S = std::remove_cvref_t<decltype(plain().constraint(g)(0))>;
+    return Vector<S, Sys::arrow_constraints>(
+        over_step<S>([&](const auto&... times) { return plain().constraint(g, times...); }));
+  }
+  template <class A> auto forces(const A& g) const requires Forced<Sys> {
+    using S = std::remove_cvref_t<decltype(plain().forces(g).source(0))>;
+    if constexpr (
+        requires { plain().forces(g, this->h); } || requires { plain().forces(g, this->h, this->h); }) {
+      return over_step<S>([&](const auto&... times) { return plain().forces(g, times...); });
+    } else {
+      return plain().forces(g);  // which may read the step: it is compared
+    }
+  }
+
+ private:
+  /// f(h), or f(t, h) of a system that depends on time.
+  template <class S, class F> auto over_step(const F& f) const {
+    const S step = constant<S>(varied<S>(this->h));
+    if constexpr (TimeDependent<Sys>) {
+      return f(constant<S>(varied<S>(this->time)), step);
+    } else {
+      return f(step);
+    }
+  }
+};
+
+template <DiscreteSystem Sys> class EventPropagation {
+ public:
+  using G = typename Sys::GroupoidType;
+  static constexpr int n = Sys::dimension;
+  static constexpr int m = Sys::constraints;
+
+  EventPropagation(const Sys& system, std::unique_ptr<Integrator<Sys>> integrator,
+                   const std::vector<SmoothEvent<Sys>>& events, const std::vector<std::string>& parameters)
+      : system_(system),
+        integrator_(std::move(integrator)),
+        events_(events),
+        places_(places_of_parameters(system_.plain(), parameters)),
+        members_(places_.members),
+        count_(2 * n + int(places_.members.size())),
+        directions_(Eigen::MatrixXd::Identity(count_, count_)),
+        time_by_(Eigen::RowVectorXd::Zero(count_)) {
+    members_.push_back(&system_.h);
+    if constexpr (TimeDependent<Sys>) members_.push_back(&system_.time);
+    for (const SmoothEvent<Sys>& event : events) {
+      if (!event.function) throw std::invalid_argument("event \"" + event.name + "\": it has no function");
+      watches_.emplace_back(Event{.name = event.name, .direction = event.direction, .tolerance = grazing});
+      happened_.push_back(0);
+    }
+  }
+  EventPropagation(const EventPropagation&) = delete;  // derivatives know members by their places
+  EventPropagation& operator=(const EventPropagation&) = delete;
+
+  EventSensitivities run(long steps) {
+    out_.parameters = places_.names;
+    base_ = integrator_->point();
+    for (std::size_t i = 0; i < events_.size(); ++i) watches_[i].next(value_at(i, base_), base_.time);
+    for (long k = 0; k < steps && !is_over_; ++k) advance(k + 1);
+    if (out_.converged()) finish();
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr double grazing = 1e-8;
+  static constexpr double together = 1e-9;  // of a step
+  using Point = TrajectoryPoint<Sys>;
+  struct Found {
+    std::size_t event;
+    double share;
+    Passing passing;
+  };
+
+  void fail(SolveStatus status, std::string why) {
+    is_over_ = true;
+    out_.status = status;
+    out_.message = std::move(why);
+  }
+
+  /// f at a point, with its derivatives by (v, mu, theta, t): a row for each number.
+  template <class F> NodeValues observe(const Point& point, const F& f) const {
+    using V = VariedNumber;
+    NodeValues out;
+    const G& groupoid = system_.groupoid;
+    const Vector<double, n> zero = Vector<double, n>::Zero();
+    for_directions(count_ + 1, [&](int first) {
+      const VariedMembers varying(places_.members, 2 * n - first);
+      const Vector<V, n> v = varied_along(zero, -first);
+      const auto moved = groupoid.tau(groupoid.template cast_object<V>(point.state.object), v);
+      const Vector<V, n> momentum = varied_along(point.state.momentum, n - first);
+      const V time = varied_along(Vector<double, 1>(point.time), count_ - first)(0);
+      const ObjectOf<G, V> object = groupoid.target(moved);
+      const VariedVector here =
+          f(EventNode<Sys>{system_.plain(), time, object, varied_tangent_momentum(system_.plain(), object, momentum),
+                           groupoid.compose(groupoid.template cast<V>(point.configuration), moved)});
+      if (out.values.size() == 0) {
+        out.values.resize(here.size());
+        out.derivatives.resize(here.size(), count_ + 1);
+      }
+      for (Eigen::Index i = 0; i < here.size(); ++i) {
+        out.values(i) = here(i).value;
+        for (int k = first; k < std::min(count_ + 1, first + varied_at_once); ++k)
+          out.derivatives(i, k) = here(i).tangent(k - first);
+      }
+    });
+    return out;
+  }
+  NodeValues value_of(std::size_t i, const Point& point) const {
+    return observe(point, [&](const EventNode<Sys>& node) -> VariedVector {
+      return VariedVector::Constant(1, events_[i].function(node));
+    });
+  }
+  double value_at(std::size_t i, const Point& point) const { return value_of(i, point).values(0); }
+
+  Point cut(double share) {
+    Point point;
+    const StepReport report = integrator_->cut(share, point);
+    if (!report.converged()) throw report;
+    return point;
+  }
+
+  /// The step to a point from the base, linearised: of directions at the base, and of the duration.
+  struct Linearised {
+    Eigen::MatrixXd end;          ///< by the directions, the duration of the step as it is
+    Eigen::VectorXd by_duration;  ///< of (v, mu)
+  };
+  Linearised linearise(const Point& to) {
+    const double duration = to.time - base_.time;
+    set_time_step(system_.plain(), duration);
+    set_time(system_.plain(), base_.time);
+    LinearStep step(n + m, 2 * n, int(members_.size()));
+    linearise_step(system_, Step<VaryingStep<Sys>>{to.step.arrow, to.step.multipliers}, members_, step);
+    compare(to.step, step);
+    if (!step.factor()) throw StepReport{SolveStatus::singular};
+    const int extra = int(members_.size() - places_.members.size());
+    Eigen::MatrixXd from = Eigen::MatrixXd::Zero(count_ + extra, count_ + 1);
+    from.topLeftCorner(count_, count_) = directions_;
+    // Of a base that is an event the start depends on the directions, too.
+    if (extra > 1) from.row(count_ + 1).head(count_) = time_by_;
+    from(count_, count_) = 1;
+    const Eigen::MatrixXd all = step.forward(from);
+    return {all.topLeftCorner(count_, count_), all.col(count_).head(2 * n)};
+  }
+  /// By the step's size: a force may read it as a plain number.
+  void compare(const Step<Sys>& step, const LinearStep& linear) {
+    if (std::exchange(is_compared_, true)) return;
+    const auto at = [&](double size) {
+      const double kept = std::exchange(system_.h, size);
+      const GradientsOf<Sys> d = gradients(system_.plain(), step.arrow, step.multipliers);
+      system_.h = kept;
+      Eigen::VectorXd all(2 * n + m);
+      all << -d.source_gradient, d.constraint, d.source_gradient + d.target_gradient;
+      return all;
+    };
+    const Eigen::Index column = 2 * n + Eigen::Index(places_.members.size());
+    Eigen::VectorXd derivative(2 * n + m);
+    derivative << linear.equations_by_start.col(column), linear.end_by_start.col(column).tail(n);
+    const double h = system_.h, width = 1e-4 * h;
+    const auto difference = [&](double by) -> Eigen::VectorXd { return (at(h + by) - at(h - by)) / (2 * by); };
+    require_derivative("h", derivative, difference(width), difference(width / 2), at(h).norm() / width);
+  }
+
+  void advance(long number) try {
+    integrator_->keep_node();
+    is_kicked_ = false;
+    const StepReport report = integrator_->advance();
+    if (!report.converged()) throw report;
+    const Point node = integrator_->point();
+    std::vector<std::size_t> suspects;
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (watches_[i].next(value_at(i, node), node.time)) suspects.push_back(i);
+    for (int kicks = 0; !suspects.empty() && !is_over_; ++kicks) {
+      if (kicks == 100) return fail(SolveStatus::not_converged, "events follow their own kicks without end");
+      look_into_rest(std::exchange(suspects, {}), suspects);
+    }
+    if (is_over_) return;
+    // The rest of a step after a kick ends where the step does: what its start is late it is shorter.
+    Linearised step = linearise(is_kicked_ ? cut(1) : node);
+    step.end.topRows(2 * n) -= step.by_duration * time_by_;
+    move_base(step, integrator_->point(), Eigen::RowVectorXd::Zero(count_));
+  } catch (const StepReport& report) {
+    fail(report.status, "step " + std::to_string(number) + ", or a part of it, did not converge");
+  } catch (const NoNumber&) {
+    fail(SolveStatus::left_domain, "step " + std::to_string(number) + ": the function of an event is no finite number");
+  }
+
+  void look_into_rest(const std::vector<std::size_t>& suspects, std::vector<std::size_t>& next) {
+    std::vector<Found> found;
+    for (const std::size_t i : suspects)
+      for (const FoundInStep& each : watches_[i].find([&](double share) { return value_at(i, cut(share)); }))
+        found.push_back({i, each.share, each.passing});
+    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.share < b.share; });
+    for (std::size_t k = 0; k < found.size() && !is_over_; ++k) {
+      if (k + 1 < found.size() && found[k + 1].share - found[k].share <= together)
+        return fail(SolveStatus::singular, named(found[k]) + " and " + named(found[k + 1]) +
+                                               " happen together, where what follows has no derivative");
+      happen(found[k], next);
+      if (!next.empty()) return;
+    }
+  }
+  std::string named(const Found& found) const { return "event \"" + events_[found.event].name + "\""; }
+
+  void happen(const Found& found, std::vector<std::size_t>& next) {
+    const SmoothEvent<Sys>& event = events_[found.event];
+    const Point inside = cut(found.share);
+    const Linearised step = linearise(inside);
+    const NodeValues g = value_of(found.event, inside);
+    // x* at a fixed duration; t* = t_base + duration.
+    const Eigen::RowVectorXd by = g.derivatives.leftCols(count_) * step.end + g.derivatives(0, count_) * time_by_;
+    const Eigen::VectorXd by_state = g.derivatives.row(0).head(2 * n).transpose();
+    const double by_time = g.derivatives(0, count_);
+    const double rate = by_state.dot(step.by_duration) + by_time;
+    const double terms = by_state.cwiseAbs().dot(step.by_duration.cwiseAbs()) + std::abs(by_time);
+    if (found.passing == Passing::touching || std::abs(rate) <= grazing * terms)
+      return fail(SolveStatus::singular, named(found) + " only grazes zero, where its time has no derivative: t = " +
+                                             std::to_string(inside.time));
+    const Eigen::RowVectorXd duration_by = -by / rate;
+    Linearised at = step;
+    at.end.topRows(2 * n) += step.by_duration * duration_by;
+    const Eigen::RowVectorXd time_by = time_by_ + duration_by;
+    out_.happened.push_back({found.event, inside.time, time_by.head(2 * n), time_by.tail(count_ - 2 * n)});
+    ++happened_[found.event];
+    const bool stops = event.then == Event::Then::stop && happened_[found.event] >= event.count;
+    if (event.kick) {
+      kick(found, inside, at, time_by);
+      const Point node = integrator_->point();
+      for (std::size_t i = 0; i < events_.size(); ++i) {
+        const auto passing = i == found.event ? std::optional(found.passing) : std::nullopt;
+        if (watches_[i].next_from(value_at(i, base_), passing, value_at(i, node), node.time)) next.push_back(i);
+      }
+    } else if (stops) {
+      move_base(at, inside, time_by);
+    }
+    if (stops) is_over_ = true;
+  }
+
+  void kick(const Found& found, const Point& inside, const Linearised& at, const Eigen::RowVectorXd& time_by) {
+    const NodeValues k = observe(inside, events_[found.event].kick);
+    if (k.values.size() != n)
+      throw std::invalid_argument(named(found) + ": its kick has " + std::to_string(k.values.size()) +
+                                  " numbers, the momentum has " + std::to_string(n));
+    const AlgebroidVector<G> by = k.values;
+    const StepReport report = integrator_->kick(found.share, by);
+    if (!report.converged()) throw report;
+    Linearised kicked = at;
+    kicked.end.middleRows(n, n) += k.derivatives.leftCols(count_) * at.end + k.derivatives.col(count_) * time_by;
+    Point from = inside;
+    from.state.momentum += by;
+    move_base(kicked, from, time_by);
+    is_kicked_ = true;
+  }
+
+  void move_base(const Linearised& step, const Point& to, const Eigen::RowVectorXd& time_by) {
+    directions_ = step.end;
+    base_ = to;
+    time_by_ = time_by;
+  }
+
+  void finish() {
+    const NodeValues momentum = observe(base_, [](const EventNode<Sys>& node) { return VariedVector(node.momentum); });
+    Eigen::MatrixXd end = directions_.topRows(2 * n);
+    end.bottomRows(n) = momentum.derivatives.leftCols(count_) * directions_;
+    out_.time = base_.time;
+    out_.by_start = end.leftCols(2 * n);
+    out_.by_parameters = end.rightCols(count_ - 2 * n);
+  }
+
+  VaryingStep<Sys> system_;
+  std::unique_ptr<Integrator<Sys>> integrator_;
+  const std::vector<SmoothEvent<Sys>>& events_;
+  ParameterPlaces places_;
+  std::vector<const double*> members_;  ///< and the step's size, and its start
+  int count_;                           ///< directions: (v, mu, theta)
+  Eigen::MatrixXd directions_;          ///< at the base
+  Eigen::RowVectorXd time_by_;          ///< of the base's time
+  Point base_;                          ///< from which the rest of the step is made
+  std::vector<FunctionWatch> watches_;
+  std::vector<long> happened_;
+  EventSensitivities out_;
+  bool is_kicked_ = false;  ///< in this step
+  bool is_over_ = false;
+  bool is_compared_ = false;
+};
+
+}  // namespace detail
+
+/// By equal steps of order two, from the start until the last step or the event that stops the run.
+template <DiscreteSystem Sys>
+requires StepDependent<Sys> || TimeDependent<Sys> EventSensitivities
+event_sensitivities(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                    const std::vector<SmoothEvent<Sys>>& events, const SensitivityOptions<Sys>& options = {}) {
+  detail::EventPropagation<Sys> motion(system, detail::newton_integrator(system, start, options), events,
+                                       options.parameters);
+  return motion.run(options.steps);
+}
+
+}  // namespace lagroid

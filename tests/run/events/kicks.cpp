@@ -1,0 +1,178 @@
+// Events that change the motion: it goes on from where they happen, and what cannot be is said.
+#include "orbits.hpp"
+
+#include <lagroid/run/events/event_watch.hpp>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+using namespace lagroid;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using enum Event::Direction;
+
+/// A bob that a wall at the bottom sends back.
+Event wall() {
+  Event event = event_at_zero("wall", "q", falling);
+  event.kick = {"-2*mu"};
+  return event;
+}
+
+TEST(Events, KicksGoOnFromWhereTheyHappen) {
+  const RunResult result = turn(200, {wall()});
+  ASSERT_TRUE(result.converged()) << result.message;
+  const std::vector<double> times = times_of(result, "wall");
+  ASSERT_EQ(times.size(), 6u);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(times[i], std::numbers::pi * (double(i) + 0.5), 1e-10) << i;
+  const std::vector<double>& q = result.trajectory.series[0].values;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    EXPECT_NEAR(result.trajectory.time[k], 0.1 * double(k), 1e-13);
+    EXPECT_NEAR(q[k], std::abs(std::cos(0.1 * double(k))), 1e-10) << k;
+  }
+}
+
+TEST(Events, AKickAtTheApocentreMakesTheOrbitACircle) {
+  Orbit system;
+  system.h = 0.05;
+  Event fire = event_at_zero("apocentre", "q1*mu1 + q2*mu2", falling);
+  const std::string speed = "sqrt(mu1^2 + mu2^2)";
+  for (const char* each : {"mu1", "mu2"})
+    fire.kick.push_back(fmt::format("{}*(1/(sqrt(sqrt(q1^2 + q2^2))*{}) - 1)", each, speed));
+  const State<Pair<2>> start{{1, 0}, {0, 1.2}};
+  const RunOptions<Orbit> options{.steps = 1000, .events = {fire}};
+  for (const bool by_flows : {false, true}) {
+    const RunResult result =
+        by_flows ? run_split(system, start, compositions::kahan_li_8, options) : run(system, start, options);
+    ASSERT_TRUE(result.converged()) << result.message;
+    const double apocentre = 1.44 / (2 - 1.44), tolerance = by_flows ? 1e-7 : 2e-3;
+    EXPECT_NEAR(std::hypot(result.final.position[0], result.final.position[1]), apocentre, tolerance * apocentre);
+    for (const LedgerEntry& entry : result.ledger.entries) EXPECT_FALSE(entry.broken()) << entry.name;
+    const auto angular = std::find_if(result.ledger.entries.begin(), result.ledger.entries.end(),
+                                      [](const LedgerEntry& entry) { return entry.name == "angular momentum"; });
+    EXPECT_EQ(angular->verdict, "kept");
+    EXPECT_NEAR(angular->initial[0], std::sqrt(apocentre), 2 * tolerance);
+  }
+}
+
+TEST(Events, KicksThatFollowEachOtherWithoutEndAreSaid) {
+  Event event = wall();
+  event.direction = both;
+  const RunResult result = turn(200, {event});
+  EXPECT_FALSE(result.converged());
+  EXPECT_EQ(result.message, "event \"wall\": follows its own kicks without end, 100 times between t = 1.5 and 1.6");
+  EXPECT_EQ(result.steps, 16);
+}
+
+TEST(Events, KicksThatDoNotFitAreRefused) {
+  Event event = wall();
+  event.kick.push_back("1");
+  EXPECT_EQ(message_of({event}), "event \"wall\": its kick has 2 numbers, the momentum has 1");
+  event.kick = {"speed"};
+  EXPECT_EQ(message_of({event}), "event \"wall\": \"speed\": there is no \"speed\"; there are t, q, mu");
+}
+
+TEST(Events, KickedRunsResumeWithTheSameBits) {
+  const fs::path folder = fs::temp_directory_path() / "lagroid_events_kicked";
+  fs::remove_all(folder);
+  Turning system;
+  system.h = 0.1;
+  RunOptions<Turning> options{.steps = 120, .events = {wall()}};
+  const RunResult whole = run(system, unit_turn, options);
+  options.folder = folder;
+  options.steps = 16;  // the step with the kick is the last
+  run(system, unit_turn, options);
+  options.steps = 120;
+  options.resume = true;
+  const RunResult resumed = run(system, unit_turn, options);
+  fs::remove_all(folder);
+  EXPECT_EQ(bits_of(whole), bits_of(resumed));
+  EXPECT_EQ(whole.events.watched[0].count, 4);
+  EXPECT_EQ(resumed.events.watched[0].count, 4);
+}
+
+/// As the wall, above.
+Event roof(double height) {
+  Event event = event_at_zero("roof", fmt::format("q - {}", height), rising);
+  event.kick = {"-2*mu"};
+  return event;
+}
+
+TEST(Events, KicksFollowEachOtherInTheRestOfAStep) {
+  // From the wall on the bob goes to and fro in asin(0.1) each way, eight times a step.
+  const RunResult result = turn(4, {wall(), roof(0.1)}, 0.8);
+  ASSERT_TRUE(result.converged()) << result.message;
+  const double way = std::asin(0.1), first = std::numbers::pi / 2;
+  ASSERT_EQ(result.events.rows.size(), 17u);
+  for (std::size_t i = 0; i < 17; ++i) {
+    EXPECT_EQ(result.events.rows[i].event, i % 2) << i;
+    EXPECT_NEAR(result.events.rows[i].time, first + way * double(i), 1e-6) << i;
+  }
+}
+
+TEST(Events, AfterAKickWhatTheSignsDoNotShowIsFound) {
+  // The bob leaves the wall and would pass the roof twice before the step ends.
+  const RunResult result = turn(1, {wall(), roof(0.99)}, 3.6);
+  ASSERT_TRUE(result.converged()) << result.message;
+  ASSERT_EQ(result.events.rows.size(), 2u);
+  EXPECT_EQ(result.events.rows[1].event, 1u);
+  EXPECT_NEAR(result.events.rows[1].time - result.events.rows[0].time, std::asin(0.99), 1e-3);
+}
+
+TEST(Events, AKickThatEndsTheRunIsMadeFirst) {
+  const RunResult result = turn(200, {stop(wall(), 2)});
+  ASSERT_TRUE(result.converged()) << result.message;
+  EXPECT_NEAR(result.final.time, 1.5 * std::numbers::pi, 1e-10);
+  EXPECT_NEAR(result.final.momentum[0], 1, 1e-10);
+  EXPECT_EQ(result.trajectory.series[1].values.back(), result.final.momentum[0]);
+  EXPECT_EQ(std::count(result.notes.begin(), result.notes.end(),
+                       "event \"wall\": kicked the motion 2 times; the ledger's first values are moved by it"),
+            1);
+  for (const LedgerEntry& entry : result.ledger.entries) EXPECT_FALSE(entry.broken()) << entry.name;
+}
+
+TEST(Events, AllThatHappensWhereARunEndsHasHappened) {
+  Event also = wall();
+  also.name = "also";
+  const RunResult result = turn(200, {stop(event_at_zero("end", "3*q")), also, event_at_zero("later", "q + 0.1")});
+  ASSERT_EQ(result.events.rows.size(), 2u);
+  EXPECT_EQ(result.events.rows[1].event, 1u);
+  EXPECT_TRUE(result.events.rows[1].together);
+  EXPECT_NEAR(result.final.momentum[0], 1, 1e-10);
+}
+
+TEST(Events, KicksThatAreNoNumbersAreSaid) {
+  Event event = wall();
+  event.kick = {"log(q - 3)"};
+  const RunResult undefined = turn(200, {event});
+  EXPECT_FALSE(undefined.converged());
+  EXPECT_NE(undefined.message.find("event \"wall\": its kick is no finite number at t = 1.5708: \"log(q - 3)\" is"),
+            std::string::npos)
+      << undefined.message;
+  event.kick = {"1e300"};
+  const RunResult huge = turn(200, {event});
+  EXPECT_FALSE(huge.converged());
+  EXPECT_NE(huge.message.find("no finite number any more"), std::string::npos) << huge.message;
+}
+
+TEST(Events, ManyKicksLeaveTheLedgerItsVerdicts) {
+  Orbit system;
+  system.h = 0.05;
+  Event thrust = event_at_zero("thrust", "sin(40*t)");
+  thrust.kick = {"1e-3*mu1", "1e-3*mu2"};
+  Event brake = event_at_zero("brake", "sin(40*t + 1)");
+  brake.kick = {"-1e-3*mu1", "-1e-3*mu2"};
+  const RunResult result = run(system, ellipse, {.steps = 4000, .events = {thrust, brake}});
+  ASSERT_TRUE(result.converged()) << result.message;
+  EXPECT_GT(result.events.watched[0].count, 2000);
+  for (const LedgerEntry& entry : result.ledger.entries) EXPECT_FALSE(entry.broken()) << entry.name;
+}
+
+}  // namespace

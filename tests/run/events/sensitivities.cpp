@@ -1,0 +1,210 @@
+// Derivatives through events: those of falls that are known in closed form, and what differences of runs tend to.
+#include <lagroid/core/parameter.hpp>
+#include <lagroid/run/events/event_sensitivities.hpp>
+#include <lagroid/systems/mechanical.hpp>
+#include <lagroid/systems/pendulums/damped_pendulum.hpp>
+#include <lagroid/systems/pendulums/driven_pendulum.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace lagroid;
+
+namespace {
+
+/// A ball that falls: nodes of parabolas are exact.
+struct Ball : MechanicalSystem<Ball, 1> {
+  double gravity = 2;
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 1>& q) const { return q(0) * varied<S>(gravity); }
+  static auto parameters() {
+    return std::tuple(parameter("gravity", &Ball::gravity, "m/s^2", "acceleration", positive));
+  }
+};
+
+/// A bob on a spring, in the plane.
+struct Bob : MechanicalSystem<Bob, 2> {
+  double stiffness = 3;
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 2>& q) const {
+    using std::sqrt;
+    const S stretch = sqrt(q.squaredNorm()) - 0.7;
+    return stretch * stretch * (varied<S>(stiffness) * 0.5) + q(1);
+  }
+  static auto parameters() {
+    return std::tuple(parameter("stiffness", &Bob::stiffness, "N/m", "of the spring", positive));
+  }
+};
+
+using Events = std::vector<SmoothEvent<Ball>>;
+
+SmoothEvent<Ball> floor_of_ball() {
+  SmoothEvent<Ball> floor{"floor", [](const EventNode<Ball>& node) { return node.object(0); }};
+  floor.direction = Event::Direction::falling;
+  return floor;
+}
+
+/// Sends it back with the share `e` of its speed.
+SmoothEvent<Ball> bouncing(double e) {
+  SmoothEvent<Ball> floor = floor_of_ball();
+  floor.kick = [e](const EventNode<Ball>& node) { return VariedVector(node.momentum * VariedNumber(-(1 + e))); };
+  return floor;
+}
+
+const State<Pair<1>> thrown{Vector<double, 1>(1.0), Vector<double, 1>(0.3)};
+
+TEST(EventSensitivities, OfAFallAreThoseOfItsFormula) {
+  Ball ball;
+  ball.h = 0.11;
+  SmoothEvent<Ball> floor = floor_of_ball();
+  floor.then = Event::Then::stop;
+  const EventSensitivities fall =
+      event_sensitivities(ball, thrown, Events{floor}, {.steps = 100, .parameters = {"gravity"}});
+  ASSERT_TRUE(fall.converged()) << fall.message;
+  ASSERT_EQ(fall.happened.size(), 1u);
+  const double q = 1, v = 0.3, g = 2, root = std::sqrt(v * v + 2 * g * q), t = (v + root) / g;
+  EXPECT_NEAR(fall.happened[0].time, t, 1e-13);
+  EXPECT_NEAR(fall.happened[0].by_start(0), 1 / root, 1e-12);
+  EXPECT_NEAR(fall.happened[0].by_start(1), (1 + v / root) / g, 1e-12);
+  EXPECT_NEAR(fall.happened[0].by_parameters(0), q / root / g - t / g, 1e-12);
+  // It is on the floor whatever the start, with the speed that the energy gives.
+  EXPECT_NEAR(fall.by_start.row(0).norm() + fall.by_parameters.row(0).norm(), 0, 1e-12);
+  EXPECT_NEAR(fall.by_start(1, 0), -g / root, 1e-12);
+  EXPECT_NEAR(fall.by_start(1, 1), -v / root, 1e-12);
+  EXPECT_NEAR(fall.by_parameters(1, 0), -q / root, 1e-12);
+}
+
+TEST(EventSensitivities, ThroughBouncesAreThoseOfTheFormula) {
+  Ball ball;
+  ball.h = 0.11;
+  const double e = 0.8;
+  const EventSensitivities end =
+      event_sensitivities(ball, thrown, Events{bouncing(e)}, {.steps = 19, .parameters = {"gravity"}});
+  ASSERT_TRUE(end.converged()) << end.message;
+  ASSERT_EQ(end.happened.size(), 1u);
+  const double q = 1, v = 0.3, g = 2, root = std::sqrt(v * v + 2 * g * q), t = (v + root) / g, rest = 19 * 0.11 - t;
+  // q(T) = e root (T - t) - g (T - t)^2 / 2, momentum e root - g (T - t).
+  const Eigen::RowVector3d by_root(g / root, v / root, q / root);
+  const Eigen::RowVector3d by_t(1 / root, (1 + v / root) / g, q / root / g - t / g);
+  Eigen::RowVector3d place = e * rest * by_root - (e * root - g * rest) * by_t;
+  Eigen::RowVector3d momentum = e * by_root + g * by_t;
+  place(2) -= rest * rest / 2;
+  momentum(2) -= rest;
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(end.by_start(0, i), place(i), 1e-11) << i;
+    EXPECT_NEAR(end.by_start(1, i), momentum(i), 1e-11) << i;
+  }
+  EXPECT_NEAR(end.by_parameters(0, 0), place(2), 1e-11);
+  EXPECT_NEAR(end.by_parameters(1, 0), momentum(2), 1e-11);
+}
+
+TEST(EventSensitivities, AreWhatDifferencesTendTo) {
+  // A bob that a wall throws back twice, with a push that depends on where and when.
+  SmoothEvent<Bob> wall{"wall", [](const EventNode<Bob>& node) { return node.object(0) + 0.2; }};
+  wall.direction = Event::Direction::falling;
+  wall.kick = [](const EventNode<Bob>& node) {
+    VariedVector by(2);
+    by << node.momentum(0) * -1.9, node.object(1) * 0.1 + node.time * 0.05;
+    return by;
+  };
+  const auto run = [&](Vector<double, 2> q, Vector<double, 2> mu, double stiffness) {
+    Bob bob;
+    bob.h = 0.07;
+    bob.stiffness = stiffness;
+    return event_sensitivities(bob, {q, mu}, std::vector{wall}, {.steps = 150, .parameters = {"stiffness"}});
+  };
+  const Vector<double, 2> q(0.6, -0.5), mu(-0.4, 0.2);
+  const EventSensitivities at = run(q, mu, 3);
+  ASSERT_TRUE(at.converged()) << at.message;
+  ASSERT_GE(at.happened.size(), 2u);
+  for (int i = 0; i < 5; ++i) {
+    const auto time = [&](double by, std::size_t which) {
+      Vector<double, 2> q_of = q, mu_of = mu;
+      if (i < 2)
+        q_of(i) += by;
+      else if (i < 4)
+        mu_of(i - 2) += by;
+      return run(q_of, mu_of, i == 4 ? 3 + by : 3).happened.at(which).time;
+    };
+    for (const std::size_t which : {0u, 1u}) {
+      const auto difference = [&](double by) { return (time(by, which) - time(-by, which)) / (2 * by); };
+      const double limit = (4 * difference(1e-4) - difference(2e-4)) / 3;
+      const double exact = i < 4 ? at.happened[which].by_start(i) : at.happened[which].by_parameters(0);
+      EXPECT_NEAR(exact, limit, 1e-8 * (1 + std::abs(limit))) << i << ", " << which;
+    }
+  }
+}
+
+/// A stop at the bottom that throws the bob back: of a pendulum, the times of its first two blows by its start and a
+/// parameter beside differences of runs.
+template <class Sys> void compare_with_differences(double Sys::*member, const std::string& name) {
+  SmoothEvent<Sys> stop{"stop", [](const EventNode<Sys>& node) { return node.object(0); }};
+  stop.direction = Event::Direction::falling;
+  stop.kick = [](const EventNode<Sys>& node) { return VariedVector(node.momentum * VariedNumber(-1.8)); };
+  const auto run = [&](double q, double mu, double by) {
+    Sys system;
+    system.h = 0.05;
+    system.*member += by;
+    return event_sensitivities(system, {Vector<double, 1>(q), Vector<double, 1>(mu)}, std::vector{stop},
+                               {.steps = 150, .parameters = {name}});
+  };
+  const EventSensitivities at = run(1, 0.2, 0);
+  ASSERT_TRUE(at.converged()) << at.message;
+  ASSERT_GE(at.happened.size(), 2u);
+  for (const std::size_t which : {0u, 1u})
+    for (int i = 0; i < 3; ++i) {
+      const auto time = [&](double by) {
+        return run(i == 0 ? 1 + by : 1, i == 1 ? 0.2 + by : 0.2, i == 2 ? by : 0).happened.at(which).time;
+      };
+      const auto difference = [&](double by) { return (time(by) - time(-by)) / (2 * by); };
+      const double limit = (4 * difference(1e-4) - difference(2e-4)) / 3;
+      const double exact = i < 2 ? at.happened[which].by_start(i) : at.happened[which].by_parameters(0);
+      EXPECT_NEAR(exact, limit, 1e-8 * (1 + std::abs(limit))) << name << ' ' << i << ", blow " << which;
+    }
+}
+
+TEST(EventSensitivities, OfForcedAndDrivenSystemsAreWhatDifferencesTendTo) {
+  compare_with_differences(&DampedPendulum::damping, "damping");
+  compare_with_differences(&DrivenPendulum::torque, "torque");
+}
+
+/// A force that reads the step's size as a plain number.
+struct Braked : Ball {
+  template <class S> Forces<S, 1> forces(const PairArrow<S, 1>& g) const {
+    const Vector<S, 1> half = (g.target - g.source) * (-0.1 / h);
+    return {half, half};
+  }
+};
+
+TEST(EventSensitivities, StepsThatForcesReadAsPlainNumbersAreRefused) {
+  Braked ball;
+  ball.h = 0.11;
+  const SmoothEvent<Braked> floor{"floor", [](const EventNode<Braked>& node) { return node.object(0); }};
+  EXPECT_THROW(event_sensitivities(ball, thrown, std::vector{floor}, {.steps = 30}), WithoutDerivative);
+}
+
+TEST(EventSensitivities, BetweenEventsTheMatrixIsSymplecticAndReflectionsKeepArea) {
+  Ball ball;
+  ball.h = 0.11;
+  const EventSensitivities end = event_sensitivities(ball, thrown, Events{bouncing(1)}, {.steps = 60});
+  ASSERT_TRUE(end.converged()) << end.message;
+  EXPECT_GE(end.happened.size(), 3u);
+  EXPECT_NEAR(end.by_start.determinant(), 1, 1e-10);
+}
+
+TEST(EventSensitivities, OfWhatOnlyGrazesAreRefused) {
+  Ball ball;
+  ball.h = 0.11;
+  const State<Pair<1>> up{Vector<double, 1>(0.0), Vector<double, 1>(2.0)};  // to a height of 1
+  SmoothEvent<Ball> ceiling{"ceiling", [](const EventNode<Ball>& node) { return node.object(0) - 1.0; }};
+  const EventSensitivities grazed = event_sensitivities(ball, up, Events{ceiling}, {.steps = 30});
+  EXPECT_EQ(grazed.status, SolveStatus::singular);
+  EXPECT_NE(grazed.message.find("event \"ceiling\" only grazes zero"), std::string::npos) << grazed.message;
+  const EventSensitivities twice =
+      event_sensitivities(ball, thrown, Events{floor_of_ball(), floor_of_ball()}, {.steps = 30});
+  EXPECT_EQ(twice.status, SolveStatus::singular);
+  EXPECT_NE(twice.message.find("happen together"), std::string::npos) << twice.message;
+}
+
+}  // namespace
