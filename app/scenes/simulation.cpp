@@ -226,6 +226,7 @@ RunExtent read_extent(const Section& scene, const RunContext& context) {
   extent.every = read_every(scene);
   extent.checkpoint = read_key_or(scene.section_or_empty("output"), output_keys::checkpoint, 0);
   extent.events = read_events(scene);
+  extent.events.insert(extent.events.end(), context.events.begin(), context.events.end());
   if (!context.folder.empty() && !context.resume) extent.scene = kept_scene(scene);
   return extent;
 }

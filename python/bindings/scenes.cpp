@@ -5,6 +5,7 @@
 #include "computing.hpp"
 #include "scene.hpp"
 
+#include <lagroid/run/events/event_function.hpp>
 #include <lagroid/run/files/checkpoint.hpp>
 #include <lagroid/run/files/output.hpp>
 #include <lagroid/run/reports/report.hpp>
@@ -12,14 +13,18 @@
 #include <study/run_scene.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::python {
@@ -29,16 +34,126 @@ namespace {
 namespace fs = std::filesystem;
 using lagroid::Endpoint, lagroid::LedgerEntry, lagroid::StationaryPath, lagroid::RunResult, lagroid::Columns;
 
+/// What a function of an event sees, while it is called.
+class EventNode {
+ public:
+  explicit EventNode(const lagroid::Observables& node) : node_(&node) {}
+  void close() { node_ = nullptr; }
+
+  double number(const std::string& label) const {
+    if (node_ == nullptr) throw std::runtime_error("the node of an event is known only while its function is called");
+    if (label == "t") return node_->time();
+    std::vector<double> numbers;
+    const auto found = [&](const std::vector<std::string>& labels, const auto& read) -> std::optional<double> {
+      const auto at = std::find(labels.begin(), labels.end(), label);
+      if (at == labels.end()) return std::nullopt;
+      numbers.resize(labels.size());
+      read(numbers.data());
+      return numbers[std::size_t(at - labels.begin())];
+    };
+    for (const std::size_t i : lagroid::fields_within(*node_))
+      if (const auto x = found(node_->fields()[i].columns.components, [&](double* to) { node_->read(i, to); }))
+        return *x;
+    for (std::size_t i = 0; i < node_->quantities().size(); ++i) {
+      const lagroid::Watched& quantity = node_->quantities()[i];
+      if (quantity.on_arrows || quantity.adds_up) continue;
+      const bool is_one = quantity.components.size() == 1;
+      if (const auto x = found(is_one ? std::vector{quantity.name} : quantity.components,
+                               [&](double* to) { node_->measure(i, to); }))
+        return *x;
+    }
+    throw py::key_error(fmt::format("{}; there are t, {}", label, fmt::join(lagroid::columns_within(*node_), ", ")));
+  }
+
+ private:
+  const lagroid::Observables* node_;
+};
+
+/// A function of Python's that the loop of a run calls, which is without the interpreter and copies it freely.
+class CalledAtNodes {
+ public:
+  explicit CalledAtNodes(py::function f)
+      : function_(new py::function(std::move(f)), [](py::function* held) {
+          const py::gil_scoped_acquire acquired;
+          delete held;
+        }) {}
+  /// use(what it returns), with the interpreter.
+  template <class Use> auto operator()(const lagroid::Observables& node, const Use& use) const {
+    const py::gil_scoped_acquire acquired;
+    struct Seen {
+      std::shared_ptr<EventNode> node;
+      ~Seen() { node->close(); }
+    };
+    const Seen seen{std::make_shared<EventNode>(node)};
+    return use((*function_)(seen.node));
+  }
+
+ private:
+  std::shared_ptr<py::function> function_;
+};
+
+/// An event whose function is one of Python's, or that calls one back: keys as those of [[event]].
+lagroid::Event event_of(const py::dict& table) {
+  using lagroid::Event;
+  Event event;
+  const auto chosen = [](const std::string& key, const std::string& word, const std::vector<std::string>& words) {
+    const auto at = std::find(words.begin(), words.end(), word);
+    if (at == words.end())
+      throw py::value_error(fmt::format("event: {} is one of {}, not \"{}\"", key, fmt::join(words, ", "), word));
+    return int(at - words.begin());
+  };
+  for (const auto& [name, value] : table) {
+    const auto key = name.cast<std::string>();
+    if (key == "name") {
+      event.name = value.cast<std::string>();
+    } else if (key == "when" && py::isinstance<py::str>(value)) {
+      event.when = value.cast<std::string>();
+    } else if (key == "when") {
+      event.when = "a function of Python's";
+      event.function = [f = CalledAtNodes(value.cast<py::function>())](const lagroid::Observables& node) {
+        return f(node, [](const py::object& result) { return result.cast<double>(); });
+      };
+    } else if (key == "call") {
+      event.call = [f = CalledAtNodes(value.cast<py::function>())](const lagroid::Happening&,
+                                                                   const lagroid::Observables& node) {
+        return f(node, [](const py::object& result) { return !result.is(py::bool_(false)); });
+      };
+    } else if (key == "at") {
+      event.at = Event::At(chosen(key, value.cast<std::string>(), {"zero", "minimum", "maximum"}));
+    } else if (key == "direction") {
+      event.direction = Event::Direction(chosen(key, value.cast<std::string>(), {"both", "rising", "falling"}));
+    } else if (key == "then") {
+      event.then = Event::Then(chosen(key, value.cast<std::string>(), {"record", "stop"}));
+    } else if (key == "count") {
+      event.count = value.cast<long>();
+    } else if (key == "tolerance") {
+      event.tolerance = value.cast<double>();
+    } else if (key == "kick") {
+      event.kick = value.cast<std::vector<std::string>>();
+    } else if (key == "plot") {
+      event.plot = value.cast<std::vector<std::string>>();
+    } else {
+      throw py::value_error(fmt::format(
+          "event: there is no \"{}\"; there are name, when, call, at, direction, then, count, tolerance, kick, plot",
+          key));
+    }
+  }
+  return event;
+}
+
 /// Runs the scene; with a folder, keeps checkpoints there and leaves the files of a run.
 std::shared_ptr<RunResult> run(const app::Section& scene, bool record, const std::optional<fs::path>& folder,
-                               bool resume) {
+                               bool resume, std::vector<lagroid::Event> events = {}) {
   std::optional<lagroid::OutputFolder> held;
   if (folder) held.emplace(resume ? lagroid::folder_of_run(*folder) : lagroid::folder_for_run(*folder, scene.whole()));
   bool interrupted = false;
   auto result = computing(
       [&] {
-        auto made = std::make_shared<RunResult>(app::run_scene(
-            scene, {.record = record || folder, .progress = false, .folder = folder.value_or(""), .resume = resume}));
+        auto made = std::make_shared<RunResult>(app::run_scene(scene, {.record = record || folder,
+                                                                       .progress = false,
+                                                                       .folder = folder.value_or(""),
+                                                                       .resume = resume,
+                                                                       .events = std::move(events)}));
         if (folder) lagroid::write_outputs(*made, *folder);
         return made;
       },
@@ -122,6 +237,11 @@ void bind_scenes(py::module_& module) {
       .def_readonly("name", &Scene::name, "The file, or what messages call the text.")
       .def(
           "toml", [](const Scene& self) { return self.read().whole(); }, "The whole scene with its overrides.");
+
+  py::class_<EventNode, std::shared_ptr<EventNode>>(
+      module, "EventNode", "A node, or a point within a step, at which a function of an event is called.")
+      .def("__getitem__", &EventNode::number, py::arg("label"),
+           "A column or a quantity of the ledger by its label; \"t\" is the time.");
 
   py::class_<Endpoint>(module, "Endpoint", "A state as users see it.")
       .def_readonly("time", &Endpoint::time, "s")
@@ -280,10 +400,12 @@ void bind_scenes(py::module_& module) {
 
   module.def(
       "run",
-      [](const Scene& scene, bool record, const std::optional<fs::path>& folder) {
-        return run(scene.read(), record, folder, false);
+      [](const Scene& scene, bool record, const std::optional<fs::path>& folder, const std::vector<py::dict>& events) {
+        std::vector<lagroid::Event> watched;
+        std::transform(events.begin(), events.end(), std::back_inserter(watched), event_of);
+        return run(scene.read(), record, folder, false, std::move(watched));
       },
-      py::arg("scene"), py::arg("record"), py::arg("folder"));
+      py::arg("scene"), py::arg("record"), py::arg("folder"), py::arg("events"));
   module.def("resume", resume, py::arg("folder"), py::arg("steps"), py::arg("other_build"));
 }
 

@@ -88,15 +88,18 @@ def run(
 
     `set` holds other values by dotted keys, as in {"time.steps": 100}. `reduce` names one of the system's reductions
     (`systems()` has them): its steps are then those of the reduced system, its motion the full one. `events` are the
-    tables [[event]] of the scene (docs/events.md), as in [{"name": "bottom", "when": "q"}]; RunResult.events has what
-    happened. Without `record` only the ledger and the end points are kept. `out` is a folder for checkpoints and the
+    tables [[event]] of the scene (docs/events.md), as in [{"name": "bottom", "when": "q"}]; `when` may be a function of
+    the node, as in `lambda node: node["q"] - 0.5`, and `call` one that is called where it has happened and ends the run
+    by returning False. RunResult.events has what happened. Without `record` only the ledger and the end points are kept. `out` is a folder for checkpoints and the
     files of `lagroid run --out`.
 
     Returns also where a step failed: see `status`, or call `require`. Raises SceneError, OutputError, and Interrupted
     after Ctrl-C. Other threads of Python go on meanwhile."""
-    named = {"reduce": reduce, "event": events}
+    called = [dict(event) for event in events or [] if callable(event.get("when")) or "call" in event]
+    tables = [event for event in events or [] if not (callable(event.get("when")) or "call" in event)]
+    named = {"reduce": reduce, "event": tables if tables else None}
     given = {**(set or {}), **{key: value for key, value in named.items() if value is not None}}
-    return _finished(_lagroid.run(made(scene, given), record, out))
+    return _finished(_lagroid.run(made(scene, given), record, out, called))
 
 
 def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None, other_build: bool = False) -> RunResult:

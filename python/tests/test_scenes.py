@@ -52,12 +52,36 @@ class Scenes(unittest.TestCase):
         ]
         run = lagroid.run(PENDULUM, set={"time.steps": 1000}, events=events)
         found = [event["event"] for event in run.events]
-        self.assertEqual(found, ["out", "bottom", "out", "bottom", "out"])
+        self.assertEqual(found, ["bottom", "out", "bottom", "out", "bottom", "out"])  # it begins at rest, which is no turn
         self.assertEqual(run.final.time, run.events[-1]["t"])
-        self.assertAlmostEqual(run.events[1]["q"], 0, delta=1e-14)
+        self.assertAlmostEqual(run.events[0]["q"], 0, delta=1e-14)
         np.testing.assert_array_equal(lagroid.run(PENDULUM, events=events[:1])["q"], lagroid.run(PENDULUM)["q"])
         with self.assertRaisesRegex(lagroid.OutputError, 'there is no "height"; there are t, q, p'):
             lagroid.run(PENDULUM, events=[{"name": "high", "when": "height"}])
+
+    def test_events_by_functions(self) -> None:
+        seen = []
+
+        def called(node: lagroid.EventNode) -> bool:
+            seen.append((node["t"], node["q"]))
+            return len(seen) < 3
+
+        by_function = [{"name": "down", "when": lambda node: node["q"] - 0.1, "call": called}]
+        run = lagroid.run(PENDULUM, set={"time.steps": 1000}, events=by_function)
+        self.assertEqual([event["t"] for event in run.events], [t for t, _ in seen])
+        self.assertEqual(run.final.time, seen[2][0])
+        by_text = lagroid.run(PENDULUM, set={"time.steps": 1000}, events=[{"name": "down", "when": "q - 0.1"}])
+        self.assertEqual([event["t"] for event in by_text.events[:3]], [t for t, _ in seen])
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            lagroid.run(PENDULUM, events=[{"name": "none", "when": lambda node: 1 / 0}])
+        with self.assertRaisesRegex(KeyError, "height; there are t, q, p"):
+            lagroid.run(PENDULUM, events=[{"name": "none", "when": lambda node: node["height"]}])
+        with self.assertRaisesRegex(ValueError, 'there is no "where"; there are name, when'):
+            lagroid.run(PENDULUM, events=[{"name": "none", "when": abs, "where": "q"}])
+        kept = []
+        lagroid.run(PENDULUM, events=[{"name": "kept", "when": lambda node: kept.append(node) or 1.0}])
+        with self.assertRaisesRegex(RuntimeError, "only while its function is called"):
+            kept[0]["q"]
 
     def test_arrays_of_tables(self) -> None:
         run = lagroid.run(EXAMPLES / "chain_drop.toml", set={"time.steps": 2})

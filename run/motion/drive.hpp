@@ -33,6 +33,7 @@ struct RunContext {
   bool progress = false;           ///< show a bar
   std::filesystem::path folder{};  ///< where checkpoints are kept; empty: nowhere
   bool resume = false;             ///< go on from the one kept there
+  std::vector<Event> events{};     ///< watched for beside those of the extent that a scene gives: functions of programs
 };
 
 /// Runs the motion, which is at its first node, from there or from its checkpoint, and keeps checkpoints where
