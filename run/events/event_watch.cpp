@@ -227,7 +227,11 @@ bool EventWatch::kick(Group together) {
     ++watch.kicks;
   }
   if (by.empty()) return false;
-  if (!motion_.kick_within(share, by).converged()) throw NoPartialStep{share};
+  if (!motion_.kick_within(share, by).converged())
+    throw NoKick{
+        fmt::format("after its kick, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use "
+                    "a smaller kick or a smaller time.step",
+                    time_, arrived_)};
   const Observables& kicked = within(0);
   measure_kick(before, kicked);
   std::vector<double> at_kick;

@@ -65,12 +65,12 @@ bool FunctionWatch::next_from(double changed, std::optional<Passing> passing, do
   return !std::isnan(now_) && !std::isnan(before_);
 }
 
-/// Over a step a function bends by an eighth of its second difference.
+/// Over a step a smooth function bends by an eighth of its second difference, one with a kink by half of it.
 bool FunctionWatch::may_touch() const {
   if (std::isnan(change_)) return true;
   const double bend = now_ - before_ - change_;
   return (before_ < 0) == (now_ < 0) && (bend < 0) == (now_ < 0) &&
-         std::min(std::abs(before_), std::abs(now_)) <= 0.5 * std::abs(bend);
+         std::min(std::abs(before_), std::abs(now_)) <= 0.75 * std::abs(bend);
 }
 
 /// By the slopes at both nodes of the parabola through the last three.
@@ -142,14 +142,15 @@ std::optional<double> FunctionWatch::turn_of(const StepFunction& g, bool is_mini
   // At an extremum the slope is round-off, of either sign.
   constexpr double level = 1e-7, rounding = 1e-11;
   if (is_first_step() && std::abs(before) <= level * std::abs(slope_ - before) + rounding * largest_) {
-    if (at_ != Event::At::zero && sign * slope_ > 0) starts_there_ = true;
+    if (at_ != Event::At::zero && sign * slope_ > rounding * largest_) starts_there_ = true;
     return std::nullopt;
   }
   if (!(sign * before < 0 && sign * slope_ >= 0)) return std::nullopt;
   const double turn = turn_within(g, before, slope_);
-  constexpr double shallow = 1e-9;
+  constexpr double shallow = 1e-9, some_units = 1e-14;
   const double at = g(turn);
-  if (std::max(std::abs(g(0) - at), std::abs(g(1) - at)) <= shallow * largest_ && is_rounding_within(g)) {
+  const double depth = std::max(std::abs(g(0) - at), std::abs(g(1) - at));
+  if (depth <= some_units * largest_ || (depth <= shallow * largest_ && is_rounding_within(g))) {
     flat_.add(time_);
     return std::nullopt;
   }

@@ -1,12 +1,12 @@
 #include <lagroid/run/events/within_step.hpp>
 
-#include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace lagroid {
 
@@ -20,6 +20,29 @@ double finite_value(const StepFunction& g, double share) {
   // A pole may give an infinite number, whose sign tells what it has to.
   if (std::isnan(value)) throw NoNumber{share};
   return value;
+}
+
+/// Where a function with one valley is lowest, by golden sections: at a kink, to the spacing of numbers, where methods
+/// that fit parabolas stop at its root.
+double lowest_within(const StepFunction& g, double low, double high) {
+  constexpr double spacing = 1e-15;
+  constexpr double golden = 0.6180339887498949;
+  double left = high - golden * (high - low), right = low + golden * (high - low);
+  double at_left = g(left), at_right = g(right);
+  while (high - low > spacing) {
+    if (at_left < at_right) {
+      high = std::exchange(right, left);
+      at_right = at_left;
+      left = high - golden * (high - low);
+      at_left = g(left);
+    } else {
+      low = std::exchange(left, right);
+      at_left = at_right;
+      right = low + golden * (high - low);
+      at_right = g(right);
+    }
+  }
+  return 0.5 * (low + high);
 }
 
 }  // namespace
@@ -62,11 +85,7 @@ double turn_within(const StepFunction& g, double slope_at_0, double slope_at_1) 
   const double change = slope_within(g, high) - slope_within(g, low);
   if (std::abs(change) <= 0.25 * std::abs(slope_at_1 - slope_at_0)) return turn;
   const double sign = slope_at_1 > slope_at_0 ? 1 : -1;
-  constexpr int all_bits = 52;
-  std::uintmax_t evaluations = 200;
-  return boost::math::tools::brent_find_minima([&](double share) { return sign * finite_value(g, share); }, low, high,
-                                               all_bits, evaluations)
-      .first;
+  return lowest_within([&](double share) { return sign * finite_value(g, share); }, low, high);
 }
 
 bool is_rounding_within(const StepFunction& g) {

@@ -159,7 +159,21 @@ TEST(Events, KicksThatAreNoNumbersAreSaid) {
   event.kick = {"1e300"};
   const RunResult huge = turn(200, {event});
   EXPECT_FALSE(huge.converged());
-  EXPECT_NE(huge.message.find("no finite number any more"), std::string::npos) << huge.message;
+  EXPECT_NE(huge.message.find("after its kick, between t = 1.5 and 1.6, the rest of the step does not"),
+            std::string::npos)
+      << huge.message;
+}
+
+TEST(Events, WhatIsNoNumberAfterAKickIsSaid) {
+  Orbit system;
+  system.h = 0.05;
+  Event event = event_at_zero("blow", "t - 0.52");
+  event.kick = {"1e200", "0"};
+  const RunResult result = run_split(system, ellipse, compositions::single, {.steps = 100, .events = {event}});
+  EXPECT_FALSE(result.converged());
+  EXPECT_NE(result.message.find("event \"blow\": after its kick at t = 0.52 energy is no finite number any more"),
+            std::string::npos)
+      << result.message;
 }
 
 TEST(Events, ManyKicksLeaveTheLedgerItsVerdicts) {
