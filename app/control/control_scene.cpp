@@ -23,6 +23,13 @@ const KeyOf<Number> tolerance_key{"tolerance",
 const KeyOf<Whole> iterations_key{
     "iterations", {1, 1'000'000}, "", "of each start, at most", long(ControlOptions().max_iterations)};
 
+const KeyOf<Number> patience_key{"patience",
+                                 {nonnegative},
+                                 "",
+                                 "a start is given up after so many times the iterations of the slowest that has "
+                                 "converged, at least 100; 0: none is",
+                                 ControlSearchOptions().patience};
+
 KeyOf<NumberArray> end_key(const std::string& name, std::span<const std::string> states) {
   return {name, {states.size()}, "", fmt::format("{} of the {}", fmt::join(states, ", "), name)};
 }
@@ -59,6 +66,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   out.search.starts = int(read_key(solver, starts_key));
   out.search.seed = std::uint64_t(read_key(solver, seed_key));
   out.search.solver.tolerance = read_key(solver, tolerance_key);
+  out.search.patience = read_key(solver, patience_key);
   out.search.solver.max_iterations = int(read_key(solver, iterations_key));
   return out;
 }
@@ -67,10 +75,11 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
   const std::vector<std::string> states = problem.states();
   std::vector<Key> bounds;
   for (const std::string& control : problem.controls()) bounds.push_back(bound_key(control));
-  return {KeyOf<Table>{"boundary", {{end_key("start", states), end_key("end", states)}}, "", "both ends"},
-          KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key}}, "", "how long, in how many arrows"},
-          optional_table("bounds", {bounds}, "of the controls"),
-          optional_table("solver", {{starts_key, seed_key, tolerance_key, iterations_key}}, "of the search")};
+  return {
+      KeyOf<Table>{"boundary", {{end_key("start", states), end_key("end", states)}}, "", "both ends"},
+      KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key}}, "", "how long, in how many arrows"},
+      optional_table("bounds", {bounds}, "of the controls"),
+      optional_table("solver", {{starts_key, seed_key, tolerance_key, iterations_key, patience_key}}, "of the search")};
 }
 
 }  // namespace lagroid::app

@@ -27,6 +27,9 @@ struct ControlSearchOptions {
   int starts = 10;
   std::uint64_t seed = 1;
   double amplitude = 0;  ///< of bends, in coordinates of AG; 0: the length of the straight trajectory, or one
+  /// A start is given up after so many times the iterations of the slowest that has converged, at least 100: those that
+  /// fail would take most of the time. 0: none is.
+  double patience = 4;
   ControlOptions solver = {};
 };
 
@@ -88,8 +91,13 @@ ControlSearch<Sys> search_control(
     const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {},
     const std::function<bool(int start)>& keep_going = [](int) { return true; }) {
   ControlSearch<Sys> found;
+  constexpr int least = 100;
+  int slowest = 0;
   for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
-    ControlSolution<Sys> solution = solve_control(task, control_guess(task, stages, i, options), options.solver);
+    ControlOptions solver = options.solver;
+    if (slowest > 0 && options.patience > 0)
+      solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
+    ControlSolution<Sys> solution = solve_control(task, control_guess(task, stages, i, options), solver);
     ++found.outcomes[solution.report.status];
     found.iterations += solution.report.iterations;
     if (!solution.report.converged()) {
@@ -97,6 +105,7 @@ ControlSearch<Sys> search_control(
         found.best_failure = std::move(solution);
       continue;
     }
+    slowest = std::max(slowest, solution.report.iterations);
     const auto same = [&](const ControlSolution<Sys>& known) {
       return std::abs(known.report.cost - solution.report.cost) <= 1e-7 * (1e-6 + std::abs(solution.report.cost));
     };
