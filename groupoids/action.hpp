@@ -14,6 +14,7 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/capabilities/loops.hpp>
+#include <lagroid/core/continuous/curve_point.hpp>
 #include <lagroid/core/derivatives/directional.hpp>
 
 #include <string>
@@ -80,6 +81,14 @@ template <class Group, class Space> struct Action : LieGroupoid<Action<Group, Sp
   Vector<S, rank> bracket(const Vector<S, object_size>&, const Vector<S, rank>& x,
                           const Vector<S, rank>& y) const requires HasAnalyticBracket<Group> {
     return group.bracket(Vector<S, 0>(), x, y);
+  }
+  /// The velocity is that of the group's curve.
+  static constexpr RetractionKind retraction_kind =
+      retraction_kind_of<Group>() == RetractionKind::any ? RetractionKind::any : RetractionKind::exponential;
+  template <class S>
+  Vector<S, rank> chart_velocity(const Vector<S, object_size>&, const Vector<S, rank>& x,
+                                 const Vector<S, rank>& rate) const requires HasChartVelocity<Group> {
+    return group.chart_velocity(Vector<S, 0>(), x, rate);
   }
   template <class E, class P> ActionArrow<E, P> bisection(const ActionArrow<E, P>& g, const P& m) const {
     return {g.element, m};

@@ -10,7 +10,7 @@
 ///
 /// Nothing throws but `compose` in checked builds (NotComposable).
 
-#include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/continuous/curve_point.hpp>
 
 #include <string>
 
@@ -40,6 +40,13 @@ template <int N> struct Pair : LieGroupoid<Pair<N>, N> {
 
   template <class S> static Vector<S, N> bracket(const Vector<S, N>&, const Vector<S, N>&, const Vector<S, N>&) {
     return Vector<S, N>::Constant(S(0.0));
+  }
+
+  /// The curves of the chart are curves of R^n.
+  static constexpr RetractionKind retraction_kind = RetractionKind::translation;
+  template <class S>
+  static Vector<S, N> chart_velocity(const Vector<S, N>&, const Vector<S, N>&, const Vector<S, N>& rate) {
+    return rate;
   }
 
   template <class S> static Arrow<S> bisection(const Arrow<S>& g, const Vector<S, N>& q) {

@@ -3,7 +3,7 @@
 ///
 ///     L(q0, x, q1) = h sum_i b_i L(q(c_i), q'(c_i)),    b, c of Lobatto's quadrature,
 ///
-/// of order 2 s, symmetric, and one step where compositions take several, some of them backwards.
+/// of order 2 s, on R^n symmetric, and one step where compositions take several, some of them backwards.
 ///
 ///     const GalerkinMechanics<Kepler, 3> kepler{Kepler{}};  // order six
 ///     const auto start = kepler.extended({{1, 0}, {0, 1}});
@@ -13,83 +13,36 @@
 /// matrix group. States are extended by the nodes' momenta, which are zero. (Marsden and West 2001, 2.2.6; Hall and
 /// Leok 2015.)
 
+#include <lagroid/core/continuous/curve_point.hpp>
+#include <lagroid/core/continuous/curve_rule.hpp>
 #include <lagroid/core/system.hpp>
-#include <lagroid/groupoids/groups/vector_group.hpp>
 #include <lagroid/groupoids/pair.hpp>
-#include <lagroid/groupoids/product.hpp>
+#include <lagroid/solvers/galerkin/inner_nodes.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
 #include <array>
-#include <cmath>
 #include <string>
 
 namespace lagroid {
 
-/// Lobatto's quadrature on [0, 1] with s + 1 nodes, the ends among them: exact for degree 2 s - 1. And the derivatives
-/// at the nodes of the polynomials of degree s through them.
-template <int Degree> struct LobattoRule {
-  static_assert(Degree >= 1 && Degree <= 4);
-  static constexpr int nodes = Degree + 1;
-  std::array<double, nodes> node;
-  std::array<double, nodes> weight;
-  std::array<std::array<double, nodes>, nodes> derivative;  ///< [i][j]: of the j-th Lagrange polynomial at node i
-
-  LobattoRule() {
-    if constexpr (Degree == 1) {
-      node = {0, 1};
-      weight = {0.5, 0.5};
-    } else if constexpr (Degree == 2) {
-      node = {0, 0.5, 1};
-      weight = {1.0 / 6, 2.0 / 3, 1.0 / 6};
-    } else if constexpr (Degree == 3) {
-      const double r = std::sqrt(5.0) / 10;
-      node = {0, 0.5 - r, 0.5 + r, 1};
-      weight = {1.0 / 12, 5.0 / 12, 5.0 / 12, 1.0 / 12};
-    } else {
-      const double r = std::sqrt(21.0) / 14;
-      node = {0, 0.5 - r, 0.5, 0.5 + r, 1};
-      weight = {1.0 / 20, 49.0 / 180, 16.0 / 45, 49.0 / 180, 1.0 / 20};
-    }
-    const auto product_without = [&](std::size_t j) {
-      double p = 1;
-      for (std::size_t k = 0; k < nodes; ++k)
-        if (k != j) p *= node[j] - node[k];
-      return p;
-    };
-    for (std::size_t i = 0; i < nodes; ++i) {
-      derivative[i][i] = 0;
-      for (std::size_t j = 0; j < nodes; ++j) {
-        if (i == j) continue;
-        derivative[i][j] = product_without(i) / (product_without(j) * (node[i] - node[j]));
-        derivative[i][i] -= derivative[i][j];
-      }
-    }
-  }
-
-  static const LobattoRule& rule() {
-    static const LobattoRule the_rule;
-    return the_rule;
-  }
-};
+/// Lobatto's quadrature, and the derivatives of the curve at its points.
+template <int Degree> using LobattoRule = CurveRule<Degree, CurveQuadrature::lobatto>;
 
 /// What the Galerkin systems have in common. Their arrows are those of G beside the inner nodes of the curve, s - 1
-/// vectors of R^n: G x R^{n (s - 1)}. On the vector group left and right translations agree, so the momentum of a node
-/// is conserved, and with the value zero that it has in `extended` the nodes are where the action is stationary: the
-/// step on G is that of the discrete Lagrangian with the nodes eliminated. Order 2 s, symmetric, implicit (Marsden and
-/// West 2001, 2.2.6; Hall and Leok 2015).
+/// vectors of R^n (WithInnerNodes): the step on G is that of the discrete Lagrangian with the nodes eliminated. Order
+/// 2 s, implicit (Marsden and West 2001, 2.2.6; Hall and Leok 2015).
 template <class Derived, class Base, int Degree>
-struct GalerkinSystem
-    : System<Derived,
-             Product<typename Base::GroupoidType, VectorGroup<Base::dimension*(Degree > 1 ? Degree - 1 : 1)>>> {
-  static_assert(Degree >= 2, "without inner nodes it is the system itself, by the trapezoid");
+struct GalerkinSystem : System<Derived, typename WithInnerNodes<typename Base::GroupoidType, Degree>::Extended>,
+                        WithInnerNodes<typename Base::GroupoidType, Degree> {
   static_assert(Base::constraints == 0,
                 "a curve with inner nodes would keep the constraints of its system at its ends alone: Galerkin systems "
                 "are made of systems without constraints (for higher order with constraints compose steps)");
   static_assert(Variational<Base>, "Galerkin systems are made of systems without forces");
+  using Nodes = WithInnerNodes<typename Base::GroupoidType, Degree>;
+  using Extended = typename Nodes::Extended;
   static constexpr int n = Base::dimension;
   static constexpr int inner = Degree - 1;
-  using Extended = Product<typename Base::GroupoidType, VectorGroup<n * inner>>;
 
   Base base;
   double h;
@@ -98,18 +51,9 @@ struct GalerkinSystem
     std::get<0>(this->groupoid.factor) = base.groupoid;
   }
 
-  static MethodTraits traits() { return {"Lobatto " + std::to_string(Degree + 1), 2 * Degree, true, true, false}; }
-
-  /// A state of `base`, the momentum of the nodes zero; and back.
-  static State<Extended> extended(const State<typename Base::GroupoidType>& s) {
-    State<Extended> out;
-    std::get<0>(out.object) = s.object;
-    out.momentum << s.momentum, Vector<double, n * inner>::Zero();
-    return out;
-  }
-  static State<typename Base::GroupoidType> reduced(const State<Extended>& s) {
-    return {std::get<0>(s.object), s.momentum.template head<n>()};
-  }
+  /// A polynomial in the chart at one end of a step is one in the chart at the other in the abelian case alone.
+  static constexpr bool symmetric = retraction_kind_of<typename Base::GroupoidType>() == RetractionKind::translation;
+  static MethodTraits traits() { return {"Lobatto " + std::to_string(Degree + 1), 2 * Degree, symmetric, true, false}; }
 
  protected:
   /// The nodes of the curve from zero to `end`, in coordinates.

@@ -21,14 +21,26 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace lagroid {
 
 /// The largest number of infinitesimals of the scalar S that have a product other than zero.
 template <class S> inline constexpr int nilpotency = 0;
-template <Differentiated S> inline constexpr int nilpotency<S> = S::order;
+template <Differentiated S> inline constexpr int nilpotency<S> = S::order + nilpotency<typename S::Real>;
 template <class T> inline constexpr int nilpotency<Dual<T>> = 1 + nilpotency<T>;
 template <class T, int K> inline constexpr int nilpotency<Series<T, K>> = K - 1 + nilpotency<T>;
+
+/// The plain number that a scalar has, however deep its derivatives are nested.
+template <class S> double number_of(const S& x) {
+  if constexpr (std::is_arithmetic_v<S>) {
+    return double(x);
+  } else {
+    static_assert(!std::is_same_v<std::remove_cvref_t<decltype(value_of(x))>, S>,
+                  "what is solved for inside a formula is solved for one number, not for the lanes of a Batch");
+    return number_of(value_of(x));
+  }
+}
 
 namespace detail {
 
@@ -122,11 +134,13 @@ Root<N> newton_root(const F& residual, const Vector<double, N>& guess, const Vec
 }
 
 /// A root x over the scalar S, its infinitesimals taken in by as many corrections x -= F_x^{-1} F, F_x^{-1} kept in
-/// plain numbers, as there are orders of them, for each is right in one order more.
-template <class S, int N, class F> Vector<S, N> with_infinitesimals(const Root<N>& root, const F& residual) {
+/// plain numbers, as there are orders of them, for each is right in one order more. (Half as many do for a function
+/// that is stationary in x.)
+template <class S, int N, class F>
+Vector<S, N> with_infinitesimals(const Root<N>& root, const F& residual, int corrections = nilpotency<S>) {
   Vector<S, N> x;
   for (int i = 0; i < N; ++i) x(i) = S(root.x(i));
-  for (int order = 0; order < nilpotency<S>; ++order) {
+  for (int order = 0; order < corrections; ++order) {
     const Vector<S, N> f = residual(x);
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) x(i) -= f(j) * root.inverse(i, j);
@@ -142,7 +156,7 @@ template <class S, int N, class F> Vector<S, N> with_infinitesimals(const Root<N
 template <class S, int N, int M, class F>
 Vector<S, N> solve_implicit(const F& residual, const Vector<double, N>& guess, const Vector<S, M>& parameters) {
   Vector<double, M> values;
-  for (int i = 0; i < M; ++i) values(i) = value_of(parameters(i));
+  for (int i = 0; i < M; ++i) values(i) = number_of(parameters(i));
   return detail::with_infinitesimals<S, N>(detail::newton_root<N, M>(residual, guess, values),
                                            [&](const Vector<S, N>& x) { return residual(x, parameters); });
 }

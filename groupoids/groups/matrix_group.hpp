@@ -14,7 +14,7 @@
 ///
 /// Source: [G] 6.1 for the left-trivialised differentials.
 
-#include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/continuous/curve_point.hpp>
 
 #include <Eigen/LU>
 
@@ -106,6 +106,25 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     const Matrix<S, N, N> half = Derived::hat(xi) * S(0.5);
     const Matrix<S, N, N> one = Matrix<S, N, N>::Identity();
     return columns<S>([&](const Matrix<S, N, N>& e) -> Matrix<S, N, N> { return (one + half) * e * (one - half); });
+  }
+
+  /// dtau_x rate: the body velocity of the curves of the chart.
+  static constexpr RetractionKind retraction_kind =
+      Tau == Retraction::exponential ? RetractionKind::exponential : RetractionKind::any;
+  template <class S>
+  static Algebra<S> chart_velocity(const Vector<S, 0>&, const Algebra<S>& x, const Algebra<S>& rate) {
+    Matrix<S, Dimension, Dimension> d;
+    if constexpr (Tau == Retraction::exponential) {
+      d = Derived::dexp(x);
+    } else {
+      d = Derived::dcayley(x);
+    }
+    Algebra<S> out;
+    for (int i = 0; i < Dimension; ++i) {
+      out(i) = d(i, 0) * rate(0);
+      for (int j = 1; j < Dimension; ++j) out(i) += d(i, j) * rate(j);
+    }
+    return out;
   }
 
   /// The i-th basis matrix of the Lie algebra.

@@ -8,7 +8,7 @@
 ///
 /// Nothing throws.
 
-#include <lagroid/core/groupoid.hpp>
+#include <lagroid/core/continuous/curve_point.hpp>
 
 #include <string>
 
@@ -29,6 +29,11 @@ template <int N> struct VectorGroup : LieGroupoid<VectorGroup<N>, N> {
   template <class S> static Vector<S, N> tau_inverse(const Vector<S, N>& g) { return g; }
   template <class S> static Vector<S, N> bracket(const Vector<S, 0>&, const Vector<S, N>&, const Vector<S, N>&) {
     return Vector<S, N>::Constant(S(0.0));
+  }
+  static constexpr RetractionKind retraction_kind = RetractionKind::translation;
+  template <class S>
+  static Vector<S, N> chart_velocity(const Vector<S, 0>&, const Vector<S, N>&, const Vector<S, N>& rate) {
+    return rate;
   }
   template <class S> static Vector<S, N> bisection(const Vector<S, N>& g, const Vector<S, 0>&) { return g; }
   template <class M, End First, End Second, int LeftOffset = 0, int RightOffset = LeftOffset, class T>

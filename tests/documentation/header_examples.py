@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 root = pathlib.Path(__file__).resolve().parents[2]
-units = ["core", "groupoids", "solvers/boundary solvers/ensemble solvers/step solvers/integrators solvers/methods",
+units = ["core", "groupoids", "solvers/galerkin", "solvers/boundary solvers/ensemble solvers/step solvers/integrators solvers/methods",
          "solvers/generating solvers/learning solvers/lie_group solvers/linear_algebra solvers/newton "
          "solvers/optimisation solvers/poisson solvers/testing solvers/status.hpp",
          "solvers/control solvers/sensitivity", "systems", "run"]

@@ -1,0 +1,129 @@
+#pragma once
+/// Continuous Lagrangians that tests discretise, and what they are compared with.
+
+#include <lagroid/core/continuous/continuous_lagrangian.hpp>
+#include <lagroid/core/noether.hpp>
+#include <lagroid/core/parameter.hpp>
+#include <lagroid/core/scalars/varied.hpp>
+#include <lagroid/groupoids/groups/se2.hpp>
+#include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/groupoids/pair.hpp>
+#include <lagroid/groupoids/rotated.hpp>
+#include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
+#include <lagroid/solvers/step/newton_step.hpp>
+#include <lagroid/solvers/testing/order_laws.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+namespace lagroid::subjects {
+
+/// v^2 / 2 + cos q.
+struct Swing : ContinuousLagrangian<Pair<1>> {
+  double gravity = 1;
+  static auto parameters() { return std::tuple(parameter("gravity", &Swing::gravity, "m/s^2", "acceleration")); }
+  template <class S> S l(const Vector<S, 1>& q, const Vector<S, 1>& v) const {
+    using std::cos;
+    return v(0) * v(0) * 0.5 + cos(q(0)) * varied<S>(gravity);
+  }
+};
+
+/// |v|^2 / 2 + 1 / |q|, with its symmetry.
+struct Orbit : ContinuousLagrangian<Pair<2>> {
+  template <class S> S l(const Vector<S, 2>& q, const Vector<S, 2>& v) const {
+    using std::sqrt;
+    return (v(0) * v(0) + v(1) * v(1)) * 0.5 + 1.0 / sqrt(q(0) * q(0) + q(1) * q(1));
+  }
+  template <class Sys> std::vector<Symmetry<Sys>> symmetries_of() const {
+    return {{"angular momentum", [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); }}};
+  }
+};
+
+/// w.I w / 2 on SO(3), with whatever retraction.
+template <class Group> struct FreeBody : ContinuousLagrangian<Group> {
+  Vector<double, 3> inertia{1, 2, 3};
+  template <class S> S l(const Vector<S, 0>&, const Vector<S, 3>& w) const {
+    return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * 0.5;
+  }
+};
+
+/// w.I w / 2 - weight.v, v the vertical seen from the body.
+struct Top : ContinuousLagrangian<Action<SO3, RotatedDirections>> {
+  Vector<double, 3> inertia{1, 1.3, 0.5};
+  Vector<double, 3> weight{0.2, 0, 1};
+  template <class S> S l(const Vector<S, 3>& v, const Vector<S, 3>& w) const {
+    return (w(0) * w(0) * inertia(0) + w(1) * w(1) * inertia(1) + w(2) * w(2) * inertia(2)) * 0.5 -
+           (v(0) * weight(0) + v(1) * weight(1) + v(2) * weight(2));
+  }
+  template <class Sys> std::vector<Symmetry<Sys>> symmetries_of() const {
+    return {{"vertical momentum", [](const Vector<double, 3>& v) { return v; }}};
+  }
+};
+
+/// A charge in a potential, by the isoperimetric problem: (x'^2 + y'^2) / 2 - x^2 / 4 - y^2 / 3 - x^2 y^2 / 5
+/// on R^3 with z' = (x y' - y x') / 2.
+struct Area : ContinuousLagrangian<Pair<3>, 1> {
+  template <class S> S l(const Vector<S, 3>& q, const Vector<S, 3>& v) const {
+    const S x = q(0) * q(0);
+    const S y = q(1) * q(1);
+    return (v(0) * v(0) + v(1) * v(1)) * 0.5 - x * 0.25 - y / 3.0 - x * y * 0.2;
+  }
+  template <class S> Vector<S, 1> psi(const Vector<S, 3>& q, const Vector<S, 3>& v) const {
+    return Vector<S, 1>(v(2) - (q(0) * v(1) - q(1) * v(0)) * 0.5);
+  }
+};
+
+/// Euler's elastica: w^2 / 2 on SE(2), v1 = 1, v2 = 0.
+struct Elastica : ContinuousLagrangian<SE2, 2> {
+  template <class S> S l(const Vector<S, 0>&, const Vector<S, 3>& xi) const { return xi(0) * xi(0) * 0.5; }
+  template <class S> Vector<S, 2> psi(const Vector<S, 0>&, const Vector<S, 3>& xi) const {
+    return {xi(1) - 1.0, xi(2)};
+  }
+};
+
+template <class Sys> FixedStepIntegrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& start) {
+  return {system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>()};
+}
+
+/// Objects and momenta, and attitudes where there are any.
+template <class Sys> Eigen::VectorXd numbers(const Sys& system, const TrajectoryPoint<Sys>& p) {
+  const auto q = system.groupoid.coordinates_of_object(p.state.object);
+  const auto g = system.groupoid.coordinates_of_arrow(p.configuration);
+  Eigen::VectorXd out(q.size() + p.state.momentum.size() + g.size());
+  out << q, p.state.momentum, g;
+  return out;
+}
+
+template <class Sys> struct Case {
+  Sys system;
+  State<typename Sys::GroupoidType> start;
+  double horizon;
+  Eigen::VectorXd exact;
+};
+
+/// Measures the order, and expects the declared one.
+template <class Sys>
+void expect_order(const Case<Sys>& c, int coarsest, double tolerance = 0.1, double plateau = 1e-11) {
+  laws::OrderProblem problem;
+  problem.exact = c.exact;
+  problem.coarsest = coarsest;
+  problem.plateau = plateau;
+  problem.end = [&](int steps) {
+    Sys system = c.system;
+    system.h = c.horizon / steps;
+    auto run = make(system, c.start);
+    for (int k = 0; k < steps; ++k) EXPECT_TRUE(run.advance().converged()) << k;
+    return Eigen::VectorXd(numbers(system, run.point()).head(c.exact.size()));
+  };
+  const auto report = laws::order_laws(Sys::traits(), problem, tolerance);
+  const double order = laws::measured_order(problem);
+  EXPECT_TRUE(report.holds()) << report << " saw " << order;
+  std::cout << "  " << Sys::traits().name << ": declared " << Sys::traits().order << ", measured " << order << '\n';
+}
+
+}  // namespace lagroid::subjects
