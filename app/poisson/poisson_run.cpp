@@ -3,6 +3,7 @@
 #include "../scenes/scene_keys.hpp"
 #include "../scenes/simulation.hpp"
 #include "poisson_node.hpp"
+#include "poisson_noise.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,10 +43,10 @@ class PoissonMotion final : public Motion {
   PoissonMotion(const PoissonEntry& entry, const PoissonToCheck& asked, long every)
       : entry_(entry),
         system_(asked.system),
-        step_(asked.options.step),
-        integrator_(system_->begin(asked.start, asked.options)),
+        options_(asked.options),
+        integrator_(system_->begin(asked.start, options_)),
         stages_(integrator_->traits().stages),
-        node_(entry, *system_, *integrator_, every) {}
+        node_(entry, *system_, *integrator_, every, options_.noise.present()) {}
 
   std::string name() const override { return std::string(entry_.name); }
   MethodTraits traits() const override { return integrator_->traits(); }
@@ -64,10 +65,13 @@ class PoissonMotion final : public Motion {
 
   long index() const override { return index_; }
   double time() const override { return integrator_->time(); }
-  double step_size() const override { return step_; }
+  double step_size() const override { return options_.step; }
   const Observables& look() override {
     node_.see(index_, *integrator_);
     return node_;
+  }
+  std::string why_not_cut() const override {
+    return options_.noise.present() ? "the path of the noise is not known inside of a step" : Motion::why_not_cut();
   }
   std::vector<NamedVector> state() const override { return {{"state", integrator_->point()}}; }
   std::optional<double> defect() const override { return {}; }
@@ -76,8 +80,11 @@ class PoissonMotion final : public Motion {
   void describe(RunResult& result) const override {
     const KeptStructure kept = integrator_->kept();
     const auto words = [](int power) {
-      return power == 0 ? std::string("exactly") : fmt::format("up to h^{} in a step", power);
+      return power == 0   ? std::string("exactly")
+             : power == 1 ? std::string("up to h in a step")
+                          : fmt::format("up to h^{} in a step", power);
     };
+    if (options_.noise.present()) result.notes.push_back(told_noise(options_.noise, entry_));
     result.notes.push_back(
         fmt::format("the bracket is kept {}, Casimirs {}", words(kept.bracket), words(kept.casimirs)));
     describe_poisson(entry_, result);
@@ -90,7 +97,7 @@ class PoissonMotion final : public Motion {
  private:
   const PoissonEntry& entry_;
   std::shared_ptr<const AnyPoissonSystem> system_;
-  double step_;
+  PoissonOptions options_;
   std::unique_ptr<PoissonIntegrator> integrator_;
   int stages_;
   PoissonNode node_;
@@ -161,6 +168,8 @@ PoissonScene read_poisson(const PoissonEntry& entry, const Section& scene, const
   const ReadMethod method = read_poisson_method(time, entry);
   read.options.method = method.declared->name;
   read.options.composition = method.composition;
+  read.options.noise = read_noise(scene, entry);
+  if (read.options.noise.present()) refuse_for_noise(time, *method.declared, method.composition);
   out.extent = read_extent(scene, context);
   scene.choice("system", {std::string(entry.name)});
   scene.finish();

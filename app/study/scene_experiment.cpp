@@ -32,6 +32,10 @@ Section without_method(const Section& scene) {
 }
 
 Experiment read_experiment(const Section& scene) {
+  if (scene.has("noise"))
+    scene.fail("noise",
+               "has another path for every size of steps, so that no two of them have an error to compare: "
+               "leave it out, or sweep over its paths");
   const SceneFamily& family = motions_of(scene);
   const TimeGrid grid = read_time(scene);
   const Section plain = without_method(scene);

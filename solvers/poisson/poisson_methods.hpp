@@ -46,7 +46,6 @@ constexpr bool takes_noise(const DeclaredMethod& method) {
 }
 /// That of steps with noise.
 inline constexpr Source noise_source{"milstein2002", "structure-preserving steps of stochastic Hamiltonian systems"};
-inline constexpr Source stream_source{"salmon2011", "the counter-based generator of the noise"};
 inline constexpr Source thermostat_source{"arnaudon2018", "the friction of the thermostat"};
 
 /// Null where there is none of the name.
