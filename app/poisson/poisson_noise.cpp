@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 
 namespace lagroid::app {
 
@@ -14,12 +14,15 @@ namespace {
 
 constexpr const char* strength_word = "strength";
 
-const KeyOf<Whole> seed_key{"seed", {0, 2147483647}, "", "of the Wiener processes", 1L};
-const KeyOf<Whole> path_key{
-    "path", {0, long(std::numeric_limits<std::uint32_t>::max())}, "", "which of the seed's paths they take", 0L};
-const KeyOf<Number> temperature_key{
-    "temperature",          {positive}, "of H", "of a thermostat, by the friction that goes with the noise", {},
-    "none, and no friction"};
+constexpr long largest = 2147483647;
+const KeyOf<Whole> seed_key{"seed", {0, largest}, "", "of the Wiener processes", 1L};
+const KeyOf<Whole> path_key{"path", {0, largest}, "", "which of the seed's paths they take", 0L};
+const KeyOf<Number> temperature_key{"temperature",
+                                    {positive},
+                                    "",
+                                    "of a thermostat, in the energy's unit, by the friction that goes with the noise",
+                                    {},
+                                    "none, and no friction"};
 
 KeyOf<Number> strength_key(const std::string& name) {
   return {name, {nonnegative}, "1/sqrt(s)", fmt::format("of the noise along the field of {}", name), 0.0};
