@@ -2,10 +2,11 @@
 # are seen through links in one folder, for /usr/include itself has this machine's C library. Others are not there.
 set(lagroid_web_headers ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${lagroid_web_headers})
-foreach(folder boost CLI fmt nlohmann Spectra toml++ xsimd)
+foreach(folder boost CLI fmt nlohmann Random123 Spectra toml++ xsimd)
   file(CREATE_LINK /usr/include/${folder} ${lagroid_web_headers}/${folder} SYMBOLIC)
 endforeach()
 file(CREATE_LINK /usr/include/eigen3 ${lagroid_web_headers}/eigen3 SYMBOLIC)
+set(LAGROID_RANDOM123 ${lagroid_web_headers} CACHE PATH "Random123, the generator of noise")
 
 # lagroid_web_package(method name): as find_package calls it.
 macro(lagroid_web_package method name)

@@ -1,9 +1,12 @@
 #include "../reading/kinds.hpp"
 #include "family.hpp"
 
+#include "../poisson/poisson_noise.hpp"
 #include "../poisson/poisson_run.hpp"
 #include "../scenes/scene_keys.hpp"
 #include "../scenes/simulation.hpp"
+
+#include <lagroid/solvers/poisson/poisson_methods.hpp>
 
 namespace lagroid::app {
 
@@ -21,6 +24,10 @@ class PoissonSystems final : public SceneFamily {
     const ReadMethod method = read_poisson_method(scene.section_or_empty("time"), *poisson_entry_of(scene));
     add_use(method.declared->source, uses);
     add_use(source_of(method.composition), uses);
+    if (scene.has(noise_word)) {
+      add_use(poisson_methods::noise_source, uses);
+      if (scene.section_or_empty(noise_word).has("temperature")) add_use(poisson_methods::thermostat_source, uses);
+    }
     return uses;
   }
   std::vector<ListedSystem> systems() const override {
@@ -39,6 +46,7 @@ class PoissonSystems final : public SceneFamily {
     for (const PoissonEntry& entry : poisson_entries()) {
       Table table{{KeyOf<OneOf>{std::string(keys::system), {{std::string(entry.name)}}, "", std::string(entry.summary)},
                    optional_table("output", output_table(), "what is recorded")}};
+      for (const Key& key : noise_keys(entry)) table.keys.push_back(key);
       if (!entry.parameters.empty())
         table.keys.push_back(optional_table("parameters", {entry.parameters}, "of the system"));
       table.kinds = initial_values({KeyOf<Table>{"initial", poisson_start_table(entry), "", "the state to start from"}},

@@ -65,8 +65,9 @@ template <class Sys> class Known final : public AnyPoissonSystem {
 template <class Sys>
 PoissonEntry entry(std::string_view name, std::string_view summary, std::string_view bracket,
                    std::vector<std::string> casimirs) {
-  PoissonEntry out{name, summary, bracket, std::move(casimirs), {}, parameter_keys<Sys>(), {}, nullptr};
+  PoissonEntry out{name, summary, bracket, std::move(casimirs), {}, {}, parameter_keys<Sys>(), {}, nullptr};
   for (const auto& label : Sys::labels()) out.labels.emplace_back(label);
+  if constexpr (noise_count<Sys>() > 0) out.noises.assign(Sys::noise_names.begin(), Sys::noise_names.end());
   for (const std::string_view method : poisson_methods_of<Sys>()) out.methods.push_back(poisson_methods::named(method));
   out.read = [](const Section& scene) -> std::unique_ptr<AnyPoissonSystem> {
     // A table of no keys is none that a scene may have.

@@ -40,6 +40,7 @@ struct PoissonEntry {
   std::string_view bracket;
   std::vector<std::string> casimirs;  ///< what they are called
   std::vector<std::string> labels;    ///< of the state
+  std::vector<std::string> noises;    ///< its noise Hamiltonians
   std::vector<Key> parameters;
   std::vector<const DeclaredMethod*> methods;  ///< the first is what scenes get
   /// Reads [parameters] of a scene.

@@ -19,7 +19,7 @@ std::string casimir_column(std::size_t i) { return fmt::format("C{}", i + 1); }
 }  // namespace
 
 PoissonNode::PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& system, const PoissonIntegrator& method,
-                         long every)
+                         long every, bool driven)
     : system_(system),
       rounding_(7 * std::numeric_limits<double>::epsilon() * std::sqrt(double(every - 1))),
       has_defect_(std::isfinite(method.poisson_defect())) {
@@ -30,7 +30,7 @@ PoissonNode::PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& syst
     watched_.push_back({name, {column}, promise, false, SizeOf::terms, promised});
     fields_.push_back({.columns = {column, {column}, "1", meaning, false, {}}});
   };
-  watch("energy", "energy", Promise::bounded, kept.bracket == 0, "H");
+  watch("energy", "energy", Promise::bounded, kept.bracket == 0 && !driven, "H");
   for (std::size_t i = 0; i < entry.casimirs.size(); ++i)
     watch("Casimir " + entry.casimirs[i], casimir_column(i), Promise::conserved, kept.casimirs == 0, "Casimir");
   if (has_defect_)

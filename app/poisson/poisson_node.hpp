@@ -11,11 +11,13 @@
 namespace lagroid::app {
 
 /// Fields: the state by its labels, energy, Casimirs, the Poisson defect of the next step, drifts. Promised are the
-/// Casimirs where the method keeps them, energy and bracket where it keeps the bracket.
+/// Casimirs where the method keeps them, the bracket where it keeps that, and then, without noise, the energy.
 class PoissonNode final : public Observables {
  public:
-  /// Of every n-th node something is seen: over those between rounding walks on. The system must outlive this.
-  PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& system, const PoissonIntegrator& method, long every);
+  /// Of every n-th node something is seen: over those between rounding walks on. Where noise drives it, no energy is
+  /// promised. The system must outlive this.
+  PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& system, const PoissonIntegrator& method, long every,
+              bool driven);
 
   /// `at` must outlive what is asked of the node.
   void see(long index, double time, const PoissonIntegrator& at);

@@ -3,6 +3,7 @@
 #include "../scenes/scene_keys.hpp"
 #include "../scenes/simulation.hpp"
 #include "poisson_node.hpp"
+#include "poisson_noise.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,7 +46,7 @@ class PoissonMotion final : public Motion {
         options_(asked.options),
         integrator_(system_->begin(asked.start, options_)),
         stages_(integrator_->traits().stages),
-        node_(entry, *system_, *integrator_, every) {}
+        node_(entry, *system_, *integrator_, every, options_.noise.present()) {}
 
   std::string name() const override { return std::string(entry_.name); }
   MethodTraits traits() const override { return integrator_->traits(); }
@@ -69,7 +70,9 @@ class PoissonMotion final : public Motion {
     node_.see(index_, time(), *integrator_);
     return node_;
   }
-  std::string why_not_cut() const override { return ""; }
+  std::string why_not_cut() const override {
+    return options_.noise.present() ? "the path of the noise is not known inside of a step" : "";
+  }
   void keep_node() override {
     kept_ = integrator_->point();
     kept_time_ = time();
@@ -89,8 +92,11 @@ class PoissonMotion final : public Motion {
   void describe(RunResult& result) const override {
     const KeptStructure kept = integrator_->kept();
     const auto words = [](int power) {
-      return power == 0 ? std::string("exactly") : fmt::format("up to h^{} in a step", power);
+      return power == 0   ? std::string("exactly")
+             : power == 1 ? std::string("up to h in a step")
+                          : fmt::format("up to h^{} in a step", power);
     };
+    if (options_.noise.present()) result.notes.push_back(told_noise(options_.noise, entry_));
     result.notes.push_back(
         fmt::format("the bracket is kept {}, Casimirs {}", words(kept.bracket), words(kept.casimirs)));
     describe_poisson(entry_, result);
@@ -177,6 +183,8 @@ PoissonScene read_poisson(const PoissonEntry& entry, const Section& scene, const
   const ReadMethod method = read_poisson_method(time, entry);
   read.options.method = method.declared->name;
   read.options.composition = method.composition;
+  read.options.noise = read_noise(scene, entry);
+  if (read.options.noise.present()) refuse_for_noise(time, *method.declared, method.composition);
   out.extent = read_extent(scene, context);
   scene.choice("system", {std::string(entry.name)});
   scene.finish();

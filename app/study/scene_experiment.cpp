@@ -37,6 +37,10 @@ Experiment read_experiment(const Section& scene) {
       scene.fail("event", fmt::format("\"{}\" changes the motion or ends it, and methods are compared along all of it: "
                                       "leave out its kick and then",
                                       event.name));
+  if (scene.has("noise"))
+    scene.fail("noise",
+               "has another path for every size of steps, so that no two of them have an error to compare: "
+               "leave it out, or sweep over its paths");
   const SceneFamily& family = motions_of(scene);
   const TimeGrid grid = read_time(scene);
   const Section plain = without_method(scene);

@@ -25,6 +25,9 @@
 ///     template <class S> S part(int i, const S& s) const                        H_i, in place of `hamiltonian`
 ///     Vector<double, N> form(int i) const                                       l_i; the i-th axis unless it is
 ///     written
+///     static constexpr std::array<std::string_view, K> noise_names              what its noise Hamiltonians are called
+///     template <class S> S noise(int k, const Vector<S, N>& x) const            H_k, along whose fields it may be
+///     driven
 ///
 /// and parameters as other systems declare them (core/parameter.hpp). Returns derivatives that are exact, by jets.
 /// Nothing throws.
@@ -38,6 +41,7 @@
 
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -59,6 +63,20 @@ concept SumOfForms = requires(const Sys& system) {
   { Sys::parts } -> std::convertible_to<int>;
   { system.part(0, 1.0) } -> std::convertible_to<double>;
 };
+/// Noise may drive it, along the Hamiltonian fields of functions of its own.
+template <class Sys>
+concept HasNoise = requires(const Sys& system, const Vector<double, Sys::dimension>& x) {
+  { Sys::noise_names.size() } -> std::convertible_to<std::size_t>;
+  { system.noise(0, x) } -> std::convertible_to<double>;
+};
+/// How many functions those are.
+template <class Sys> constexpr int noise_count() {
+  if constexpr (HasNoise<Sys>) {
+    return int(Sys::noise_names.size());
+  } else {
+    return 0;
+  }
+}
 
 /// One entry above the diagonal of an antisymmetric matrix.
 template <class S> struct SkewEntry {

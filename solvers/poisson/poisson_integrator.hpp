@@ -7,7 +7,8 @@
 ///
 /// For a system of your own include <lagroid/solvers/poisson/poisson_integrators.hpp>; those of systems/poisson/ are
 /// compiled. Requires a start in the system's domain. Throws std::invalid_argument for a method that the system does
-/// not have, a step that is zero or not finite, and compositions of methods that have none. `advance` reports a status;
+/// not have, a step that is zero or not finite, compositions of methods that have none, and noise that cannot be
+/// (noisy_steps.hpp). `advance` reports a status;
 /// unless it is `converged` everything stays as it was.
 
 #include <lagroid/core/number_archive.hpp>
@@ -17,6 +18,7 @@
 #include <lagroid/solvers/poisson/kept_structure.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,10 +26,21 @@
 
 namespace lagroid {
 
+/// What drives a system along the fields of its noise Hamiltonians (driven_system.hpp).
+struct NoiseOptions {
+  std::vector<double> strength = {};  ///< of each of them; none: there is no noise
+  std::uint64_t seed = 1;
+  std::uint32_t path = 0;  ///< which of the seed's
+  double temperature = 0;  ///< of the thermostat, whose friction comes with the noise; 0: there is none
+
+  bool present() const { return !strength.empty(); }
+};
+
 struct PoissonOptions {
   std::string method = "symplectic-groupoid";  ///< of poisson_methods
   double step = 0.01;
   Composition composition = compositions::single;  ///< of a step of order two
+  NoiseOptions noise = {};
 };
 
 /// A trajectory in the making. A step that does not converge leaves everything as it was.
@@ -47,7 +60,8 @@ class PoissonIntegrator {
   virtual void serialize(NumberArchive& archive) = 0;
 };
 
-/// The names of the methods that the system has, the usual one first.
+/// The names of the methods that the system has, the usual one first. Noise goes with those of which
+/// poisson_methods::takes_noise is true.
 template <class Sys> std::vector<std::string_view> poisson_methods_of();
 
 template <class Sys>

@@ -7,6 +7,7 @@
 
 #include <lagroid/solvers/integrators/composed_step.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
+#include <lagroid/solvers/poisson/noisy_steps.hpp>
 #include <lagroid/solvers/poisson/poisson_integrator.hpp>
 #include <lagroid/solvers/poisson/poisson_methods.hpp>
 #include <lagroid/solvers/poisson/steps.hpp>
@@ -67,10 +68,7 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
         slope = (step_.slope(x, h) * slope).eval();
         x = end;
       }
-      const Matrix<double, Sys::dimension, Sys::dimension> from = system_.bivector(x_);
-      const Matrix<double, Sys::dimension, Sys::dimension> to = system_.bivector(x);
-      const double size = to.cwiseAbs().maxCoeff();
-      return (slope * from * slope.transpose() - to).cwiseAbs().maxCoeff() / (size > 0 ? size : 1);
+      return bracket_change(system_, x_, x, slope);
     } else {
       return std::numeric_limits<double>::quiet_NaN();
     }
@@ -126,6 +124,11 @@ std::unique_ptr<PoissonIntegrator> make_poisson_integrator(const Sys& system,
   if (!std::isfinite(options.step) || options.step == 0)
     throw std::invalid_argument("the step of an integrator on a Poisson manifold is a finite number, not zero");
   std::unique_ptr<PoissonIntegrator> made;
+  if (options.noise.present()) {
+    made = detail::make_noisy_steps(system, start, options);
+    if (!made) throw std::invalid_argument("this system has no method \"" + options.method + "\" for noise");
+    return made;
+  }
   detail::each_poisson_step<Sys>([&](const DeclaredMethod& method, const auto& make) {
     if (method.name != options.method) return;
     if (options.composition.stages() > 1 && method.other_orders != OtherOrders::composed_steps)

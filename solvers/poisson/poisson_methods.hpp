@@ -40,6 +40,14 @@ inline constexpr DeclaredMethod runge_kutta{.name = "runge-kutta", .order = 4, .
 inline constexpr std::array all{groupoid,  karasev,  hamilton_jacobi_4, hamilton_jacobi_6, splitting,
                                 truncated, midpoint, projected,         runge_kutta};
 
+/// Whether its steps may be driven by noise, whatever system it is of.
+constexpr bool takes_noise(const DeclaredMethod& method) {
+  return method.name == groupoid.name || method.name == karasev.name || method.name == midpoint.name;
+}
+/// That of steps with noise.
+inline constexpr Source noise_source{"milstein2002", "structure-preserving steps of stochastic Hamiltonian systems"};
+inline constexpr Source thermostat_source{"arnaudon2018", "the friction of the thermostat"};
+
 /// Null where there is none of the name.
 constexpr const DeclaredMethod* named(std::string_view name) {
   for (const DeclaredMethod& each : all)

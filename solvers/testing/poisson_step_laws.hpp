@@ -55,7 +55,8 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
 }  // namespace detail
 
 /// "the step is a Poisson map", or "the Poisson defect falls as declared"; "the step has the order declared"; of
-/// methods that keep them "steps keep Casimirs"; of symmetric ones "steps return to where they began".
+/// methods that keep them "steps keep Casimirs"; of symmetric ones "steps return to where they began". Of motions that
+/// noise drives no order is asked.
 inline LawReport poisson_step_laws(const PoissonSubject& subject) {
   using Point = PoissonSubject::Point;
   LawReport report{subject.name + " by " + subject.options.method, {}};
@@ -101,7 +102,11 @@ inline LawReport poisson_step_laws(const PoissonSubject& subject) {
       return small < 1e-14 ? 0.0 : std::max(0.0, kept.bracket - std::log2(large / small));
     });
   }
-  once("the step has the order declared", 0.15, [&] {
+  // Of noise the orders are those of means over paths, and of no single one.
+  const auto order_law = [&](const auto& defect) {
+    if (!subject.options.noise.present()) once("the step has the order declared", 0.15, defect);
+  };
+  order_law([&] {
     // Over a time in which a few steps leave an error to speak of.
     constexpr int few = 8;
     PoissonOptions fine = subject.options;

@@ -80,6 +80,10 @@ struct MagneticParticle : PoissonSystem<MagneticParticle, 6> {
   }
   static constexpr int parts = 6;
   template <class S> S part(int i, const S& s) const { return s * s * (i < 3 ? 0.5 * stiffness : 0.5); }
+
+  /// Positions, whose fields are forces.
+  static constexpr std::array<std::string_view, 3> noise_names{"x1", "x2", "x3"};
+  template <class S> S noise(int k, const Vector<S, 6>& x) const { return x(k); }
 };
 
 }  // namespace lagroid

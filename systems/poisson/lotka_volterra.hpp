@@ -42,6 +42,13 @@ struct LotkaVolterra : LogCanonicalSystem<LotkaVolterra, 2> {
     using std::log;
     return i == 0 ? S(log(x) * death - x * gain) : S(log(x) * growth - x * predation);
   }
+
+  /// ln y and ln x, which make growth and death uncertain.
+  static constexpr std::array<std::string_view, 2> noise_names{"growth", "death"};
+  template <class S> S noise(int k, const Vector<S, 2>& x) const {
+    using std::log;
+    return log(x(1 - k));
+  }
 };
 
 /// x1' = x1 (c x2 + x3 + lambda), x2' = x2 (x1 + a x3 + mu), x3' = x3 (b x1 + x2 + nu) with a b c = -1 and

@@ -37,6 +37,10 @@ struct EulerTop : PoissonSystem<EulerTop, 3> {
   template <class S> Vector<S, 1> casimirs(const Vector<S, 3>& m) const {
     return Vector<S, 1>((m(0) * m(0) + m(1) * m(1) + m(2) * m(2)) * 0.5);
   }
+
+  /// Rotations about the axes: with equal strengths a noise that prefers none.
+  static constexpr std::array<std::string_view, 3> noise_names{"M1", "M2", "M3"};
+  template <class S> S noise(int k, const Vector<S, 3>& m) const { return m(k); }
 };
 
 /// M' = M x Omega + p x u, p' = p x Omega + kappa M x u with Omega = dH/dM, u = dH/dp and

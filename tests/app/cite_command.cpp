@@ -55,6 +55,7 @@ TEST_F(Cite, SaysWhatASceneRestsOn) {
   EXPECT_EQ(cited(example("pendulum_chain") + " --set time.method=runge-kutta-4"), Keys{});
   EXPECT_EQ(cited(example("pendulum_chain") + " --set time.order=4"), (Keys{"marrero2015", "suzuki1990"}));
   EXPECT_EQ(cited(example("learned_hamiltonian")), (Keys{"celledoni2023", "celledoni2022", "celledoni2003"}));
+  EXPECT_EQ(cited(example("stochastic_top")), (Keys{"cosserat2024", "milstein2002", "arnaudon2018"}));
   EXPECT_EQ(cited(example("optimisation/membrane")), Keys{"duruisseaux2022"});
   EXPECT_EQ(cited(example("optimisation/membrane") + " --set method.name=trust-region"), Keys{});
 }

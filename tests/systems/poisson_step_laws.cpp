@@ -44,6 +44,18 @@ TEST(PoissonStepLaws, HoldForEveryMethod) {
   }
 }
 
+TEST(PoissonStepLaws, HoldForNoiseWithAndWithoutFriction) {
+  const laws::Sampling few(10, 6);
+  for (const double temperature : {0.0, 0.5})
+    for (const char* method : {"symplectic-groupoid", "karasev"}) {
+      auto subject = subject_of<EulerTop>("Euler top", {0.8, 0.6, 1.1}, method);
+      subject.options.noise = {.strength = {0.3, 0.3, 0.3}, .temperature = temperature};
+      const auto found = laws::poisson_step_laws(subject);
+      EXPECT_TRUE(found.holds()) << found;
+      EXPECT_EQ(found.laws.size(), 2U) << found;
+    }
+}
+
 /// A method that promises more than it keeps.
 class Boaster final : public PoissonIntegrator {
  public:
