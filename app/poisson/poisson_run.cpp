@@ -79,10 +79,10 @@ class PoissonMotion final : public Motion {
   }
   const Observables* look_within(double share) override {
     PoissonOptions part = options_;
-    part.step *= share;
+    if (share > 0) part.step *= share;  // there is no step of size zero
     inside_ = system_->begin(kept_, part);
     if (share > 0 && !inside_->advance().converged()) return nullptr;
-    node_.see(index_, kept_time_ + part.step, *inside_);
+    node_.see(index_, kept_time_ + share * options_.step, *inside_);
     return &node_;
   }
   std::vector<NamedVector> state() const override { return {{"state", integrator_->point()}}; }
