@@ -284,6 +284,15 @@ bool EventWatch::happens(const Found& found) {
 
 void EventWatch::report(RunResult& result) const {
   result.events = table_;
+  const bool is_kicked = std::any_of(watches_.begin(), watches_.end(), [](const Watch& w) { return w.kicks > 0; });
+  // What is summed up over steps does not know of the two that a kick makes of one.
+  if (is_kicked)
+    for (const Watched& quantity : motion_.look().quantities())
+      for (LedgerEntry& entry : result.ledger.entries)
+        if (quantity.adds_up && entry.name == quantity.name && entry.promise != "none") {
+          entry.verdict = "unjudged";
+          entry.reason = "it is summed up over whole steps, and kicks came between";
+        }
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const Watch& watch = watches_[i];
     const WatchedEvent& watched = table_.watched[i];

@@ -2,6 +2,7 @@
 #include "orbits.hpp"
 
 #include <lagroid/run/events/event_watch.hpp>
+#include <lagroid/systems/pendulums/damped_pendulum.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -162,6 +163,25 @@ TEST(Events, KicksThatAreNoNumbersAreSaid) {
   EXPECT_NE(huge.message.find("after its kick, between t = 1.5 and 1.6, the rest of the step does not"),
             std::string::npos)
       << huge.message;
+}
+
+TEST(Events, WhatIsSummedUpOverStepsIsNotJudgedAfterAKick) {
+  DampedPendulum system;
+  system.h = 0.02;
+  const State<Pair<1>> start{Vector<double, 1>(1.0), Vector<double, 1>(0.0)};
+  const auto verdict = [&](std::vector<Event> events) {
+    const RunResult result = run(system, start, {.steps = 1500, .events = std::move(events)});
+    EXPECT_TRUE(result.converged()) << result.message;
+    const auto& entries = result.ledger.entries;
+    return std::find_if(entries.begin(), entries.end(),
+                        [](const LedgerEntry& e) { return e.name == "energy less work"; })
+        ->verdict;
+  };
+  EXPECT_EQ(verdict({}), "bounded");
+  EXPECT_EQ(verdict({event_at_zero("seen", "q")}), "bounded");
+  Event push = event_at_zero("push", "q", rising);
+  push.kick = {"0.3"};
+  EXPECT_EQ(verdict({push}), "unjudged");
 }
 
 TEST(Events, WhatIsNoNumberAfterAKickIsSaid) {
