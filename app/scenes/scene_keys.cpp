@@ -92,7 +92,7 @@ Table own_time_table(const DeclaredMethod& own) {
 
 KeyOf<Tables> event_key() {
   using namespace event_keys;
-  return {"event", {{{name, when, at, direction, then, count, tolerance, kick, plot}}}, "", "what may happen", {},
+  return {"event", {{{name, when, at, direction, then, count, tolerance, kick, set, plot}}}, "", "what may happen", {},
           "none"};
 }
 

@@ -89,6 +89,9 @@ inline const KeyOf<Number> tolerance{"tolerance",
                                      1e-10};
 inline const KeyOf<Texts> kick{
     "kick", {}, "", "added to the momentum there: an expression as `when` for each of its numbers", {}, "none"};
+inline const KeyOf<Texts> set{
+    "set", {},    "", "parameters that become other numbers there: `name = expression`, as \"gravity = 1.62\"",
+    {},    "none"};
 inline const KeyOf<Texts> plot{
     "plot", {}, "", "two columns: a picture of the points at which it happened, as a Poincare section", {}, "none"};
 

@@ -210,6 +210,12 @@ std::vector<Event> read_events(const Section& scene) {
     event.count = read_key(table, count);
     event.tolerance = read_key(table, tolerance);
     event.kick = read_key_or(table, kick, {});
+    for (const std::string& text : read_key_or(table, event_keys::set, {})) {
+      const auto setting = event_setting(text);
+      if (!setting)
+        table.fail(event_keys::set.name, fmt::format("\"{}\" is not of the form \"name = expression\"", text));
+      event.set.push_back(*setting);
+    }
     event.plot = read_key_or(table, plot, {});
     if (event.at != Event::At::zero && table.has(direction.name))
       table.fail(direction.name, "is that of events at zero; leave it out");

@@ -33,9 +33,9 @@ Section without_method(const Section& scene) {
 
 Experiment read_experiment(const Section& scene) {
   for (const Event& event : read_events(scene))
-    if (!event.kick.empty() || event.then == Event::Then::stop)
+    if (!event.kick.empty() || !event.set.empty() || event.then == Event::Then::stop)
       scene.fail("event", fmt::format("\"{}\" changes the motion or ends it, and methods are compared along all of it: "
-                                      "leave out its kick and then",
+                                      "leave out its kick, set and then",
                                       event.name));
   if (scene.has("noise"))
     scene.fail("noise",

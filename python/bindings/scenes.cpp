@@ -130,12 +130,20 @@ lagroid::Event event_of(const py::dict& table) {
       event.tolerance = value.cast<double>();
     } else if (key == "kick") {
       event.kick = value.cast<std::vector<std::string>>();
+    } else if (key == "set") {
+      for (const auto& text : value.cast<std::vector<std::string>>()) {
+        const auto setting = lagroid::event_setting(text);
+        if (!setting)
+          throw py::value_error(fmt::format("event: \"{}\" is not of the form \"name = expression\"", text));
+        event.set.push_back(*setting);
+      }
     } else if (key == "plot") {
       event.plot = value.cast<std::vector<std::string>>();
     } else {
-      throw py::value_error(fmt::format(
-          "event: there is no \"{}\"; there are name, when, call, at, direction, then, count, tolerance, kick, plot",
-          key));
+      throw py::value_error(
+          fmt::format("event: there is no \"{}\"; there are name, when, call, at, direction, then, count, tolerance, "
+                      "kick, set, plot",
+                      key));
     }
   }
   return event;

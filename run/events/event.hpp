@@ -17,7 +17,9 @@
 #include <lagroid/run/run_result.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -40,8 +42,14 @@ struct Event {
   /// Added to the momentum there: an expression of the same names for each of its numbers, or none. The rest of the
   /// step is made from the changed state, and the ledger holds the motion to its promises from there.
   std::vector<std::string> kick{};
+  /// Parameters of the system that become other numbers there, each with an expression of the same names. The rest of
+  /// the step is made with them, as after a kick.
+  std::vector<std::pair<std::string, std::string>> set{};
   /// Called where it has happened; the run ends where it returns false.
   std::function<bool(const Happening&, const Observables&)> call{};
 };
+
+/// "gravity = 1.62" as what Event::set holds; none where it is of another form.
+std::optional<std::pair<std::string, std::string>> event_setting(const std::string& text);
 
 }  // namespace lagroid

@@ -46,6 +46,18 @@ std::vector<double> values_within(const Observables& node) {
   return values;
 }
 
+std::optional<std::pair<std::string, std::string>> event_setting(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  if (sign == std::string::npos) return std::nullopt;
+  const auto trimmed = [](std::string part) {
+    const std::size_t first = part.find_first_not_of(' ');
+    return first == std::string::npos ? std::string() : part.substr(first, part.find_last_not_of(' ') - first + 1);
+  };
+  std::pair<std::string, std::string> out{trimmed(text.substr(0, sign)), trimmed(text.substr(sign + 1))};
+  if (out.first.empty() || out.second.empty()) return std::nullopt;
+  return out;
+}
+
 EventFunction::EventFunction(const Event& event, const Observables& node) : function_(event.function) {
   if (function_) return;
   std::vector<std::string> names{"t"};

@@ -20,8 +20,8 @@ struct NoPartialStep {
   double share;
 };
 
-/// What a kick adds, or what is measured after it, is no finite number.
-struct NoKick {
+/// An event cannot change the motion as it is to.
+struct NoChange {
   std::string why;
 };
 
@@ -73,6 +73,24 @@ void require_kick(const Event& event, const Motion& motion) {
         fmt::format("{}: its kick has {} numbers, the momentum has {}", named(event), event.kick.size(), numbers));
 }
 
+std::vector<EventFunction> set_of(const Event& event, const Observables& node) {
+  std::vector<EventFunction> out;
+  for (const auto& [name, number] : event.set) out.emplace_back(Event{.name = event.name, .when = number}, node);
+  return out;
+}
+
+void require_set(const Event& event, const Motion& motion) {
+  if (event.set.empty()) return;
+  const std::vector<std::string> names = motion.changeable_parameters();
+  if (names.empty())
+    throw RunError(fmt::format("{}: no parameter can be changed on the way: {}, or no system of a scene", named(event),
+                               motion.traits().name));
+  for (const auto& [name, number] : event.set)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw RunError(fmt::format("{}: it sets \"{}\", which is no parameter that is a number; there are {}",
+                                 named(event), name, fmt::join(names, ", ")));
+}
+
 void require_plot(const Event& event, const std::vector<std::string>& columns) {
   if (event.plot.empty()) return;
   for (const std::string& column : event.plot)
@@ -122,11 +140,13 @@ EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
   for (const Event& event : events) {
     require(event, names);
     try {
-      watches_.push_back({event, EventFunction(event, node), kick_of(event, node), FunctionWatch(event)});
+      watches_.push_back(
+          {event, EventFunction(event, node), kick_of(event, node), set_of(event, node), FunctionWatch(event)});
     } catch (const std::invalid_argument& error) {
       throw RunError(fmt::format("{}: {}", named(event), error.what()));
     }
     require_kick(event, motion);
+    require_set(event, motion);
     watches_.back().function.next(watches_.back().value(node), time_);
     table_.watched.push_back({event.name, event.when, event.plot});
     require_plot(event, table_.columns);
@@ -177,7 +197,7 @@ EventWatch::Goes EventWatch::look_into_step() {
         "not converge; use a smaller time.step",
         named(watches_[looking_for_].event), time_, arrived_, none.share);
     return Goes::failed;
-  } catch (const NoKick& none) {
+  } catch (const NoChange& none) {
     reason_ = fmt::format("{}: {}", named(watches_[looking_for_].event), none.why);
     return Goes::failed;
   }
@@ -193,67 +213,90 @@ EventWatch::Goes EventWatch::look_into_rest(std::vector<Found>& found) {
       looking_for_ = each->event;
       if (!happens(*each) && ending == nullptr) ending = &*each;
     }
-    const bool is_kicked = kick({first, last});
+    const bool is_changed = change({first, last});
     if (ending != nullptr) {
-      end_ = &within(is_kicked ? 0 : ending->share);
+      end_ = &within(is_changed ? 0 : ending->share);
       return Goes::ended;
     }
-    if (is_kicked) break;
+    if (is_changed) break;
     first = last;
   }
   return Goes::on;
 }
 
-bool EventWatch::kick(Group together) {
+bool EventWatch::change(Group together) {
   const double share = std::max_element(together.begin(), together.end(), [](const Found& a, const Found& b) {
                          return a.share < b.share;
                        })->share;
   std::vector<double> by;
+  std::vector<ParameterValue> to;
   std::vector<std::vector<double>> before;
   for (const Found& found : together) {
     Watch& watch = watches_[found.event];
-    if (watch.kick.empty() || found.passing == Passing::touching) continue;
+    if ((watch.kick.empty() && watch.set.empty()) || found.passing == Passing::touching) continue;
     looking_for_ = found.event;
     const Observables& inside = within(share);
-    by.resize(watch.kick.size());
-    for (std::size_t k = 0; k < by.size(); ++k) {
-      const double number = watch.kick[k](inside);
+    const auto value_of = [&](EventFunction& function, const std::string& text, const char* what) {
+      const double number = function(inside);
       if (!std::isfinite(number))
-        throw NoKick{fmt::format("its kick is no finite number at t = {:.6g}: \"{}\" is {}", inside.time(),
-                                 watch.event.kick[k], number)};
-      by[k] += number;
+        throw NoChange{
+            fmt::format("{} is no finite number at t = {:.6g}: \"{}\" is {}", what, inside.time(), text, number)};
+      return number;
+    };
+    if (!watch.kick.empty()) by.resize(watch.kick.size());
+    for (std::size_t k = 0; k < watch.kick.size(); ++k)
+      by[k] += value_of(watch.kick[k], watch.event.kick[k], "its kick");
+    for (std::size_t k = 0; k < watch.set.size(); ++k) {
+      const auto& [name, text] = watch.event.set[k];
+      to.push_back({name, value_of(watch.set[k], text, "what it sets")});
     }
     before = quantities_within(inside);
-    ++watch.kicks;
+    ++watch.changes;
   }
-  if (by.empty()) return false;
-  if (!motion_.kick_within(share, by).converged())
-    throw NoKick{
-        fmt::format("after its kick, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use "
-                    "a smaller kick or a smaller time.step",
-                    time_, arrived_)};
-  const Observables& kicked = within(0);
-  measure_kick(before, kicked);
-  std::vector<double> at_kick;
-  for (Watch& watch : watches_) at_kick.push_back(watch.value(kicked));
+  if (by.empty() && to.empty()) return false;
+  if (!by.empty()) kick(share, by);
+  if (!to.empty()) set_parameters(by.empty() ? share : 0, to);
+  const Observables& changed = within(0);
+  measure_change(before, changed);
+  std::vector<double> there;
+  for (Watch& watch : watches_) there.push_back(watch.value(changed));
   const Observables& node = motion_.look();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const auto fired = std::find_if(together.begin(), together.end(), [&](const Found& f) { return f.event == i; });
     const auto passing = fired == together.end() ? std::nullopt : std::optional(fired->passing);
-    if (watches_[i].function.next_from(at_kick[i], passing, watches_[i].value(node), arrived_)) suspects_.push_back(i);
+    if (watches_[i].function.next_from(there[i], passing, watches_[i].value(node), arrived_)) suspects_.push_back(i);
   }
   return true;
 }
 
-void EventWatch::measure_kick(const std::vector<std::vector<double>>& before, const Observables& kicked) {
-  const std::vector<std::vector<double>> after = quantities_within(kicked);
+void EventWatch::kick(double share, std::span<const double> by) {
+  if (!motion_.kick_within(share, by).converged())
+    throw NoChange{
+        fmt::format("after its kick, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use a "
+                    "smaller kick or a "
+                    "smaller time.step",
+                    time_, arrived_)};
+}
+
+void EventWatch::set_parameters(double share, std::span<const ParameterValue> to) {
+  if (const std::string why = motion_.refused_values(to); !why.empty())
+    throw NoChange{fmt::format("between t = {:.6g} and {:.6g}: {}", time_, arrived_, why)};
+  if (!motion_.change_within(share, to).converged())
+    throw NoChange{fmt::format(
+        "with what it sets, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use a smaller "
+        "time.step",
+        time_, arrived_)};
+}
+
+void EventWatch::measure_change(const std::vector<std::vector<double>>& before, const Observables& changed) {
+  const std::vector<std::vector<double>> after = quantities_within(changed);
   if (kicked_.empty())
     for (const std::vector<double>& each : after) kicked_.emplace_back(each.size());
   for (std::size_t i = 0; i < after.size(); ++i)
     for (std::size_t k = 0; k < after[i].size(); ++k) {
       if (!std::isfinite(after[i][k]))
-        throw NoKick{fmt::format("after its kick at t = {:.6g} {} is no finite number any more; use a smaller one",
-                                 kicked.time(), kicked.quantities()[i].name)};
+        throw NoChange{fmt::format("after its change at t = {:.6g} {} is no finite number any more; use a smaller one",
+                                   changed.time(), changed.quantities()[i].name)};
       kicked_[i][k] += after[i][k] - before[i][k];
     }
 }
@@ -284,14 +327,14 @@ bool EventWatch::happens(const Found& found) {
 
 void EventWatch::report(RunResult& result) const {
   result.events = table_;
-  const bool is_kicked = std::any_of(watches_.begin(), watches_.end(), [](const Watch& w) { return w.kicks > 0; });
-  // What is summed up over steps does not know of the two that a kick makes of one.
-  if (is_kicked)
+  const bool is_changed = std::any_of(watches_.begin(), watches_.end(), [](const Watch& w) { return w.changes > 0; });
+  // What is summed up over steps does not know of the two that a change makes of one.
+  if (is_changed)
     for (const Watched& quantity : motion_.look().quantities())
       for (LedgerEntry& entry : result.ledger.entries)
         if (quantity.adds_up && entry.name == quantity.name && entry.promise != "none") {
           entry.verdict = "unjudged";
-          entry.reason = "it is summed up over whole steps, and kicks came between";
+          entry.reason = "it is summed up over whole steps, and changes came between";
         }
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const Watch& watch = watches_[i];
@@ -304,8 +347,9 @@ void EventWatch::report(RunResult& result) const {
                        watch.event.at == Event::At::zero      ? "zero"
                        : watch.event.at == Event::At::minimum ? "smallest"
                                                               : "largest"));
-    if (watch.kicks > 0)
-      note(fmt::format("kicked the motion {} times; the ledger's first values are moved by it", watch.kicks));
+    if (watch.changes > 0)
+      note(fmt::format("{} the motion {} times; the ledger's first values are moved by it",
+                       watch.set.empty() ? "kicked" : "changed", watch.changes));
     if (watched.touches > 0)
       note(fmt::format("its function came to zero {} times without passing it; not counted", watched.touches));
     if (function.jumps().times > 0)

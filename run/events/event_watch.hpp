@@ -14,9 +14,9 @@
 /// (Passing::touching). A function that is zero at the start has not passed it there. (FunctionWatch)
 ///
 /// Errors: RunError for a function that cannot be read, with the columns there are, for a name or a count that is none,
-/// and for a motion whose steps cannot be made in part, or whose momentum cannot be kicked. `pass` returns `failed`
-/// where a partial step does not converge, where kicks follow each other without end, and where what a kick adds, or
-/// what is measured after it, is no finite number.
+/// and for a motion whose steps cannot be made in part, or whose momentum or parameters cannot be changed on the way.
+/// `pass` returns `failed` where a partial step does not converge, where kicks follow each other without end, where a
+/// parameter cannot have its value, and where what is added, or measured afterwards, is no finite number.
 
 #include <lagroid/run/events/event.hpp>
 #include <lagroid/run/events/event_function.hpp>
@@ -80,11 +80,12 @@ class EventWatch {
     Event event;
     EventFunction value;
     std::vector<EventFunction> kick;
+    std::vector<EventFunction> set;
     FunctionWatch function;
-    long kicks = 0;
+    long changes = 0;  ///< of the motion, by kick and set
     template <class Archive> void serialize(Archive& archive) {
       archive("function", function);
-      archive("kicks", kicks);
+      archive("changes", changes);
     }
   };
   struct Found {
@@ -98,9 +99,11 @@ class EventWatch {
   Goes look_into_rest(std::vector<Found>& found);
   std::vector<Found> find_in_step();
   const Observables& within(double share);
-  /// Adds to the momentum what these add; false where that is nothing.
-  bool kick(Group together);
-  void measure_kick(const std::vector<std::vector<double>>& before, const Observables& kicked);
+  /// Changes momentum and parameters as these do; false where they change nothing.
+  bool change(Group together);
+  void kick(double share, std::span<const double> by);
+  void set_parameters(double share, std::span<const ParameterValue> to);
+  void measure_change(const std::vector<std::vector<double>>& before, const Observables& changed);
   /// Records it; false where the run ends.
   bool happens(const Found& found);
   std::vector<double> flat_rows() const;

@@ -31,6 +31,13 @@ struct NamedVector {
   double size = 0;  ///< of the terms that they are made of, to which an error is relative; 0: their own
 };
 
+/// A parameter of a system by its name (mass, inertia.0), and the number that it becomes.
+struct ParameterValue {
+  std::string name;
+  double value = 0;
+  bool operator==(const ParameterValue&) const = default;
+};
+
 /// A motion: it advances from node to node, and what is to be seen at a node can be looked at. The loop, the recorder
 /// and the ledger (drive.hpp, recorder.hpp, judge.hpp), studies and Python use nothing else of what they run.
 class Motion {
@@ -78,6 +85,13 @@ class Motion {
   /// Adds to the momentum where a share of the last step leads to, and makes the rest of the step from there; shares
   /// are from now on those of that rest. The motion stays at its node, in another state.
   virtual StepReport kick_within(double /*share*/, std::span<const double> /*by*/) { return {}; }
+  /// The parameters that can be changed inside of a step; none where nothing can.
+  virtual std::vector<std::string> changeable_parameters() const { return {}; }
+  /// Why parameters cannot have these values; empty where they can.
+  virtual std::string refused_values(std::span<const ParameterValue> /*to*/) const { return ""; }
+  /// Gives parameters other values where a share of the last step leads to, and makes the rest of the step with them;
+  /// as `kick_within` otherwise.
+  virtual StepReport change_within(double /*share*/, std::span<const ParameterValue> /*to*/) { return {}; }
   /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
   /// bits.
   virtual void serialize(NumberArchive& archive) = 0;

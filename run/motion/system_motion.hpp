@@ -10,10 +10,14 @@
 #include <lagroid/core/capabilities/discrete_energy.hpp>
 #include <lagroid/run/ledger/ledger.hpp>
 #include <lagroid/run/motion/motion.hpp>
+#include <lagroid/run/motion/parameter_values.hpp>
 #include <lagroid/run/motion/system_node.hpp>
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/solvers/step/step_messages.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -65,8 +69,7 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
                std::unique_ptr<Integrator<Sys>> integrator, const IntegratorOptions& options,
                Observer<Sys> observer = nullptr)
       : system_(system),
-        mode_(options.mode),
-        without_root_(options.without_root),
+        options_(options),
         presentation_(std::move(presentation)),
         integrator_(std::move(integrator)),
         stages_(integrator_->traits().stages),
@@ -77,8 +80,7 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
                std::vector<Quantity<Sys>> quantities, std::unique_ptr<Integrator<Sys>> integrator,
                const IntegratorOptions& options)
       : system_(system),
-        mode_(options.mode),
-        without_root_(options.without_root),
+        options_(options),
         integrator_(std::move(integrator)),
         stages_(integrator_->traits().stages),
         node_(system, std::move(fields), std::move(quantities)) {
@@ -92,7 +94,7 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
 
   StepReport advance() override { return integrator_->advance(); }
   std::string failure(const StepReport& report, long step) const override {
-    return step_failure(report, step, integrator_->point().time, mode_);
+    return step_failure(report, step, integrator_->point().time, options_.mode);
   }
 
   long evaluations(const StepReport& report) const override { return stages_ > 0 ? stages_ : report.iterations; }
@@ -132,6 +134,22 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
   StepReport kick_within(double share, std::span<const double> by) override {
     return integrator_->kick(share, Eigen::Map<const AlgebroidVector<G>>(by.data()));
   }
+  std::vector<std::string> changeable_parameters() const override {
+    std::vector<std::string> names;
+    if (integrator_->changes_system())
+      for (const ParameterValue& each : parameter_values(system_)) names.push_back(each.name);
+    return names;
+  }
+  std::string refused_values(std::span<const ParameterValue> to) const override {
+    Sys changed = system_;
+    return set_parameters(changed, to);
+  }
+  StepReport change_within(double share, std::span<const ParameterValue> to) override {
+    const auto change = [to](Sys& system) { set_parameters(system, to); };
+    const StepReport report = integrator_->change(share, change);
+    if (report.converged()) change_what_is_seen(change);
+    return report;
+  }
   std::vector<NamedVector> state() const override {
     const TrajectoryPoint<Sys>& point = integrator_->point();
     return {named("configuration", system_.groupoid.coordinates_of_arrow(point.configuration)),
@@ -146,31 +164,51 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
       result.last_multipliers.assign(point.step.multipliers.begin(), point.step.multipliers.end());
     }
     present(presentation_, result);
+    if (parameter_values(system_) != first_parameters_ && !presentation_.extras.empty()) {
+      std::vector<std::string> labels;
+      for (const auto& extra : presentation_.extras)
+        labels.insert(labels.end(), extra.series.components.begin(), extra.series.components.end());
+      result.notes.push_back(fmt::format(
+          "parameters were changed on the way; the columns {} and the pictures are made with the first ones",
+          fmt::join(labels, ", ")));
+    }
     if (const long count = integrator_->without_root(); count > 0) {
-      result.notes.push_back(without_root_note(count, result.steps, without_root_));
+      result.notes.push_back(without_root_note(count, result.steps, options_.without_root));
       result.ledger.entries.push_back(counted_entry("steps off the energy", count, result.steps));
     }
   }
   void serialize(NumberArchive& archive) override {
+    const std::vector<ParameterValue> first = parameter_values(system_);
+    std::vector<ParameterValue> now = first;
+    for (ParameterValue& each : now) archive(each.value);
+    if (now != first) {
+      const auto change = [&now](Sys& system) { set_parameters(system, now); };
+      integrator_->change_here(change);
+      change_what_is_seen(change);
+    }
     integrator_->serialize(archive);
     archive(first_multipliers_, observed_);
     node_.serialize(archive);
   }
 
  private:
+  template <class Change> void change_what_is_seen(const Change& how) {
+    how(system_);
+    node_.change(how, watched(system_, options_));
+  }
   template <class V> static NamedVector named(const char* name, const V& v) {
     return {name, std::vector<double>(v.data(), v.data() + v.size())};
   }
 
   Sys system_;
-  TimeMode mode_;
-  WithoutRoot without_root_;
+  IntegratorOptions options_;
   Presentation<Sys> presentation_;
   std::unique_ptr<Integrator<Sys>> integrator_;
   int stages_;
   SystemNode<Sys> node_;
   Observer<Sys> observer_;
   long observed_ = -1;
+  std::vector<ParameterValue> first_parameters_ = parameter_values(system_);
   Vector<double, Sys::constraints> first_multipliers_ = Vector<double, Sys::constraints>::Zero();
 };
 

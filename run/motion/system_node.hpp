@@ -90,6 +90,15 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
     }
   }
 
+  /// The system has become another, and its quantities with it; what is summed up over steps stays as it was.
+  template <class Change> void change(const Change& how, const std::vector<Quantity<Sys>>& quantities) {
+    how(system_);
+    how(arrow_system_);
+    for (std::size_t i = 0; i < quantities_.size(); ++i)
+      for (const Quantity<Sys>& changed : quantities)
+        if (changed.name == quantities_[i].name && !watched_[i].adds_up) quantities_[i] = changed;
+  }
+
   const Point& point() const { return point_; }
 
   long index() const override { return point_.index; }

@@ -114,6 +114,13 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
     trajectory_.go_on_from(point);
     for (Stage& stage : stages_) stage.predictor.forget();
   }
+  /// Visits the systems that its stages are of, to change them; the stages' sizes stay.
+  template <class F> void for_each_system(const F& f) {
+    for (Stage& stage : stages_) {
+      f(stage.predictor.system());
+      stage.predictor.forget();
+    }
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     for (Stage& stage : stages_) {

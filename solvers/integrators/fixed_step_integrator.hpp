@@ -61,6 +61,11 @@ template <DiscreteSystem Sys> class FixedStepIntegrator {
     trajectory_.go_on_from(point);
     predictor_.forget();
   }
+  /// Visits the system that its steps are of, to change it; the step's size stays.
+  template <class F> void for_each_system(const F& f) {
+    f(predictor_.system());
+    predictor_.forget();
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     predictor_.serialize(archive);

@@ -78,6 +78,13 @@ template <DiscreteSystem Sys> class Integrator {
   /// from now on the step that is cut. It stays at this node, in another state; where the rest does not converge, in
   /// the one that it had.
   virtual StepReport kick(double /*share*/, const AlgebroidVector<typename Sys::GroupoidType>& /*by*/) { return {}; }
+  /// Whether the system can be changed inside of a step.
+  virtual bool changes_system() const { return false; }
+  /// Changes the system where a share of the last step leads to, and makes the rest of the step by it, as `kick` does.
+  using ChangeSystem = std::function<void(Sys&)>;
+  virtual StepReport change(double /*share*/, const ChangeSystem& /*how*/) { return {}; }
+  /// Changes the system at this node, where all that a step remembers is of the changed one.
+  virtual void change_here(const ChangeSystem& /*how*/) {}
   /// Steps so far whose size is not that of the mode.
   virtual long without_root() const { return 0; }
   /// Visits all that the next step goes on from: an integrator begun with the same arguments, to which it is restored,

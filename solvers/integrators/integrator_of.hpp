@@ -64,17 +64,42 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
     return report;
   }
 
+  using ChangeSystem = typename Integrator<Sys>::ChangeSystem;
   bool kicks() const override {
     return cuts() && requires(Integrating & all, const TrajectoryPoint<Sys>& point) { all.go_on_from(point); };
   }
-  [[gnu::cold]] StepReport kick(double share, const AlgebroidVector<typename Sys::GroupoidType>& by) override {
+  StepReport kick(double share, const AlgebroidVector<typename Sys::GroupoidType>& by) override {
+    return go_on_after(share, [&](TrajectoryPoint<Sys>& inside) { inside.state.momentum += by; });
+  }
+
+  bool changes_system() const override { return kicks() && has_systems; }
+  StepReport change(double share, const ChangeSystem& how) override {
+    return go_on_after(share, [&](TrajectoryPoint<Sys>&) { change_here(how); });
+  }
+  void change_here(const ChangeSystem& how) override {
+    if constexpr (has_systems) integrator_.for_each_system(how);
+  }
+
+ private:
+  static constexpr bool solves_cuts = requires(Integrating & all, TrajectoryPoint<Sys>& point) {
+    all.cut(point, 0.5, point);
+  };
+  static constexpr bool begins_cuts = requires(Integrating & all, const TrajectoryPoint<Sys>& point) {
+    all.begin_cut(point, 0.5);
+  };
+
+  static constexpr bool has_systems = requires(Integrating & all, const ChangeSystem& how) {
+    all.for_each_system(how);
+  };
+  /// Makes the rest of the last step from the point that a share of it leads to, after a change.
+  template <class Change> [[gnu::cold]] StepReport go_on_after(double share, const Change& change) {
     StepReport report;
     if constexpr (requires { integrator_.go_on_from(kept_); }) {
       TrajectoryPoint<Sys> inside;
       report = cut(share, inside);
       if (!report.converged()) return report;
       inside.index = kept_.index;
-      inside.state.momentum += by;
+      change(inside);
       kept_ = inside;
       rest_ *= 1 - share;
       TrajectoryPoint<Sys> reached;
@@ -86,14 +111,6 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
     }
     return report;
   }
-
- private:
-  static constexpr bool solves_cuts = requires(Integrating & all, TrajectoryPoint<Sys>& point) {
-    all.cut(point, 0.5, point);
-  };
-  static constexpr bool begins_cuts = requires(Integrating & all, const TrajectoryPoint<Sys>& point) {
-    all.begin_cut(point, 0.5);
-  };
 
   Integrating integrator_;
   TrajectoryPoint<Sys> kept_;

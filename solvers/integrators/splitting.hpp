@@ -174,6 +174,8 @@ template <SplitSystem Sys> class SplittingIntegrator {
   }
   /// Goes on from a point of the same index and time, which no step of its own led to.
   void go_on_from(const TrajectoryPoint<Sys>& point) { trajectory_.go_on_from(point); }
+  /// Visits the system that its steps are of, to change it; the step's size stays.
+  template <class F> void for_each_system(const F& f) { f(system_); }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) { trajectory_.serialize(system_.groupoid, archive); }
 
