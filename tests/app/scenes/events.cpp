@@ -110,6 +110,46 @@ TEST_F(Events, GoOnWithTheSameBits) {
   EXPECT_EQ(contents(whole / "events.csv"), contents(parts / "events.csv"));
 }
 
+TEST_F(Events, SetParameters) {
+  const fs::path out = folder_ / "moon";
+  const Outcome r = run("run " +
+                        with("pendulum",
+                             "[[event]]\nname = \"moon\"\nwhen = \"t - 20.05\"\nset = [\"gravity = 0.165\"]\n\n"
+                             "[[event]]\nname = \"bottom\"\nwhen = \"q\"\ndirection = \"rising\"\n") +
+                        " --set time.steps=2000 --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  const Json rows = summary(out).at("events").at("rows");
+  // Periods before and after are as the roots of the gravities.
+  std::vector<double> bottoms;
+  for (const auto& row : rows)
+    if (row.at("event") == "bottom") bottoms.push_back(row.at("t").get<double>());
+  ASSERT_GT(bottoms.size(), 6u);
+  const double before = bottoms[1] - bottoms[0];
+  const double after = bottoms.back() - bottoms[bottoms.size() - 2];
+  EXPECT_GT(after, 1.5 * before);
+  EXPECT_NE(r.out.find("event \"moon\": changed the motion 1 times"), std::string::npos) << r.out;
+  expect_refused("run " + with("kepler", "[[event]]\nname = \"x\"\nwhen = \"x\"\nset = [\"gravity 2\"]\n"),
+                 "\"gravity 2\" is not of the form \"name = expression\"");
+  expect_refused("study " + with("pendulum", "[[event]]\nname = \"x\"\nwhen = \"q\"\nset = [\"gravity = 2\"]\n"),
+                 "\"x\" changes the motion or ends it");
+  expect_refused(
+      "gradient " + with("pendulum", "[[event]]\nname = \"x\"\nwhen = \"q\"\n") + " --of final.position --wrt initial",
+      "gradient is of the whole run");
+}
+
+TEST_F(Events, OfPoissonSystemsAreFoundWhereTheyAre) {
+  const fs::path out = folder_ / "prey";
+  const std::string event =
+      "[[event]]\nname = \"most prey\"\nwhen = \"x\"\nat = \"maximum\"\n\n[[event]]\nname = \"end\"\n"
+      "when = \"t - 7.7\"\nthen = \"stop\"\n";
+  const Outcome r = run("run " + with("lotka_volterra", event) + " --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  EXPECT_NEAR(summary(out).at("final").at("time").get<double>(), 7.7, 1e-12);
+  EXPECT_NE(r.out.find("ended by event \"end\""), std::string::npos) << r.out;
+  expect_refused("run " + with("lotka_volterra", "[[event]]\nname = \"x\"\nwhen = \"x - 1\"\nkick = [\"1\", \"0\"]\n"),
+                 "nothing can be added to the momentum on the way");
+}
+
 TEST_F(Events, ThatCannotBeReadAreRefusedInALine) {
   const auto refused = [&](const std::string& keys, const std::string& words) {
     expect_refused("run " + with("pendulum", "[[event]]\n" + keys), words);

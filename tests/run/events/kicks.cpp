@@ -3,6 +3,7 @@
 
 #include <lagroid/run/events/event_watch.hpp>
 #include <lagroid/systems/pendulums/damped_pendulum.hpp>
+#include <lagroid/systems/pendulums/pendulum.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -184,6 +185,86 @@ TEST(Events, WhatIsSummedUpOverStepsIsNotJudgedAfterAKick) {
   EXPECT_EQ(verdict({push}), "unjudged");
 }
 
+/// A pendulum whose gravity changes at an angle: the energy that it has then is kept from there.
+Event moon(const std::string& when) {
+  Event event = event_at_zero("moon", when);
+  event.set = {{"gravity", "0.25*(1 + 0*q)"}};
+  return event;
+}
+
+TEST(Events, ChangeParametersOnTheWay) {
+  Pendulum system;
+  system.h = 0.01;
+  const State<Pair<1>> start{Vector<double, 1>(0.8), Vector<double, 1>(0.3)};
+  Event once = moon("t - 3.7");
+  const RunResult result = run(system, start, {.steps = 3000, .events = {once}});
+  ASSERT_TRUE(result.converged()) << result.message;
+  ASSERT_EQ(result.events.rows.size(), 1u);
+  // The same in two runs: until then, and on from there with the other gravity.
+  const RunResult first = run(system, start, {.steps = 3000, .events = {stop(event_at_zero("then", "t - 3.7"))}});
+  EXPECT_EQ(first.final.position[0], result.events.rows[0].values[0]);
+  Pendulum light = system;
+  light.gravity = 0.25;
+  const RunResult second =
+      run(light, State<Pair<1>>{Vector<double, 1>(first.final.position[0]), Vector<double, 1>(first.final.momentum[0])},
+          {.steps = 2630});
+  EXPECT_NEAR(result.final.time, 30, 1e-12);
+  EXPECT_NEAR(result.final.position[0], second.final.position[0], 1e-10);
+  EXPECT_NEAR(result.final.momentum[0], second.final.momentum[0], 1e-10);
+  for (const LedgerEntry& entry : result.ledger.entries) {
+    EXPECT_FALSE(entry.broken()) << entry.name;
+    if (entry.name == "energy") {
+      EXPECT_EQ(entry.verdict, "bounded") << entry.reason;
+    }
+  }
+  EXPECT_TRUE(std::any_of(result.notes.begin(), result.notes.end(), [](const std::string& note) {
+    return note == "event \"moon\": changed the motion 1 times; the ledger's first values are moved by it";
+  }));
+}
+
+TEST(Events, ChangedRunsResumeWithTheSameBits) {
+  const fs::path folder = fs::temp_directory_path() / "lagroid_events_changed";
+  fs::remove_all(folder);
+  Pendulum system;
+  system.h = 0.05;
+  const State<Pair<1>> start{Vector<double, 1>(0.8), Vector<double, 1>(0.3)};
+  RunOptions<Pendulum> options{.steps = 120, .events = {moon("t - 1.03")}};
+  const RunResult whole = run(system, start, options);
+  options.folder = folder;
+  options.steps = 60;
+  run(system, start, options);
+  options.steps = 120;
+  options.resume = true;
+  const RunResult resumed = run(system, start, options);
+  fs::remove_all(folder);
+  EXPECT_EQ(bits_of(whole), bits_of(resumed));
+  EXPECT_EQ(whole.final.position, resumed.final.position);
+}
+
+TEST(Events, ParametersThatCannotBeSetAreRefused) {
+  Pendulum system;
+  system.h = 0.01;
+  const State<Pair<1>> start{Vector<double, 1>(0.8), Vector<double, 1>(0.3)};
+  Event event = event_at_zero("change", "q");
+  event.set = {{"height", "1"}};
+  try {
+    run(system, start, {.steps = 3000, .events = {event}});
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "event \"change\": it sets \"height\", which is no parameter that is a number; there are mass, length, "
+        "gravity");
+  }
+  event.set = {{"mass", "q - 1"}};
+  const RunResult negative = run(system, start, {.steps = 3000, .events = {event}});
+  EXPECT_FALSE(negative.converged());
+  EXPECT_NE(negative.message.find("mass becomes -1, and is to be positive"), std::string::npos) << negative.message;
+  EXPECT_EQ(event_setting("gravity = 1.62"), (std::pair<std::string, std::string>("gravity", "1.62")));
+  EXPECT_EQ(event_setting("gravity"), std::nullopt);
+  EXPECT_EQ(event_setting(" = 2"), std::nullopt);
+}
+
 TEST(Events, WhatIsNoNumberAfterAKickIsSaid) {
   Orbit system;
   system.h = 0.05;
@@ -191,7 +272,7 @@ TEST(Events, WhatIsNoNumberAfterAKickIsSaid) {
   event.kick = {"1e200", "0"};
   const RunResult result = run_split(system, ellipse, compositions::single, {.steps = 100, .events = {event}});
   EXPECT_FALSE(result.converged());
-  EXPECT_NE(result.message.find("event \"blow\": after its kick at t = 0.52 energy is no finite number any more"),
+  EXPECT_NE(result.message.find("event \"blow\": after its change at t = 0.52 energy is no finite number any more"),
             std::string::npos)
       << result.message;
 }
