@@ -12,7 +12,6 @@
 ///       }
 ///     };
 ///     inline const Galerkin<Pendulum, 4> system{Pendulum{}, /*h*/ 0.1};  // of order eight
-///     (solvers/galerkin/galerkin.hpp)
 ///
 /// Requires const templates on the scalar. q is an object of G, xi the velocity in A_qG in the basis that the
 /// retraction fixes there: q' on the pair groupoid, the body velocity on a Lie group. Parameters are declared as a
