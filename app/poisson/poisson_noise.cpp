@@ -47,7 +47,7 @@ NoiseOptions read_noise(const Section& scene, const PoissonEntry& entry) {
     std::vector<std::string_view> others;
     for (const PoissonEntry& each : poisson_entries())
       if (!each.noises.empty()) others.push_back(each.name);
-    scene.fail(noise_word, fmt::format("{} has no noise Hamiltonians; {} do", entry.name, fmt::join(others, ", ")));
+    scene.fail(noise_word, fmt::format("{} has no noise Hamiltonians; {} have", entry.name, fmt::join(others, ", ")));
   }
   const std::string names = fmt::format("one or more of {}", fmt::join(entry.noises, ", "));
   const Section noise = scene.section(noise_word, "strength");
