@@ -17,7 +17,7 @@
 ///
 /// Requires constraints that are vakonomic, and regular with l: the matrix of second derivatives of l + <lambda, psi>
 /// in xi, bordered by dpsi/dxi, is one that can be inverted. Then the extremals are a Hamiltonian system on A*G with
-/// the multipliers determined, and the step is Gauss's collocation of it: order 2 s, and the multipliers of order s.
+/// the multipliers determined, and the step is Gauss's collocation of it in the chart, of order 2 s.
 ///
 /// Errors: where that matrix is singular the step ends with `singular`, and is not taken. Nothing throws.
 ///
@@ -117,7 +117,8 @@ struct GalerkinOnNodes
     if (xi.allFinite()) end = h * xi;
     Step<GalerkinOnNodes> guess;
     guess.arrow = {base().tau(z.object, end), Action::straight(end)};
-    for (int i = 0; i < arrow_constraints; ++i) guess.multipliers(i) = xi.allFinite() ? lambda(i % each) : 0;
+    if constexpr (each > 0)
+      for (int i = 0; i < arrow_constraints; ++i) guess.multipliers(i) = xi.allFinite() ? lambda(i % each) : 0;
     return guess;
   }
 
