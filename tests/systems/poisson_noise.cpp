@@ -222,9 +222,9 @@ TEST(PoissonNoise, TheThermostatOfAParticleIsLangevins) {
                                    isotropic(0.1, 0.8, {.seed = 6, .path = path, .temperature = temperature}));
   };
   const Estimate spring =
-      time_mean(begin, 20, 1500, [](const auto& x) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; });
+      time_mean(begin, 20, 3000, [](const auto& x) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; });
   const Estimate motion =
-      time_mean(begin, 20, 1500, [](const auto& x) { return x[3] * x[3] + x[4] * x[4] + x[5] * x[5]; });
+      time_mean(begin, 20, 3000, [](const auto& x) { return x[3] * x[3] + x[4] * x[4] + x[5] * x[5]; });
   EXPECT_NEAR(spring.value, 3 * temperature / trapped.stiffness, 3 * spring.error);
   EXPECT_NEAR(motion.value, 3 * temperature, 3 * motion.error);
   EXPECT_LT(motion.error, 0.03);
