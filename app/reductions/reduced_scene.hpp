@@ -9,7 +9,7 @@
 
 #include "../scenes/simulation.hpp"
 
-#include <lagroid/run/motion/reduced_motion.hpp>
+#include <lagroid/run/reduced_motion.hpp>
 
 #include <memory>
 #include <optional>
