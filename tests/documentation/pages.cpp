@@ -72,7 +72,9 @@ TEST(BrokenPage, AnAlteredBlockIsFoundOut) {
 TEST(HigherOrder, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/higher_order.md"))), none); }
 
 TEST(AnyLagrangianPage, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/any_lagrangian.md"))), none); }
-TEST(AnyLagrangianPage, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/any_lagrangian.md")), none); }
+TEST(AnyLagrangianPage, WhatFailsALawSaysWhich) {
+  EXPECT_EQ(unfounded_failures(prose_of(read("docs/any_lagrangian.md"))), none);
+}
 
 TEST(HigherOrder, WhatFailsALawSaysWhich) { EXPECT_EQ(unfounded_failures(read("docs/higher_order.md")), none); }
 
