@@ -358,10 +358,10 @@ void EventWatch::report(RunResult& result) const {
                       "t = {:.6g}; not counted",
                       function.jumps().times, function.jumps().first));
     if (function.flat().times > 0)
-      note(
-          fmt::format("its function is constant to round-off in {} steps where it seems to turn, first in that to t = "
-                      "{:.6g}; not counted",
-                      function.flat().times, function.flat().first));
+      note(fmt::format(
+          "its function is constant to round-off in {} steps where it seems to turn or to pass, first in that to t = "
+          "{:.6g}; not counted",
+          function.flat().times, function.flat().first));
     if (function.undefined().times > 0)
       note(
           fmt::format("its function was no finite number at {} of {} nodes, the first at t = {:.6g}; nothing was "

@@ -108,6 +108,13 @@ void FunctionWatch::find_zeros(const StepFunction& g, std::vector<FoundInStep>& 
     else
       found.push_back({root.share, direction_of(at_a, at_b)});
   };
+  // Near zero for good, a sign is one of round-off.
+  constexpr double small = 1e-9;
+  if ((is_at_zero_ || passes_zero()) && std::max(std::abs(before_), std::abs(now_)) <= small * largest_ &&
+      is_rounding_within(g)) {
+    flat_.add(time_);
+    return;
+  }
   if (is_at_zero_) {
     // It passes, unless it arrives there without a slope.
     const double slope = slope_within(g, 1);

@@ -66,6 +66,21 @@ TEST(Events, AnExtremumOfRoundOffIsNoEvent) {
   EXPECT_TRUE(has_note(result, "event \"least\": its function is constant to round-off"));
 }
 
+TEST(Events, SignsOfRoundOffAreNoEvents) {
+  // On a circle q . mu is zero but for rounding; what decays is small and no rounding.
+  Orbit system;
+  system.h = 0.05;
+  const State<Pair<2>> nearly_circle{{1, 0}, {0, 1.3}};
+  Event burn = event_at_zero("burn", "q1*mu1 + q2*mu2", falling);
+  for (const char* each : {"mu1", "mu2"})
+    burn.kick.push_back(std::string(each) + "*(1/(sqrt(sqrt(q1^2 + q2^2))*sqrt(mu1^2 + mu2^2)) - 1)");
+  const RunResult result = run_split(system, nearly_circle, compositions::kahan_li_8,
+                                     {.steps = 2000, .events = {burn, event_at_zero("decays", "exp(-2*t)*cos(t)")}});
+  ASSERT_TRUE(result.converged()) << result.message;
+  EXPECT_LE(result.events.watched[0].count, 2);
+  EXPECT_EQ(result.events.watched[1].count, 32);
+}
+
 TEST(Events, ASmallExtremumIsFoundInSmallSteps) {
   // Over a step of 1e-5 the distance from the centre bends by 1e-10.
   const RunResult result = turn(400, {extremum("far", "sqrt(q^2 + 1)", Event::At::minimum)}, 1e-5);
