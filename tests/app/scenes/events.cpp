@@ -132,9 +132,6 @@ TEST_F(Events, SetParameters) {
                  "\"gravity 2\" is not of the form \"name = expression\"");
   expect_refused("study " + with("pendulum", "[[event]]\nname = \"x\"\nwhen = \"q\"\nset = [\"gravity = 2\"]\n"),
                  "\"x\" changes the motion or ends it");
-  expect_refused(
-      "gradient " + with("pendulum", "[[event]]\nname = \"x\"\nwhen = \"q\"\n") + " --of final.position --wrt initial",
-      "gradient is of the whole run");
 }
 
 TEST_F(Events, OfPoissonSystemsAreFoundWhereTheyAre) {
