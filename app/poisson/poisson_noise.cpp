@@ -67,7 +67,7 @@ void refuse_for_noise(const Section& time, const DeclaredMethod& method, const C
               "steps with noise are not composed, since their order is 1 at most; leave it out");
 }
 
-std::string told_noise(const NoiseOptions& noise, const PoissonEntry& entry) {
+std::string noise_note(const NoiseOptions& noise, const PoissonEntry& entry) {
   std::string along;
   for (std::size_t k = 0; k < noise.strength.size(); ++k)
     if (noise.strength[k] > 0)

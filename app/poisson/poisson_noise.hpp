@@ -17,6 +17,6 @@ NoiseOptions read_noise(const Section& scene, const PoissonEntry& entry);
 /// Refuses what [time] asks of steps with noise and these do not have.
 void refuse_for_noise(const Section& time, const DeclaredMethod& method, const Composition& composition);
 /// One sentence on it.
-std::string told_noise(const NoiseOptions& noise, const PoissonEntry& entry);
+std::string noise_note(const NoiseOptions& noise, const PoissonEntry& entry);
 
 }  // namespace lagroid::app

@@ -96,7 +96,7 @@ class PoissonMotion final : public Motion {
              : power == 1 ? std::string("up to h in a step")
                           : fmt::format("up to h^{} in a step", power);
     };
-    if (options_.noise.present()) result.notes.push_back(told_noise(options_.noise, entry_));
+    if (options_.noise.present()) result.notes.push_back(noise_note(options_.noise, entry_));
     result.notes.push_back(
         fmt::format("the bracket is kept {}, Casimirs {}", words(kept.bracket), words(kept.casimirs)));
     describe_poisson(entry_, result);

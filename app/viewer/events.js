@@ -1,7 +1,7 @@
 // What happened in a run: marks on its curves, sections, and a way to the moments at which it did.
 
-/** The name of each row's event, its time and, by their labels, its columns; none where nothing was watched for. */
-function happened(run) {
+/** What happened, in the order of time: the name of each event, its time and, by their labels, its columns. */
+export function happened(run) {
   if (!run.events) return [];
   const { columns, rows } = run.events;
   return rows.map(({ event, t, passing, values }) => {
@@ -15,11 +15,10 @@ const points = (rows, x, y, { x_offset = 0, y_offset = 0 } = {}) =>
   rows.filter(({ at }) => Number.isFinite(at[x]) && Number.isFinite(at[y])).map(({ at }) => ({ x: at[x] - x_offset, y: at[y] - y_offset }));
 
 /** Where something happened on the curves of a panel, as far as their columns are known there. */
-export const marksOn = (run, panel) => panel.curves.flatMap((curve) => points(happened(run), panel.x, curve, panel));
+export const marksOn = (rows, panel) => panel.curves.flatMap((curve) => points(rows, panel.x, curve, panel));
 
 /** The sections that the run draws: of an event the points at which it happened, in two columns. */
-export function sections(run) {
-  const rows = happened(run);
+export function sections(run, rows) {
   return (run.events?.watched ?? [])
     .filter(({ plot, count }) => plot && count > 0)
     .map(({ name, plot: [x, y] }) => ({

@@ -1,7 +1,7 @@
 // The curves of a run, with a mark that moves in time.
 import { Chart, Legend, LinearScale, LineElement, PointElement, ScatterController, Title } from "chart.js";
 
-import { marksOn, sections } from "./events.js";
+import { happened, marksOn, sections } from "./events.js";
 import { reader } from "./frames.js";
 
 Chart.register(Legend, LinearScale, LineElement, PointElement, ScatterController, Title);
@@ -51,7 +51,7 @@ function scatter(canvas, datasets, { title, x_label, y_label, x_offset = 0, y_of
 
 /** One panel: curves over a column, drawn once; the mark is on a canvas above, drawn at every frame. */
 class Plot {
-  constructor(run, panel, parent) {
+  constructor(run, rows, panel, parent) {
     const { frame, canvas } = framed(parent);
     this.cursor = document.createElement("canvas");
     this.cursor.className = "cursor";
@@ -74,7 +74,7 @@ class Plot {
       borderColor: palette[i % palette.length],
       backgroundColor: palette[i % palette.length],
     }));
-    const marks = marksOn(run, panel);
+    const marks = marksOn(rows, panel);
     if (marks.length > 0)
       curves.push({ label: "events", data: marks, pointRadius: 3, borderColor: "#1c2330", backgroundColor: "transparent" });
     this.chart = scatter(canvas, curves, panel, {
@@ -142,8 +142,9 @@ class Section {
 
 export class Plots {
   constructor(parent, run) {
-    this.plots = run.panels.map((panel) => new Plot(run, panel, parent));
-    this.sections = sections(run).map((section) => new Section(section, parent));
+    const rows = happened(run);
+    this.plots = run.panels.map((panel) => new Plot(run, rows, panel, parent));
+    this.sections = sections(run, rows).map((section) => new Section(section, parent));
   }
   mark(row) {
     for (const plot of this.plots) plot.mark(row);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
 #include <span>
@@ -49,11 +50,8 @@ std::vector<double> values_within(const Observables& node) {
 std::optional<std::pair<std::string, std::string>> event_setting(const std::string& text) {
   const std::size_t sign = text.find('=');
   if (sign == std::string::npos) return std::nullopt;
-  const auto trimmed = [](std::string part) {
-    const std::size_t first = part.find_first_not_of(' ');
-    return first == std::string::npos ? std::string() : part.substr(first, part.find_last_not_of(' ') - first + 1);
-  };
-  std::pair<std::string, std::string> out{trimmed(text.substr(0, sign)), trimmed(text.substr(sign + 1))};
+  std::pair<std::string, std::string> out{boost::trim_copy(text.substr(0, sign)),
+                                          boost::trim_copy(text.substr(sign + 1))};
   if (out.first.empty() || out.second.empty()) return std::nullopt;
   return out;
 }

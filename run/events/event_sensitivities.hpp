@@ -173,31 +173,11 @@ template <DiscreteSystem Sys> class EventPropagation {
 
   /// f at a point, with its derivatives by (v, mu, theta, t): a row for each number.
   template <class F> NodeValues observe(const Point& point, const F& f) const {
-    using V = VariedNumber;
-    NodeValues out;
-    const G& groupoid = system_.groupoid;
-    const Vector<double, n> zero = Vector<double, n>::Zero();
-    for_directions(count_ + 1, [&](int first) {
-      const VariedMembers varying(places_.members, 2 * n - first);
-      const Vector<V, n> v = varied_along(zero, -first);
-      const auto moved = groupoid.tau(groupoid.template cast_object<V>(point.state.object), v);
-      const Vector<V, n> momentum = varied_along(point.state.momentum, n - first);
-      const V time = varied_along(Vector<double, 1>(point.time), count_ - first)(0);
-      const ObjectOf<G, V> object = groupoid.target(moved);
-      const VariedVector here =
-          f(EventNode<Sys>{system_.plain(), time, object, varied_tangent_momentum(system_.plain(), object, momentum),
-                           groupoid.compose(groupoid.template cast<V>(point.configuration), moved)});
-      if (out.values.size() == 0) {
-        out.values.resize(here.size());
-        out.derivatives.resize(here.size(), count_ + 1);
-      }
-      for (Eigen::Index i = 0; i < here.size(); ++i) {
-        out.values(i) = here(i).value;
-        for (int k = first; k < std::min(count_ + 1, first + varied_at_once); ++k)
-          out.derivatives(i, k) = here(i).tangent(k - first);
-      }
-    });
-    return out;
+    return values_at(system_.plain(), places_, point, 1,
+                     [&](int first, const auto& object, const auto& momentum, const auto& configuration) {
+                       const VariedNumber time = varied_along(Vector<double, 1>(point.time), count_ - first)(0);
+                       return f(EventNode<Sys>{system_.plain(), time, object, momentum, configuration});
+                     });
   }
   NodeValues value_of(std::size_t i, const Point& point) const {
     return observe(point, [&](const EventNode<Sys>& node) -> VariedVector {
@@ -224,7 +204,9 @@ template <DiscreteSystem Sys> class EventPropagation {
     set_time(system_.plain(), base_.time);
     LinearStep step(n + m, 2 * n, int(members_.size()));
     linearise_step(system_, Step<VaryingStep<Sys>>{to.step.arrow, to.step.multipliers}, members_, step);
-    compare(to.step, step);
+    // By its size, which a force may read as a plain number.
+    if (!std::exchange(is_compared_, true))
+      compare_with_differences(system_.plain(), system_.h, "h", to.step, step, count_);
     if (!step.factor()) throw StepReport{SolveStatus::singular};
     const int extra = int(members_.size() - places_.members.size());
     Eigen::MatrixXd from = Eigen::MatrixXd::Zero(count_ + extra, count_ + 1);
@@ -235,25 +217,6 @@ template <DiscreteSystem Sys> class EventPropagation {
     const Eigen::MatrixXd all = step.forward(from);
     return {all.topLeftCorner(count_, count_), all.col(count_).head(2 * n)};
   }
-  /// By the step's size: a force may read it as a plain number.
-  void compare(const Step<Sys>& step, const LinearStep& linear) {
-    if (std::exchange(is_compared_, true)) return;
-    const auto at = [&](double size) {
-      const double kept = std::exchange(system_.h, size);
-      const GradientsOf<Sys> d = gradients(system_.plain(), step.arrow, step.multipliers);
-      system_.h = kept;
-      Eigen::VectorXd all(2 * n + m);
-      all << -d.source_gradient, d.constraint, d.source_gradient + d.target_gradient;
-      return all;
-    };
-    const Eigen::Index column = 2 * n + Eigen::Index(places_.members.size());
-    Eigen::VectorXd derivative(2 * n + m);
-    derivative << linear.equations_by_start.col(column), linear.end_by_start.col(column).tail(n);
-    const double h = system_.h, width = 1e-4 * h;
-    const auto difference = [&](double by) -> Eigen::VectorXd { return (at(h + by) - at(h - by)) / (2 * by); };
-    require_derivative("h", derivative, difference(width), difference(width / 2), at(h).norm() / width);
-  }
-
   void advance(long number) try {
     integrator_->keep_node();
     is_kicked_ = false;

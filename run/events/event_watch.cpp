@@ -290,20 +290,20 @@ void EventWatch::set_parameters(double share, std::span<const ParameterValue> to
 
 void EventWatch::measure_change(const std::vector<std::vector<double>>& before, const Observables& changed) {
   const std::vector<std::vector<double>> after = quantities_within(changed);
-  if (kicked_.empty())
-    for (const std::vector<double>& each : after) kicked_.emplace_back(each.size());
+  if (shifts_.empty())
+    for (const std::vector<double>& each : after) shifts_.emplace_back(each.size());
   for (std::size_t i = 0; i < after.size(); ++i)
     for (std::size_t k = 0; k < after[i].size(); ++k) {
       if (!std::isfinite(after[i][k]))
         throw NoChange{fmt::format("after its change at t = {:.6g} {} is no finite number any more; use a smaller one",
                                    changed.time(), changed.quantities()[i].name)};
-      kicked_[i][k] += after[i][k] - before[i][k];
+      shifts_[i][k] += after[i][k] - before[i][k];
     }
 }
 
 void EventWatch::settle(Judge& judge) {
-  for (std::size_t i = 0; i < kicked_.size(); ++i) judge.shift(i, kicked_[i].data());
-  kicked_.clear();
+  for (std::size_t i = 0; i < shifts_.size(); ++i) judge.shift(i, shifts_[i].data());
+  shifts_.clear();
 }
 
 bool EventWatch::happens(const Found& found) {

@@ -53,7 +53,7 @@ class EventWatch {
     time_ = arrived_;
     return goes;
   }
-  /// What kicks have changed since is no fault of the motion.
+  /// What was changed since is no fault of the motion.
   void settle(Judge& judge);
   /// Whether the motion has to be looked at anew since.
   bool looked_within() const { return looked_within_; }
@@ -75,7 +75,7 @@ class EventWatch {
   }
 
  private:
-  /// An event, what is known of its function, and the numbers of its kick.
+  /// An event, what is known of its function, and what it adds and sets.
   struct Watch {
     Event event;
     EventFunction value;
@@ -119,7 +119,8 @@ class EventWatch {
   std::size_t looking_for_ = 0;  ///< of the watches, for a message
   bool looked_within_ = false;
   const Observables* end_ = nullptr;
-  std::vector<std::vector<double>> kicked_;  ///< of every quantity, what kicks have changed since the last node
+  std::vector<std::vector<double>>
+      shifts_;  ///< of every quantity, what changes of the motion have moved it by since the last node
   std::string reason_;
 };
 

@@ -15,8 +15,7 @@
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 #include <lagroid/solvers/sensitivity/linearised_step.hpp>
-#include <lagroid/solvers/sensitivity/varied_momentum.hpp>
-#include <lagroid/solvers/sensitivity/varied_parameters.hpp>
+#include <lagroid/solvers/sensitivity/varied_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,11 +28,6 @@
 
 namespace lagroid {
 
-/// A parameter that a system reads as a plain number somewhere, so that its derivatives would be wrong.
-class WithoutDerivative : public std::invalid_argument {
-  using std::invalid_argument::invalid_argument;
-};
-
 /// What can be observed of a node; the momentum is the one that is reported (tangent_momentum). The system is that of
 /// the run, whose members a function reads by `varied`.
 template <class Sys> struct ObservedNode {
@@ -45,17 +39,7 @@ template <class Sys> struct ObservedNode {
   ArrowOf<G, VariedNumber> configuration;
 };
 /// Functions of a node.
-using VariedVector = Eigen::Matrix<VariedNumber, Eigen::Dynamic, 1>;
 template <class Sys> using ObserveNode = std::function<VariedVector(const ObservedNode<Sys>&)>;
-
-namespace detail {
-
-/// Throws WithoutDerivative unless derivatives by a member are near its differences: `coarse` and `fine`, of twice the
-/// width of the fine ones.
-void require_derivative(const std::string& name, const Eigen::VectorXd& derivative, const Eigen::VectorXd& coarse,
-                        const Eigen::VectorXd& fine, double rounding);
-
-}  // namespace detail
 
 template <DiscreteSystem Sys> class LinearisedMotionOf final : public LinearisedMotion {
  public:
@@ -107,31 +91,10 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   const LinearStep& stage(int k) const override { return stages_[std::size_t(k)]; }
 
   NodeValues observe() const override {
-    using V = VariedNumber;
-    NodeValues out;
-    const int count = 2 * n + parameters();
-    const G& groupoid = system_.groupoid;
-    const Vector<double, n> zero = Vector<double, n>::Zero();
-    detail::for_directions(count, [&](int first) {
-      const VariedMembers varying(places_.members, 2 * n - first);
-      const Vector<V, n> v = detail::varied_along(zero, -first);
-      const auto moved = groupoid.tau(groupoid.template cast_object<V>(point().state.object), v);
-      const Vector<V, n> momentum = detail::varied_along(point().state.momentum, n - first);
-      const ObjectOf<G, V> object = groupoid.target(moved);
-      const VariedVector here =
-          observe_({system_, point().time, object, varied_tangent_momentum(system_, object, momentum),
-                    groupoid.compose(groupoid.template cast<V>(point().configuration), moved)});
-      if (out.values.size() == 0) {
-        out.values.resize(here.size());
-        out.derivatives.resize(here.size(), count);
-      }
-      for (Eigen::Index i = 0; i < here.size(); ++i) {
-        out.values(i) = here(i).value;
-        for (int k = first; k < std::min(count, first + varied_at_once); ++k)
-          out.derivatives(i, k) = here(i).tangent(k - first);
-      }
-    });
-    return out;
+    return detail::values_at(system_, places_, point(), 0,
+                             [&](int, const auto& object, const auto& momentum, const auto& configuration) {
+                               return observe_({system_, point().time, object, momentum, configuration});
+                             });
   }
 
   std::vector<double> save() override {
@@ -145,28 +108,11 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   }
 
  private:
-  /// The derivatives of the step equations by each parameter, beside differences of what a step computes.
+  /// Each parameter, beside differences.
   void compare(const Step<Sys>& step, const LinearStep& linear) {
-    const auto at = [&](double& member, double value) {
-      const double kept = std::exchange(member, value);
-      const GradientsOf<Sys> d = gradients(system_, step.arrow, step.multipliers);
-      member = kept;
-      Eigen::VectorXd all(2 * n + m);
-      all << -d.source_gradient, d.constraint, d.source_gradient + d.target_gradient;
-      return all;
-    };
-    for (int j = 0; j < parameters(); ++j) {
-      auto& member = const_cast<double&>(*places_.members[std::size_t(j)]);  // of system_, which is no constant
-      const double here = member;
-      const double width = 1e-4 * (here == 0 ? 1 : std::abs(here));
-      const auto difference = [&](double by) -> Eigen::VectorXd {
-        return (at(member, here + by) - at(member, here - by)) / (2 * by);
-      };
-      Eigen::VectorXd derivative(2 * n + m);
-      derivative << linear.equations_by_start.col(2 * n + j), linear.end_by_start.col(2 * n + j).tail(n);
-      detail::require_derivative(places_.names[std::size_t(j)], derivative, difference(width), difference(width / 2),
-                                 at(member, here).norm() / width);
-    }
+    for (std::size_t j = 0; j < places_.members.size(); ++j)
+      detail::compare_with_differences(system_, const_cast<double&>(*places_.members[j]),  // of system_, no constant
+                                       places_.names[j], step, linear, 2 * n + int(j));
   }
 
   Sys system_;

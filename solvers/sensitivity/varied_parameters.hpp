@@ -7,10 +7,9 @@
 ///
 /// Errors: std::invalid_argument for a name that is no parameter of the system or a choice of words, one line.
 
-#include <lagroid/core/parameter.hpp>
+#include <lagroid/core/capabilities/parameter_numbers.hpp>
 
 #include <string>
-#include <type_traits>
 #include <vector>
 
 namespace lagroid {
@@ -31,22 +30,9 @@ ParameterPlaces chosen_places(const ParameterPlaces& all, const std::vector<std:
 /// All parameters that are numbers, or vectors of them.
 template <class Sys> ParameterPlaces all_parameters(const Sys& system) {
   ParameterPlaces out;
-  for_each_parameter<Sys>([&]<class Declared>(const Declared& p) {
-    if constexpr (requires { p.rule; }) {
-      const auto& member = system.*p.member;
-      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, double>) {
-        out.names.emplace_back(p.name);
-        out.members.push_back(&member);
-      } else if constexpr (requires {
-                             member.data();
-                             member.size();
-                           }) {
-        for (int i = 0; i < int(member.size()); ++i) {
-          out.names.push_back(std::string(p.name) + "." + std::to_string(i));
-          out.members.push_back(member.data() + i);
-        }
-      }
-    }
+  for_each_parameter_number(system, [&](const std::string& name, const double& number, const auto&) {
+    out.names.push_back(name);
+    out.members.push_back(&number);
   });
   return out;
 }

@@ -4,12 +4,15 @@
 #include <lagroid/solvers/poisson/noisy_steps.hpp>
 #include <lagroid/systems/poisson/rotations.hpp>
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace lagroid {
@@ -192,6 +195,13 @@ inline NoiseOrders noise_orders(int paths, int finer = 0) {
     return of;
   });
   return out;
+}
+
+/// Holds an order to what is promised, within two standard errors that are at most `most`.
+inline void expect_order(const char* what, const Estimate& order, double promised, double most) {
+  EXPECT_NEAR(order.value, promised, 2 * order.error) << what;
+  EXPECT_LT(order.error, most) << what;
+  testing::Test::RecordProperty(what, std::to_string(order.value) + " +- " + std::to_string(order.error));
 }
 
 /// Means over a sphere |M| = r with density exp(-H / T), by the midpoint rule.

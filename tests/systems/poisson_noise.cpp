@@ -68,15 +68,10 @@ TEST(WienerPath, HasTheMomentsOfIndependentNormalNumbers) {
 
 TEST(PoissonNoise, HasItsOrdersWithinTwoStandardErrors) {
   const NoiseOrders found = noise_orders(40);
-  const auto is = [](const char* what, const Estimate& order, double promised, double most) {
-    EXPECT_NEAR(order.value, promised, 2 * order.error) << what;
-    EXPECT_LT(order.error, most) << what;
-    RecordProperty(what, std::to_string(order.value) + " +- " + std::to_string(order.error));
-  };
-  is("strong, the noise is the energy's: 1", found.commuting, 1, 0.05);
-  is("strong, one noise: 1", found.one, 1, 0.05);
-  is("strong, three noises: 1/2", found.several, 0.5, 0.05);
-  is("weak, three noises: 1", found.weak, 1, 0.15);
+  expect_order("strong, the noise is the energy's: 1", found.commuting, 1, 0.05);
+  expect_order("strong, one noise: 1", found.one, 1, 0.05);
+  expect_order("strong, three noises: 1/2", found.several, 0.5, 0.05);
+  expect_order("weak, three noises: 1", found.weak, 1, 0.15);
 }
 
 /// With p where the step begins: a step of Ito's equation or of none, and not of Stratonovich's.

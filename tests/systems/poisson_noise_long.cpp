@@ -16,15 +16,10 @@ const X3 start{0.8, 0.6, 1.1};
 
 TEST(PoissonNoiseLong, OrdersAreThoseOfTheTheoryWithinTwoStandardErrors) {
   const NoiseOrders found = noise_orders(200, 2);
-  const auto is = [](const char* what, const Estimate& order, double promised, double most) {
-    EXPECT_NEAR(order.value, promised, 2 * order.error) << what;
-    EXPECT_LT(order.error, most) << what;
-    RecordProperty(what, std::to_string(order.value) + " +- " + std::to_string(order.error));
-  };
-  is("strong, the noise is the energy's: 1", found.commuting, 1, 0.01);
-  is("strong, one noise: 1", found.one, 1, 0.02);
-  is("strong, three noises: 1/2", found.several, 0.5, 0.02);
-  is("weak, three noises: 1", found.weak, 1, 0.08);
+  expect_order("strong, the noise is the energy's: 1", found.commuting, 1, 0.01);
+  expect_order("strong, one noise: 1", found.one, 1, 0.02);
+  expect_order("strong, three noises: 1/2", found.several, 0.5, 0.02);
+  expect_order("weak, three noises: 1", found.weak, 1, 0.08);
 }
 
 TEST(PoissonNoiseLong, TheMomentumOfAStochasticTopKeepsItsSizeOverAMillionSteps) {

@@ -9,12 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numbers>
 
 using namespace lagroid;
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -82,19 +79,10 @@ TEST(Events, KicksThatDoNotFitAreRefused) {
 }
 
 TEST(Events, KickedRunsResumeWithTheSameBits) {
-  const fs::path folder = fs::temp_directory_path() / "lagroid_events_kicked";
-  fs::remove_all(folder);
   Turning system;
   system.h = 0.1;
-  RunOptions<Turning> options{.steps = 120, .events = {wall()}};
-  const RunResult whole = run(system, unit_turn, options);
-  options.folder = folder;
-  options.steps = 16;  // the step with the kick is the last
-  run(system, unit_turn, options);
-  options.steps = 120;
-  options.resume = true;
-  const RunResult resumed = run(system, unit_turn, options);
-  fs::remove_all(folder);
+  const RunOptions<Turning> options{.steps = 120, .events = {wall()}};
+  const auto [whole, resumed] = whole_and_resumed(system, unit_turn, options, 16);  // whose last step has the kick
   EXPECT_EQ(bits_of(whole), bits_of(resumed));
   EXPECT_EQ(whole.events.watched[0].count, 4);
   EXPECT_EQ(resumed.events.watched[0].count, 4);
@@ -223,20 +211,11 @@ TEST(Events, ChangeParametersOnTheWay) {
 }
 
 TEST(Events, ChangedRunsResumeWithTheSameBits) {
-  const fs::path folder = fs::temp_directory_path() / "lagroid_events_changed";
-  fs::remove_all(folder);
   Pendulum system;
   system.h = 0.05;
   const State<Pair<1>> start{Vector<double, 1>(0.8), Vector<double, 1>(0.3)};
-  RunOptions<Pendulum> options{.steps = 120, .events = {moon("t - 1.03")}};
-  const RunResult whole = run(system, start, options);
-  options.folder = folder;
-  options.steps = 60;
-  run(system, start, options);
-  options.steps = 120;
-  options.resume = true;
-  const RunResult resumed = run(system, start, options);
-  fs::remove_all(folder);
+  const RunOptions<Pendulum> options{.steps = 120, .events = {moon("t - 1.03")}};
+  const auto [whole, resumed] = whole_and_resumed(system, start, options, 60);
   EXPECT_EQ(bits_of(whole), bits_of(resumed));
   EXPECT_EQ(whole.final.position, resumed.final.position);
 }

@@ -6,13 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 
 using namespace lagroid;
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -142,19 +139,11 @@ TEST(Events, FunctionsInCppAreTakenAndCalledBack) {
 }
 
 TEST(Events, ResumedRunsHaveTheBitsOfWholeOnes) {
-  const fs::path folder = fs::temp_directory_path() / "lagroid_events_resumed";
-  fs::remove_all(folder);
   Orbit system;
   system.h = 0.1;
-  RunOptions<Orbit> options{.steps = 300, .events = {event_at_zero("x", "q1"), event_at_zero("near", "q2 - 0.4")}};
-  const RunResult whole = run(system, ellipse, options);
-  options.folder = folder;
-  options.steps = 131;
-  run(system, ellipse, options);
-  options.steps = 300;
-  options.resume = true;
-  const RunResult resumed = run(system, ellipse, options);
-  fs::remove_all(folder);
+  const RunOptions<Orbit> options{.steps = 300,
+                                  .events = {event_at_zero("x", "q1"), event_at_zero("near", "q2 - 0.4")}};
+  const auto [whole, resumed] = whole_and_resumed(system, ellipse, options, 131);
   EXPECT_EQ(bits_of(whole), bits_of(resumed));
   ASSERT_EQ(whole.events.rows.size(), resumed.events.rows.size());
   for (std::size_t i = 0; i < whole.events.rows.size(); ++i) {

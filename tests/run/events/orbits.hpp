@@ -6,7 +6,11 @@
 #include <lagroid/solvers/integrators/transformed.hpp>
 #include <lagroid/systems/mechanical.hpp>
 
+#include <gtest/gtest.h>
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -135,6 +139,27 @@ inline std::vector<double> bits_of(const RunResult& result) {
   for (const LedgerEntry& entry : result.ledger.entries)
     if (entry.promise != "counted") bits.push_back(entry.drift);
   return bits;
+}
+
+/// A run as a whole, and broken off after so many steps and taken up.
+struct WholeAndResumed {
+  RunResult whole;
+  RunResult resumed;
+};
+template <class Sys>
+WholeAndResumed whole_and_resumed(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                                  RunOptions<Sys> options, long broken_off) {
+  const long steps = options.steps;
+  WholeAndResumed out{run(system, start, options), {}};
+  options.folder = std::filesystem::temp_directory_path() / ("lagroid_events_" + std::to_string(getpid()));
+  std::filesystem::remove_all(options.folder);
+  options.steps = broken_off;
+  run(system, start, options);
+  options.steps = steps;
+  options.resume = true;
+  out.resumed = run(system, start, options);
+  std::filesystem::remove_all(options.folder);
+  return out;
 }
 
 }  // namespace lagroid

@@ -1,0 +1,102 @@
+#pragma once
+/// Functions of a point of a trajectory with their derivatives, and the check that a system's derivatives by a member
+/// are what differences tend to.
+///
+/// Nodes and points within steps are observed alike; a member that a formula reads as a plain number is found out
+/// before its derivative, which would be zero, is believed.
+///
+///     const NodeValues there = detail::values_at(system, places, point, 0, [](int, const auto& q, const auto&, const
+///     auto&) {
+///       return VariedVector(q);
+///     });
+///
+/// Requires places of members of this very system. Errors: WithoutDerivative, naming the member.
+
+#include <lagroid/core/quantity.hpp>
+#include <lagroid/solvers/sensitivity/linearised_motion.hpp>
+#include <lagroid/solvers/sensitivity/linearised_step.hpp>
+#include <lagroid/solvers/sensitivity/varied_momentum.hpp>
+#include <lagroid/solvers/sensitivity/varied_parameters.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lagroid {
+
+/// A parameter that a system reads as a plain number somewhere, so that its derivatives would be wrong.
+class WithoutDerivative : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+using VariedVector = Eigen::Matrix<VariedNumber, Eigen::Dynamic, 1>;
+
+namespace detail {
+
+/// f(first, object, momentum, configuration), the momentum the one that is reported, with its derivatives by (v, mu,
+/// theta) and by `beside` more directions, which f varies itself: a row for each number. `first` is the direction of
+/// the first tangent.
+template <DiscreteSystem Sys, class F>
+NodeValues values_at(const Sys& system, const ParameterPlaces& places, const TrajectoryPoint<Sys>& point, int beside,
+                     const F& f) {
+  using G = typename Sys::GroupoidType;
+  using V = VariedNumber;
+  constexpr int n = Sys::dimension;
+  NodeValues out;
+  const int count = 2 * n + int(places.members.size()) + beside;
+  const G& groupoid = system.groupoid;
+  const Vector<double, n> zero = Vector<double, n>::Zero();
+  for_directions(count, [&](int first) {
+    const VariedMembers varying(places.members, 2 * n - first);
+    const Vector<V, n> v = varied_along(zero, -first);
+    const auto moved = groupoid.tau(groupoid.template cast_object<V>(point.state.object), v);
+    const Vector<V, n> momentum = varied_along(point.state.momentum, n - first);
+    const ObjectOf<G, V> object = groupoid.target(moved);
+    const VariedVector here = f(first, object, varied_tangent_momentum(system, object, momentum),
+                                groupoid.compose(groupoid.template cast<V>(point.configuration), moved));
+    if (out.values.size() == 0) {
+      out.values.resize(here.size());
+      out.derivatives.resize(here.size(), count);
+    }
+    for (Eigen::Index i = 0; i < here.size(); ++i) {
+      out.values(i) = here(i).value;
+      for (int k = first; k < std::min(count, first + varied_at_once); ++k)
+        out.derivatives(i, k) = here(i).tangent(k - first);
+    }
+  });
+  return out;
+}
+
+/// Throws WithoutDerivative unless derivatives by a member are near its differences: `coarse` and `fine`, of twice the
+/// width of the fine ones.
+void require_derivative(const std::string& name, const Eigen::VectorXd& derivative, const Eigen::VectorXd& coarse,
+                        const Eigen::VectorXd& fine, double rounding);
+
+/// The derivatives of the step equations by a member of the system, in this column of the linearised step, beside
+/// differences of what a step computes.
+template <DiscreteSystem Sys>
+void compare_with_differences(const Sys& system, double& member, const std::string& name, const Step<Sys>& step,
+                              const LinearStep& linear, Eigen::Index column) {
+  constexpr int n = Sys::dimension;
+  constexpr int m = Sys::constraints;
+  const auto at = [&](double value) {
+    const double kept = std::exchange(member, value);
+    const GradientsOf<Sys> d = gradients(system, step.arrow, step.multipliers);
+    member = kept;
+    Eigen::VectorXd all(2 * n + m);
+    all << -d.source_gradient, d.constraint, d.source_gradient + d.target_gradient;
+    return all;
+  };
+  const double here = member;
+  const double width = 1e-4 * (here == 0 ? 1 : std::abs(here));
+  const auto difference = [&](double by) -> Eigen::VectorXd { return (at(here + by) - at(here - by)) / (2 * by); };
+  Eigen::VectorXd derivative(2 * n + m);
+  derivative << linear.equations_by_start.col(column), linear.end_by_start.col(column).tail(n);
+  require_derivative(name, derivative, difference(width), difference(width / 2), at(here).norm() / width);
+}
+
+}  // namespace detail
+
+}  // namespace lagroid
