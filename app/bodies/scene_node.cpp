@@ -13,6 +13,9 @@ using multibody::Vec;
 namespace {
 
 void put(const Vec& v, double* row) { std::copy_n(v.data(), 3, row); }
+/// Compiled once, in the C library: Eigen's is compiled where it is called, and fuses products as the place suggests,
+/// so that a bound would differ in its last digit from one program to the next.
+double length_of(const Vec& v) { return std::hypot(v(0), v(1), v(2)); }
 void append(std::vector<double>& list, const Vec& v) { list.insert(list.end(), v.data(), v.data() + 3); }
 
 }  // namespace
@@ -150,15 +153,15 @@ const Vec& SceneNode::linear_momentum(int linear) const {
 
 double SceneNode::momentum_size() const {
   double size = 0;
-  for (const Vec& p : momenta_.linear) size += p.stableNorm();
+  for (const Vec& p : momenta_.linear) size += length_of(p);
   return size;
 }
 
 double SceneNode::angular_size() const {
   double size = 0;
   for (std::size_t f = 0; f < momenta_.linear.size(); ++f)
-    size += momenta_.linear[f].stableNorm() * motion_.configuration().x[f].stableNorm();
-  for (const Vec& spin : momenta_.spin) size += spin.stableNorm();
+    size += length_of(momenta_.linear[f]) * length_of(motion_.configuration().x[f]);
+  for (const Vec& spin : momenta_.spin) size += length_of(spin);
   return size;
 }
 

@@ -167,7 +167,7 @@ def command_failures(block, folder, printed):
     calls = [[program, *words] for words in given if words[0] in momentary and "network" not in " ".join(words)]
     for call in calls + [[example] for example in examples_named(block.text)]:
         # Systems of one's own are compiled into a cache that goes with the folder.
-        done = subprocess.run(call, cwd=folder, capture_output=True, text=True, timeout=120,
+        done = subprocess.run(call, cwd=folder, capture_output=True, text=True, timeout=600,
                               env={**os.environ, "XDG_CACHE_HOME": str(folder)})
         printed.append(done.stdout)
         if done.returncode != 0:
