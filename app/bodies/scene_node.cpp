@@ -15,7 +15,7 @@ namespace {
 void put(const Vec& v, double* row) { std::copy_n(v.data(), 3, row); }
 /// Compiled once, in the C library: Eigen's is compiled where it is called, and fuses products as the place suggests,
 /// so that a bound would differ in its last digit from one program to the next.
-double length_of(const Vec& v) { return std::hypot(v(0), v(1), v(2)); }
+double length_of(const Vec& v) { return std::hypot(std::hypot(v(0), v(1)), v(2)); }
 void append(std::vector<double>& list, const Vec& v) { list.insert(list.end(), v.data(), v.data() + 3); }
 
 }  // namespace
