@@ -36,6 +36,9 @@
 
 namespace lagroid {
 
+/// f(), called: inlining by force (LAGROID_FLATTEN) ends here.
+template <class F> [[gnu::noinline]] auto apart(const F& f) { return f(); }
+
 template <class S, int N> using Vector = Eigen::Matrix<S, N, 1>;
 
 template <class S, int Rows, int Columns> using Matrix = Eigen::Matrix<S, Rows, Columns>;

@@ -91,11 +91,15 @@ Quaternion read_attitude(const Section& table) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-std::string read_name(const SceneBodies& bodies, const Section& table) {
-  const std::string name = read_key(table, name_key);
+void require_name(const Section& table, const std::string& name) {
   const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), allowed))
     table.fail("name", fmt::format("\"{}\": use letters, digits, - and _", name));
+}
+
+std::string read_name(const SceneBodies& bodies, const Section& table) {
+  const std::string name = read_key(table, name_key);
+  require_name(table, name);
   for (const char* taken : {"energy", "time", "t", "constraint_residual", "residual", "step_size", "h", "cost"})
     if (name == taken) table.fail("name", fmt::format("\"{}\" is a column of every run; choose another name", name));
   if (name == "ground") table.fail("name", "\"ground\" is what joints tie bodies to; choose another name");
@@ -301,6 +305,24 @@ std::vector<Key> end_keys() { return {between, points, ground_amplitude, ground_
 
 namespace {
 
+const KeyOf<Text> switch_name{"name", {}, "", "by which events switch it", {}, "it is never switched"};
+const KeyOf<Flag> switch_on{"on", {}, "", "false: it does not act until an event switches it on", true};
+
+void begin_switch(SceneBodies& bodies, const Section& table) {
+  const bool on = read_key(table, switch_on);
+  if (!table.has(switch_name.name)) {
+    if (!on) table.fail(switch_on.name, "what does not act at the start needs a name by which an event switches it on");
+    return;
+  }
+  const std::string name = read_key(table, switch_name);
+  require_name(table, name);
+  const std::vector<std::string>& taken = bodies.scene.switches().names;
+  if (std::find(taken.begin(), taken.end(), name) != taken.end())
+    table.fail(switch_name.name, fmt::format("there is a \"{}\" already; choose another name", name));
+  bodies.scene.begin_switch(name, on);
+  bodies.is_off = !on;
+}
+
 KeyOf<OneOf> kind_key(const std::vector<SceneKind>& kinds) {
   KeyOf<OneOf> key{"kind"};
   for (const SceneKind& kind : kinds) key.value.words.emplace_back(kind.name);
@@ -311,8 +333,13 @@ KeyOf<OneOf> kind_key(const std::vector<SceneKind>& kinds) {
 
 void read_kind(const std::vector<SceneKind>& kinds, SceneBodies& bodies, const Section& table) {
   const std::string name = read_key(table, kind_key(kinds));
-  for (const SceneKind& kind : kinds)
-    if (kind.name == name) kind.read(bodies, table);
+  for (const SceneKind& kind : kinds) {
+    if (kind.name != name) continue;
+    if (kind.has_switch) begin_switch(bodies, table);
+    kind.read(bodies, table);
+    bodies.scene.end_switch();
+    bodies.is_off = false;
+  }
 }
 
 Table table_of(const std::vector<SceneKind>& kinds) {
@@ -320,30 +347,35 @@ Table table_of(const std::vector<SceneKind>& kinds) {
   for (const SceneKind& kind : kinds) {
     Table& each = out.kinds.emplace_back(Table{{kind_key({kind})}, {}, kind.about});
     each.keys.insert(each.keys.end(), kind.keys.begin(), kind.keys.end());
+    if (kind.has_switch) each.keys.insert(each.keys.end(), {switch_name, switch_on});
   }
   return out;
 }
 
 const std::vector<SceneKind>& body_kinds() {
   static const std::vector<SceneKind> all{
-      {"point", "a point mass", read_point, {name_key, mass, position, velocity}},
+      {"point", "a point mass", read_point, {name_key, mass, position, velocity}, false},
       {"rigid",
        "moves and turns in space",
        read_rigid,
-       {name_key, mass, moments, position, attitude, velocity, angular_velocity}},
+       {name_key, mass, moments, position, attitude, velocity, angular_velocity},
+       false},
       {"pivoted",
        "turns about a fixed point",
        read_pivoted,
-       {name_key, pivoted_moments, pivot, pivoted_mass, centre, attitude, angular_velocity}},
+       {name_key, pivoted_moments, pivot, pivoted_mass, centre, attitude, angular_velocity},
+       false},
       {"planar",
        "moves in the plane of x and y",
        read_planar,
-       {name_key, mass, planar_inertia, planar_position, angle, planar_velocity, planar_turning}},
+       {name_key, mass, planar_inertia, planar_position, angle, planar_velocity, planar_turning},
+       false},
       {"chain",
        "point masses on massless rods, NAME.1, NAME.2, ...",
        read_chain,
        {name_key, links, chain_mass, chain_length, direction, chain_turning, hangs_on, hangs_at, ground_amplitude,
-        ground_rate}}};
+        ground_rate},
+       false}};
   return all;
 }
 

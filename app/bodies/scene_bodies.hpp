@@ -71,8 +71,12 @@ struct SceneBodies {
   bool vakonomic = false;
   bool counts_cost = false;  ///< of the controls: the kinetic terms
   double damping_rate = 0;   ///< the largest drag over what it slows down, 1/s
+  bool is_off = false;       ///< what is read now does not act at the start
   bool isolated = true;      ///< nothing acts from outside: momenta are conserved
   double extent = 0;         ///< size of the scene at the start, m
+
+  /// Whether velocities at the start need not agree with what is read now.
+  bool is_free_to_start() const { return projects || is_off; }
 
   /// The ends of a table, by `end_keys`; without points, by the first of these.
   std::array<Attachment, 2> ends(const Section& table, bool with_points = true);
@@ -108,6 +112,7 @@ struct SceneKind {
   const char* about;
   void (*read)(SceneBodies& bodies, const Section& table);
   std::vector<Key> keys = {};  ///< besides `kind`
+  bool has_switch = true;      ///< an event can switch it, by a name
 };
 /// Reads a table by its `kind`.
 void read_kind(const std::vector<SceneKind>& kinds, SceneBodies& bodies, const Section& table);

@@ -303,19 +303,27 @@ const std::vector<SceneKind>& effect_kinds() {
       {"mutual_gravity", "of the bodies on each other", read_mutual, {gravitation, softening, chosen_bodies}},
       {"spring", "between two points", read_spring, tie(stiffness, {rest_length})},
       {"torsion_spring", "between two bodies that turn", read_torsion, {between, torsion_direction, torsion_stiffness}},
-      {"drag", "of a medium that rests", read_drag, {motion_drag, turning_drag, chosen_bodies}},
+      {"drag", "of a medium that rests", read_drag, {motion_drag, turning_drag, chosen_bodies}, false},
       {"damper", "between two points that do not meet", read_damper, tie(damping)},
-      {"control_cost", "counts the kinetic terms, summed over the steps: a column, and a line of the report",
-       read_cost},
+      {"control_cost",
+       "counts the kinetic terms, summed over the steps: a column, and a line of the report",
+       read_cost,
+       {},
+       false},
       {"force", "on a point of a body", read_force, {body_key, acts_at, force_key, drive_rate, phase}},
       {"torque", "on a body", read_torque, {body_key, torque_key}},
       {"motor", "between two bodies that turn", read_motor, {between, motor_torque, drive_rate, phase}},
       {"charges", "of the bodies on each other", read_charges, {any_charges, coulomb, softening, chosen_bodies}},
-      {"magnetic_field", "a uniform one; point masses alone", read_magnetic, {field_key, any_charges, chosen_bodies}},
+      {"magnetic_field",
+       "a uniform one; point masses alone",
+       read_magnetic,
+       {field_key, any_charges, chosen_bodies},
+       false},
       {"rotating_frame",
        "in which the bodies are seen; point masses alone",
        read_rotating_frame,
-       {frame_rate, centrifugal_key, chosen_bodies}}};
+       {frame_rate, centrifugal_key, chosen_bodies},
+       false}};
   return all;
 }
 

@@ -68,9 +68,9 @@ void require_turning(const Section& table, const std::array<Attachment, 2>& ends
   }
 }
 
-void require_together(const Section& table, const std::array<Attachment, 2>& ends) {
+void require_together(const SceneBodies& bodies, const Section& table, const std::array<Attachment, 2>& ends) {
   const double apart = (ends[1].place - ends[0].place).norm();
-  if (apart > 1e-9 * (1 + ends[0].place.norm()))
+  if (!bodies.is_off && apart > 1e-9 * (1 + ends[0].place.norm()))
     table.fail("points", fmt::format("the two points are {:.6g} m apart at the start, and must be one: \"{}\" has "
                                      "its own at ({:.10g}, {:.10g}, {:.10g}), \"{}\" at ({:.10g}, {:.10g}, {:.10g})",
                                      apart, ends[0].name(), ends[0].place(0), ends[0].place(1), ends[0].place(2),
@@ -92,9 +92,10 @@ void keep_in_plane(SceneBodies& bodies, const std::array<Attachment, 2>& ends, c
   bodies.scene.add(InPlane{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(across)});
 }
 
-void require_in_plane(const Section& table, const std::array<Attachment, 2>& ends, const Vec& across) {
+void require_in_plane(const SceneBodies& bodies, const Section& table, const std::array<Attachment, 2>& ends,
+                      const Vec& across) {
   const double off = across.dot(ends[1].place - ends[0].place);
-  if (std::abs(off) > 1e-9 * (1 + ends[0].place.norm() + ends[1].place.norm()))
+  if (!bodies.is_off && std::abs(off) > 1e-9 * (1 + ends[0].place.norm() + ends[1].place.norm()))
     table.fail("points", fmt::format("the point of \"{}\" is {:.6g} m off where the joint lets it go, at the start",
                                      ends[1].name(), off));
 }
@@ -109,7 +110,7 @@ std::array<Attachment, 2> tied_ends(SceneBodies& bodies, const Section& table) {
 std::array<Attachment, 2> joined_ends(SceneBodies& bodies, const Section& table, const std::string& kind) {
   const auto ends = tied_ends(bodies, table);
   require_turning(table, ends, kind);
-  require_together(table, ends);
+  require_together(bodies, table, ends);
   bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
   return ends;
 }
@@ -119,7 +120,7 @@ void read_rod(SceneBodies& bodies, const Section& table) {
   const double apart = (ends[1].place - ends[0].place).stableNorm();
   const double given = read_key_or(table, length, apart);
   if (!(given > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
-  if (std::abs(given - apart) > 1e-9 * given)
+  if (!bodies.is_off && std::abs(given - apart) > 1e-9 * given)
     table.fail("length", fmt::format("is {:.10g} m, but its ends are {:.10g} m apart at the start; leave it out to "
                                      "take that",
                                      given, apart));
@@ -137,7 +138,7 @@ void read_damping(SceneBodies& bodies, const Section& table, const KeyOf<Number>
 
 void read_ball(SceneBodies& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
-  require_together(table, ends);
+  require_together(bodies, table, ends);
   bodies.scene.add(Coincidence{{ends[0].site, ends[1].site}});
   if (table.has(turning_damping.name)) require_turning(table, ends, "joint that rubs");
   read_damping(bodies, table, turning_damping, multibody::RelativeTurn{{}, {ends[0].attitude(), ends[1].attitude()}});
@@ -154,7 +155,7 @@ void read_hinge(SceneBodies& bodies, const Section& table) {
   turn.rate = read_key(table, hinge_rate);
   const auto turning = [&](const Attachment& end) { return end.body ? along.dot(end.body->angular_velocity) : 0.0; };
   const double has = turning(ends[1]) - turning(ends[0]);
-  if (!bodies.projects && std::abs(has - turn.rate) > 1e-9 * (1 + std::abs(turn.rate)))
+  if (!bodies.is_free_to_start() && std::abs(has - turn.rate) > 1e-9 * (1 + std::abs(turn.rate)))
     table.fail("rate", fmt::format("the second body turns against the first at {:.10g} rad/s at the start: give it an "
                                    "angular_velocity (and a velocity of its centre) that agrees",
                                    has));
@@ -170,7 +171,7 @@ void read_slider(SceneBodies& bodies, const Section& table) {
   require_turning(table, ends, "slider");
   const Mat frame = frame_along(table, axis);
   for (int i = 0; i < 2; ++i) {
-    require_in_plane(table, ends, frame.col(i));
+    require_in_plane(bodies, table, ends, frame.col(i));
     keep_in_plane(bodies, ends, frame.col(i));
   }
   keep_attitude(bodies, ends);
@@ -183,7 +184,7 @@ void read_plane(SceneBodies& bodies, const Section& table) {
   if (!ends[0].turns_in_space())
     table.fail("between", "the first holds the plane: it must be a body that turns in space, or the ground");
   const Vec across = frame_along(table, normal).col(2);
-  require_in_plane(table, ends, across);
+  require_in_plane(bodies, table, ends, across);
   keep_in_plane(bodies, ends, across);
 }
 
@@ -196,7 +197,7 @@ NamedBody& turning_body(SceneBodies& bodies, const Section& table) {
 /// The angular velocity in space that the body should have, where it has another.
 void require_spin(const SceneBodies& bodies, const Section& table, const NamedBody& body, const Vec& wanted) {
   const Vec& has = body.angular_velocity;
-  if (bodies.projects || (wanted - has).norm() <= 1e-9 * (1 + wanted.norm() + has.norm())) return;
+  if (bodies.is_free_to_start() || (wanted - has).norm() <= 1e-9 * (1 + wanted.norm() + has.norm())) return;
   const Vec w = body.attitude.transpose() * wanted;
   table.fail("body", fmt::format("\"{}\" does not begin as this joint has it; give it angular_velocity = [{:.17g}, "
                                  "{:.17g}, {:.17g}], or another velocity",
@@ -218,6 +219,9 @@ template <class J> void add_on_arrows(SceneBodies& bodies, const Section& table,
     bodies.nonholonomic = true;
     return;
   }
+  if (table.has("name"))
+    table.fail("name",
+               "what has principle = \"vakonomic\" is not switched: momenta hold its multipliers; leave it out");
   multibody::Vakonomic<J> optimal{joint, {}};
   if (table.has("multipliers")) {
     const auto start = read_key(table, multipliers(J::rows));
@@ -233,7 +237,7 @@ void read_rolling(SceneBodies& bodies, const Section& table) {
   const double r = read_key(table, radius);
   const double rate = read_key(table, plate_rate);
   const Vec& v = ball.velocity;
-  if (v(2) != 0 && !bodies.projects)
+  if (v(2) != 0 && !bodies.is_free_to_start())
     table.fail("body", fmt::format("\"{}\" rolls on a level plate: its velocity has no third part", ball.name));
   const Vec slip = v - rate * Vec(Vec::UnitZ()).cross(ball.place);
   require_spin(bodies, table, ball, {-slip(1) / r, slip(0) / r, ball.angular_velocity(2)});
@@ -273,7 +277,7 @@ void read_blade(SceneBodies& bodies, const Section& table) {
                          read_key(table, blade_rate)};
   const Vec along = body.attitude * Vec(std::cos(blade.direction), std::sin(blade.direction), 0);
   const double slip = Vec(Vec::UnitZ()).cross(along).dot(body.velocity) + blade.arm * body.angular_velocity(2);
-  if (!bodies.projects && std::abs(slip - blade.rate) > 1e-9 * (1 + body.velocity.norm() + std::abs(slip)))
+  if (!bodies.is_free_to_start() && std::abs(slip - blade.rate) > 1e-9 * (1 + body.velocity.norm() + std::abs(slip)))
     table.fail("body", fmt::format("\"{}\" moves across the blade at {:.10g} m/s at the start, and may at {:.10g}: "
                                    "give it another velocity or angular_velocity",
                                    body.name, slip, blade.rate));

@@ -150,16 +150,53 @@ class BodiesMotion final : public Motion {
     return node_;
   }
   std::string why_not_cut() const override { return ""; }
-  void keep_node() override { kept_ = motion_->state(); }
+  void keep_node() override {
+    kept_ = motion_->state();
+    rest_.reset();
+  }
   const Observables* look_within(double share) override {
-    if (!whole_) {
-      whole_ = motion_->state();
-      whole_step_ = motion_->step();
-    }
-    motion_->restore(kept_);
-    if (share != 0 && !motion_->advance_by(share * whole_step_).converged()) return nullptr;
+    if (!go_within(share)) return nullptr;
     node_.see(cost_);
     return &node_;
+  }
+  Changeable changeable() const override {
+    Changeable out;
+    // Controlled steps follow what acts, and would have to begin anew.
+    if (controlled_) return out;
+    for (const NamedBody& body : bodies_.bodies)
+      out.momenta.push_back(
+          {body.name, (body.linear >= 0 ? 3u : 0u) + (body.body.attitude.index >= 0 ? std::size_t(3) : 0)});
+    const multibody::Switches& switches = motion_->switches();
+    for (std::size_t k = 1; k < switches.names.size(); ++k)
+      out.switches.push_back({switches.names[k], switches.on[k] != 0});
+    return out;
+  }
+  std::string refused(double share, const MotionChange& change) override {
+    if (!go_within(share)) return "a part of the step does not converge; use a smaller time.step";
+    for (const Switched& each : change.switches)
+      if (const double defect = motion_->violation(number_of(each)); each.on && !(defect < 1e-8))
+        return fmt::format("\"{}\" is switched on where it does not hold: it is violated by a share {:.3g}", each.name,
+                           defect);
+    return "";
+  }
+  StepReport change_within(double share, const MotionChange& change) override {
+    StepReport report;
+    if (!go_within(share)) return report;
+    if (!change.kick.empty()) kick(change.kick);
+    if (!change.switches.empty()) {
+      std::vector<char> on = motion_->switches().on;
+      for (const Switched& each : change.switches) on[std::size_t(number_of(each))] = each.on;
+      motion_->switch_to(on);
+    }
+    const multibody::SceneState end = *std::exchange(whole_, std::nullopt);
+    const double rest = (1 - share) * std::exchange(whole_step_, 0.0);
+    kept_ = motion_->state();
+    kept_.index = end.index - 1;
+    report.status = SolveStatus::converged;
+    if (rest > 0) report = motion_->advance_by(rest);
+    if (report.converged()) motion_->end_part(end.index, end.at.time);
+    rest_ = rest;
+    return report;
   }
   std::vector<NamedVector> state() const override {
     const auto momenta = motion_->momenta();
@@ -186,6 +223,8 @@ class BodiesMotion final : public Motion {
   void describe(RunResult& result) const override {
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     if (bodies_.counts_cost) result.cost = cost_;
+    if (motion_->switches().on != first_switches_ && !bodies_.lines.empty())
+      result.notes.push_back("what was switched on the way is drawn as it was at the start");
     result.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
                                      {"attitude", "A carries body to space"},
                                      {"momenta", "tangent to the joints"}};
@@ -200,6 +239,33 @@ class BodiesMotion final : public Motion {
   }
 
  private:
+  /// The motion is where a share of the last step, or of what a change left of it, leads to.
+  bool go_within(double share) {
+    if (!whole_) {
+      whole_ = motion_->state();
+      whole_step_ = rest_.value_or(motion_->step());
+    }
+    motion_->restore(kept_);
+    return share == 0 || motion_->advance_by(share * whole_step_).converged();
+  }
+  int number_of(const Switched& each) const {
+    const std::vector<std::string>& names = motion_->switches().names;
+    return int(std::find(names.begin(), names.end(), each.name) - names.begin());
+  }
+  void kick(const std::vector<double>& by) {
+    const double* next = by.data();
+    const auto take = [&next](bool is_there) {
+      if (!is_there) return Vec(Vec::Zero());
+      next += 3;
+      return Vec(Eigen::Map<const Vec>(next - 3));
+    };
+    for (const NamedBody& body : bodies_.bodies) {
+      const Vec momentum = take(body.linear >= 0);
+      const Vec spin = take(body.body.attitude.index >= 0);
+      motion_->kick(body.linear, momentum, body.body.attitude, spin);
+    }
+  }
+
   std::string name_;
   SceneBodies bodies_;
   std::set<std::string> chosen_;
@@ -212,6 +278,8 @@ class BodiesMotion final : public Motion {
   multibody::SceneState kept_;                  ///< from which steps are made in part
   std::optional<multibody::SceneState> whole_;  ///< where the motion is, while a point inside of its step is looked at
   double whole_step_ = 0;
+  std::optional<double> rest_;  ///< what a change left of the last step (s)
+  std::vector<char> first_switches_ = motion_->switches().on;
 };
 
 }  // namespace

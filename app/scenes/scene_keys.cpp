@@ -92,8 +92,10 @@ Table own_time_table(const DeclaredMethod& own) {
 
 KeyOf<Tables> event_key() {
   using namespace event_keys;
-  return {"event", {{{name, when, at, direction, then, count, tolerance, kick, set, plot}}}, "", "what may happen", {},
-          "none"};
+  return {
+      "event", {{{name, when, at, direction, then, count, tolerance, kick, body, set, switch_on, switch_off, plot}}},
+      "",      "what may happen",
+      {},      "none"};
 }
 
 Table output_table() { return {{output_keys::every, output_keys::checkpoint}}; }

@@ -89,6 +89,11 @@ inline const KeyOf<Number> tolerance{"tolerance",
                                      1e-10};
 inline const KeyOf<Texts> kick{
     "kick", {}, "", "added to the momentum there: an expression as `when` for each of its numbers", {}, "none"};
+inline const KeyOf<Text> body{"body", {}, "", "of a scene of bodies, the one that `kick` is of", {}, "none"};
+inline const KeyOf<Texts> switch_on{
+    "switch_on", {}, "", "of a scene of bodies, names of joints and effects that act from there on", {}, "none"};
+inline const KeyOf<Texts> switch_off{
+    "switch_off", {}, "", "of a scene of bodies, names of joints and effects that act no more", {}, "none"};
 inline const KeyOf<Texts> set{
     "set", {},    "", "parameters that become other numbers there: `name = expression`, as \"gravity = 1.62\"",
     {},    "none"};

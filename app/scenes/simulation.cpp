@@ -216,6 +216,9 @@ std::vector<Event> read_events(const Section& scene) {
         table.fail(event_keys::set.name, fmt::format("\"{}\" is not of the form \"name = expression\"", text));
       event.set.push_back(*setting);
     }
+    event.body = read_key_or(table, body, "");
+    event.switch_on = read_key_or(table, switch_on, {});
+    event.switch_off = read_key_or(table, switch_off, {});
     event.plot = read_key_or(table, plot, {});
     if (event.at != Event::At::zero && table.has(direction.name))
       table.fail(direction.name, "is that of events at zero; leave it out");

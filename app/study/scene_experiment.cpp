@@ -33,7 +33,7 @@ Section without_method(const Section& scene) {
 
 Experiment read_experiment(const Section& scene) {
   for (const Event& event : read_events(scene))
-    if (!event.kick.empty() || !event.set.empty() || event.then == Event::Then::stop)
+    if (event.changes_motion() || event.then == Event::Then::stop)
       scene.fail("event", fmt::format("\"{}\" changes the motion or ends it, and methods are compared along all of it: "
                                       "leave out its kick, set and then",
                                       event.name));

@@ -181,6 +181,11 @@ LAGROID_FLATTEN TwoSidedOf<Sys> automatic_two_sided(const Sys& system, const Arr
   return out;
 }
 
+/// Whether a step calls the automatic derivatives of Sys, in place of having them inlined into each of its parts. The
+/// call costs small systems a tenth to a quarter of a step, large ones nothing, and halves what their steps take to
+/// compile (docs/decisions/72).
+template <class Sys> inline constexpr bool derivatives_apart = 2 * Sys::dimension + Sys::constraints > 6;
+
 /// The gradients: the system's analytic ones if it has them, alone or in its two-sided derivative; else the automatic
 /// ones.
 template <DiscreteSystem Sys>
@@ -191,6 +196,8 @@ GradientsOf<Sys> gradients(const Sys& system, const ArrowOf<typename Sys::Groupo
     return system.gradients(g, lambda);
   } else if constexpr (HasAnalyticDerivatives<Sys>) {
     return system.two_sided(g, lambda);
+  } else if constexpr (derivatives_apart<Sys>) {
+    return apart([&] { return automatic_gradients(system, g, lambda); });
   } else {
     return automatic_gradients(system, g, lambda);
   }
@@ -203,6 +210,8 @@ TwoSidedOf<Sys> two_sided(const Sys& system, const ArrowOf<typename Sys::Groupoi
   require_members_to_fit<Sys>();
   if constexpr (HasAnalyticDerivatives<Sys>) {
     return system.two_sided(g, lambda);
+  } else if constexpr (derivatives_apart<Sys>) {
+    return apart([&] { return automatic_two_sided(system, g, lambda); });
   } else {
     return automatic_two_sided(system, g, lambda);
   }

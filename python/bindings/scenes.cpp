@@ -128,6 +128,12 @@ lagroid::Event event_of(const py::dict& table) {
       event.count = value.cast<long>();
     } else if (key == "tolerance") {
       event.tolerance = value.cast<double>();
+    } else if (key == "body") {
+      event.body = value.cast<std::string>();
+    } else if (key == "switch_on") {
+      event.switch_on = value.cast<std::vector<std::string>>();
+    } else if (key == "switch_off") {
+      event.switch_off = value.cast<std::vector<std::string>>();
     } else if (key == "kick") {
       event.kick = value.cast<std::vector<std::string>>();
     } else if (key == "set") {
@@ -142,7 +148,7 @@ lagroid::Event event_of(const py::dict& table) {
     } else {
       throw py::value_error(
           fmt::format("event: there is no \"{}\"; there are name, when, call, at, direction, then, count, tolerance, "
-                      "kick, set, plot",
+                      "kick, body, set, switch_on, switch_off, plot",
                       key));
     }
   }

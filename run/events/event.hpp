@@ -42,11 +42,18 @@ struct Event {
   /// Added to the momentum there: an expression of the same names for each of its numbers, or none. The rest of the
   /// step is made from the changed state, and the ledger holds the motion to its promises from there.
   std::vector<std::string> kick{};
+  std::string body{};  ///< of a scene of bodies, the one whose momentum that is
   /// Parameters of the system that become other numbers there, each with an expression of the same names. The rest of
   /// the step is made with them, as after a kick.
   std::vector<std::pair<std::string, std::string>> set{};
+  /// Joints and effects of a scene of bodies, by their names, that act from there on, or do so no more.
+  std::vector<std::string> switch_on{};
+  std::vector<std::string> switch_off{};
   /// Called where it has happened; the run ends where it returns false.
   std::function<bool(const Happening&, const Observables&)> call{};
+
+  /// Whether the motion is another one where it has happened.
+  bool changes_motion() const { return !(kick.empty() && set.empty() && switch_on.empty() && switch_off.empty()); }
 };
 
 /// "gravity = 1.62" as what Event::set holds; none where it is of another form.

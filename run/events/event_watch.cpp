@@ -26,11 +26,11 @@ struct NoChange {
 };
 
 /// Times of one step that differ by less, relative to it, cannot be told apart.
-constexpr double apart = 1e-11;
+constexpr double indistinguishable = 1e-11;
 
 /// The end of those that happen at the time of the first, as far as shares of the step tell.
 template <class Iterator> Iterator together_with(Iterator first, Iterator end) {
-  return std::find_if(first, end, [first](const auto& each) { return each.share > first->share + apart; });
+  return std::find_if(first, end, [first](const auto& each) { return each.share > first->share + indistinguishable; });
 }
 
 /// Of every quantity that is known inside of steps its value; of the others zeros.
@@ -62,15 +62,32 @@ std::vector<EventFunction> kick_of(const Event& event, const Observables& node) 
   return out;
 }
 
-void require_kick(const Event& event, const Motion& motion) {
-  if (event.kick.empty()) return;
-  const std::size_t numbers = motion.kicked_numbers();
-  if (numbers == 0)
-    throw RunError(fmt::format("{}: nothing can be added to the momentum on the way: {}, or no system of a scene",
-                               named(event), motion.traits().name));
-  if (event.kick.size() != numbers)
+/// Where among the numbers of all momenta those that it kicks begin.
+std::size_t require_kick(const Event& event, const Motion& motion, const Changeable& changeable) {
+  if (event.kick.empty()) {
+    if (!event.body.empty()) throw RunError(fmt::format("{}: it names a body, which nothing kicks", named(event)));
+    return 0;
+  }
+  if (changeable.momenta.empty())
     throw RunError(
-        fmt::format("{}: its kick has {} numbers, the momentum has {}", named(event), event.kick.size(), numbers));
+        fmt::format("{}: nothing can be added to the momentum on the way: {}", named(event), motion.traits().name));
+  std::size_t first = 0;
+  std::vector<std::string> names;
+  for (const Changeable::Momentum& each : changeable.momenta) {
+    if (each.name == event.body) {
+      if (event.kick.size() != each.numbers)
+        throw RunError(fmt::format("{}: its kick has {} numbers, the momentum{} has {}", named(event),
+                                   event.kick.size(), each.name.empty() ? "" : " of \"" + each.name + "\"",
+                                   each.numbers));
+      return first;
+    }
+    first += each.numbers;
+    names.push_back(each.name);
+  }
+  if (names == std::vector<std::string>{""})
+    throw RunError(fmt::format("{}: a body is that of a scene of bodies; here the momentum is one", named(event)));
+  throw RunError(fmt::format("{}: it kicks a body, and \"{}\" is none; there are {}", named(event), event.body,
+                             fmt::join(names, ", ")));
 }
 
 std::vector<EventFunction> set_of(const Event& event, const Observables& node) {
@@ -79,16 +96,30 @@ std::vector<EventFunction> set_of(const Event& event, const Observables& node) {
   return out;
 }
 
-void require_set(const Event& event, const Motion& motion) {
+void require_set(const Event& event, const Motion& motion, const Changeable& changeable) {
   if (event.set.empty()) return;
-  const std::vector<std::string> names = motion.changeable_parameters();
+  const std::vector<std::string>& names = changeable.parameters;
   if (names.empty())
-    throw RunError(fmt::format("{}: no parameter can be changed on the way: {}, or no system of a scene", named(event),
-                               motion.traits().name));
+    throw RunError(fmt::format("{}: no parameter can be changed on the way: {}", named(event), motion.traits().name));
   for (const auto& [name, number] : event.set)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw RunError(fmt::format("{}: it sets \"{}\", which is no parameter that is a number; there are {}",
                                  named(event), name, fmt::join(names, ", ")));
+}
+
+void require_switches(const Event& event, const Motion& motion, const Changeable& changeable) {
+  std::set<std::string> names;
+  for (const Switched& each : changeable.switches) names.insert(each.name);
+  for (const auto* list : {&event.switch_on, &event.switch_off})
+    for (const std::string& name : *list)
+      if (!names.contains(name))
+        throw RunError(fmt::format("{}: it switches \"{}\"; {}", named(event), name,
+                                   names.empty()
+                                       ? "nothing here has a name by which it is switched: " + motion.traits().name
+                                       : fmt::format("there are {}", fmt::join(names, ", "))));
+  for (const std::string& name : event.switch_on)
+    if (std::find(event.switch_off.begin(), event.switch_off.end(), name) != event.switch_off.end())
+      throw RunError(fmt::format("{}: it switches \"{}\" on and off", named(event), name));
 }
 
 void require_plot(const Event& event, const std::vector<std::string>& columns) {
@@ -135,6 +166,7 @@ EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
   if (const std::string why = motion.why_not_cut(); !why.empty())
     throw RunError(fmt::format("{}: nothing inside of steps can be found: {}", named(events.front()), why));
   const Observables& node = motion.look();
+  const Changeable changeable = motion.changeable();
   table_.columns = columns_within(node);
   std::set<std::string> names;
   for (const Event& event : events) {
@@ -145,8 +177,9 @@ EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
     } catch (const std::invalid_argument& error) {
       throw RunError(fmt::format("{}: {}", named(event), error.what()));
     }
-    require_kick(event, motion);
-    require_set(event, motion);
+    watches_.back().kicked_at = require_kick(event, motion, changeable);
+    require_set(event, motion, changeable);
+    require_switches(event, motion, changeable);
     watches_.back().function.next(watches_.back().value(node), time_);
     table_.watched.push_back({event.name, event.when, event.plot});
     require_plot(event, table_.columns);
@@ -228,34 +261,25 @@ bool EventWatch::change(Group together) {
   const double share = std::max_element(together.begin(), together.end(), [](const Found& a, const Found& b) {
                          return a.share < b.share;
                        })->share;
-  std::vector<double> by;
-  std::vector<ParameterValue> to;
+  MotionChange change;
   std::vector<std::vector<double>> before;
   for (const Found& found : together) {
     Watch& watch = watches_[found.event];
-    if ((watch.kick.empty() && watch.set.empty()) || found.passing == Passing::touching) continue;
+    if (!watch.event.changes_motion() || found.passing == Passing::touching) continue;
     looking_for_ = found.event;
     const Observables& inside = within(share);
-    const auto value_of = [&](EventFunction& function, const std::string& text, const char* what) {
-      const double number = function(inside);
-      if (!std::isfinite(number))
-        throw NoChange{
-            fmt::format("{} is no finite number at t = {:.6g}: \"{}\" is {}", what, inside.time(), text, number)};
-      return number;
-    };
-    if (!watch.kick.empty()) by.resize(watch.kick.size());
-    for (std::size_t k = 0; k < watch.kick.size(); ++k)
-      by[k] += value_of(watch.kick[k], watch.event.kick[k], "its kick");
-    for (std::size_t k = 0; k < watch.set.size(); ++k) {
-      const auto& [name, text] = watch.event.set[k];
-      to.push_back({name, value_of(watch.set[k], text, "what it sets")});
-    }
+    add_change(watch, inside, change);
     before = quantities_within(inside);
     ++watch.changes;
   }
-  if (by.empty() && to.empty()) return false;
-  if (!by.empty()) kick(share, by);
-  if (!to.empty()) set_parameters(by.empty() ? share : 0, to);
+  if (change.empty()) return false;
+  if (const std::string why = motion_.refused(share, change); !why.empty())
+    throw NoChange{fmt::format("between t = {:.6g} and {:.6g}: {}", time_, arrived_, why)};
+  if (!motion_.change_within(share, change).converged())
+    throw NoChange{fmt::format(
+        "after its change, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use a smaller one "
+        "or a smaller time.step",
+        time_, arrived_)};
   const Observables& changed = within(0);
   measure_change(before, changed);
   std::vector<double> there;
@@ -269,23 +293,22 @@ bool EventWatch::change(Group together) {
   return true;
 }
 
-void EventWatch::kick(double share, std::span<const double> by) {
-  if (!motion_.kick_within(share, by).converged())
-    throw NoChange{
-        fmt::format("after its kick, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use a "
-                    "smaller kick or a "
-                    "smaller time.step",
-                    time_, arrived_)};
-}
-
-void EventWatch::set_parameters(double share, std::span<const ParameterValue> to) {
-  if (const std::string why = motion_.refused_values(to); !why.empty())
-    throw NoChange{fmt::format("between t = {:.6g} and {:.6g}: {}", time_, arrived_, why)};
-  if (!motion_.change_within(share, to).converged())
-    throw NoChange{fmt::format(
-        "with what it sets, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use a smaller "
-        "time.step",
-        time_, arrived_)};
+void EventWatch::add_change(Watch& watch, const Observables& inside, MotionChange& change) const {
+  const Event& event = watch.event;
+  const auto value_of = [&](EventFunction& function, const std::string& text, const char* what) {
+    const double number = function(inside);
+    if (!std::isfinite(number))
+      throw NoChange{
+          fmt::format("{} is no finite number at t = {:.6g}: \"{}\" is {}", what, inside.time(), text, number)};
+    return number;
+  };
+  if (!watch.kick.empty()) change.kick.resize(motion_.changeable().numbers());
+  for (std::size_t k = 0; k < watch.kick.size(); ++k)
+    change.kick[watch.kicked_at + k] += value_of(watch.kick[k], event.kick[k], "its kick");
+  for (std::size_t k = 0; k < watch.set.size(); ++k)
+    change.parameters.push_back({event.set[k].first, value_of(watch.set[k], event.set[k].second, "what it sets")});
+  for (const std::string& name : event.switch_on) change.switches.push_back({name, true});
+  for (const std::string& name : event.switch_off) change.switches.push_back({name, false});
 }
 
 void EventWatch::measure_change(const std::vector<std::vector<double>>& before, const Observables& changed) {
@@ -310,8 +333,8 @@ bool EventWatch::happens(const Found& found) {
   const Event& event = watches_[found.event].event;
   const Observables& inside = within(found.share);
   Happening happening{found.event, step_, inside.time(), found.passing, false, values_within(inside)};
-  happening.together =
-      !table_.rows.empty() && std::abs(happening.time - table_.rows.back().time) <= apart * std::abs(arrived_ - time_);
+  happening.together = !table_.rows.empty() && std::abs(happening.time - table_.rows.back().time) <=
+                                                   indistinguishable * std::abs(arrived_ - time_);
   table_.rows.push_back(std::move(happening));
   const Happening& row = table_.rows.back();
   WatchedEvent& watched = table_.watched[found.event];
@@ -349,7 +372,10 @@ void EventWatch::report(RunResult& result) const {
                                                               : "largest"));
     if (watch.changes > 0)
       note(fmt::format("{} the motion {} times; the ledger's first values are moved by it",
-                       watch.set.empty() ? "kicked" : "changed", watch.changes));
+                       watch.event.set.empty() && watch.event.switch_on.empty() && watch.event.switch_off.empty()
+                           ? "kicked"
+                           : "changed",
+                       watch.changes));
     if (watched.touches > 0)
       note(fmt::format("its function came to zero {} times without passing it; not counted", watched.touches));
     if (function.jumps().times > 0)

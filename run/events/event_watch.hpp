@@ -14,9 +14,9 @@
 /// (Passing::touching). A function that is zero at the start has not passed it there. (FunctionWatch)
 ///
 /// Errors: RunError for a function that cannot be read, with the columns there are, for a name or a count that is none,
-/// and for a motion whose steps cannot be made in part, or whose momentum or parameters cannot be changed on the way.
-/// `pass` returns `failed` where a partial step does not converge, where kicks follow each other without end, where a
-/// parameter cannot have its value, and where what is added, or measured afterwards, is no finite number.
+/// and for a motion whose steps cannot be made in part, or that cannot be changed so on the way.
+/// `pass` returns `failed` where a partial step does not converge, where kicks follow each other without end, where the
+/// motion refuses a change, and where what is added, or measured afterwards, is no finite number.
 
 #include <lagroid/run/events/event.hpp>
 #include <lagroid/run/events/event_function.hpp>
@@ -82,7 +82,8 @@ class EventWatch {
     std::vector<EventFunction> kick;
     std::vector<EventFunction> set;
     FunctionWatch function;
-    long changes = 0;  ///< of the motion, by kick and set
+    std::size_t kicked_at = 0;  ///< of the numbers of all momenta the first
+    long changes = 0;           ///< of the motion
     template <class Archive> void serialize(Archive& archive) {
       archive("function", function);
       archive("changes", changes);
@@ -99,10 +100,10 @@ class EventWatch {
   Goes look_into_rest(std::vector<Found>& found);
   std::vector<Found> find_in_step();
   const Observables& within(double share);
-  /// Changes momentum and parameters as these do; false where they change nothing.
+  /// Changes the motion as these do; false where they change nothing.
   bool change(Group together);
-  void kick(double share, std::span<const double> by);
-  void set_parameters(double share, std::span<const ParameterValue> to);
+  /// Adds what one of them does at the point where it happens.
+  void add_change(Watch& watch, const Observables& inside, MotionChange& change) const;
   void measure_change(const std::vector<std::vector<double>>& before, const Observables& changed);
   /// Records it; false where the run ends.
   bool happens(const Found& found);

@@ -38,6 +38,39 @@ struct ParameterValue {
   bool operator==(const ParameterValue&) const = default;
 };
 
+/// What is named in a scene, a joint or an effect, and whether it acts.
+struct Switched {
+  std::string name;
+  bool on = true;
+  bool operator==(const Switched&) const = default;
+};
+
+/// What can be changed inside of a step.
+struct Changeable {
+  /// A part of the momentum, as that of a body, and how many numbers it has; the only part of a system has no name.
+  struct Momentum {
+    std::string name;
+    std::size_t numbers;
+  };
+  std::vector<Momentum> momenta{};  ///< to which something can be added
+  std::vector<std::string> parameters{};
+  std::vector<Switched> switches{};  ///< as they are now
+
+  std::size_t numbers() const {
+    std::size_t sum = 0;
+    for (const Momentum& each : momenta) sum += each.numbers;
+    return sum;
+  }
+};
+
+/// A change of a motion: what is added to its momenta, in their order, or nothing; then parameters and switches.
+struct MotionChange {
+  std::vector<double> kick{};
+  std::vector<ParameterValue> parameters{};
+  std::vector<Switched> switches{};
+  bool empty() const { return kick.empty() && parameters.empty() && switches.empty(); }
+};
+
 /// A motion: it advances from node to node, and what is to be seen at a node can be looked at. The loop, the recorder
 /// and the ledger (drive.hpp, recorder.hpp, judge.hpp), studies and Python use nothing else of what they run.
 class Motion {
@@ -80,18 +113,13 @@ class Motion {
   /// same method. Null where that does not converge. The motion stays where it is, but has to be looked at anew before
   /// anything else is asked of it.
   virtual const Observables* look_within(double /*share*/) { return nullptr; }
-  /// How many numbers its momentum has, to which something can be added inside of a step; none where nothing can.
-  virtual std::size_t kicked_numbers() const { return 0; }
-  /// Adds to the momentum where a share of the last step leads to, and makes the rest of the step from there; shares
-  /// are from now on those of that rest. The motion stays at its node, in another state.
-  virtual StepReport kick_within(double /*share*/, std::span<const double> /*by*/) { return {}; }
-  /// The parameters that can be changed inside of a step; none where nothing can.
-  virtual std::vector<std::string> changeable_parameters() const { return {}; }
-  /// Why parameters cannot have these values; empty where they can.
-  virtual std::string refused_values(std::span<const ParameterValue> /*to*/) const { return ""; }
-  /// Gives parameters other values where a share of the last step leads to, and makes the rest of the step with them;
-  /// as `kick_within` otherwise.
-  virtual StepReport change_within(double /*share*/, std::span<const ParameterValue> /*to*/) { return {}; }
+  /// What can be changed inside of a step; nothing where there is nothing.
+  virtual Changeable changeable() const { return {}; }
+  /// Why it cannot be changed so where a share of the last step leads to; empty where it can.
+  virtual std::string refused(double /*share*/, const MotionChange& /*change*/) { return ""; }
+  /// Changes it where a share of the last step leads to, and makes the rest of the step from there; shares are from now
+  /// on those of that rest. The motion stays at its node, in another state. Requires that the change is not refused.
+  virtual StepReport change_within(double /*share*/, const MotionChange& /*change*/) { return {}; }
   /// Visits all that the next step goes on from: a motion begun alike, to which it is restored, goes on with the same
   /// bits.
   virtual void serialize(NumberArchive& archive) = 0;

@@ -130,24 +130,27 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
     node_.see(inside);
     return &node_;
   }
-  std::size_t kicked_numbers() const override { return integrator_->kicks() ? G::dimension : 0; }
-  StepReport kick_within(double share, std::span<const double> by) override {
-    return integrator_->kick(share, Eigen::Map<const AlgebroidVector<G>>(by.data()));
-  }
-  std::vector<std::string> changeable_parameters() const override {
-    std::vector<std::string> names;
+  Changeable changeable() const override {
+    Changeable out;
+    if (integrator_->kicks()) out.momenta = {{"", G::dimension}};
     if (integrator_->changes_system())
-      for (const ParameterValue& each : parameter_values(system_)) names.push_back(each.name);
-    return names;
+      for (const ParameterValue& each : parameter_values(system_)) out.parameters.push_back(each.name);
+    return out;
   }
-  std::string refused_values(std::span<const ParameterValue> to) const override {
+  std::string refused(double, const MotionChange& change) override {
     Sys changed = system_;
-    return set_parameters(changed, to);
+    return set_parameters(changed, change.parameters);
   }
-  StepReport change_within(double share, std::span<const ParameterValue> to) override {
-    const auto change = [to](Sys& system) { set_parameters(system, to); };
-    const StepReport report = integrator_->change(share, change);
-    if (report.converged()) change_what_is_seen(change);
+  StepReport change_within(double share, const MotionChange& change) override {
+    StepReport report;
+    if (!change.kick.empty()) {
+      report = integrator_->kick(share, Eigen::Map<const AlgebroidVector<G>>(change.kick.data()));
+      if (!report.converged() || change.parameters.empty()) return report;
+      share = 0;
+    }
+    const auto set = [&change](Sys& system) { set_parameters(system, change.parameters); };
+    report = integrator_->change(share, set);
+    if (report.converged()) change_what_is_seen(set);
     return report;
   }
   std::vector<NamedVector> state() const override {
@@ -192,7 +195,7 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
   }
 
  private:
-  template <class Change> void change_what_is_seen(const Change& how) {
+  template <class How> void change_what_is_seen(const How& how) {
     how(system_);
     node_.change(how, watched(system_, options_));
   }

@@ -80,11 +80,26 @@ template <Timed Sys> class AdaptiveIntegrator {
   StepReport advance();
   /// A share of the last step from a point, of that size whatever the energy (cut_step.hpp); nothing changes.
   StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
-    return cut_step(fixed_, from, share * point().step_size, to);
+    return cut_step(fixed_, from, share * last_size_, to);
+  }
+  /// Goes on from a point of the same index and time, which no step of its own led to: the next step has the size of
+  /// the last one, and the energy that is kept from there on is its own.
+  void go_on_from(const TrajectoryPoint<Sys>& point) {
+    trajectory_.go_on_from(point);
+    fixed_.forget();
+    past_.clear();
+    time_momentum_compensation_ = {};
+    begins_ = true;
+    degenerate_ = false;
+  }
+  /// Visits the systems that its steps are of, to change them; the step's size stays.
+  template <class F> void for_each_system(const F& f) {
+    f(fixed_.system());
+    f(extended_.base);
   }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
-    archive(last_size_, time_momentum_, time_momentum_compensation_.lost, degenerate_, without_root_);
+    archive(begins_, last_size_, time_momentum_, time_momentum_compensation_.lost, degenerate_, without_root_);
     fixed_.serialize(archive);
     free_->serialize(archive);
     trajectory_.serialize(fixed_.system().groupoid, archive);
@@ -135,6 +150,7 @@ template <Timed Sys> class AdaptiveIntegrator {
   Extrapolation<1 + Sys::dimension + Sys::constraints, 4> past_;
   double time_momentum_ = 0;  ///< p_t = -E_d
   Compensation<double> time_momentum_compensation_{};
+  bool begins_ = true;  ///< the next step is of a given size, and its energy is kept
   bool degenerate_ = false;
   int iterations_ = 0;  ///< of all solves since the step began
   long without_root_ = 0;
@@ -144,7 +160,7 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::advance() {
   extended_.origin = point().time;
   set_time(fixed_.system(), point().time);
   iterations_ = 0;
-  StepReport report = point().index == 0 ? first_step() : next_step();
+  StepReport report = begins_ ? first_step() : next_step();
   report.iterations = iterations_;
   return report;
 }
@@ -167,10 +183,11 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::next_step() {
   return options_.without_root == WithoutRoot::stop ? report : off_the_energy();
 }
 
-/// The step of the given size, from which the energy is taken.
+/// The step of the given size, or after a change of the last one, from which the energy is taken.
 template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::first_step() {
   Solved found;
-  found.h = first_size_;
+  found.h = point().index == 0 ? first_size_ : last_size_;
+  fixed_.system().h = found.h;
   StepReport report = fixed_.solve(point().state, found.solution);
   iterations_ += report.iterations;
   if (!report.converged()) return report;
@@ -180,8 +197,8 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::first_step() {
   found.time_momentum_change = d.source_gradient(0) + d.target_gradient(0);
 
   StepSolution<Sys> halved;
-  const auto change = excess_energy(0.5 * first_size_, halved);
-  fixed_.system().h = first_size_;
+  const auto change = excess_energy(0.5 * found.h, halved);
+  fixed_.system().h = found.h;
   fixed_.forget();
   const double power = std::abs(point().state.momentum.dot(fixed_.system().groupoid.tau_inverse(step.arrow))) / found.h;
   if (change && independent_of_step(*change, std::abs(time_momentum_) + power)) {
@@ -288,6 +305,7 @@ template <Timed Sys> StepReport AdaptiveIntegrator<Sys>::off_the_energy() {
 
 template <Timed Sys> void AdaptiveIntegrator<Sys>::accept(const Solved& found) {
   const auto& groupoid = fixed_.system().groupoid;
+  begins_ = false;
   trajectory_.join(groupoid, found.solution);
   trajectory_.arrive(found.h);
   last_size_ = found.h;

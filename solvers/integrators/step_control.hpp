@@ -84,13 +84,27 @@ class ControlledIntegrator {
     if (!report.converged()) return report;
     trajectory_.join(system.groupoid, solution);
     trajectory_.arrive(system.h);
+    before_ = controller_;
     controller_.pass(time_scale_rate(system, point().state), system.h);
     return report;
   }
 
   /// A share of the last step from a point, by the same equations (cut_step.hpp); nothing changes.
   StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
-    return cut_step(predictor_, from, share * point().step_size, to);
+    return cut_step(predictor_, from, share * predictor_.system().h, to);
+  }
+  /// Goes on from a point of the same index and time, which no step of its own led to; the next step follows the time
+  /// scale there.
+  void go_on_from(const TrajectoryPoint<Sys>& point) {
+    trajectory_.go_on_from(point);
+    predictor_.forget();
+    controller_ = before_;
+    controller_.pass(time_scale_rate(predictor_.system(), point.state), predictor_.system().h);
+  }
+  /// Visits the system that its steps are of, to change it; the step's size stays.
+  template <class F> void for_each_system(const F& f) {
+    f(predictor_.system());
+    predictor_.forget();
   }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
@@ -103,6 +117,7 @@ class ControlledIntegrator {
   StepPredictor<Sys> predictor_;
   CompensatedTrajectory<Sys> trajectory_;
   StepController controller_;
+  StepController before_ = controller_;  ///< the last step
 };
 
 }  // namespace lagroid

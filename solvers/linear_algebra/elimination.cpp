@@ -103,6 +103,7 @@ bool Elimination::factorise() { return eliminate<false>(1e-13, nullptr); }
 
 std::vector<int> Elimination::leave_out_dependent() {
   std::vector<int> dependent;
+  for (Pivot& pivot : pivots_) pivot.left_out = false;
   eliminate<true>(1e-9, &dependent);
   return dependent;
 }

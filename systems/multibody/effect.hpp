@@ -17,6 +17,7 @@
 
 #include <array>
 #include <concepts>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,12 @@ struct Places {
   Attitude operator()(Attitude a) const {
     return {a.index < 0 ? int(attitudes.size()) : attitudes[std::size_t(a.index)]};
   }
+};
+
+/// What is switched on and off by a name. The first has none, and is always on.
+struct Switches {
+  std::vector<std::string> names{""};
+  std::vector<char> on{1};
 };
 
 /// All effects of one kind: one virtual call for the forces of them all. A scene without them makes none.

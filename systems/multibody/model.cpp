@@ -22,7 +22,8 @@ void Model::act(const Configuration& at, Loads& loads) const {
   if (effects.empty()) return;
   std::fill(loads.on.begin(), loads.on.end(), Vec::Zero());
   std::fill(loads.torque.begin(), loads.torque.end(), Vec::Zero());
-  for (const auto& effect : effects) effect->add_loads(at, loads);
+  for (const Acting& each : effects)
+    if (is_on(each)) each.effects->add_loads(at, loads);
   for (const Arm& a : points.pushed_arms) {
     const Vec& f = loads.on[std::size_t(a.site)];
     loads.on[std::size_t(a.base)] += f;
@@ -38,13 +39,15 @@ void Model::act(const Configuration& at, Loads& loads) const {
 void Model::react(const Configuration& at, const Island& island, std::vector<Vec>& gradients,
                   std::vector<RowSize>& sizes) const {
   for (const Batch& batch : island.batches.of(rows.batches))
-    batch.joints->reactions(at, batch.first, batch.count, gradients.data() + batch.gradient, sizes.data() + batch.row);
+    if (is_on(batch))
+      batch.joints->reactions(at, batch.first, batch.count, gradients.data() + batch.gradient,
+                              sizes.data() + batch.row);
   pull_back(at, island, gradients);
 }
 
 void Model::find_gradients(const SceneArrow& motion, const Island& island, std::vector<Vec>& gradients) const {
   for (const Batch& batch : island.batches.of(rows.batches))
-    batch.joints->gradients(motion, batch.first, batch.count, gradients.data() + batch.gradient);
+    if (is_on(batch)) batch.joints->gradients(motion, batch.first, batch.count, gradients.data() + batch.gradient);
   pull_back(motion.after, island, gradients);
 }
 

@@ -15,8 +15,9 @@
 
 namespace lagroid::multibody {
 
-/// What a scene is while it moves, the same from its first node to its last: the factors of its groupoid, the points
-/// that joints and effects know, the rows of the joints, and the islands, what joints tie together. Factors and what
+/// What a scene is while it moves, the same from its first node to its last but for what is switched: the factors of
+/// its groupoid, the points that joints and effects know, the rows of the joints, and the islands, what joints tie
+/// together. Factors and what
 /// belongs to them are sorted by island.
 struct Model {
   struct Range {
@@ -74,6 +75,7 @@ struct Model {
     int count;
     int row;
     int gradient;
+    int switched_by;
   };
   /// A gradient of a row that moves a factor.
   struct Entry {
@@ -134,8 +136,15 @@ struct Model {
     bool moved = false;  ///< by the ground
   };
 
+  /// Effects of one kind.
+  struct Acting {
+    std::unique_ptr<Effects> effects;
+    int switched_by;
+  };
+
   std::vector<std::unique_ptr<Joints>> joints;
-  std::vector<std::unique_ptr<Effects>> effects;
+  std::vector<Acting> effects;
+  Switches switches;
   Places places;
   std::vector<int> linear_places;
   Factors factors;
@@ -145,6 +154,9 @@ struct Model {
   std::vector<Island> islands;
 
   Role role(int row) const { return rows.roles[std::size_t(row)]; }
+  /// Whether a Batch or an Acting does. Rows that are switched off have the value zero and no gradients, as those of a
+  /// joint between what rests.
+  template <class T> bool is_on(const T& each) const { return switches.on[std::size_t(each.switched_by)] != 0; }
 
   /// Puts points fixed in bodies where these are.
   void place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const;

@@ -32,7 +32,7 @@ bool take_controlled_step(const Model& model, const SceneState& state, Workspace
 }
 
 /// Momenta without the joints' reactions, and the displacements under them.
-void kick(const Model& model, const SceneState& state, Workspace& w) {
+void push(const Model& model, const SceneState& state, Workspace& w) {
   std::fill(w.impulse.begin(), w.impulse.end(), Vec::Zero());
   std::fill(w.spin_impulse.begin(), w.spin_impulse.end(), Vec::Zero());
   w.add_impulse(model, state.loads);
@@ -294,7 +294,7 @@ StepReport Multibody::advance_to(double end) {
 
 /// Leaves the arrow that begins at the node of the state in the workspace; the state stays as it is.
 ///
-/// 1. `kick`: the momenta with which the arrow begins, p + f, with f the impulse of the effects at this node.
+/// 1. `push`: the momenta with which the arrow begins, p + f, with f the impulse of the effects at this node.
 /// 2. `solve_islands`: island by island, the displacements xi and the multipliers lambda with
 ///
 ///        F-_K(xi) = p + f + D^T lambda,   C(q g) = 0,   phi(g) = 0,
@@ -311,7 +311,7 @@ StepReport Multibody::solve() {
   if (model_.rows.vakonomic) w.vakonomic.gradients = state_.gradients;
   if (state_.control && !take_controlled_step(model_, state_, w)) return {SolveStatus::no_step};
   for (const Model::MovingGround& m : model_.points.moving) w.next.x[std::size_t(m.site)] = m.at(w.next.time);
-  kick(model_, state_, w);
+  push(model_, state_, w);
   StepReport report = solve_islands(model_, state_, options_, w);
   if (!report.converged()) return report;
   if (!turns_are_in_domain(model_, w)) {
@@ -349,7 +349,14 @@ void Multibody::restore(const SceneState& state) {
 }
 
 void Multibody::serialize(NumberArchive& archive) {
+  Switches& switches = model_.switches;
+  std::vector<double> on(switches.on.begin(), switches.on.end());
+  if (on.size() > 1) archive(on);
+  const std::vector<char> before = switches.on;
+  std::transform(on.begin(), on.end(), switches.on.begin(), [](double each) { return char(each != 0); });
+  if (switches.on != before) forget_rows();
   state_.serialize(archive);
+  if (switches.on != before) leave_out_dependent();
   if (archive.reading()) follow_state();
 }
 
@@ -373,6 +380,60 @@ void Multibody::make_tangent() {
   state_.momentum = m.linear;
   state_.spin = m.spin;
   add_multipliers(state_.momentum, state_.spin, -1);
+}
+
+void Multibody::end_part(long index, double time) {
+  state_.index = index;
+  state_.at.time = time;
+  // What was long for the part is short for a step; of a very short one there is nothing to be learned.
+  const double longer = state_.step > 1e-3 * step_ ? step_ / state_.step : 1;
+  const auto lengthen = [longer](SceneState::Guess& guess) {
+    for (auto& multipliers : guess.multipliers)
+      for (double& lambda : multipliers) lambda *= longer;
+    for (Vec& turn : guess.turns) turn *= longer;
+  };
+  lengthen(state_.guess);
+  for (SceneState::Guess& stage : state_.stages) lengthen(stage);
+  state_.step = step_;
+  follow_state();
+}
+
+void Multibody::switch_to(const std::vector<char>& on) {
+  make_tangent();
+  model_.switches.on = on;
+  forget_rows();
+  begin();
+  leave_out_dependent();
+}
+
+void Multibody::forget_rows() {
+  const auto clear = [](std::vector<Vec>& list) { std::fill(list.begin(), list.end(), Vec::Zero()); };
+  clear(state_.gradients);
+  clear(workspace_.rows.next_gradients);
+  std::fill(state_.sizes.begin(), state_.sizes.end(), RowSize{});
+  std::fill(workspace_.rows.values.begin(), workspace_.rows.values.end(), 0.0);
+  std::fill(model_.rows.left_out.begin(), model_.rows.left_out.end(), char(0));
+  model_.rows.dependent = 0;
+  for (const Model::Batch& batch : model_.rows.batches) {
+    if (batch.switched_by == 0) continue;
+    const auto forget = [&](SceneState::Guess& guess) {
+      for (auto& multipliers : guess.multipliers)
+        std::fill_n(multipliers.begin() + batch.row, batch.count * batch.joints->rows(), 0.0);
+    };
+    forget(state_.guess);
+    for (SceneState::Guess& stage : state_.stages) forget(stage);
+  }
+}
+
+void Multibody::kick(int linear, const Vec& momentum, Attitude attitude, const Vec& spin) {
+  if (linear >= 0) {
+    const auto f = std::size_t(linear_place(linear));
+    add(state_.momentum[f], state_.momentum_compensation[f], momentum);
+  }
+  if (attitude.index >= 0) {
+    const auto r = std::size_t((*this)(attitude).index);
+    add(state_.spin[r], state_.spin_compensation[r], spin);
+  }
 }
 
 std::size_t Multibody::memory() const {

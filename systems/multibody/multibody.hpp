@@ -69,6 +69,21 @@ class Multibody {
   void restore(const SceneState& state);
   /// Visits the state.
   void serialize(NumberArchive& archive);
+  /// Goes on from here by usual steps, after one of another size, as from the node `index` at this time.
+  void end_part(long index, double time);
+
+  /// What can be switched (Scene::begin_switch), and whether it acts. The first is all that has no name.
+  const Switches& switches() const { return model_.switches; }
+  /// By how much, over the sizes of their terms, joints that are off are violated at this node.
+  double violation(int switched) const;
+  /// Switches at this node. What was held until now goes on with the velocities that it had; of velocities that joints
+  /// from now on do not allow, the next step leaves what they do, as an inelastic catch. Requires steps of equal size,
+  /// and a small `violation`.
+  void switch_to(const std::vector<char>& on);
+  /// Adds to the momentum of a linear factor (Scene::linear_of; of a planar body with its angular momentum), and to the
+  /// angular momentum of what turns in its own frame; -1 for none. What joints do not allow of it the next step takes.
+  void kick(int linear, const Vec& momentum, Attitude attitude, const Vec& spin);
+
   /// Back along the same trajectory: momenta change their signs.
   void reverse();
   /// Takes from the momenta what the joints do not allow; vakonomic ones keep their last multipliers.
@@ -135,6 +150,8 @@ class Multibody {
   /// The workspace of steps from a state that was set.
   void follow_state();
   void leave_out_dependent();
+  /// Of rows that are switched on anew nothing is known, and those that are off have neither values nor gradients.
+  void forget_rows();
   void compose(const Composition& composition);
 
   /// One step of the size that inertia is set to, which ends at the time `end`.

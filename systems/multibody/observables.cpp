@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lagroid::multibody {
 
@@ -55,7 +56,7 @@ std::vector<double> Multibody::imposed_rates() const {
         model_.points.moving[std::size_t(e.ground)].velocity(state_.at.time));
   const std::vector<Vec> at_rest(std::max(state_.momentum.size(), state_.spin.size()), Vec::Zero());
   for (const Model::Batch& batch : model_.rows.batches) {
-    if (batch.role == Role::holonomic || batch.role == Role::damping) continue;
+    if (batch.role == Role::holonomic || batch.role == Role::damping || !model_.is_on(batch)) continue;
     double* const rate = rates.data() + batch.row;
     batch.joints->values({state_.at, state_.at, at_rest, at_rest, state_.step}, batch.first, batch.count, rate);
     for (int i = 0; i < batch.count * batch.joints->rows(); ++i) rate[i] /= state_.step;
@@ -93,7 +94,8 @@ double Multibody::arrow_cost() const {
 
 double Multibody::potential_energy() const {
   double sum = 0;
-  for (const auto& effect : model_.effects) sum += effect->energy(state_.at);
+  for (const Model::Acting& each : model_.effects)
+    if (model_.is_on(each)) sum += each.effects->energy(state_.at);
   return sum;
 }
 
@@ -119,7 +121,7 @@ double Multibody::constraint_residual() const {
   std::vector<double> values(model_.rows.roles.size());
   double largest = state_.arrow_residual;
   for (const Model::Batch& batch : model_.rows.batches) {
-    if (batch.role != Role::holonomic) continue;
+    if (batch.role != Role::holonomic || !model_.is_on(batch)) continue;
     batch.joints->values({state_.at, state_.at, workspace_.displacement, workspace_.turned, state_.step}, batch.first,
                          batch.count, values.data() + batch.row);
     for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
@@ -127,6 +129,26 @@ double Multibody::constraint_residual() const {
       const double precision = state_.precision[std::size_t(row)];
       const double moved = precision > 0 ? 1 / precision : 0;
       const double relative = value == 0 ? 0 : value / std::max(state_.sizes[std::size_t(row)].terms, moved);
+      largest = std::isnan(relative) ? relative : std::max(largest, relative);
+    }
+  }
+  return largest;
+}
+
+double Multibody::violation(int switched) const {
+  std::vector<double> values(model_.rows.roles.size());
+  std::vector<Vec> gradients(std::size_t(model_.rows.gradients));
+  std::vector<RowSize> sizes(model_.rows.roles.size());
+  double largest = 0;
+  for (const Model::Batch& batch : model_.rows.batches) {
+    if (batch.role != Role::holonomic || batch.switched_by != switched || model_.is_on(batch)) continue;
+    batch.joints->values({state_.at, state_.at, workspace_.displacement, workspace_.turned, state_.step}, batch.first,
+                         batch.count, values.data() + batch.row);
+    batch.joints->reactions(state_.at, batch.first, batch.count, gradients.data() + batch.gradient,
+                            sizes.data() + batch.row);
+    for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
+      const double relative =
+          std::abs(values[std::size_t(row)]) / (sizes[std::size_t(row)].terms + std::numeric_limits<double>::min());
       largest = std::isnan(relative) ? relative : std::max(largest, relative);
     }
   }
@@ -183,7 +205,7 @@ double Multibody::time_scale_rate() const {
 }
 
 bool Multibody::has_time_scale() const {
-  const auto attracts = [](const auto& effect) { return effect->attracts(); };
+  const auto attracts = [](const Model::Acting& each) { return each.effects->attracts(); };
   return std::all_of(model_.effects.begin(), model_.effects.end(), attracts) && model_.islands.empty() &&
          model_.factors.dragged.empty() && model_.factors.damped_turns.empty() && std::isfinite(time_scale_rate());
 }

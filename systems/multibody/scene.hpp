@@ -16,8 +16,8 @@
 #include <lagroid/systems/multibody/joint.hpp>
 #include <lagroid/systems/multibody/rotation_increment.hpp>
 
-#include <map>
 #include <memory>
+#include <string>
 #include <typeindex>
 #include <typeinfo>
 #include <utility>
@@ -90,36 +90,49 @@ class Scene {
 
   template <class K> void add(const K& kernel) {
     if constexpr (requires { K::rows; }) {
-      all_of<K, JointsOf<K>>(joints_, joint_kinds_).add(kernel);
+      all_of<K, JointsOf<K>>(joints_).add(kernel);
     } else {
-      all_of<K, EffectsOf<K>>(effects_, effect_kinds_).add(kernel);
+      all_of<K, EffectsOf<K>>(effects_).add(kernel);
     }
   }
   /// Effects that need a container of their own, such as one over all pairs of many bodies.
-  void add_effects(std::unique_ptr<Effects> effects) { effects_.push_back(std::move(effects)); }
+  void add_effects(std::unique_ptr<Effects> effects) { effects_.push_back({std::move(effects), typeid(void), now_}); }
+
+  /// Joints and effects that are added from now on, until `end_switch`, are switched on and off together, by this name
+  /// (Multibody::switch_to). Vakonomic joints cannot be.
+  void begin_switch(std::string name, bool on = true) {
+    now_ = int(switches_.names.size());
+    switches_.names.push_back(std::move(name));
+    switches_.on.push_back(on);
+  }
+  void end_switch() { now_ = 0; }
+  const Switches& switches() const { return switches_; }
 
   Retraction rotation = Retraction::exponential;  ///< how a turn becomes an angular velocity
 
  private:
   friend class Assembly;
 
-  template <class K, class All, class Base>
-  static All& all_of(std::vector<std::unique_ptr<Base>>& list, std::map<std::type_index, Base*>& kinds) {
-    Base*& found = kinds[typeid(K)];
-    if (found == nullptr) {
-      list.push_back(std::make_unique<All>());
-      found = list.back().get();
-    }
-    return static_cast<All&>(*found);
+  /// All joints or effects of one kind that are switched together.
+  template <class Base> struct OfKind {
+    std::unique_ptr<Base> all;
+    std::type_index kind;
+    int switched_by;
+  };
+  template <class K, class All, class Base> All& all_of(std::vector<OfKind<Base>>& list) {
+    for (const OfKind<Base>& each : list)
+      if (each.kind == typeid(K) && each.switched_by == now_) return static_cast<All&>(*each.all);
+    list.push_back({std::make_unique<All>(), typeid(K), now_});
+    return static_cast<All&>(*list.back().all);
   }
 
   std::vector<Linear> linear_;
   std::vector<Rotating> rotating_;
   std::vector<Point> sites_;
-  std::vector<std::unique_ptr<Joints>> joints_;
-  std::vector<std::unique_ptr<Effects>> effects_;
-  std::map<std::type_index, Joints*> joint_kinds_;
-  std::map<std::type_index, Effects*> effect_kinds_;
+  std::vector<OfKind<Joints>> joints_;
+  std::vector<OfKind<Effects>> effects_;
+  Switches switches_;
+  int now_ = 0;
 };
 
 }  // namespace lagroid::multibody

@@ -158,9 +158,9 @@ void Assembly::find_islands() {
   const auto factors_count = std::size_t(linears_ + rotations_);
   Groups groups(linears_ + rotations_);
   std::vector<char> tied(factors_count, 0);
-  for (const auto& joints : scene_.joints_)
-    for (int j = 0; j < joints->count(); ++j) {
-      const auto factors = factors_of(*joints, j);
+  for (const auto& of_kind : scene_.joints_)
+    for (int j = 0; j < of_kind.all->count(); ++j) {
+      const auto factors = factors_of(*of_kind.all, j);
       for (const int f : factors) {
         groups.join(f, factors.front());
         tied[std::size_t(f)] = 1;
@@ -193,10 +193,10 @@ void Assembly::sort_factors() {
 void Assembly::place_sites() {
   const std::size_t count = scene_.sites_.size();
   touched_in_.assign(count, int(model_.islands.size()));
-  for (const auto& joints : scene_.joints_)
-    for (int j = 0; j < joints->count(); ++j)
-      if (const int number = island_of(*joints, j); number >= 0)
-        for (const Site s : joints->sites(j)) touched_in_[std::size_t(s.index)] = number;
+  for (const auto& of_kind : scene_.joints_)
+    for (int j = 0; j < of_kind.all->count(); ++j)
+      if (const int number = island_of(*of_kind.all, j); number >= 0)
+        for (const Site s : of_kind.all->sites(j)) touched_in_[std::size_t(s.index)] = number;
   site_order_ = sorted_by(touched_in_);
 
   std::vector<int>& places = model_.places.sites;
@@ -289,9 +289,11 @@ void Assembly::clear_loads() {
 
 // Joints of what does not move have no rows.
 void Assembly::add_joints() {
-  model_.joints = std::move(scene_.joints_);
   batches_.resize(model_.islands.size());
-  for (const auto& joints : model_.joints) {
+  for (auto& of_kind : scene_.joints_) {
+    const int switched_by = of_kind.switched_by;
+    model_.joints.push_back(std::move(of_kind.all));
+    Joints* const joints = model_.joints.back().get();
     std::vector<int> islands;
     for (int j = 0; j < joints->count(); ++j) islands.push_back(island_of(*joints, j));
     auto order = sorted_by(islands);
@@ -300,8 +302,8 @@ void Assembly::add_joints() {
     for (int k = 0; k < int(order.size()); ++k) {
       const int j = order[std::size_t(k)];
       auto& of_island = batches_[std::size_t(islands[std::size_t(j)])];
-      if (of_island.empty() || of_island.back().batch.joints != joints.get())
-        of_island.push_back({{joints.get(), joints->role(), k, 0, 0, 0}, {}});
+      if (of_island.empty() || of_island.back().batch.joints != joints)
+        of_island.push_back({{joints, joints->role(), k, 0, 0, 0, switched_by}, {}});
       ++of_island.back().batch.count;
       of_island.back().touches.push_back({joints->sites(j), joints->attitudes(j)});
     }
@@ -482,11 +484,12 @@ Elimination Assembly::couple_rows(Model::Island& island) {
 }
 
 void Assembly::add_effects() {
-  model_.effects = std::move(scene_.effects_);
+  model_.switches = std::move(scene_.switches_);
   std::vector<char> pushed(start_.at.x.size(), 0);
-  for (const auto& effect : model_.effects) {
-    for (const Site s : effect->sites()) pushed[std::size_t(model_.places(s).index)] = 1;
-    effect->place(model_.places);
+  for (auto& of_kind : scene_.effects_) {
+    for (const Site s : of_kind.all->sites()) pushed[std::size_t(model_.places(s).index)] = 1;
+    of_kind.all->place(model_.places);
+    model_.effects.push_back({std::move(of_kind.all), of_kind.switched_by});
   }
   const auto keep_pushed = [&](const std::vector<Model::Arm>& all, std::vector<Model::Arm>& out) {
     std::copy_if(all.begin(), all.end(), std::back_inserter(out),

@@ -193,7 +193,7 @@ IslandSolver::Residual IslandSolver::find_residual(const Model::Island& island) 
   const double* const precision = workspace_.rows.precision.data();
   const SceneArrow motion = workspace_.motion(from_.at);
   for (const Model::Batch& batch : island.batches.of(model_.rows.batches))
-    batch.joints->values(motion, batch.first, batch.count, values + batch.row);
+    if (model_.is_on(batch)) batch.joints->values(motion, batch.first, batch.count, values + batch.row);
   const auto& compliance = model_.rows.compliance;
   if (!compliance.empty())
     for (int row = island.rows.first; row < island.rows.last; ++row)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -132,6 +133,177 @@ TEST_F(Events, SetParameters) {
                  "\"gravity 2\" is not of the form \"name = expression\"");
   expect_refused("study " + with("pendulum", "[[event]]\nname = \"x\"\nwhen = \"q\"\nset = [\"gravity = 2\"]\n"),
                  "\"x\" changes the motion or ends it");
+}
+
+/// A bob that is let go on the way flies on a parabola, which variational steps follow exactly.
+const std::string sling = R"toml(name = "sling"
+
+[[body]]
+kind = "point"
+name = "bob"
+mass = 2.0
+position = [0, 0, -1]
+velocity = [4, 0, 0]
+
+[[joint]]
+kind = "rod"
+name = "string"
+between = ["ground", "bob"]
+
+[[effect]]
+kind = "gravity"
+
+[time]
+step = 0.01
+steps = 100
+)toml";
+
+TEST_F(Events, SwitchJointsAndEffects) {
+  const std::string events = R"toml(
+[[event]]
+name = "release"
+when = "t - 0.2034"
+switch_off = ["string"]
+plot = ["bob.x", "bob.z"]
+)toml";
+  const fs::path out = folder_ / "thrown";
+  const Outcome r = run("run " + write(sling + events).string() + " --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  EXPECT_NE(r.out.find("event \"release\": changed the motion 1 times"), std::string::npos) << r.out;
+  EXPECT_EQ(r.out.find("BROKEN"), std::string::npos) << r.out;
+  const Json found = summary(out).at("events");
+  const Json columns = found.at("columns");
+  const auto at = [&](const char* name) {
+    const auto place = std::find(columns.begin(), columns.end(), name) - columns.begin();
+    return found.at("rows").at(0).at("values").at(std::size_t(place)).get<double>();
+  };
+  const double t = 1 - 0.2034;
+  const Json end = summary(out).at("final").at("position");
+  EXPECT_NEAR(end.at(0).get<double>(), at("bob.x") + t * at("bob.px") / 2, 1e-12);
+  EXPECT_NEAR(end.at(2).get<double>(), at("bob.z") + t * at("bob.pz") / 2 - 0.5 * 9.81 * t * t, 1e-12);
+}
+
+TEST_F(Events, SwitchedMotionsGoOnWithTheSameBits) {
+  const std::string events = R"toml(
+[[event]]
+name = "release"
+when = "t - 0.2034"
+switch_off = ["string"]
+
+[[event]]
+name = "blow"
+when = "t - 0.7501"
+body = "bob"
+kick = ["1", "0.5", "-bob.pz"]
+)toml";
+  const fs::path whole = folder_ / "whole", parts = folder_ / "parts";
+  const std::string scene = "run " + write(sling + events).string() + " --set output.checkpoint=10 ";
+  ASSERT_EQ(run(scene + "--out " + whole.string()).code, 0);
+  ASSERT_EQ(run(scene + "--set time.steps=43 --out " + parts.string()).code, 0);
+  const Outcome on = run("resume " + parts.string() + " --set time.steps=100 --json");
+  ASSERT_EQ(on.code, 0) << on.err;
+  expect_the_same_bits(whole, parts, on.out);
+  EXPECT_EQ(contents(whole / "events.csv"), contents(parts / "events.csv"));
+}
+
+/// A string that becomes taut keeps the angular momentum about its end.
+TEST_F(Events, SwitchOnWhatIsOffAtTheStart) {
+  const std::string scene = R"toml(
+[[body]]
+kind = "point"
+name = "bob"
+mass = 2.0
+position = [1, -0.75, 0]
+velocity = [0, 1.5, 0]
+
+[[joint]]
+kind = "rod"
+name = "string"
+between = ["ground", "bob"]
+length = 1.25
+on = false
+
+[time]
+step = 0.01
+steps = 300
+
+[[event]]
+name = "taut"
+when = "sqrt(bob.x^2 + bob.y^2) - 1.25"
+direction = "rising"
+switch_on = ["string"]
+)toml";
+  const fs::path out = folder_ / "caught";
+  const Outcome r = run("run " + write(scene).string() + " --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  const Json end = summary(out).at("final");
+  const auto number = [&](const char* of, int i) { return end.at(of).at(std::size_t(i)).get<double>(); };
+  EXPECT_NEAR(std::hypot(number("position", 0), number("position", 1)), 1.25, 1e-13);
+  EXPECT_NEAR(number("position", 0) * number("momentum", 1) - number("position", 1) * number("momentum", 0), 3, 1e-12);
+  // Too early it does not hold.
+  std::string early = scene;
+  early.replace(early.find("- 1.25"), 6, "- 1.10");
+  const Outcome failed = run("run " + write(early).string() + " --out " + (folder_ / "early").string());
+  EXPECT_NE(failed.code, 0);
+  EXPECT_NE(failed.out.find("\"string\" is switched on where it does not hold"), std::string::npos)
+      << failed.out << failed.err;
+}
+
+TEST_F(Events, ThatSwitchNothingAreRefusedInALine) {
+  const auto refused = [&](const std::string& keys, const std::string& words) {
+    expect_refused("run " + write(sling + "\n[[event]]\nname = \"x\"\nwhen = \"bob.x\"\n" + keys).string(), words);
+  };
+  refused("switch_off = [\"rope\"]\n", "it switches \"rope\"; there are string");
+  refused("switch_off = [\"string\"]\nswitch_on = [\"string\"]\n", "it switches \"string\" on and off");
+  refused("kick = [\"1\", \"0\", \"0\"]\n", "it kicks a body, and \"\" is none; there are bob");
+  refused("body = \"bob\"\nkick = [\"1\"]\n", "its kick has 1 numbers, the momentum of \"bob\" has 3");
+  refused("body = \"bob\"\n", "it names a body, which nothing kicks");
+  expect_refused("run " + with("kepler", "[[event]]\nname = \"x\"\nwhen = \"x\"\nswitch_off = [\"sun\"]\n"),
+                 "it switches \"sun\"; nothing here has a name by which it is switched");
+  const auto scene_refused = [&](const std::string& key, const std::string& words) {
+    std::string scene = sling;
+    scene.replace(scene.find("name = \"string\""), 15, key);
+    expect_refused("run " + write(scene).string(), words);
+  };
+  scene_refused("on = false", "needs a name by which an event switches it on");
+  scene_refused("name = \"a b\"", "use letters, digits, - and _");
+}
+
+/// Of an ellipse a kick makes a circle, by steps that vary, too; a run that is broken off after it goes on as the
+/// whole.
+TEST_F(Events, ChangeMotionsWhoseStepsVary) {
+  const std::string events = R"toml([[event]]
+name = "apogee"
+when = "x*px + y*py"
+direction = "falling"
+kick = ["px*(1/sqrt(sqrt(x^2 + y^2)*(px^2 + py^2)) - 1)", "py*(1/sqrt(sqrt(x^2 + y^2)*(px^2 + py^2)) - 1)"]
+
+[[event]]
+name = "heavier"
+when = "t - 20.05"
+set = ["strength = 1.5"]
+)toml";
+  for (const std::string mode : {"adaptive", "controlled"}) {
+    SCOPED_TRACE(mode);
+    const fs::path whole = folder_ / (mode + " whole"), parts = folder_ / (mode + " parts");
+    const std::string scene =
+        "run " + with("kepler_adaptive", events) + " --set output.checkpoint=50 time.mode=" + mode + " ";
+    const Outcome r = run(scene + "--set time.steps=2000 --out '" + whole.string() + "'");
+    ASSERT_EQ(r.code, 0) << r.err << r.out;
+    EXPECT_EQ(r.out.find("BROKEN"), std::string::npos) << r.out;
+    const Json rows = summary(whole).at("events").at("rows");
+    ASSERT_GE(rows.size(), 2u);
+    const auto radius = [](const Json& values) {
+      return std::hypot(values.at(0).get<double>(), values.at(1).get<double>());
+    };
+    ASSERT_EQ(rows.at(0).at("event"), "apogee");
+    for (const Json& row : rows)
+      if (row.at("event") == "heavier") EXPECT_NEAR(radius(row.at("values")), 1.6, 1e-2);
+    ASSERT_EQ(run(scene + "--set time.steps=1200 --out '" + parts.string() + "'").code, 0);
+    const Outcome on = run("resume '" + parts.string() + "' --set time.steps=2000 --json");
+    ASSERT_EQ(on.code, 0) << on.err;
+    expect_the_same_bits(whole, parts, on.out);
+  }
 }
 
 TEST_F(Events, OfPoissonSystemsAreFoundWhereTheyAre) {
