@@ -67,8 +67,35 @@ class Parts(unittest.TestCase):
         self.assertIn("by parameters.length", table.stdout)
         self.assertIn("digits", table.stdout)
 
+    def test_errors_become_what_those_of_runs_that_are_drawn_become(self):
+        told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.steps=50", "--of", "final",
+                   "--deviations", "initial.momentum=0.02,parameters.length=0.01", "--draws", "4000", "--seed", "5",
+                   "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertEqual(found["by"], ["initial.p", "parameters.length"])
+        derivatives, covariance = found["derivatives"], found["covariance"]
+        for i in range(2):
+            for k in range(2):
+                wanted = sum(derivatives[i][j] * derivatives[k][j] * s * s for j, s in enumerate([0.02, 0.01]))
+                self.assertAlmostEqual(covariance[i][k], wanted, delta=1e-12 * abs(wanted) + 1e-18)
+        drawn = found["draws"]
+        self.assertEqual((drawn["runs"], drawn["failed"]), (4000, 0))
+        # Variances of n draws are off by a share sqrt(2 / (n - 1)), 2.2 %, and by what is not linear.
+        for i in range(2):
+            self.assertAlmostEqual(drawn["covariance"][i][i] / covariance[i][i], 1, delta=0.09)
+            self.assertAlmostEqual(drawn["mean"][i], found["values"][i], delta=5 * (covariance[i][i] / 4000) ** 0.5 + 2e-3)
+        table = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.steps=50",
+                    "--deviations", "initial.momentum=0.02")
+        self.assertIn("% by initial.p", table.stdout)
+        self.assertIn("correlations", table.stdout)
+
     def test_gradients_that_there_are_not_are_refused_in_a_line(self):
         for words, said in {
+            ("--deviations", "initial.momentum"): "give NAME=SIGMA, a positive standard deviation",
+            ("--deviations", "initial.momentum=-1"): "give NAME=SIGMA, a positive standard deviation",
+            ("--deviations", "initial=1,initial.momentum=1"): "has two deviations",
+            ("--deviations", "mass=1"): "initial.NAME or parameters.NAME",
             ("--of", "final.energy"): "nothing of that name is differentiable",
             ("--of", "node.51.position"): "a node is a number from 0 to 50",
             ("--of", "energy"): "ask for final.NAME",

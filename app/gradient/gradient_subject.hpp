@@ -21,7 +21,7 @@ struct GradientName {
   std::string name;
 };
 
-/// A start that differs: along direction `index` of (displacement, momentum), or by a parameter where there is a name.
+/// By what a start differs: along direction `index` of (displacement, momentum), or a parameter where there is a name.
 struct Nudge {
   int index = 0;
   std::string parameter = {};
@@ -35,7 +35,10 @@ struct GradientSubject {
   std::vector<GradientName> start;       ///< directions of the start, in order
   std::vector<GradientName> parameters;  ///< all that are numbers
   std::vector<double> sizes;             ///< of start and parameters, for differences
-  std::function<std::unique_ptr<LinearisedMotion>(const std::vector<std::string>& parameters, const Nudge&)> begin;
+  /// A motion to be linearised by these parameters, from a start that differs by all of the nudges.
+  std::function<std::unique_ptr<LinearisedMotion>(const std::vector<std::string>& parameters,
+                                                  const std::vector<Nudge>&)>
+      begin;
 };
 
 }  // namespace lagroid::app

@@ -69,18 +69,21 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   for (int i = 0; i < n; ++i) out.sizes.push_back(value.initial.momentum(i));
   for (const double* member : all.members) out.sizes.push_back(*member);
   out.begin = [system, initial = value.initial, configuration = value.configuration](
-                  const std::vector<std::string>& parameters, const Nudge& nudge) -> std::unique_ptr<LinearisedMotion> {
+                  const std::vector<std::string>& parameters,
+                  const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {
     Sys changed = system;
     State<G> start = initial;
     AlgebroidVector<G> v = AlgebroidVector<G>::Zero();
-    if (!nudge.parameter.empty()) {
-      const ParameterPlaces of = places_of_parameters(changed, {nudge.parameter});
-      const_cast<double&>(*of.members.front()) += nudge.by;  // of `changed`, which is no constant
-    } else {
-      (nudge.index < n ? v(nudge.index) : start.momentum(nudge.index - n)) += nudge.by;
+    for (const Nudge& nudge : nudges) {
+      if (!nudge.parameter.empty()) {
+        const ParameterPlaces of = places_of_parameters(changed, {nudge.parameter});
+        const_cast<double&>(*of.members.front()) += nudge.by;  // of `changed`, which is no constant
+      } else {
+        (nudge.index < n ? v(nudge.index) : start.momentum(nudge.index - n)) += nudge.by;
+      }
     }
     ArrowOf<G> from = configuration;
-    if (nudge.by != 0) {
+    if (!nudges.empty()) {
       const ArrowOf<G> displaced = system.groupoid.tau(initial.object, v);
       start.object = system.groupoid.target(displaced);
       from = system.groupoid.compose(configuration, displaced);

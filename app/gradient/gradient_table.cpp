@@ -61,45 +61,23 @@ std::vector<int> chosen(const std::vector<GradientName>& all, const std::string&
       fmt::format("{}: nothing of that name is differentiable here; there are {}", word, fmt::join(names, ", ")));
 }
 
-/// The columns: directions of the start, then parameters.
-struct Columns {
-  std::vector<int> start;
-  std::vector<int> parameters;
-};
-Columns columns_of(const GradientSubject& subject, const std::vector<std::string>& words) {
-  Columns out;
-  for (const std::string& word : words) {
-    std::vector<int>* into = nullptr;
-    std::vector<int> more;
-    if (const auto of_start = split_after(word, "initial")) {
-      into = &out.start;
-      more = chosen(subject.start, word, of_start->name);
-    } else if (const auto of_system = split_after(word, "parameters")) {
-      into = &out.parameters;
-      more = chosen(subject.parameters, word, of_system->name);
-    } else {
-      throw GradientRefused(fmt::format("{}: derivatives are by initial.NAME or parameters.NAME", word));
-    }
-    for (const int each : more)
-      if (std::find(into->begin(), into->end(), each) == into->end()) into->push_back(each);
-  }
-  return out;
-}
-
 Observed observed_at(const std::string& place) {
   if (place == "final") return Observed::at_end();
   if (place == "integral") return Observed::integral();
   return Observed::at_node(std::stol(place.substr(5)));
 }
 
-std::vector<std::string> names_of(const GradientSubject& subject, const Columns& columns) {
+/// final, node.10, integral of a row.
+std::string place_of(const std::string& row) { return row.substr(0, row.find('.', row.starts_with("node.") ? 5 : 0)); }
+
+std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns) {
   std::vector<std::string> out;
   for (const int i : columns.parameters) out.push_back(subject.parameters[std::size_t(i)].name);
   return out;
 }
 
 /// Functions at a place, by all columns, in the direction that costs less.
-Propagated propagated(const GradientSubject& subject, const Columns& columns, const Observed& observed,
+Propagated propagated(const GradientSubject& subject, const GradientColumns& columns, const Observed& observed,
                       std::size_t rows) {
   const auto motion = subject.begin(names_of(subject, columns), {});
   const Eigen::Index states = motion->states();
@@ -116,7 +94,7 @@ Propagated propagated(const GradientSubject& subject, const Columns& columns, co
 
 /// The values at a place, of a run from a start that differs.
 Eigen::VectorXd values_of(const GradientSubject& subject, const Nudge& nudge, const Observed& observed) {
-  const auto motion = subject.begin({}, nudge);
+  const auto motion = subject.begin({}, {nudge});
   const Propagated out =
       propagate_forward(*motion, subject.steps, Eigen::MatrixXd::Zero(motion->states(), 0), observed);
   if (!out.converged()) throw GradientRefused("a run beside this one ended early: " + out.message);
@@ -145,13 +123,48 @@ Eigen::VectorXd difference(const GradientSubject& subject, Nudge nudge, double s
 
 }  // namespace
 
+GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words) {
+  GradientColumns out;
+  for (const std::string& word : words) {
+    std::vector<int>* into = nullptr;
+    std::vector<int> more;
+    if (const auto of_start = split_after(word, "initial")) {
+      into = &out.start;
+      more = chosen(subject.start, word, of_start->name);
+    } else if (const auto of_system = split_after(word, "parameters")) {
+      into = &out.parameters;
+      more = chosen(subject.parameters, word, of_system->name);
+    } else {
+      throw GradientRefused(fmt::format("{}: derivatives are by initial.NAME or parameters.NAME", word));
+    }
+    for (const int each : more)
+      if (std::find(into->begin(), into->end(), each) == into->end()) into->push_back(each);
+  }
+  return out;
+}
+
+std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
+                                         const std::vector<Nudge>& nudges) {
+  Eigen::VectorXd out(Eigen::Index(table.rows.size()));
+  for (std::size_t first = 0; first < table.rows.size();) {
+    const std::string place = place_of(table.rows[first]);
+    const auto motion = subject.begin({}, nudges);
+    const Propagated run =
+        propagate_forward(*motion, subject.steps, Eigen::MatrixXd::Zero(motion->states(), 0), observed_at(place));
+    if (!run.converged()) return std::nullopt;
+    for (; first < table.rows.size() && place_of(table.rows[first]) == place; ++first)
+      out(Eigen::Index(first)) = run.values(table.observed[first]);
+  }
+  return out;
+}
+
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
                             const std::vector<std::string>& by, bool check) {
   GradientTable out;
   out.system = subject.system;
   out.steps = subject.steps;
   out.checked = check;
-  const Columns columns = columns_of(subject, by);
+  const GradientColumns columns = columns_of(subject, by);
   for (const int i : columns.start) out.columns.push_back("initial." + subject.start[std::size_t(i)].name);
   for (const std::string& name : names_of(subject, columns)) out.columns.push_back("parameters." + name);
   std::vector<std::pair<std::string, std::vector<int>>> places;
@@ -186,6 +199,7 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
     for (const int row : rows) {
       const auto at = Eigen::Index(out.rows.size());
       out.rows.push_back(place + "." + subject.observed[std::size_t(row)].name);
+      out.observed.push_back(row);
       out.values(at) = found.values(row);
       out.derivatives.row(at) = found.derivatives.row(row);
     }

@@ -8,6 +8,7 @@
 
 #include "gradient_subject.hpp"
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct GradientTable {
   std::string system;
   long steps = 0;
   std::vector<std::string> rows;     ///< final.x, node.10.px, integral.x
+  std::vector<int> observed;         ///< their places in GradientSubject::observed
   std::vector<std::string> columns;  ///< initial.x, parameters.strength
   Eigen::VectorXd values;            ///< of the rows
   Eigen::MatrixXd derivatives;
@@ -34,6 +36,16 @@ struct GradientTable {
   double digits_agreed = 0;     ///< the fewest, to the largest of each row
   std::string failure;          ///< of a run that ended early
 };
+
+/// The starts and the parameters that words initial.NAME and parameters.NAME choose, each once.
+struct GradientColumns {
+  std::vector<int> start;       ///< places in GradientSubject::start
+  std::vector<int> parameters;  ///< and in GradientSubject::parameters
+};
+GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words);
+/// The rows of the table, one after another, of a run from a start that differs; none where it ended early.
+std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
+                                         const std::vector<Nudge>& nudges);
 
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
                             const std::vector<std::string>& by, bool check);

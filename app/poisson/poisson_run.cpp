@@ -76,14 +76,29 @@ class PoissonMotion final : public Motion {
   void keep_node() override {
     kept_ = integrator_->point();
     kept_time_ = time();
+    rest_ = 1;
   }
   const Observables* look_within(double share) override {
-    PoissonOptions part = options_;
-    if (share > 0) part.step *= share;  // there is no step of size zero
-    inside_ = system_->begin(kept_, part);
-    if (share > 0 && !inside_->advance().converged()) return nullptr;
-    node_.see(index_, kept_time_ + share * options_.step, *inside_);
+    if (!go_within(share)) return nullptr;
+    node_.see(index_, kept_time_ + share * rest_ * options_.step, *inside_);
     return &node_;
+  }
+  /// Of a Poisson manifold a kick is one of the state.
+  Changeable changeable() const override { return {.momenta = {{"", entry_.labels.size()}}}; }
+  std::string refused(double share, const MotionChange& change) override {
+    if (!go_within(share)) return "a part of the step does not converge; use a smaller time.step";
+    return system_->refusal(kicked(change));
+  }
+  StepReport change_within(double share, const MotionChange& change) override {
+    StepReport report;
+    if (!go_within(share)) return report;
+    kept_ = kicked(change);
+    kept_time_ += share * rest_ * options_.step;
+    rest_ *= 1 - share;
+    if (!go_within(1)) return report;
+    integrator_->go_on_from(inside_->point());
+    report.status = SolveStatus::converged;
+    return report;
   }
   std::vector<NamedVector> state() const override { return {{"state", integrator_->point()}}; }
   std::optional<double> defect() const override { return {}; }
@@ -107,6 +122,19 @@ class PoissonMotion final : public Motion {
   }
 
  private:
+  bool go_within(double share) {
+    PoissonOptions part = options_;
+    if (share > 0) part.step *= share * rest_;  // there is no step of size zero
+    inside_ = system_->begin(kept_, part);
+    return share == 0 || inside_->advance().converged();
+  }
+  /// Where it is within, changed.
+  std::vector<double> kicked(const MotionChange& change) const {
+    std::vector<double> x = inside_->point();
+    for (std::size_t i = 0; i < change.kick.size(); ++i) x[i] += change.kick[i];
+    return x;
+  }
+
   const PoissonEntry& entry_;
   std::shared_ptr<const AnyPoissonSystem> system_;
   PoissonOptions options_;
@@ -114,8 +142,9 @@ class PoissonMotion final : public Motion {
   int stages_;
   PoissonNode node_;
   long index_ = 0;
-  std::vector<double> kept_;  ///< the node before the last step
+  std::vector<double> kept_;  ///< the node before the last step, or where it was changed
   double kept_time_ = 0;
+  double rest_ = 1;                            ///< of the step, from there on
   std::unique_ptr<PoissonIntegrator> inside_;  ///< of a share of that step
 };
 

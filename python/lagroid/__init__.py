@@ -29,7 +29,7 @@ from .optimal_control import ControlResult, control
 from .optimisation import Manifold, Optimum, ProductManifold, Sphere, Stiefel, minimise, optimize
 from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
 from .scenes import require, resume, run, scene_text, systems
-from .studies import GradientTable, Method, check, gradient, methods, study
+from .studies import GradientTable, Method, Uncertainty, check, gradient, methods, study, uncertainty
 from .sweeps import Sweep, sweep
 
 __all__ = [
@@ -71,6 +71,7 @@ __all__ = [
     "System",
     "Trajectories",
     "Trajectory",
+    "Uncertainty",
     "__version__",
     "check",
     "gradient",
@@ -87,6 +88,7 @@ __all__ = [
     "sweep",
     "systems",
     "trajectories",
+    "uncertainty",
 ]
 
 __all__ += _lagroid.__all__

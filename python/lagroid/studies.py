@@ -16,7 +16,7 @@ from .errors import SolveError
 from .programs import output_of, program
 from .scenes import SceneLike, is_file, made, settings
 
-__all__ = ["GradientTable", "Method", "check", "gradient", "methods", "study"]
+__all__ = ["GradientTable", "Method", "Uncertainty", "check", "gradient", "methods", "study", "uncertainty"]
 
 
 class Method(NamedTuple):
@@ -110,6 +110,52 @@ def gradient(
         found["digits_left"],
         None if differences is None else np.array(differences),
         found.get("digits_agreed"),
+    )
+
+
+class Uncertainty(NamedTuple):
+    """What errors of the start and of parameters become: a row for each function, a column for each error."""
+
+    of: list[str]
+    by: list[str]
+    values: NDArray[np.float64]
+    deviations: NDArray[np.float64]
+    derivatives: NDArray[np.float64]
+    covariance: NDArray[np.float64]
+    drawn_mean: Optional[NDArray[np.float64]]
+    drawn_covariance: Optional[NDArray[np.float64]]
+
+
+def uncertainty(
+    scene: SceneLike,
+    deviations: Mapping[str, float],
+    *,
+    of: Sequence[str] = ("final",),
+    set: Optional[Mapping[str, Any]] = None,
+    draws: int = 0,
+    seed: int = 1,
+) -> Uncertainty:
+    """The covariance of functions of a scene's run where its start and its parameters have independent normal errors,
+    `deviations` = {"initial.momentum": 0.01, "parameters.length": 0.02}, by exact derivatives in the linear
+    approximation, and with `draws` that of so many runs from starts drawn at random (docs/gradients.md). Raises what
+    `gradient` raises."""
+    errors = ",".join(f"{name}={size!r}" for name, size in deviations.items())
+    arguments = ["--of", ",".join(of), "--deviations", errors]
+    if draws:
+        arguments += ["--draws", str(draws), "--seed", str(seed)]
+    found = told_by("gradient", scene, set, arguments)
+    if found.get("status") == "failed":
+        raise SolveError(found["message"])
+    drawn = found.get("draws")
+    return Uncertainty(
+        found["of"],
+        found["by"],
+        np.array(found["values"]),
+        np.array(found["deviations"]),
+        np.array(found["derivatives"]),
+        np.array(found["covariance"]),
+        None if drawn is None else np.array(drawn["mean"]),
+        None if drawn is None else np.array(drawn["covariance"]),
     )
 
 

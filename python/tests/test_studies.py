@@ -98,6 +98,24 @@ class Studies(unittest.TestCase):
         self.assertEqual(found.by[1], "parameters.strength")
         self.assertIsNone(found.differences)
 
+    def test_uncertainty_hands_over_to_the_same_program(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "lagroid-gradient"
+            program.write_text(
+                '#!/bin/sh\n[ "$*" = "$1 --json --of final.x --deviations initial.momentum=0.01 --draws 10 --seed 3" ] '
+                "|| exit 1\n"
+                'echo \'{"of": ["final.x"], "by": ["initial.px"], "values": [1.5], "derivatives": [[2]],'
+                ' "deviations": [0.01], "covariance": [[4e-4]], "draws": {"mean": [1.4], "covariance": [[5e-4]]}}\'\n'
+            )
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
+                found = lagroid.uncertainty(
+                    EXAMPLES / "kepler.toml", {"initial.momentum": 0.01}, of=["final.x"], draws=10, seed=3
+                )
+        self.assertEqual(found.covariance.tolist(), [[4e-4]])
+        assert found.drawn_mean is not None
+        self.assertEqual(found.drawn_mean.tolist(), [1.4])
+
     def test_check_without_its_program_says_how_to_build_it(self) -> None:
         with mock.patch("lagroid.programs._lagroid.__file__", "/nowhere/python/lagroid/_lagroid.so", create=True):
             with mock.patch.dict(os.environ, {"PATH": "/nowhere"}):

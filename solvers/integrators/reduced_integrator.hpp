@@ -25,7 +25,10 @@ template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : pu
   ReducedIntegrator(const Down& down, const IntegratorOptions& options)
       : down_(down),
         below_(make_integrator(down.system(), down.initial(), down.configuration(), options)),
-        point_(down_.full(below_->point())) {}
+        is_one_arrow_(options.composition.stages() == 1),
+        kept_(down_),
+        point_(down_.full(below_->point())),
+        kept_point_(point_) {}
 
   StepReport advance() override {
     const StepReport report = below_->advance();
@@ -42,6 +45,26 @@ template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : pu
       below_->for_each_inner_stage(
           [&](const Step<Below>& step, double start, double size) { visit(down_.full_step(step, size), start, size); });
   }
+  /// Steps of one arrow can be made in part: the full motion knows of each arrow below.
+  bool cuts() const override { return is_one_arrow_ && below_->cuts(); }
+  void keep_node() override {
+    below_->keep_node();
+    kept_ = down_;
+    kept_point_ = point_;
+  }
+  [[gnu::cold]] StepReport cut(double share, TrajectoryPoint<Sys>& to) override {
+    if (share == 0) {
+      to = kept_point_;
+      return {SolveStatus::converged};
+    }
+    TrajectoryPoint<Below> inside;
+    const StepReport report = below_->cut(share, inside);
+    if (!report.converged()) return report;
+    Down down = kept_;
+    down.join(inside.step, inside.step_size);
+    to = down.full(inside);
+    return report;
+  }
   long without_root() const override { return below_->without_root(); }
   void serialize(NumberArchive& archive) override {
     below_->serialize(archive);
@@ -56,7 +79,9 @@ template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : pu
  private:
   Down down_;
   std::unique_ptr<Integrator<Below>> below_;
-  TrajectoryPoint<Sys> point_;
+  bool is_one_arrow_;
+  Down kept_;  ///< at the node from which steps are made in part
+  TrajectoryPoint<Sys> point_, kept_point_;
 };
 
 }  // namespace lagroid

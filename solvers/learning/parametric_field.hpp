@@ -89,7 +89,7 @@ template <class P, int K, class S = double> class ParametricField {
     for (S& x : theta_) x = *theta++;
   }
 
-  void operator()(double, const Z& z, Z& f) {
+  [[gnu::noinline]] LAGROID_FLATTEN void operator()(double, const Z& z, Z& f) {
     solve(z);
     value_and_gradient<P, S, K>(potential_, place_, theta_.data(), scratch_.data(), gradient_);
     for (int i = 0; i < bodies(); ++i) {

@@ -97,6 +97,7 @@ template <class Sys, class Formula> class NoisyPoissonSteps final : public Poiss
     return report;
   }
   std::vector<double> point() const override { return {x_.data(), x_.data() + x_.size()}; }
+  void go_on_from(const std::vector<double>& point) override { x_ = Eigen::Map<const X>(point.data()); }
   double time() const override { return double(index_) * h_; }
   MethodTraits traits() const override { return {name_, 1, false, !thermostat_ && Formula::kept.bracket == 0, false}; }
   KeptStructure kept() const override {

@@ -49,6 +49,8 @@ class PoissonIntegrator {
   virtual ~PoissonIntegrator() = default;
   virtual StepReport advance() = 0;
   virtual std::vector<double> point() const = 0;
+  /// Goes on from another state at this time. Requires as many numbers.
+  virtual void go_on_from(const std::vector<double>& point) = 0;
   virtual double time() const = 0;
   virtual MethodTraits traits() const = 0;
   virtual KeptStructure kept() const = 0;

@@ -46,6 +46,7 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
     return report;
   }
   std::vector<double> point() const override { return {x_.data(), x_.data() + x_.size()}; }
+  void go_on_from(const std::vector<double>& point) override { x_ = Eigen::Map<const X>(point.data()); }
   double time() const override { return double(index_) * options_.step; }
   MethodTraits traits() const override {
     const bool composed = options_.composition.stages() > 1;

@@ -63,6 +63,7 @@ class Boaster final : public PoissonIntegrator {
       : made_(std::move(made)), kept_(kept), order_(order) {}
   StepReport advance() override { return made_->advance(); }
   std::vector<double> point() const override { return made_->point(); }
+  void go_on_from(const std::vector<double>& point) override { made_->go_on_from(point); }
   double time() const override { return made_->time(); }
   MethodTraits traits() const override {
     MethodTraits traits = made_->traits();

@@ -306,6 +306,26 @@ set = ["strength = 1.5"]
   }
 }
 
+/// The full motion of a reduced run is seen inside of steps, too: its angles are those of the run that is not reduced.
+TEST_F(Events, OfReducedRunsAreThoseOfTheFullMotion) {
+  const auto times = [&](const std::string& name, const std::string& more) {
+    const fs::path out = folder_ / (name + more);
+    const Outcome r =
+        run("run " + with(name, "[[event]]\nname = \"up\"\nwhen = \"y - 0.1*x\"\ndirection = \"rising\"\n") +
+            " --set time.steps=3000" + more + " --out '" + out.string() + "'");
+    EXPECT_EQ(r.code, 0) << r.err << r.out;
+    std::vector<double> found;
+    const Json happened = summary(out).at("events");
+    for (const Json& row : happened.at("rows")) found.push_back(row.at("t").get<double>());
+    return found;
+  };
+  const std::vector<double> reduced = times("kepler_reduced", ""), full = times("kepler", " time.step=0.01");
+  ASSERT_EQ(reduced.size(), 5u);
+  ASSERT_EQ(full.size(), 5u);
+  // Both are of order two.
+  for (std::size_t i = 0; i < reduced.size(); ++i) EXPECT_NEAR(reduced[i], full[i], 2e-2) << i;
+}
+
 TEST_F(Events, OfPoissonSystemsAreFoundWhereTheyAre) {
   const fs::path out = folder_ / "prey";
   const std::string event =
@@ -315,7 +335,26 @@ TEST_F(Events, OfPoissonSystemsAreFoundWhereTheyAre) {
   ASSERT_EQ(r.code, 0) << r.err << r.out;
   EXPECT_NEAR(summary(out).at("final").at("time").get<double>(), 7.7, 1e-12);
   EXPECT_NE(r.out.find("ended by event \"end\""), std::string::npos) << r.out;
-  expect_refused("run " + with("lotka_volterra", "[[event]]\nname = \"x\"\nwhen = \"x - 1\"\nkick = [\"1\", \"0\"]\n"),
+}
+
+TEST_F(Events, KickTheStateOfPoissonSystems) {
+  const fs::path out = folder_ / "hunted";
+  const auto hunt = [&](const std::string& share) {
+    return "[[event]]\nname = \"hunt\"\nwhen = \"x\"\nat = \"maximum\"\nkick = [\"-" + share + "*x\", \"0\"]\n";
+  };
+  const Outcome r = run("run " + with("lotka_volterra", hunt("0.25")) + " --set time.steps=200 --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err << r.out;
+  EXPECT_EQ(r.out.find("BROKEN"), std::string::npos) << r.out;
+  const Json rows = summary(out).at("events").at("rows");
+  ASSERT_GE(rows.size(), 1u);
+  const Outcome dead =
+      run("run " + with("lotka_volterra", hunt("1.5")) + " --set time.steps=200 --out " + (folder_ / "dead").string());
+  EXPECT_NE(dead.code, 0);
+  EXPECT_NE((dead.out + dead.err).find("event \"hunt\": between t = "), std::string::npos) << dead.out << dead.err;
+}
+
+TEST_F(Events, ThatWouldKickSpheresAreRefused) {
+  expect_refused("run " + with("pendulum_chain", "[[event]]\nname = \"x\"\nwhen = \"z1\"\nkick = [\"1\"]\n"),
                  "nothing can be added to the momentum on the way");
 }
 
@@ -328,7 +367,11 @@ TEST_F(Events, ThatCannotBeReadAreRefusedInALine) {
   refused("name = \"x\"\nwhen = \"q\"\nat = \"minimum\"\ndirection = \"rising\"\n", "direction");
   refused("name = \"x\"\nwhen = \"q\"\ncount = 2\n", "count");
   refused("name = \"x\"\nwhen = \"q\"\nplot = [\"q\", \"height\"]\n", "it cannot be drawn over \"height\"");
-  expect_refused("run " + with("kepler_reduced", "[[event]]\nname = \"x\"\nwhen = \"x\"\n"), "nothing inside of steps");
+  const std::string event = "[[event]]\nname = \"x\"\nwhen = \"x\"\n";
+  expect_refused("run " + with("kepler_reduced", event) + " --set time.order=4", "nothing inside of steps");
+  // Expressions have no derivative.
+  expect_refused("gradient " + with("pendulum", event) + " --of final.position --wrt parameters.gravity",
+                 "gradient is of the whole run");
 }
 
 }  // namespace
