@@ -155,6 +155,10 @@ int program(int argc, char** argv, ProgramParts parts) {
       "gradient", "exact derivatives of a run by its start and its parameters: lagroid gradient --help");
   gradient_command->set_help_flag();
   gradient_command->prefix_command();
+  CLI::App* fit_command =
+      app.add_subcommand("fit", "parameters and starts of a scene from measured columns: lagroid fit --help");
+  fit_command->set_help_flag();
+  fit_command->prefix_command();
   CLI::App* list_command = app.add_subcommand("list", "list the systems a scene can name");
   std::string listed_system;
   list_command->add_option("system", listed_system, "one of them alone");
@@ -180,7 +184,7 @@ int program(int argc, char** argv, ProgramParts parts) {
     }
     if (schema_command->parsed()) return schema(schema_options);
     if (check_command->parsed()) return hand_over_beside("check", "no_laws", "laws", options, argc - 1, argv + 1);
-    if (gradient_command->parsed())
+    if (gradient_command->parsed() || fit_command->parsed())
       return hand_over_beside("gradient", "no_gradients", "derivatives of runs", options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options, false, commands);
     if (resume_command->parsed()) return run(options, true, commands);

@@ -4,8 +4,10 @@
 BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres, parts/poisson
 and parts/files.
 """
+import csv
 import json
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -89,6 +91,107 @@ class Parts(unittest.TestCase):
                     "--deviations", "initial.momentum=0.02")
         self.assertIn("% by initial.p", table.stdout)
         self.assertIn("correlations", table.stdout)
+
+    def measured(self, folder, name, noise=0.0, seed=1, *settings):
+        """The rows of a pendulum's run, with normal errors in q and p, as a file."""
+        out = pathlib.Path(folder) / f"{name} run"
+        told = run(of_part("pendulum"), "run", examples / "pendulum.toml", "--set", "time.steps=200", *settings, "--out", out)
+        self.assertEqual(told.returncode, 0, told.stderr)
+        draw = random.Random(seed)
+        rows = list(csv.DictReader((out / "trajectory.csv").open()))
+        file = pathlib.Path(folder) / f"{name}.csv"
+        lines = ["t,q,p,energy"]
+        for i, row in enumerate(rows):
+            q, p = (repr(float(row[key]) + noise * draw.gauss(0, 1)) for key in ("q", "p"))
+            lines.append(f"{row['t']},{q},{'' if i % 7 == 3 else p},{row['energy']}")  # some momenta are missing
+        file.write_text("\n".join(lines) + "\n")
+        return file
+
+    def fitted(self, *words, code=0):
+        told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", *words, "--json")
+        self.assertEqual(told.returncode, code, told.stderr + told.stdout)
+        return json.loads(told.stdout)
+
+    def test_parameters_come_back_from_what_was_measured(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.measured(folder, "exact", 0.0, 1, "--set", "parameters.length=1.3", "--set", "parameters.mass=0.8")
+            found = self.fitted(data, "--wrt", "parameters.length,parameters.mass,initial")
+            value = {each["name"]: each["value"] for each in found["unknowns"]}
+            self.assertEqual(found["status"], "converged")
+            self.assertAlmostEqual(value["parameters.length"], 1.3, delta=1e-9)
+            self.assertAlmostEqual(value["parameters.mass"], 0.8, delta=1e-9)
+            self.assertEqual((found["undetermined"], found["ignored"]), ([], ["energy"]))
+            # Angles alone know of no mass; and of length and gravity their ratio.
+            found = self.fitted(data, "--of", "q", "--wrt", "parameters", "--set", "initial.momentum=0")
+            self.assertEqual(len(found["undetermined"]), 2)
+
+    def test_what_is_fitted_is_as_far_off_as_its_deviation_says(self):
+        with tempfile.TemporaryDirectory() as folder:
+            squares, counts, whites = 0.0, 0, 0
+            for seed in range(12):
+                data = self.measured(folder, f"noisy{seed}", 0.01, seed, "--set", "parameters.length=1.1")
+                found = self.fitted(data, "--wrt", "parameters.length,initial.momentum", "--sigma", "q=0.01,p=0.01")
+                self.assertAlmostEqual(found["scale"], 1, delta=0.2)
+                whites += sum(each["white"] for each in found["columns"])
+                length = found["unknowns"][1]
+                self.assertEqual(length["name"], "parameters.length")
+                squares += ((length["value"] - 1.1) / length["deviation"]) ** 2
+                counts += 1
+            self.assertGreaterEqual(whites, 22)
+            # Chi squared of twelve: outside of these once in a thousand.
+            self.assertTrue(2.2 < squares < 33, squares)
+
+    def test_runs_share_parameters_and_have_their_own_starts(self):
+        with tempfile.TemporaryDirectory() as folder:
+            files = [self.measured(folder, f"run{i}", 0.0, 1, "--set", "parameters.length=1.2", "--set",
+                                   f"initial.momentum={p}") for i, p in enumerate((0.1, -0.3))]
+            found = self.fitted(*files, "--wrt", "parameters.length,initial.momentum")
+            value = {each["name"]: each["value"] for each in found["unknowns"]}
+            self.assertAlmostEqual(value["initial.p of run 1"], 0.1, delta=1e-9)
+            self.assertAlmostEqual(value["initial.p of run 2"], -0.3, delta=1e-9)
+            self.assertAlmostEqual(value["parameters.length"], 1.2, delta=1e-9)
+
+    def test_outliers_are_borne_bounds_kept_and_residuals_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.measured(folder, "outliers", 0.001, 3, "--set", "parameters.length=1.2")
+            lines = data.read_text().splitlines()
+            for k in range(10, 200, 17):
+                t, q, *others = lines[k].split(",")
+                lines[k] = ",".join([t, repr(float(q) + 0.5), *others])
+            data.write_text("\n".join(lines) + "\n")
+            words = (data, "--wrt", "parameters.length", "--sigma", "q=0.001,p=0.001")
+            off = [abs(self.fitted(*words, *more)["unknowns"][0]["value"] - 1.2) for more in ((), ("--huber", "2"))]
+            self.assertLess(off[1], 0.2 * off[0])
+            table = pathlib.Path(folder) / "residuals.csv"
+            bounded = self.fitted(*words, "--bounds", "parameters.length=0.9:1.1", "--residuals", table, "--starts", "3")
+            self.assertTrue(bounded["unknowns"][0]["at_bound"])
+            self.assertAlmostEqual(bounded["unknowns"][0]["value"], 1.1, delta=1e-9)
+            self.assertEqual(len(bounded["other_costs"]), 2)
+            rows = list(csv.DictReader(table.open()))
+            self.assertEqual(set(row["column"] for row in rows), {"q", "p"})
+            text = run(of_part("pendulum"), "fit", examples / "pendulum.toml", *words)
+            self.assertIn("not as independent errors do", text.stdout)
+
+    def test_data_that_cannot_be_fitted_are_refused_in_a_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def refused(text, said, *words):
+                file = pathlib.Path(folder) / "bad.csv"
+                file.write_text(text)
+                told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", file, *words)
+                self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+                self.assertIn(said, told.stderr)
+
+            refused("q,p\n1,2\n", "no column t, the time")
+            refused("t,height\n0,1\n", "nothing in it is a column of the run; there are q, p")
+            refused("t,q\n0.012345,1\n", "row 2: t = 0.012345 is no node of the run")
+            refused("t,q\n0,one\n", "row 2: \"one\" is no number")
+            refused("t,q\n0,1\n", "parameters.colour: nothing of that name", "--wrt", "parameters.colour")
+            refused("t,q\n0,1\n", "COLUMN=SIGMA", "--sigma", "q")
+            refused("t,q\n0,1\n", "no such column of the run", "--sigma", "height=1")
+            refused("t,q\n0,1\n", "it has bounds, but is not to be fitted", "--wrt", "initial", "--bounds",
+                    "parameters.length=1:2")
+            refused("t,q\n0,1\n", "which is not from 2 to 3", "--bounds", "parameters.length=2:3")
+            refused("", "no header; the first line names t and columns of the run")
 
     def test_gradients_that_there_are_not_are_refused_in_a_line(self):
         for words, said in {

@@ -336,7 +336,11 @@ void read_kind(const std::vector<SceneKind>& kinds, SceneBodies& bodies, const S
   for (const SceneKind& kind : kinds) {
     if (kind.name != name) continue;
     if (kind.has_switch) begin_switch(bodies, table);
+    const std::size_t before = bodies.lines.size();
     kind.read(bodies, table);
+    if (kind.has_switch && table.has(switch_name.name))
+      for (std::size_t k = before; k < bodies.lines.size(); ++k)
+        bodies.lines[k].switched_by = int(bodies.scene.switches().names.size()) - 1;
     bodies.scene.end_switch();
     bodies.is_off = false;
   }

@@ -59,6 +59,7 @@ struct SceneBodies {
   struct Line {
     Attachment from, to;
     double width;
+    int switched_by = 0;  ///< Switches: it is drawn while that is on
   };
   std::vector<Line> lines;
   std::vector<Shape> scenery;  ///< what stands around: a plate

@@ -29,10 +29,7 @@ SceneNode::SceneNode(const multibody::Multibody& motion, const SceneBodies& bodi
     shown_.push_back(&b);
     add_body(b);
   }
-  for (std::size_t k = 0; k < bodies.lines.size(); ++k)
-    for (const auto& [end, name] : {std::pair{&bodies.lines[k].from, "from"}, {&bodies.lines[k].to, "to"}})
-      if (end->moved || (end->body && !end->arm.isZero(0) && is_shown(*end->body)))
-        add_point(end_column(k, name), end->site);
+  for (std::size_t k = 0; k < bodies.lines.size(); ++k) add_line(k, bodies.lines[k], is_shown);
   add({"energy", {"energy"}, "J", "kinetic and potential energy", false, {}}, [this](double* row) { *row = energy(); });
   if (controlled)
     add({"step_size", {"h"}, "s", "step size of the arrow that led here", false, {}},
@@ -100,6 +97,28 @@ void SceneNode::watch(Watched quantity, Measure measure) {
 void SceneNode::add_point(const std::string& name, multibody::Site site) {
   add({name, columns(name, {"x", "y", "z"}), "m", "position in space", false, {}},
       [this, site](double* row) { put(motion_.configuration()(motion_(site)), row); });
+}
+
+/// Its ends, where no other column has them. One that can be switched ends where it begins while it is off.
+void SceneNode::add_line(std::size_t number, const SceneBodies::Line& line,
+                         const std::function<bool(const NamedBody&)>& is_shown) {
+  const auto is_point = [&](const Attachment& end) {
+    return end.moved || (end.body && !end.arm.isZero(0) && is_shown(*end.body));
+  };
+  if (line.switched_by == 0) {
+    for (const auto& [end, name] : {std::pair{&line.from, "from"}, {&line.to, "to"}})
+      if (is_point(*end)) add_point(end_column(number, name), end->site);
+    return;
+  }
+  for (const Attachment* end : {&line.from, &line.to})
+    if (end->body && !is_shown(*end->body)) return;
+  const std::string name = end_column(number, "to");
+  if (is_point(line.from)) add_point(end_column(number, "from"), line.from.site);
+  add({name, columns(name, {"x", "y", "z"}), "m", "position in space; of its other end while it is off", false, {}},
+      [this, &line](double* row) {
+        const bool on = motion_.switches().on[std::size_t(line.switched_by)] != 0;
+        put(motion_.configuration()(motion_(on ? line.to.site : line.from.site)), row);
+      });
 }
 
 void SceneNode::add_body(const NamedBody& b) {

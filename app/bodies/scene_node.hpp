@@ -47,6 +47,8 @@ class SceneNode final : public Observables {
   void add(Columns columns, Read read);
   void watch(Watched quantity, Measure measure);
   void add_point(const std::string& name, multibody::Site site);
+  void add_line(std::size_t number, const SceneBodies::Line& line,
+                const std::function<bool(const NamedBody&)>& is_shown);
   void add_body(const NamedBody& body);
   const multibody::Vec& linear_momentum(int linear) const;
   double momentum_size() const;

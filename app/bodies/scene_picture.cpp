@@ -79,6 +79,7 @@ std::vector<Shape> shapes_of(const SceneBodies& bodies, const std::set<std::stri
   for (std::size_t k = 0; k < bodies.lines.size(); ++k) {
     const auto& line = bodies.lines[k];
     const auto end = [&](const Attachment& e, const char* name) -> std::vector<Coordinate> {
+      if (line.switched_by != 0 && &e == &line.to) return at(end_column(k, name));
       if (!e.body && !e.moved) return {e.place(0), e.place(1), e.place(2)};
       return at(e.body && e.arm.isZero(0) ? e.body->name : end_column(k, name));
     };

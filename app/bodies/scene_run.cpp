@@ -223,8 +223,6 @@ class BodiesMotion final : public Motion {
   void describe(RunResult& result) const override {
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     if (bodies_.counts_cost) result.cost = cost_;
-    if (motion_->switches().on != first_switches_ && !bodies_.lines.empty())
-      result.notes.push_back("what was switched on the way is drawn as it was at the start");
     result.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
                                      {"attitude", "A carries body to space"},
                                      {"momenta", "tangent to the joints"}};
@@ -279,7 +277,6 @@ class BodiesMotion final : public Motion {
   std::optional<multibody::SceneState> whole_;  ///< where the motion is, while a point inside of its step is looked at
   double whole_step_ = 0;
   std::optional<double> rest_;  ///< what a change left of the last step (s)
-  std::vector<char> first_switches_ = motion_->switches().on;
 };
 
 }  // namespace

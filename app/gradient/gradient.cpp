@@ -1,12 +1,20 @@
+#include "fit.hpp"
 #include "gradient_table.hpp"
 #include "system_gradients.hpp"
 #include "uncertainty.hpp"
 
 #include "../command/command.hpp"
 #include "../families/family.hpp"
+#include "../reading/data_set.hpp"
+
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
 #include <utility>
 
 namespace lagroid::app {
@@ -22,7 +30,7 @@ struct GradientOptions : SceneOptions {
 };
 
 /// Prints what was found, and how it went.
-template <class Found> int report(const GradientOptions& options, const Found& found, const std::string& failure) {
+template <class Found> int report(const SceneOptions& options, const Found& found, const std::string& failure) {
   if (!options.json && !failure.empty()) {
     complain(fmt::format("{}: {}", options.scene, failure));
     return exit_failed;
@@ -31,22 +39,20 @@ template <class Found> int report(const GradientOptions& options, const Found& f
   return failure.empty() ? 0 : exit_failed;
 }
 
-int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
+/// Finds the scene's subject and calls use(subject); what cannot be done is said in one line.
+template <class Use>
+int with_subject(const SceneOptions& options, const std::vector<AskGradient>& subjects, const Use& use) {
   const Section scene = read_scene(options.scene, options.overrides);
   const SystemModule& module = module_of_scene(scene);
   for (const AskGradient ask : subjects) {
     const auto subject = ask(module, scene);
     if (!subject) continue;
     try {
-      if (!options.deviations.empty()) {
-        const Uncertainty found =
-            uncertainty_of(*subject, options.of, deviations_of(options.deviations), options.draws);
-        return report(options, found, found.table.failure);
-      }
-      const GradientTable table = differentiate(*subject, options.of, options.by, options.check);
-      return report(options, table, table.failure);
+      return use(*subject);
     } catch (const GradientRefused& refusal) {
       return refuse(options.json, exit_bad_input, "invalid_command_line", refusal.what());
+    } catch (const DataError& refusal) {
+      return refuse(options.json, exit_bad_input, "invalid_data", refusal.what());
     } catch (const std::invalid_argument& refusal) {
       return refuse(options.json, exit_bad_input, "no_derivative", refusal.what());
     }
@@ -55,11 +61,102 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
                 fmt::format("{}: there are no derivatives of runs of {}", options.scene, module.name()));
 }
 
+int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
+  return with_subject(options, subjects, [&](const GradientSubject& subject) {
+    if (!options.deviations.empty()) {
+      const Uncertainty found = uncertainty_of(subject, options.of, deviations_of(options.deviations), options.draws);
+      return report(options, found, found.table.failure);
+    }
+    const GradientTable table = differentiate(subject, options.of, options.by, options.check);
+    return report(options, table, table.failure);
+  });
+}
+
+struct FitCommandOptions : SceneOptions {
+  std::vector<std::string> data;
+  FitOptions fit;
+  std::vector<std::string> sigma, bounds;
+  std::string residuals;
+};
+
+/// NAME=NUMBER, or NAME=LOW:HIGH.
+double number_in(const std::string& word, std::size_t from, std::size_t to, const char* form) {
+  double x = 0;
+  const char* const end = word.data() + to;
+  const auto read = std::from_chars(word.data() + from, end, x);
+  if (read.ec != std::errc() || read.ptr != end || !std::isfinite(x))
+    throw GradientRefused(fmt::format("{}: give {}", word, form));
+  return x;
+}
+FitOptions fit_options(const FitCommandOptions& options) {
+  FitOptions out = options.fit;
+  for (const std::string& word : options.sigma) {
+    const std::size_t at = std::min(word.find('='), word.size());
+    const double sigma = number_in(word, std::min(at + 1, word.size()), word.size(), "COLUMN=SIGMA");
+    if (!(sigma > 0)) throw GradientRefused(fmt::format("{}: a sigma is positive", word));
+    out.sigma[word.substr(0, at)] = sigma;
+  }
+  for (const std::string& word : options.bounds) {
+    const std::size_t at = std::min(word.find('='), word.size()), colon = std::min(word.find(':', at), word.size());
+    const char* const form = "NAME=LOW:HIGH";
+    const double low = number_in(word, std::min(at + 1, word.size()), colon, form);
+    const double high = number_in(word, std::min(colon + 1, word.size()), word.size(), form);
+    if (!(low < high)) throw GradientRefused(fmt::format("{}: the first bound is the lower one", word));
+    out.bounds[word.substr(0, at)] = {low, high};
+  }
+  return out;
+}
+
+int fit_of_scene(const FitCommandOptions& options, const std::vector<AskGradient>& subjects) {
+  return with_subject(options, subjects, [&](const GradientSubject& subject) {
+    const Fit fit = fit_scene(subject, options.data, fit_options(options));
+    if (fit.failure.empty() && !options.residuals.empty()) write_text(csv_of(fit), options.residuals);
+    const int code = report(options, fit, fit.failure);
+    return code == 0 && !fit.converged() ? exit_failed : code;
+  });
+}
+
+int fit_program(int argc, char** argv, const std::vector<AskGradient>& subjects) {
+  CLI::App app{"parameters and starts of a scene from measured columns", "lagroid fit"};
+  FitCommandOptions options;
+  add_scene_options(app, options);
+  app.add_option("data", options.data, "CSV files with the columns t and others of the run; one for each run")
+      ->required();
+  app.add_option("--wrt", options.fit.unknowns,
+                 "what is fitted: initial.NAME or parameters.NAME, separated by commas (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--of", options.fit.columns, "columns of the data to use, separated by commas (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--sigma", options.sigma,
+                 "COLUMN=SIGMA, separated by commas: the standard deviations of its errors (default: 1)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--bounds", options.bounds, "NAME=LOW:HIGH, separated by commas: what is fitted stays between")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--huber", options.fit.huber, "residuals beyond so many sigma weigh by their size, not its square")
+      ->check(CLI::PositiveNumber);
+  auto* starts = app.add_option("--starts", options.fit.starts, "guesses: the scene, and others drawn around it")
+                     ->check(CLI::Range(1, 10'000));
+  app.add_option("--spread", options.fit.spread, "of these, relative to each unknown (default 0.3)")
+      ->check(CLI::PositiveNumber)
+      ->needs(starts);
+  app.add_option("--seed", options.fit.seed, "of these")->needs(starts);
+  app.add_option("--residuals", options.residuals,
+                 "a CSV file to write: what was measured and what the fitted run has");
+  return command_line(app, argc, argv, options, [&] { return fit_of_scene(options, subjects); });
+}
+
 }  // namespace
 
 int gradient_program(int argc, char** argv, ProgramParts parts, const std::vector<AskGradient>& subjects) {
   use_families(std::move(parts.families));
   use_systems(std::move(parts.systems));
+  // As lagroid hands over to it (program.cpp), and as `lagroid-gradient fit`.
+  for (int i = 0; i < std::min(argc, 2); ++i)
+    if (argv[i] == std::string_view("fit")) return fit_program(argc - i, argv + i, subjects);
   CLI::App app{"exact derivatives of a scene's run, by its start and its parameters", "lagroid gradient"};
   GradientOptions options;
   add_scene_options(app, options);

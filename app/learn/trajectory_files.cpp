@@ -1,12 +1,13 @@
 #include "trajectory_files.hpp"
 
+#include "../reading/csv_table.hpp"
+
 #include <lagroid/run/files/hdf5_file.hpp>
 #include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -20,43 +21,21 @@ namespace {
 namespace fs = std::filesystem;
 using learning::Observation;
 
-/// Of UTF-8, as spreadsheets write it.
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<std::string_view> fields(std::string_view line) {
-  std::vector<std::string_view> out;
-  for (std::size_t from = 0; from <= line.size();) {
-    const std::size_t to = std::min(line.find(',', from), line.size());
-    out.push_back(trimmed(line.substr(from, to - from)));
-    from = to + 1;
-  }
-  return out;
-}
-
 /// The name of the i-th number of a state.
 std::string component(std::size_t i) { return fmt::format("{}{}{}", i % 6 < 3 ? 'q' : 'p', i / 6 + 1, "xyz"[i % 3]); }
 
 /// Where the columns stand.
 struct Header {
-  std::size_t width = 0;  ///< of a line
   std::size_t trajectory = 0;
   std::size_t time = 0;
   std::vector<std::size_t> state;
   std::size_t weight = std::string::npos;
 };
 
-Header read_header(std::string_view line, const std::string& file) {
+Header header_of(const CsvTable& table, const std::string& file) {
   std::map<std::string, std::size_t, std::less<>> at;
-  for (const std::string_view name : fields(line))
-    if (!at.emplace(name, at.size()).second)
-      throw DataError(fmt::format("{}: there are two columns {}; leave one", file, name));
+  for (const std::string& name : table.names) at.emplace(name, at.size());
   Header out;
-  out.width = at.size();
   const auto take = [&](const std::string& name) {
     const auto found = at.find(name);
     if (found == at.end())
@@ -79,24 +58,6 @@ Header read_header(std::string_view line, const std::string& file) {
   return out;
 }
 
-/// A header that another program wrote in its own way.
-void require_commas(std::string_view header, const std::string& file) {
-  const auto at = header.find_first_of(";\"\t");
-  if (at == header.npos) return;
-  const std::string found = header[at] == '\t' ? "tabs" : fmt::format("the character {}", header[at]);
-  throw DataError(
-      fmt::format("{}: {} in the header; columns are separated by commas, and names have no quotes", file, found));
-}
-
-double number(std::string_view word, const std::string& file, long line) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double x = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-  if (error != std::errc() || end != word.data() + word.size())
-    throw DataError(fmt::format("{}: row {}: \"{}\" is no number", file, line, word));
-  return x;
-}
-
 long label(double x, const std::string& file, long row) {
   if (x != std::floor(x) || std::abs(x) > 1e15)
     throw DataError(fmt::format("{}: row {}: trajectory {} is no whole number", file, row, x));
@@ -105,36 +66,20 @@ long label(double x, const std::string& file, long row) {
 
 std::vector<Observation> read_csv(const fs::path& path) {
   const std::string file = path.string();
-  std::ifstream in(path);
+  const CsvTable table = read_csv_table(path, "trajectory, t, q1x, q1y, q1z, p1x, ...", Gaps::refused);
+  const Header header = header_of(table, file);
   std::vector<Observation> out;
-  Header header;
-  long line_number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++line_number;
-    if (line_number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
-    if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
-    if (header.width == 0) {
-      require_commas(line, file);
-      header = read_header(line, file);
-      continue;
-    }
-    const auto words = fields(line);
-    if (words.size() != header.width)
-      throw DataError(fmt::format("{}: row {}: {} numbers, the header has {} columns; make them equal", file,
-                                  line_number, words.size(), header.width));
-    const auto at = [&](std::size_t column) { return number(words[column], file, line_number); };
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const std::vector<double>& numbers = table.rows[k];
     Observation row;
-    row.row = line_number;
-    row.trajectory = label(at(header.trajectory), file, line_number);
-    row.time = at(header.time);
+    row.row = table.lines[k];
+    row.trajectory = label(numbers[header.trajectory], file, row.row);
+    row.time = numbers[header.time];
     row.z.resize(Eigen::Index(header.state.size()));
-    for (std::size_t i = 0; i < header.state.size(); ++i) row.z(Eigen::Index(i)) = at(header.state[i]);
-    if (header.weight != std::string::npos) row.weight = at(header.weight);
+    for (std::size_t i = 0; i < header.state.size(); ++i) row.z(Eigen::Index(i)) = numbers[header.state[i]];
+    if (header.weight != std::string::npos) row.weight = numbers[header.weight];
     out.push_back(std::move(row));
   }
-  if (in.bad()) throw DataError(fmt::format("{}: cannot be read to its end", file));
-  if (header.width == 0)
-    throw DataError(fmt::format("{}: no header; the first line names trajectory, t, q1x, q1y, q1z, p1x, ...", file));
   return out;
 }
 

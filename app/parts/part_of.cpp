@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     return command;
   };
   const std::array scenes{with_scene("run", "scene"), with_scene("study", "scene"), with_scene("check", "scene"),
-                          with_scene("gradient", "scene")};
+                          with_scene("gradient", "scene"), with_scene("fit", "scene")};
   const std::array folders{with_scene("view", "run"), with_scene("plot", "run")};
   const CLI::App* resume = with_scene("resume", "run");
   app.allow_extras();

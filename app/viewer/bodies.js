@@ -101,6 +101,7 @@ class Body {
   stretch(end) {
     const along = end.sub(this.group.position);
     const length = along.length();
+    this.mesh.visible = length > 0;  // what is switched off ends where it begins
     if (length === 0) return;
     this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), along.clone().normalize());
     this.mesh.scale.z = length / this.length;

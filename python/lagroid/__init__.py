@@ -29,7 +29,7 @@ from .optimal_control import ControlResult, control
 from .optimisation import Manifold, Optimum, ProductManifold, Sphere, Stiefel, minimise, optimize
 from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
 from .scenes import require, resume, run, scene_text, systems
-from .studies import GradientTable, Method, Uncertainty, check, gradient, methods, study, uncertainty
+from .studies import GradientTable, Method, Uncertainty, check, fit, gradient, methods, study, uncertainty
 from .sweeps import Sweep, sweep
 
 __all__ = [
@@ -74,6 +74,7 @@ __all__ = [
     "Uncertainty",
     "__version__",
     "check",
+    "fit",
     "gradient",
     "learn",
     "methods",

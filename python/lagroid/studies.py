@@ -16,7 +16,7 @@ from .errors import SolveError
 from .programs import output_of, program
 from .scenes import SceneLike, is_file, made, settings
 
-__all__ = ["GradientTable", "Method", "Uncertainty", "check", "gradient", "methods", "study", "uncertainty"]
+__all__ = ["GradientTable", "Method", "Uncertainty", "check", "fit", "gradient", "methods", "study", "uncertainty"]
 
 
 class Method(NamedTuple):
@@ -159,15 +159,59 @@ def uncertainty(
     )
 
 
-def told_by(
-    command: str, scene: SceneLike, set: Optional[Mapping[str, Any]], arguments: Sequence[str]
+def fit(
+    scene: SceneLike,
+    data: Sequence[str | os.PathLike[str]],
+    wrt: Sequence[str],
+    *,
+    of: Sequence[str] = (),
+    sigma: Optional[Mapping[str, float]] = None,
+    bounds: Optional[Mapping[str, tuple[float, float]]] = None,
+    huber: float = 0.0,
+    starts: int = 1,
+    spread: float = 0.3,
+    seed: int = 1,
+    set: Optional[Mapping[str, Any]] = None,
 ) -> dict[str, Any]:
-    """What the program of a command that stands beside lagroid prints of a scene with --json."""
+    """Parameters and starts of a scene from measured columns, as `lagroid fit --json` tells them (docs/fit.md):
+    "unknowns", "covariance", "undetermined" and more.
+
+    `data`: CSV files, one for each run, with the columns `t` and others of the run; empty fields are gaps. `wrt`: what
+    is fitted, as "initial.momentum" or "parameters.length". `of`: the columns that are used, all by default. `sigma`:
+    deviations of their errors, 1 by default. `bounds`: of what is fitted. `huber`: beyond so many sigma a residual
+    weighs by its size. `starts`: guesses, others than the scene's being drawn around it by `spread`. Raises what
+    `gradient` raises, and SolveError where no run comes to its end."""
+    files = [os.fspath(each) for each in data]
+    arguments = [*files, "--wrt", ",".join(wrt)]
+    if of:
+        arguments += ["--of", ",".join(of)]
+    if sigma:
+        arguments += ["--sigma", ",".join(f"{name}={size!r}" for name, size in sigma.items())]
+    if bounds:
+        arguments += ["--bounds", ",".join(f"{name}={low!r}:{high!r}" for name, (low, high) in bounds.items())]
+    if huber:
+        arguments += ["--huber", repr(huber)]
+    if starts > 1:
+        arguments += ["--starts", str(starts), "--spread", repr(spread), "--seed", str(seed)]
+    found = told_by("gradient", scene, set, arguments, word="fit")
+    if found["status"] == "failed":
+        raise SolveError(found["message"])
+    return found
+
+
+def told_by(
+    command: str,
+    scene: SceneLike,
+    set: Optional[Mapping[str, Any]],
+    arguments: Sequence[str],
+    word: Optional[str] = None,
+) -> dict[str, Any]:
+    """What the program of a command that stands beside lagroid prints of a scene with --json, after a word."""
     asked = made(scene, set)
     text = asked.toml()  # what is mistaken in it is told here
     path = program(f"lagroid-{command}", f"LAGROID_{command.upper()}", f"lagroid_{command}")
     with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
-        words = [path]
+        words = [path] if word is None else [path, word]
         if is_file(scene):  # itself, because what it names stands beside it
             name = asked.name
             words += [name, "--json", *arguments]

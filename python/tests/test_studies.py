@@ -116,6 +116,29 @@ class Studies(unittest.TestCase):
         assert found.drawn_mean is not None
         self.assertEqual(found.drawn_mean.tolist(), [1.4])
 
+    def test_fit_hands_over_to_the_same_program(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "lagroid-gradient"
+            program.write_text(
+                '#!/bin/sh\n[ "$*" = "fit $2 --json a.csv --wrt initial --sigma x=0.1 --bounds parameters.strength=0.5:2.0"'
+                " ] || exit 1\n"
+                'echo \'{"status": "converged", "message": "", "unknowns": [{"name": "initial.px", "value": 1.5}]}\'\n'
+            )
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
+                found = lagroid.fit(
+                    EXAMPLES / "kepler.toml",
+                    ["a.csv"],
+                    ["initial"],
+                    sigma={"x": 0.1},
+                    bounds={"parameters.strength": (0.5, 2.0)},
+                )
+            self.assertEqual(found["unknowns"][0]["value"], 1.5)
+            program.write_text('#!/bin/sh\necho \'{"status": "failed", "message": "run 1 fails"}\'\nexit 3\n')
+            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
+                with self.assertRaisesRegex(lagroid.SolveError, "run 1 fails"):
+                    lagroid.fit(EXAMPLES / "kepler.toml", ["a.csv"], ["initial"])
+
     def test_check_without_its_program_says_how_to_build_it(self) -> None:
         with mock.patch("lagroid.programs._lagroid.__file__", "/nowhere/python/lagroid/_lagroid.so", create=True):
             with mock.patch.dict(os.environ, {"PATH": "/nowhere"}):

@@ -1,0 +1,89 @@
+#pragma once
+/// Parameters and starts from measured columns, by least squares with the exact derivatives of runs:
+///
+///     minimise  sum_i rho(((y_i(x) - d_i) / sigma_i)^2),    x the starts of the runs and the parameters,
+///
+/// rho(s) = s, or the loss of Huber, which outliers pull less. At the solution, with J the derivatives of the weighted
+/// residuals, the covariance of x is s^2 (J^T J)^{-1}, s^2 the mean square of what is left over; directions in which
+/// J^T J vanishes to round-off cannot be told from these data and are named.
+///
+///     const Fit fit = fit_scene(subject, {"run.csv"}, {.unknowns = {"initial", "parameters.length"}});
+///     std::cout << text_of(fit);
+///
+/// Errors: GradientRefused and DataError, one line, for unknowns that are none or that cannot be fitted, for columns
+/// that are not observed and times that are not those of nodes. A run that fails is no error: Fit::failure says so.
+/// Source: Triggs, McLauchlan, Hartley, Fitzgibbon, Bundle adjustment, 2000, sec. 4 (robust least squares); solved by
+/// Ceres' trust region of Levenberg and Marquardt.
+
+#include "gradient_table.hpp"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+struct FitOptions {
+  std::vector<std::string> unknowns{"initial", "parameters"};  ///< initial.NAME or parameters.NAME
+  std::vector<std::string> columns{};                          ///< of the data; all that are observed where it is empty
+  std::map<std::string, double> sigma{};                       ///< of a column, 1 where nothing stands
+  std::map<std::string, std::array<double, 2>> bounds{};       ///< of an unknown
+  double huber = 0;     ///< residuals beyond so many sigma weigh by their size, not its square; 0: all by its square
+  int starts = 1;       ///< guesses: the scene, and others drawn around it
+  double spread = 0.3;  ///< of these, relative to the unknown
+  std::uint64_t seed = 1;
+};
+
+struct Fit {
+  struct Unknown {
+    std::string name;
+    double start = 0;  ///< what the scene has
+    double value = 0;
+    double deviation = 0;  ///< infinite where the data do not tell
+    bool at_bound = false;
+  };
+  /// What is left over of a column.
+  struct Column {
+    std::string name;
+    long count = 0;
+    double rms = 0;          ///< in the column's own unit
+    double correlation = 0;  ///< of each residual with the next
+    bool white = true;       ///< whether that is what independent errors have, within three deviations
+  };
+  /// One number that was measured, and what the fitted run has there.
+  struct Point {
+    std::size_t run = 0;
+    double time = 0;
+    std::size_t column = 0;
+    double measured = 0;
+    double predicted = 0;
+  };
+
+  std::string system;
+  std::string status;   ///< converged, not_converged or failed
+  std::string failure;  ///< of the scene's own run
+  int iterations = 0;
+  std::size_t runs = 0;
+  double cost = 0;   ///< half the sum
+  double scale = 0;  ///< s: the root mean square of what is left over, in sigmas
+  std::vector<Unknown> unknowns;
+  Eigen::MatrixXd covariance;             ///< of those that the data tell
+  std::vector<std::string> undetermined;  ///< combinations that they do not
+  std::vector<Column> columns;
+  std::vector<Point> points;
+  std::vector<double> other_costs;   ///< of the other guesses, least first
+  std::vector<std::string> ignored;  ///< columns of the data that nothing is known of
+
+  bool converged() const { return status == "converged"; }
+};
+
+Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& files, const FitOptions& options);
+
+std::string text_of(const Fit& fit);
+std::string json_of(const Fit& fit);
+/// run, t, column, measured, predicted, residual.
+std::string csv_of(const Fit& fit);
+
+}  // namespace lagroid::app
