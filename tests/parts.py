@@ -122,7 +122,7 @@ class Parts(unittest.TestCase):
             self.assertAlmostEqual(value["parameters.mass"], 0.8, delta=1e-9)
             self.assertEqual((found["undetermined"], found["ignored"]), ([], ["energy"]))
             # Angles alone know of no mass; and of length and gravity their ratio.
-            found = self.fitted(data, "--of", "q", "--wrt", "parameters", "--set", "initial.momentum=0")
+            found = self.fitted(data, "--of", "q", "--wrt", "parameters", "--set", "initial.momentum=[0]")
             self.assertEqual(len(found["undetermined"]), 2)
 
     def test_what_is_fitted_is_as_far_off_as_its_deviation_says(self):
@@ -144,7 +144,7 @@ class Parts(unittest.TestCase):
     def test_runs_share_parameters_and_have_their_own_starts(self):
         with tempfile.TemporaryDirectory() as folder:
             files = [self.measured(folder, f"run{i}", 0.0, 1, "--set", "parameters.length=1.2", "--set",
-                                   f"initial.momentum={p}") for i, p in enumerate((0.1, -0.3))]
+                                   f"initial.momentum=[{p}]") for i, p in enumerate((0.1, -0.3))]
             found = self.fitted(*files, "--wrt", "parameters.length,initial.momentum")
             value = {each["name"]: each["value"] for each in found["unknowns"]}
             self.assertAlmostEqual(value["initial.p of run 1"], 0.1, delta=1e-9)

@@ -244,7 +244,8 @@ class BodiesMotion final : public Motion {
       whole_step_ = rest_.value_or(motion_->step());
     }
     motion_->restore(kept_);
-    return share == 0 || motion_->advance_by(share * whole_step_).converged();
+    const double size = share * whole_step_;
+    return size == 0 || motion_->advance_by(size).converged();
   }
   int number_of(const Switched& each) const {
     const std::vector<std::string>& names = motion_->switches().names;

@@ -80,6 +80,8 @@ class Reader {
         const double at = table.rows[k][time], value = table.rows[k][c];
         if (!std::isfinite(at)) throw DataError(fmt::format("{}: row {}: it has no time", file, table.lines[k]));
         if (std::isnan(value)) continue;
+        if (std::isinf(value))
+          throw DataError(fmt::format("{}: row {}: {} is infinite; leave the field empty", file, table.lines[k], name));
         out.push_back({node_at(at, nodes_, file, table.lines[k]), at, number_of(name), *column, value,
                        sigma == options_.sigma.end() ? 1 : sigma->second});
       }
@@ -297,7 +299,7 @@ double solve(Runs& runs, const std::vector<Unknown>& unknowns, const FitOptions&
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = 200;
-  solver.function_tolerance = 1e-16;
+  solver.function_tolerance = 1e-14;
   solver.parameter_tolerance = 1e-12;
   solver.gradient_tolerance = 1e-14;
   solver.logging_type = ceres::SILENT;
@@ -415,11 +417,23 @@ Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& fi
       throw GradientRefused(fmt::format("{}: it has bounds, but is not to be fitted", name));
   for (const Unknown& each : unknowns) bounds_of(each, options);
 
+  for (const Fit::Column& column : fit.columns)
+    if (std::none_of(measured.begin(), measured.end(), [&](const MeasuredRun& run) {
+          return std::any_of(run.begin(), run.end(),
+                             [&](const Measurement& each) { return &fit.columns[each.column] == &column; });
+        }))
+      throw DataError(fmt::format("{}: nothing is measured of it", column.name));
+
   Runs runs(subject, columns, std::move(measured));
+  runs.PrepareForEvaluation(true, true);  // what has no derivative is refused here, and not amid a solve
+  if (!runs.is_defined() && options.starts == 1) {
+    fit.status = "failed";
+    fit.failure = runs.failure();
+    return fit;
+  }
   const WienerPath stream{.seed = options.seed};
   Fit best = fit;
-  best.cost = infinite;
-  std::vector<double> at_best(unknowns.size());
+  std::vector<double> costs, at_best;
   for (int guess = 0; guess < options.starts; ++guess) {
     for (std::size_t j = 0; j < unknowns.size(); ++j) {
       const auto [low, high] = bounds_of(unknowns[j], options);
@@ -429,22 +443,19 @@ Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& fi
     }
     Fit now = fit;
     now.cost = solve(runs, unknowns, options, now);
-    if (guess == 0 && now.cost == infinite) now.failure = runs.failure();
-    const bool is_better = now.cost < best.cost;
-    if (guess > 0) now.other_costs = best.other_costs;
-    if (guess > 0 && is_better) now.other_costs.push_back(best.cost);
-    if (guess > 0 && !is_better) best.other_costs.push_back(now.cost);
-    if (guess > 0 && !is_better) continue;
-    best = std::move(now);
-    std::copy_n(runs.x(), unknowns.size(), at_best.begin());
+    costs.push_back(now.cost);
+    if (at_best.empty() ? now.cost < infinite : now.cost < best.cost) {
+      best = std::move(now);
+      at_best.assign(runs.x(), runs.x() + unknowns.size());
+    }
   }
-  std::sort(best.other_costs.begin(), best.other_costs.end());
-  if (best.cost == infinite) {
+  if (at_best.empty()) {
     best.status = "failed";
-    if (best.failure.empty()) best.failure = "no run from any guess came to its end";
+    best.failure = "no run from any guess came to its end";
     return best;
   }
-  best.failure.clear();
+  std::sort(costs.begin(), costs.end());
+  best.other_costs.assign(costs.begin() + 1, costs.end());
   std::copy(at_best.begin(), at_best.end(), runs.x());
   runs.PrepareForEvaluation(true, true);
   for (std::size_t j = 0; j < unknowns.size(); ++j) best.unknowns[j].value = unknowns[j].start + at_best[j];

@@ -124,9 +124,10 @@ class PoissonMotion final : public Motion {
  private:
   bool go_within(double share) {
     PoissonOptions part = options_;
-    if (share > 0) part.step *= share * rest_;  // there is no step of size zero
+    const double size = share * rest_;
+    if (size > 0) part.step *= size;  // there is no step of size zero
     inside_ = system_->begin(kept_, part);
-    return share == 0 || inside_->advance().converged();
+    return size == 0 || inside_->advance().converged();
   }
   /// Where it is within, changed.
   std::vector<double> kicked(const MotionChange& change) const {
