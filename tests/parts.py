@@ -92,18 +92,22 @@ class Parts(unittest.TestCase):
         self.assertIn("% by initial.p", table.stdout)
         self.assertIn("correlations", table.stdout)
 
+    def rows_of(self, table):
+        with table.open() as text:
+            return list(csv.DictReader(text))
+
     def measured(self, folder, name, noise=0.0, seed=1, *settings):
         """The rows of a pendulum's run, with normal errors in q and p, as a file."""
         out = pathlib.Path(folder) / f"{name} run"
         told = run(of_part("pendulum"), "run", examples / "pendulum.toml", "--set", "time.steps=200", *settings, "--out", out)
         self.assertEqual(told.returncode, 0, told.stderr)
         draw = random.Random(seed)
-        rows = list(csv.DictReader((out / "trajectory.csv").open()))
+        rows = self.rows_of(out / "trajectory.csv")
         file = pathlib.Path(folder) / f"{name}.csv"
-        lines = ["t,q,p,energy"]
+        lines = ["t,q,p,temperature"]
         for i, row in enumerate(rows):
             q, p = (repr(float(row[key]) + noise * draw.gauss(0, 1)) for key in ("q", "p"))
-            lines.append(f"{row['t']},{q},{'' if i % 7 == 3 else p},{row['energy']}")  # some momenta are missing
+            lines.append(f"{row['t']},{q},{'' if i % 7 == 3 else p},20")  # some momenta are missing
         file.write_text("\n".join(lines) + "\n")
         return file
 
@@ -120,7 +124,7 @@ class Parts(unittest.TestCase):
             self.assertEqual(found["status"], "converged")
             self.assertAlmostEqual(value["parameters.length"], 1.3, delta=1e-9)
             self.assertAlmostEqual(value["parameters.mass"], 0.8, delta=1e-9)
-            self.assertEqual((found["undetermined"], found["ignored"]), ([], ["energy"]))
+            self.assertEqual((found["undetermined"], found["ignored"]), ([], ["temperature"]))
             # Angles alone know of no mass; and of length and gravity their ratio.
             found = self.fitted(data, "--of", "q", "--wrt", "parameters", "--set", "initial.momentum=[0]")
             self.assertEqual(len(found["undetermined"]), 2)
@@ -167,10 +171,13 @@ class Parts(unittest.TestCase):
             self.assertTrue(bounded["unknowns"][0]["at_bound"])
             self.assertAlmostEqual(bounded["unknowns"][0]["value"], 1.1, delta=1e-9)
             self.assertEqual(len(bounded["other_costs"]), 2)
-            rows = list(csv.DictReader(table.open()))
+            rows = self.rows_of(table)
             self.assertEqual(set(row["column"] for row in rows), {"q", "p"})
-            text = run(of_part("pendulum"), "fit", examples / "pendulum.toml", *words)
+            self.assertFalse(all(each["white"] for each in bounded["columns"]))
+            text = run(of_part("pendulum"), "fit", examples / "pendulum.toml", *words, "--bounds",
+                       "parameters.length=0.9:1.1")
             self.assertIn("not as independent errors do", text.stdout)
+            self.assertIn("at its bound", text.stdout)
 
     def test_data_that_cannot_be_fitted_are_refused_in_a_line(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -206,6 +213,7 @@ class Parts(unittest.TestCase):
             ("--wrt", "mass"): "initial.NAME or parameters.NAME",
             ("--set", "time.mode=adaptive"): "equal steps of order two",
             ("--set", "time.order=4"): "equal steps of order two",
+            ("--set", 'event=[{name = "x", when = "q"}]'): "gradient is of the whole run",
         }.items():
             told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.steps=50", *words)
             self.assertEqual(told.returncode, 2, f"{words}: {told.stdout}")

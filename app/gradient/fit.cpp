@@ -324,7 +324,9 @@ void describe_columns(const Runs& runs, Fit& fit) {
       const double predicted = runs.predicted(index++);
       const double off = each.value - predicted;
       fit.points.push_back({r, each.time, each.column, each.value, predicted});
-      ++fit.columns[each.column].count;
+      Fit::Column& column = fit.columns[each.column];
+      ++column.count;
+      column.largest = std::max(column.largest, std::abs(each.value));
       squares[each.column] += off * off;
       if (last[each.column]) products[each.column] += off * *last[each.column];
       last[each.column] = off;
@@ -335,7 +337,7 @@ void describe_columns(const Runs& runs, Fit& fit) {
     if (column.count == 0) continue;
     column.rms = std::sqrt(squares[c] / double(column.count));
     column.correlation = squares[c] > 0 ? products[c] / squares[c] : 0;
-    column.white = std::abs(column.correlation) <= 3 / std::sqrt(double(column.count));
+    column.white = column.exact() || std::abs(column.correlation) <= 3 / std::sqrt(double(column.count));
   }
 }
 
@@ -372,9 +374,15 @@ void describe_unknowns(const Runs& runs, const std::vector<Unknown>& unknowns, c
       ++index;
       squares += weight * residual * residual;
     }
+  // What changes by an unknown's own size, and is rounding beside the others, is nothing.
   Eigen::VectorXd size = weighted.colwise().norm();
-  for (Eigen::Index j = 0; j < n; ++j)
-    if (!(size(j) > 0)) size(j) = 1;
+  Eigen::VectorXd effect = size;
+  for (Eigen::Index j = 0; j < n; ++j) effect(j) *= unknowns[std::size_t(j)].size;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (effect(j) > 1e-12 * effect.maxCoeff()) continue;
+    weighted.col(j).setZero();
+    size(j) = 1;
+  }
   constexpr double not_told = 1e-10;  // of the derivatives, which are exact to round-off and grew on the way
   const RightSingularVectors found = right_singular_vectors(weighted * size.cwiseInverse().asDiagonal(), not_told);
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);

@@ -49,8 +49,11 @@ struct Fit {
     std::string name;
     long count = 0;
     double rms = 0;          ///< in the column's own unit
+    double largest = 0;      ///< of what was measured
     double correlation = 0;  ///< of each residual with the next
     bool white = true;       ///< whether that is what independent errors have, within three deviations
+    /// Whether nothing but rounding is left over, of which nothing can be said.
+    bool exact() const { return rms <= 1e-12 * largest; }
   };
   /// One number that was measured, and what the fitted run has there.
   struct Point {

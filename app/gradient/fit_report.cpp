@@ -44,8 +44,9 @@ std::string text_of(const Fit& fit) {
   for (const Fit::Column& each : fit.columns)
     out += fmt::format("  {:{}}  {:.4g} over {} numbers; each goes with the next by {:.2f}: {}\n", each.name, width,
                        each.rms, each.count, each.correlation,
-                       each.white ? "as independent errors do"
-                                  : "not as independent errors do, the model is another or the errors are");
+                       each.exact() ? "rounding"
+                       : each.white ? "as independent errors do"
+                                    : "not as independent errors do, the model is another or the errors are");
   if (!fit.ignored.empty()) out += fmt::format("  ignored, no columns of the run: {}\n", fmt::join(fit.ignored, ", "));
   if (!fit.other_costs.empty())
     out += fmt::format("  cost {:.6g}; from other guesses {:.6g}\n", fit.cost, fmt::join(fit.other_costs, ", "));

@@ -351,13 +351,14 @@ bool EventWatch::happens(const Found& found) {
 void EventWatch::report(RunResult& result) const {
   result.events = table_;
   const bool is_changed = std::any_of(watches_.begin(), watches_.end(), [](const Watch& w) { return w.changes > 0; });
-  // What is summed up over steps does not know of the two that a change makes of one.
+  // What is summed up over steps, or belongs to their arrows, does not know of the two that a change makes of one.
   if (is_changed)
     for (const Watched& quantity : motion_.look().quantities())
       for (LedgerEntry& entry : result.ledger.entries)
-        if (quantity.adds_up && entry.name == quantity.name && entry.promise != "none") {
+        if ((quantity.adds_up || quantity.on_arrows) && entry.name == quantity.name && entry.promise != "none") {
           entry.verdict = "unjudged";
-          entry.reason = "it is summed up over whole steps, and changes came between";
+          entry.reason = quantity.adds_up ? "it is summed up over whole steps, and changes came between"
+                                          : "it belongs to whole steps, and changes came between";
         }
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const Watch& watch = watches_[i];

@@ -149,7 +149,7 @@ TEST(Events, KicksThatAreNoNumbersAreSaid) {
   event.kick = {"1e300"};
   const RunResult huge = turn(200, {event});
   EXPECT_FALSE(huge.converged());
-  EXPECT_NE(huge.message.find("after its kick, between t = 1.5 and 1.6, the rest of the step does not"),
+  EXPECT_NE(huge.message.find("after its change, between t = 1.5 and 1.6, the rest of the step does not"),
             std::string::npos)
       << huge.message;
 }
