@@ -145,6 +145,18 @@ class Parts(unittest.TestCase):
             # Chi squared of twelve: outside of these once in a thousand.
             self.assertTrue(2.2 < squares < 33, squares)
 
+    def test_the_pendulum_of_the_page_is_found(self):
+        told = run(of_part("damped_pendulum"), "fit", examples / "damped_pendulum.toml", examples / "measured_pendulum.csv",
+                   "--wrt", "initial,parameters.length,parameters.damping", "--sigma", "q=0.01", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        for each, made in zip(found["unknowns"], (2, 0, 1.24, 0.083)):
+            self.assertLess(abs(each["value"] - made), 4 * each["deviation"], each)
+        page = (examples.parent / "docs" / "fit.md").read_text()
+        for each in found["unknowns"]:
+            self.assertIn(f"{each['value']:.6g}"[:8], page)
+        self.assertTrue(found["columns"][0]["white"])
+
     def test_runs_share_parameters_and_have_their_own_starts(self):
         with tempfile.TemporaryDirectory() as folder:
             files = [self.measured(folder, f"run{i}", 0.0, 1, "--set", "parameters.length=1.2", "--set",
