@@ -290,10 +290,8 @@ void Assembly::clear_loads() {
 // Joints of what does not move have no rows.
 void Assembly::add_joints() {
   batches_.resize(model_.islands.size());
-  for (auto& of_kind : scene_.joints_) {
-    const int switched_by = of_kind.switched_by;
-    model_.joints.push_back(std::move(of_kind.all));
-    Joints* const joints = model_.joints.back().get();
+  for (auto& [all, kind, switched_by] : scene_.joints_) {
+    Joints* const joints = model_.joints.emplace_back(std::move(all)).get();
     std::vector<int> islands;
     for (int j = 0; j < joints->count(); ++j) islands.push_back(island_of(*joints, j));
     auto order = sorted_by(islands);
@@ -486,10 +484,10 @@ Elimination Assembly::couple_rows(Model::Island& island) {
 void Assembly::add_effects() {
   model_.switches = std::move(scene_.switches_);
   std::vector<char> pushed(start_.at.x.size(), 0);
-  for (auto& of_kind : scene_.effects_) {
-    for (const Site s : of_kind.all->sites()) pushed[std::size_t(model_.places(s).index)] = 1;
-    of_kind.all->place(model_.places);
-    model_.effects.push_back({std::move(of_kind.all), of_kind.switched_by});
+  for (auto& [all, kind, switched_by] : scene_.effects_) {
+    for (const Site s : all->sites()) pushed[std::size_t(model_.places(s).index)] = 1;
+    all->place(model_.places);
+    model_.effects.push_back({std::move(all), switched_by});
   }
   const auto keep_pushed = [&](const std::vector<Model::Arm>& all, std::vector<Model::Arm>& out) {
     std::copy_if(all.begin(), all.end(), std::back_inserter(out),
