@@ -8,6 +8,7 @@ import csv
 import json
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -154,7 +155,9 @@ class Parts(unittest.TestCase):
             self.assertLess(abs(each["value"] - made), 4 * each["deviation"], each)
         page = (examples.parent / "docs" / "fit.md").read_text()
         for each in found["unknowns"]:
-            self.assertIn(f"{each['value']:.6g}"[:8], page)
+            shown = re.search(re.escape(each["name"]) + r" +([-.e\d]+) +([-.e\d]+)", page)
+            self.assertAlmostEqual(float(shown[1]), each["value"], delta=1e-3 * each["deviation"])
+            self.assertAlmostEqual(float(shown[2]), each["deviation"], delta=1e-2 * each["deviation"])
         self.assertTrue(found["columns"][0]["white"])
 
     def test_runs_share_parameters_and_have_their_own_starts(self):
