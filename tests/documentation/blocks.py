@@ -116,8 +116,9 @@ def commands(text):
 def options(*path):
     """The options of a subcommand, such as ("run",) or ("reproduce", "time-steps"); None if there is no such one."""
     arm = re.search(rf"^  (?:\w+ \| )*{path[0]}(?: \| \w+)*\)(.*?)^    ;;", script, re.M | re.S)
-    if path in (("check",), ("gradient",)):  # take minutes to build: their options as their sources name them
-        sources_of_it = (f"{path[0]}/{path[0]}.cpp", "command/command.cpp")
+    beside = {"check": "check/check.cpp", "gradient": "gradient/gradient.cpp", "fit": "gradient/gradient.cpp"}
+    if path[0] in beside:  # take minutes to build: their options as their sources name them
+        sources_of_it = (beside[path[0]], "command/command.cpp")
         said = "".join((root / "app" / name).read_text() for name in sources_of_it)
         return set(re.findall(r"--[\w-]+", said))
     if arm and 'exec "$program" "$@"' not in arm[1]:  # else it is the program's
