@@ -15,6 +15,7 @@
 #include <lagroid/run/reports/progress.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

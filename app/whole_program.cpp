@@ -1,5 +1,6 @@
 #include "whole_program.hpp"
 
+#include "command/command_of.hpp"
 #include "control/control.hpp"
 #include "learn/draw.hpp"
 #include "learn/learn.hpp"

@@ -1,8 +1,9 @@
 # The systems that scenes, checks and Python know, in the order in which they are listed to users: systems/NAME.hpp with
 # the class, app/systems/NAME.cpp with how its scenes are read and shown, both in the folder FOLDER where IN FOLDER says
-# so. What the solvers make of each is compiled once, from files that are made here (systems/instances.hpp).
+# so. What the solvers make of each is compiled once, from files that are made here (systems/instances.hpp):
+# what fits into one without taking the compiler long is in one, for in two it takes a third longer.
 # INITIAL_VALUES: it is forced, nonholonomic or depends on time, and has no boundary values; others name their sizes
-# (solvers/boundary/sizes). REDUCED: how many equations a step has of each reduction that it declares, in their order.
+# (solvers/boundary/boundary_sizes.hpp). REDUCED: how many equations a step has of each reduction that it declares, in their order.
 # Further sources of its own stand after SOURCES.
 set(system_names)
 set(system_classes)
@@ -16,9 +17,13 @@ function(lagroid_system name class)
   set(made ${PROJECT_BINARY_DIR}/systems/${name})
   set(parts steps integrators)
   set(adaptive "")
+  set(boundary_header "")
+  set(boundary_values "")
   if(NOT ARG_INITIAL_VALUES)
-    list(APPEND parts adaptive_steps boundary_values varied_steps)
+    list(APPEND parts adaptive_steps varied_steps)
     set(adaptive "LAGROID_ADAPTIVE_STEPS(extern template, ${class});\n")
+    set(boundary_header "#include <lagroid/solvers/boundary/boundary_sizes.hpp>\n")
+    set(boundary_values "LAGROID_BOUNDARY_VALUES(template, ${class});\n")
   endif()
   foreach(part ${parts} certificate)
     configure_file(${PROJECT_SOURCE_DIR}/systems/instances/${part}.cpp.in ${made}_${part}.cpp @ONLY)
@@ -27,11 +32,9 @@ function(lagroid_system name class)
   set(place 0)
   set(reduced)
   foreach(variables ${ARG_REDUCED})
-    foreach(part steps integrators descent)
-      set(file ${made}_reduced_${place}_${part}.cpp)
-      configure_file(${PROJECT_SOURCE_DIR}/systems/instances/reduced_${part}.cpp.in ${file} @ONLY)
-      list(APPEND sources ${file})
-    endforeach()
+    set(file ${made}_reduced_${place}.cpp)
+    configure_file(${PROJECT_SOURCE_DIR}/systems/instances/reduced.cpp.in ${file} @ONLY)
+    list(APPEND sources ${file})
     string(APPEND reduced "extern template DescentReport examine_reduction(const Reconstruction<${class}, ReductionAt<${class}, ${place}>>&,\n"
            "  const std::vector<ArrowOf<${class}::GroupoidType>>&);\n"
            "using Reduced${class}${place} = ReducedBy<${class}, ${place}>;\n"

@@ -5,6 +5,7 @@
 #include <lagroid/core/testing/sampling.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <utility>

@@ -8,6 +8,7 @@
 #include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>

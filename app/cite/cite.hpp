@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid cite`: how to cite the program and the papers behind a run.
 
-#include <CLI/CLI.hpp>
+#include "../command/parser.hpp"
 
 #include <string>
 #include <vector>

@@ -7,6 +7,7 @@
 #include <lagroid/run/reports/text.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <fcntl.h>
 #include <unistd.h>

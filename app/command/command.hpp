@@ -8,7 +8,7 @@
 ///
 /// Returns exit codes: `exit_bad_input`, `exit_failed`, `exit_interrupted`, `exit_internal_error`, or 0.
 
-#include <CLI/CLI.hpp>
+#include "parser.hpp"
 
 #include <functional>
 #include <string>

@@ -1,13 +1,9 @@
 #pragma once
-/// Commands that a program may have or not.
-///
-///     const ProgramCommand learn = command_of("learn", "fits a Hamiltonian to trajectories", add_options, run_learn);
+/// Commands that a program may have or not; command_of.hpp makes one of a function.
 
 #include "command.hpp"
 
-#include <concepts>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -23,26 +19,5 @@ struct ProgramCommand {
   /// Executes a scene that `lagroid run` was given but is this command's; null where there are none.
   std::function<int(const SceneOptions& scene, const std::optional<std::string>& out)> run_scene = nullptr;
 };
-
-/// The command of a function, and of one that declares its options.
-template <class Options>
-ProgramCommand command_of(const std::string& name, const std::string& description, void (*add)(CLI::App&, Options&),
-                          int (*run)(const Options&)) {
-  const auto options = std::make_shared<Options>();
-  return {name,
-          [=](CLI::App& program) {
-            CLI::App* command = program.add_subcommand(name, description);
-            add(*command, *options);
-            return command;
-          },
-          [=](SceneOptions& told) {
-            if constexpr (std::derived_from<Options, SceneOptions>) {
-              told = *options;
-            } else if constexpr (requires { options->json; }) {
-              told.json = options->json;
-            }
-            return run(*options);
-          }};
-}
 
 }  // namespace lagroid::app

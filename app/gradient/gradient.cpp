@@ -10,6 +10,7 @@
 #include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>

@@ -9,6 +9,7 @@
 #include <lagroid/systems/pendulums/chain_trajectories.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <array>

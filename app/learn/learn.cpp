@@ -10,6 +10,7 @@
 #include <lagroid/run/reports/progress.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <new>
 

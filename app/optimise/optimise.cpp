@@ -12,6 +12,7 @@
 #include <lagroid/solvers/optimisation/penalised.hpp>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <new>
 

@@ -1,5 +1,6 @@
 #include "new_folder.hpp"
 
+#include "../command/command_of.hpp"
 #include "templates.hpp"
 
 #include <lagroid/core/version.hpp>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>

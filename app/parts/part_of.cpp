@@ -6,6 +6,8 @@
 #include "../reading/scene_reader.hpp"
 #include "part_names.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 /// `lagroid schema`: a JSON Schema of scenes for editors, from the declarations by which scenes are read.
 
-#include <CLI/CLI.hpp>
+#include "../command/parser.hpp"
 
 #include <string>
 

@@ -1,5 +1,6 @@
 #include "sweep.hpp"
 
+#include "../command/command_of.hpp"
 #include "../command/written.hpp"
 #include "../reading/scene_reader.hpp"
 #include "../study/accuracy.hpp"

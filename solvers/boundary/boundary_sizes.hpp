@@ -3,8 +3,7 @@
 ///
 /// These serve every system of such sizes, a user's own included: n, the numbers of arrow and of object constraints,
 /// and the room that the coordinates of an arrow need (coordinate_room). What other sizes need is compiled where it is
-/// used. The lines here stand without `extern` in files that the build makes of those in
-/// solvers/boundary/sizes/, one for each algorithm.
+/// used. The lines here stand without `extern` in files that the build makes of boundary_size.cpp.in.
 
 #include <lagroid/solvers/boundary/boundary_values.hpp>
 
