@@ -126,4 +126,35 @@ void expect_order(const Case<Sys>& c, int coarsest, double tolerance = 0.1, doub
   std::cout << "  " << Sys::traits().name << ": declared " << Sys::traits().order << ", measured " << order << '\n';
 }
 
+/// The order of a system with nodes beside its arrows, on its own states.
+template <class Sys> void expect_order_on_nodes(const Case<Sys>& c, int coarsest, double tolerance) {
+  laws::OrderProblem problem;
+  problem.exact = c.exact;
+  problem.coarsest = coarsest;
+  problem.end = [&](int steps) {
+    Sys system = c.system;
+    system.h = c.horizon / steps;
+    auto run = make(system, c.start);
+    for (int k = 0; k < steps; ++k) EXPECT_TRUE(run.advance().converged()) << k;
+    const auto s = Sys::reduced(run.point().state);
+    Eigen::VectorXd out(c.exact.size());
+    out << system.base().coordinates_of_object(s.object), s.momentum;
+    return out;
+  };
+  const auto report = laws::order_laws(Sys::traits(), problem, tolerance);
+  const double order = laws::measured_order(problem);
+  EXPECT_TRUE(report.holds()) << report << " saw " << order;
+  std::cout << "  " << Sys::traits().name << ": declared " << Sys::traits().order << ", measured " << order << '\n';
+}
+
+/// The status of a first step that fails; nothing is taken of it.
+template <class Sys> SolveStatus failed_step(const Sys& system, const State<typename Sys::GroupoidType>& start) {
+  auto run = make(system, start);
+  const StepReport report = run.advance();
+  EXPECT_FALSE(report.converged());
+  EXPECT_EQ(run.point().time, 0) << "a step that failed was taken";
+  EXPECT_EQ((run.point().state.momentum - start.momentum).norm(), 0);
+  return report.status;
+}
+
 }  // namespace lagroid::subjects
