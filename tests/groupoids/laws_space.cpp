@@ -2,7 +2,9 @@
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/groupoids/groups/linear.hpp>
 #include <lagroid/groupoids/groups/orthogonal.hpp>
+#include <lagroid/groupoids/groups/se2.hpp>
 #include <lagroid/groupoids/groups/se3.hpp>
+#include <lagroid/groupoids/groups/so2.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
 
 #include <gtest/gtest.h>
@@ -13,8 +15,9 @@ namespace {
 
 template <class G> class GroupoidLaws : public ::testing::Test {};
 
-using Subjects = ::testing::Types<SO3, SpecialOrthogonal3<Retraction::cayley>, SE3,
-                                  SpecialEuclidean3<Retraction::cayley>, Orthogonal<3>, Orthogonal<4>>;
+using Subjects =
+    ::testing::Types<SO2, SpecialEuclidean2<Retraction::cayley>, SO3, SpecialOrthogonal3<Retraction::cayley>, SE3,
+                     SpecialEuclidean3<Retraction::cayley>, Orthogonal<3>, Orthogonal<4>>;
 TYPED_TEST_SUITE(GroupoidLaws, Subjects);
 
 TYPED_TEST(GroupoidLaws, Hold) {
