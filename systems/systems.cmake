@@ -1,10 +1,10 @@
 # The systems that scenes, checks and Python know, in the order in which they are listed to users: systems/NAME.hpp with
 # the class, app/systems/NAME.cpp with how its scenes are read and shown, both in the folder FOLDER where IN FOLDER says
-# so. What the solvers make of each is compiled once, from files that are made here (systems/instances.hpp):
-# what fits into one without taking the compiler long is in one, for in two it takes a third longer.
+# so. What the solvers make of each is compiled once, from files that are made here (systems/instances.hpp): what fits
+# into one without taking the compiler long is in one, for in two it takes a third longer.
 # INITIAL_VALUES: it is forced, nonholonomic or depends on time, and has no boundary values; others name their sizes
-# (solvers/boundary/boundary_sizes.hpp). REDUCED: how many equations a step has of each reduction that it declares, in their order.
-# Further sources of its own stand after SOURCES.
+# (solvers/boundary/boundary_sizes.hpp). REDUCED: how many equations a step has of each reduction that it declares, in
+# their order. Further sources of its own stand after SOURCES.
 set(system_names)
 set(system_classes)
 set(system_headers)  # as <lagroid/...>

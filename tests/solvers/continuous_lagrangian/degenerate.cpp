@@ -19,7 +19,9 @@ struct HalfMoving : ContinuousLagrangian<Pair<2>> {
 TEST(AnyLagrangian, ADegenerateLagrangianIsATypedFailure) {
   const State<Pair<2>> start{{1, 0}, {0.2, 0.3}};
   EXPECT_EQ(failed_step(Midpoint<HalfMoving>{}, start), SolveStatus::singular);
+  EXPECT_EQ(failed_step(Trapezoidal<HalfMoving>{}, start), SolveStatus::singular);
   EXPECT_EQ(failed_step(Galerkin<HalfMoving, 2>{}, start), SolveStatus::not_finite);
+  EXPECT_EQ(failed_step(Galerkin<HalfMoving, 4>{}, start), SolveStatus::not_finite);
   using Beside = GalerkinOnNodes<HalfMoving, 2>;
   EXPECT_EQ(failed_step(Beside{}, Beside::extended(start)), SolveStatus::singular);
   EXPECT_TRUE(std::isnan(Midpoint<HalfMoving>{}.energy(start)));

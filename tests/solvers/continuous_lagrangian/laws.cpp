@@ -12,6 +12,7 @@ State<Pair<2>> draw_orbit() {
   return {{1 + 0.2 * laws::draw_uniform(), 0.1 * laws::draw_uniform()},
           {0.2 * laws::draw_uniform(), 1 + 0.2 * laws::draw_uniform()}};
 }
+
 // Derivatives through the inner solve, Poisson steps, Noether: as of a system that was written by hand.
 TEST(AnyLagrangian, LawsOfAnOrbit) { expect_laws(Galerkin<Orbit, 3>{Orbit{}, 0.1}, draw_orbit); }
 
