@@ -10,28 +10,23 @@ using namespace lagroid::subjects;
 
 namespace {
 
-/// w = M, M' = -p2, p1' = w p2, p2' = -w p1.
 TEST(AnyLagrangian, OrdersOfEulersElastica) {
-  const Vector<double, 3> mu(0.5, 1.2, -0.7);
-  const auto rates = [](const Eigen::VectorXd& y, Eigen::VectorXd& dy) { dy << -y(2), y(0) * y(2), -y(0) * y(1); };
-  const Eigen::VectorXd end = integrate_reference(rates, mu, 3.0);
-  expect_order(Case<Midpoint<Elastica>>{Midpoint<Elastica>{}, {{}, mu}, 3, end}, 40);
+  expect_order(Case<Midpoint<Elastica>>{Midpoint<Elastica>{}, {{}, elastica_start}, 3, elastica_end(3)}, 40);
   using Four = GalerkinOnNodes<Elastica, 2>;
-  expect_order_on_nodes(Case<Four>{Four{}, Four::extended({{}, mu}), 3, end}, 15, 0.1);
+  expect_order_on_nodes(Case<Four>{Four{}, Four::extended({{}, elastica_start}), 3, elastica_end(3)}, 15, 0.1);
 }
 
 // The Noether momenta of a left-invariant problem: Ad* mu in space.
 TEST(AnyLagrangian, TheForceOfAnElasticaIsKeptInSpace) {
   using Sys = GalerkinOnNodes<Elastica, 2>;
   const Sys system{Elastica{}, 0.1};
-  const Vector<double, 3> mu(0.5, 1.2, -0.7);
-  auto run = make(system, Sys::extended({{}, mu}));
+  auto run = make(system, Sys::extended({{}, elastica_start}));
   for (int k = 0; k < 1000; ++k) {
     ASSERT_TRUE(run.advance().converged()) << k;
     const auto& p = run.point();
     const Matrix<double, 3, 3> g = std::get<0>(p.configuration);
     const Vector<double, 3> in_space = SE2::adjoint(SE2::inverse(g)).transpose() * p.state.momentum.head<3>();
-    EXPECT_LT((in_space - mu).norm(), 1e-11) << k;
+    EXPECT_LT((in_space - elastica_start).norm(), 1e-11) << k;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>
 #include <lagroid/solvers/testing/order_laws.hpp>
+#include <lagroid/systems/reference.hpp>
 
 #include <gtest/gtest.h>
 
@@ -85,6 +86,13 @@ struct Elastica : ContinuousLagrangian<SE2, 2> {
     return {xi(1) - 1.0, xi(2)};
   }
 };
+
+/// A motion of the elastica: w = M, M' = -p2, p1' = w p2, p2' = -w p1.
+inline const Vector<double, 3> elastica_start(0.5, 1.2, -0.7);
+inline Eigen::VectorXd elastica_end(double t) {
+  const auto rates = [](const Eigen::VectorXd& y, Eigen::VectorXd& dy) { dy << -y(2), y(0) * y(2), -y(0) * y(1); };
+  return integrate_reference(rates, elastica_start, t);
+}
 
 template <class Sys> FixedStepIntegrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& start) {
   return {system, start, system.groupoid.unit(start.object), std::make_unique<NewtonStep<Sys>>()};
