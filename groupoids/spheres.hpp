@@ -62,11 +62,10 @@ template <int K, class S = double> struct Spheres {
   std::string name() const { return "(S^2)^" + std::to_string(count); }
 };
 
-/// (T*S^2)^k, and (TS^2)^k, which the metric of S^2 makes the same: pairs (q, p) with |q| = 1, q.p = 0. SE(3)^k acts by
-/// (R, r)(q, p) = (R q, R p + r x R q) ([H] (act)); for u = (xi, eta) in se(3), R = exp(xi) and r = eta + c_2 xi x eta
-/// + c_3 xi x (xi x eta), and u_M(q, p) = (xi x q, xi x p + eta x q) ([H] (infgen)). K is k, or Eigen::Dynamic. Points
-/// and algebra: 6 x k, column i holds (q_i, p_i), or (xi_i, eta_i).
-template <int K, class S = double> struct CotangentSpheres {
+namespace detail {
+
+/// 6 x k, two vectors in a column.
+template <int K, class S> struct PairsOfVectors {
   using Point = Eigen::Matrix<S, 6, K>;
   using Algebra = Eigen::Matrix<S, 6, K>;
   using V = Vector<S, 3>;
@@ -74,6 +73,27 @@ template <int K, class S = double> struct CotangentSpheres {
 
   Point zero_point() const { return Point::Zero(6, count); }
   Algebra zero_algebra() const { return Algebra::Zero(6, count); }
+
+  /// The first of column i, as q_i or xi_i.
+  template <class Z> LAGROID_INLINE static V first(const Z& z, int i) { return z.col(i).template head<3>(); }
+  /// The second, as p_i or eta_i.
+  template <class Z> LAGROID_INLINE static V second(const Z& z, int i) { return z.col(i).template tail<3>(); }
+  template <class Z> LAGROID_INLINE static void set(Z& z, int i, const V& a, const V& b) {
+    z.col(i).template head<3>() = a;
+    z.col(i).template tail<3>() = b;
+  }
+};
+
+}  // namespace detail
+
+/// (T*S^2)^k, and (TS^2)^k, which the metric of S^2 makes the same: pairs (q, p) with |q| = 1, q.p = 0. SE(3)^k acts by
+/// (R, r)(q, p) = (R q, R p + r x R q) ([H] (act)); for u = (xi, eta) in se(3), R = exp(xi) and r = eta + c_2 xi x eta
+/// + c_3 xi x (xi x eta), and u_M(q, p) = (xi x q, xi x p + eta x q) ([H] (infgen)). K is k, or Eigen::Dynamic. Points
+/// and algebra: 6 x k, column i holds (q_i, p_i), or (xi_i, eta_i).
+template <int K, class S = double> struct CotangentSpheres : detail::PairsOfVectors<K, S> {
+  using Pairs = detail::PairsOfVectors<K, S>;
+  using Pairs::first, Pairs::second, Pairs::set;
+  using typename Pairs::Algebra, typename Pairs::Point, typename Pairs::V;
 
   void act(const Algebra& u, Point& z) const {
     for (int i = 0; i < z.cols(); ++i) {
@@ -115,16 +135,42 @@ template <int K, class S = double> struct CotangentSpheres {
       set(z, i, q, p - q * S(q.dot(p)));
     }
   }
-  std::string name() const { return "(T*S^2)^" + std::to_string(count); }
+  std::string name() const { return "(T*S^2)^" + std::to_string(this->count); }
+};
 
-  /// q_i, or xi_i.
-  template <class Z> LAGROID_INLINE static V first(const Z& z, int i) { return z.col(i).template head<3>(); }
-  /// p_i, or eta_i.
-  template <class Z> LAGROID_INLINE static V second(const Z& z, int i) { return z.col(i).template tail<3>(); }
-  template <class Z> LAGROID_INLINE static void set(Z& z, int i, const V& a, const V& b) {
-    z.col(i).template head<3>() = a;
-    z.col(i).template tail<3>() = b;
+/// (S^2 x R^3)^k with (SO(3) x R^3)^k acting, (R, a)(q, w) = (R q, w + a), of the algebra's (xi, eta) the exponential
+/// (exp(xi), eta): directions with vectors that do not turn with them, as angular velocities. K is k, or
+/// Eigen::Dynamic. Points and algebra: 6 x k, column i holds (q_i, w_i), or (xi_i, eta_i).
+template <int K, class S = double> struct SpheresAndVectors : detail::PairsOfVectors<K, S> {
+  using Pairs = detail::PairsOfVectors<K, S>;
+  using Pairs::first, Pairs::second, Pairs::set;
+  using typename Pairs::Algebra, typename Pairs::Point, typename Pairs::V;
+
+  void act(const Algebra& u, Point& z) const { act(S(1.0), u, z); }
+  /// z <- exp(h u) z.
+  void act(const S& h, const Algebra& u, Point& z) const {
+    for (int i = 0; i < z.cols(); ++i) {
+      const V xi = first(u, i) * h;
+      const V q = first(z, i);
+      const S x = xi.squaredNorm();
+      const V xq = cross(xi, q);
+      set(z, i, q + stumpff<1>(x) * xq + stumpff<2>(x) * cross(xi, xq), second(z, i) + second(u, i) * h);
+    }
   }
+  void generator(const Algebra& u, const Point& z, Point& v) const {
+    for (int i = 0; i < z.cols(); ++i) set(v, i, cross(first(u, i), first(z, i)), second(u, i));
+  }
+  void bracket(const Algebra& u, const Algebra& v, Algebra& w) const {
+    for (int i = 0; i < u.cols(); ++i) set(w, i, cross(first(u, i), first(v, i)), V::Zero());
+  }
+  /// One Newton step towards |q| = 1.
+  void project(Point& z) const {
+    for (int i = 0; i < z.cols(); ++i) {
+      const V q = first(z, i);
+      set(z, i, q * (1.5 - 0.5 * S(q.squaredNorm())), second(z, i));
+    }
+  }
+  std::string name() const { return "(S^2 x R^3)^" + std::to_string(this->count); }
 };
 
 }  // namespace lagroid

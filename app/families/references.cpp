@@ -260,6 +260,18 @@ std::span<const Article> references() {
        "127",
        1999,
        "10.1016/S0168-9274(98)00030-0",
+       ""},
+      {"deuflhard1983",
+       "",
+       {{"Peter", "Deuflhard"}},
+       "Order and stepsize control in extrapolation methods",
+       "Numerische Mathematik",
+       41,
+       3,
+       "399",
+       "422",
+       1983,
+       "10.1007/BF01418332",
        ""}};
   return all;
 }

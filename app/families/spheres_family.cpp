@@ -30,6 +30,8 @@ class Spheres final : public SceneFamily {
     if (const DeclaredMethod* own = own_method(entry, name)) {
       add_use(own->source, uses);
       add_use(source_of(read_composition(time, compositions_of(own->other_orders))), uses);
+    } else if (name == extrapolation_method.name) {
+      add_use(extrapolation_method.source, uses);
     } else if (const Source source = source_of(*lie_group_methods::named(name)); !source.key.empty()) {
       add_use({"celledoni2022", "Lie group integrators on products of T*S^2"}, uses);
       add_use(source, uses);

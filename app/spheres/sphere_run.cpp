@@ -29,7 +29,7 @@ std::string sphere_failure(const StepReport& report, long step, double time, con
         return fmt::format(
             "{}: {} inner steps did not reach the next node; raise time.tolerance, or use a smaller "
             "time.step",
-            where, report.iterations);
+            where, options.most_inner);
       return fmt::format(
           "{}: no tensions were found that keep the rods' lengths over this step (a rod would turn by a right angle, "
           "or "
@@ -60,8 +60,7 @@ class SphereMotion final : public Motion {
     return sphere_failure(report, step, time(), options_);
   }
   long evaluations(const StepReport& report) const override {
-    const int steps = options_.tolerance > 0 ? report.iterations : 1;
-    return stages_ > 0 ? steps * stages_ : report.iterations;
+    return options_.tolerance > 0 || stages_ == 0 ? report.iterations : stages_;
   }
 
   long index() const override { return index_; }

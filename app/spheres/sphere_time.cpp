@@ -32,6 +32,12 @@ const KeyOf<Number> tolerance_key{
     {},
     "steps are as long as `step`"};
 
+/// Whether the method has steps that a tolerance controls.
+bool estimates_error(std::string_view name) {
+  const LieGroupMethod* method = lie_group_methods::named(name);
+  return name == extrapolation_method.name || (method != nullptr && method->embedded());
+}
+
 std::string usual_method(const SphereEntry& entry) {
   return std::string(entry.own_methods.empty() ? lie_group_methods::commutator_free_4.name
                                                : entry.own_methods.front().name);
@@ -51,6 +57,7 @@ KeyOf<OneOf> method_key(const SphereEntry& entry) {
   std::vector<std::string> names;
   for (const DeclaredMethod& own : entry.own_methods) names.emplace_back(own.name);
   for (const LieGroupMethod& method : lie_group_methods::all) names.emplace_back(method.name);
+  names.emplace_back(extrapolation_method.name);
   KeyOf<OneOf> key = time_keys::method(std::move(names));
   key.fallback = usual_method(entry);
   return key;
@@ -86,11 +93,14 @@ SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry
     for (const char* key : {"order", "composition"})
       if (time.has(key)) time.fail(key, fmt::format("is of the steps of {}", usual_method(entry)));
   }
-  if (!time.has("tolerance")) return options;
-  const LieGroupMethod* method = lie_group_methods::named(options.method);
-  if (method == nullptr || !method->embedded())
-    time.fail("tolerance", fmt::format("goes with a method that estimates its error: method = \"{}\"",
-                                       lie_group_methods::munthe_kaas_54.name));
+  if (!time.has("tolerance")) {
+    if (options.method == extrapolation_method.name)
+      time.fail("method", "takes its order and its steps from a tolerance: add tolerance = 1e-9");
+    return options;
+  }
+  if (!estimates_error(options.method))
+    time.fail("tolerance", fmt::format("goes with a method that estimates its error: method = \"{}\" or \"{}\"",
+                                       extrapolation_method.name, lie_group_methods::munthe_kaas_54.name));
   options.stop = InterruptGuard::interrupted;
   options.tolerance = read_key(time, tolerance_key);
   return options;
@@ -116,15 +126,16 @@ std::vector<Method> sphere_methods(const SphereEntry& entry, const SphereSystem&
     }
   }
   constexpr std::array tolerances{"1e-6", "1e-9", "1e-12"};
-  for (const LieGroupMethod& method : lie_group_methods::all) {
-    if (!method.embedded()) continue;
+  const auto add_controlled = [&](std::string_view name, int order, int stages) {
     for (const char* tolerance : tolerances) {
-      Method each{fmt::format("{}/{}", method.name, tolerance), method.order, method.stages, false,
-                  settings(method.name, forms.front())};
+      Method each{fmt::format("{}/{}", name, tolerance), order, stages, false, settings(name, forms.front())};
       each.settings.push_back(fmt::format("time.tolerance={}", tolerance));
       all.push_back(std::move(each));
     }
-  }
+  };
+  for (const LieGroupMethod& method : lie_group_methods::all)
+    if (method.embedded()) add_controlled(method.name, method.order, method.stages);
+  add_controlled(extrapolation_method.name, extrapolation_method.order, extrapolation_method.stages);
   return all;
 }
 

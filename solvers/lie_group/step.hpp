@@ -15,12 +15,19 @@
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/core/scalars/numbers_of.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
+#include <lagroid/solvers/methods/method.hpp>
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace lagroid {
+
+/// What a method declares of itself.
+inline MethodTraits traits_of(const LieGroupMethod& method) {
+  return {std::string(method.name), method.order, false, false, true, method.stages - (method.reuses_last ? 1 : 0)};
+}
 
 /// Steps z' = F(t, z)_M(z) by a LieGroupMethod. Holds the workspace, so that a step allocates nothing; for any scalar
 /// of M. No step looks at whether its numbers are finite.
@@ -61,7 +68,20 @@ template <HomogeneousSpace M> class LieGroupStep {
   /// component.
   double error() const { return error_; }
 
-  /// Visits what the next step goes on from, beside the point.
+  /// What the next step goes on from, beside the point.
+  struct Memory {
+    bool knows_first = false;
+    Algebra slope;
+  };
+  void keep(Memory& at) const {
+    at.knows_first = knows_first_;
+    if (method_.reuses_last) at.slope = slope_[std::size_t(method_.stages) - 1];
+  }
+  void go_back_to(const Memory& at) {
+    knows_first_ = at.knows_first;
+    if (method_.reuses_last) slope_[std::size_t(method_.stages) - 1] = at.slope;
+  }
+  /// Visits the same.
   void serialize(NumberArchive& archive) {
     if (!method_.reuses_last) return;
     auto slope = numbers_of(slope_[std::size_t(method_.stages) - 1]);

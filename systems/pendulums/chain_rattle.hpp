@@ -66,6 +66,8 @@ template <int K> class ChainRattle {
         end_(tension_),
         slope_(tension_),
         off_(tension_),
+        pivot_(tension_),
+        upper_(tension_),
         share_(chain.mass.cwiseInverse()),
         inverse_length_(chain.length.cwiseInverse()),
         system_(chain) {
@@ -133,9 +135,10 @@ template <int K> class ChainRattle {
   std::tuple<Columns, Columns, Vector<double, K>, Vector<double, K>> start_;  ///< of a step of several stages
   Vector<double, K> tension_;                                                 ///< over the step, T
   Vector<double, K> end_;                                                     ///< at its end, for the velocities
-  Vector<double, K> slope_;  ///< by which tension_ differs from end_ at the start of the step, over h
-  Vector<double, K> off_;    ///< (|q_i+|^2 - 1) / 2
-  Vector<double, K> share_;  ///< d_i
+  Vector<double, K> slope_;          ///< by which tension_ differs from end_ at the start of the step, over h
+  Vector<double, K> off_;            ///< (|q_i+|^2 - 1) / 2
+  Vector<double, K> pivot_, upper_;  ///< of Newton's correction
+  Vector<double, K> share_;          ///< d_i
   Vector<double, K> inverse_length_;
   ChainTensions<K, double> system_;
 };
@@ -197,17 +200,17 @@ template <int K> bool ChainRattle<K>::correct(double h) {
       const V before = q_.col(i - 1);
       const V ahead_before = next_.col(i - 1);
       const double r = system_.inverse_mass(i - 1);
-      const double over = r / system_.pivot(i - 1);
+      const double over = r / pivot_(i - 1);
       extra = (cross(ahead_before, ahead).dot(cross(before, here)) * r + along * extra) * over;
       x(i) += ahead.dot(before) * over * x(i - 1);
     }
-    system_.pivot(i) = along * system_.inverse_mass(i) + extra;
-    if (!(system_.pivot(i) > 0)) return false;
-    if (i + 1 < k) system_.upper(i) = -ahead.dot(q_.col(i + 1)) * system_.inverse_mass(i);
+    pivot_(i) = along * system_.inverse_mass(i) + extra;
+    if (!(pivot_(i) > 0)) return false;
+    if (i + 1 < k) upper_(i) = -ahead.dot(q_.col(i + 1)) * system_.inverse_mass(i);
   }
   for (int i = k; i-- > 0;) {
-    if (i + 1 < k) x(i) -= system_.upper(i) * x(i + 1);
-    x(i) /= system_.pivot(i);
+    if (i + 1 < k) x(i) -= upper_(i) * x(i + 1);
+    x(i) /= pivot_(i);
     tension_(i) += x(i);
   }
   return true;

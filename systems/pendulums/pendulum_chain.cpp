@@ -1,6 +1,7 @@
 #include <lagroid/systems/pendulums/chain_rattle.hpp>
 #include <lagroid/systems/spheres/sphere_integrator.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,35 @@ template <int K> class RattleIntegrator final : public SphereIntegrator {
   ChainRattle<K> rattle_;
 };
 
+/// Rows side by side, as many as there are lanes in the machine's registers up to four: more would wait for the
+/// longest.
+using RowScalar = Batch<std::min(4, widest_batch)>;
+using RowSpace = SpheresAndVectors<Eigen::Dynamic, RowScalar>;
+using ExtrapolatedRotations = ExtrapolationIntegrator<RowSpace, ChainRotationField<Eigen::Dynamic, RowScalar>>;
+
+/// Extrapolation of (q, w) on (S^2 x R^3)^k, of which (TS^2)^k is kept by the field, and by extrapolation as far as the
+/// tolerance goes: points are projected to it.
+class ExtrapolatedChain final : public detail::ControlledSphereSteps<ExtrapolatedRotations> {
+ public:
+  ExtrapolatedChain(const Chain& chain, const Points& start, const SphereIntegratorOptions& options)
+      : ControlledSphereSteps(
+            {RowSpace{{chain.links()}}, ChainRotationField<Eigen::Dynamic, RowScalar>(chain),
+             options.form == SphereForm::momenta ? chain.to_velocities(start) : start, detail::control_of(options)},
+            options.step),
+        chain_(chain),
+        form_(options.form) {}
+
+  Points point() const override {
+    Points z = ControlledSphereSteps::point();
+    chain_.space().project(z);
+    return form_ == SphereForm::momenta ? chain_.to_momenta(z) : z;
+  }
+
+ private:
+  Chain chain_;
+  SphereForm form_;
+};
+
 }  // namespace
 
 std::unique_ptr<SphereIntegrator> make_chain_integrator(const Chain& chain, const SphereIntegrator::Points& start,
@@ -47,6 +77,10 @@ std::unique_ptr<SphereIntegrator> make_chain_integrator(const Chain& chain, cons
     if (options.tolerance != 0) throw std::invalid_argument("rattle estimates no error");
     if (chain.links() == 1) return std::make_unique<RattleIntegrator<1>>(chain, start, options);
     return std::make_unique<RattleIntegrator<Eigen::Dynamic>>(chain, start, options);
+  }
+  if (options.method == extrapolation_method.name) {
+    detail::require_extrapolation(options);
+    return std::make_unique<ExtrapolatedChain>(chain, start, options);
   }
   if (options.form == SphereForm::momenta)
     return integrator_on_spheres(ChainMomentumField<Eigen::Dynamic>(chain), start, options);

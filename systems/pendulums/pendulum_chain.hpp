@@ -142,75 +142,113 @@ template <int K> struct PendulumChain {
 ///
 ///     x_i (1/m_i + 1/m_{i-1}) - x_{i+1} q_i.q_{i+1} / m_i - x_{i-1} q_i.q_{i-1} / m_{i-1} = b_i,      1/m_0 = 0,
 ///
-/// by elimination from the top. The pivots are d_i = 1/m_i + e_i with
+/// by elimination from both ends to the middle, so that two short recurrences go on side by side in place of a long
+/// one. From above the pivots are 1/m_i + e_i, from below 1/m_{i-1} + f_i, and e_i + f_i in the middle, with
 ///
-///     e_i = ( |q_{i-1} x q_i|^2 / m_{i-1} + e_{i-1} ) / (m_{i-1} d_{i-1}),      e_1 = 0:
+///     e_i = ( |q_{i-1} x q_i|^2 / m_{i-1} + e_{i-1} ) / (m_{i-1} (1/m_{i-1} + e_{i-1})),      e_1 = 0,
+///     f_i = ( |q_{i+1} x q_i|^2 / m_i + f_{i+1} ) / (m_i (1/m_i + f_{i+1})),                  f_k = 1/m_k:
 ///
 /// sums of what is positive, where 1/m_i + 1/m_{i-1} - (q_i.q_{i-1} / m_{i-1})^2 / d_{i-1} would cancel beside a light
 /// bob on rods that are nearly in line.
 template <int K, class S> struct ChainTensions {
   Vector<double, K> inverse_mass;
-  Vector<S, K> pivot, upper, x;
+  Vector<S, K> x;
 
   explicit ChainTensions(const PendulumChain<K>& chain)
       : inverse_mass(chain.mass.cwiseInverse()),
-        pivot(Vector<S, K>::Zero(chain.links())),
-        upper(Vector<S, K>::Zero(chain.links())),
-        x(Vector<S, K>::Zero(chain.links())) {}
+        x(Vector<S, K>::Zero(chain.links())),
+        factor_(Vector<S, K>::Zero(chain.links())) {}
 
   /// x <- A^{-1} x, q(i) being unit vectors.
   template <class Q> LAGROID_INLINE void solve(const Q& q) {
     using V = Vector<S, 3>;
     const int n = int(x.size());
-    pivot(0) = S(inverse_mass(0));
-    S extra(0.0);
-    for (int i = 1; i < n; ++i) {
-      const V before = q(i - 1);
-      const V here = q(i);
-      const double r = inverse_mass(i - 1);
-      const S over = r / pivot(i - 1);
-      upper(i - 1) = before.dot(here) * -r;
-      extra = (cross(before, here).squaredNorm() * r + extra) * over;
-      pivot(i) = extra + inverse_mass(i);
-      x(i) += before.dot(here) * over * x(i - 1);
+    const int middle = n / 2;
+    S above(0.0);
+    S below(inverse_mass(n - 1));
+    // Eliminates x_from from the equation of its neighbour; the bob between them has the inverse mass r. Squares of r
+    // would overflow.
+    const auto eliminate = [&](int from, int to, double r, S& extra) {
+      const V a = q(from);
+      const V b = q(to);
+      const S pivot = extra + r;
+      const S inverse = S(1.0) / pivot;
+      const S factor = a.dot(b) * r * inverse;
+      x(to) += factor * x(from);
+      x(from) *= inverse;
+      factor_(from) = factor;
+      extra = (cross(a, b).squaredNorm() * r + extra) / pivot * r;
+    };
+    for (int i = 0; i < middle; ++i) {
+      eliminate(i, i + 1, inverse_mass(i), above);
+      const int from = n - 1 - i;
+      if (from > middle) eliminate(from, from - 1, inverse_mass(from - 1), below);
     }
-    x(n - 1) /= pivot(n - 1);
-    for (int i = n - 1; i-- > 0;) x(i) = (x(i) - upper(i) * x(i + 1)) / pivot(i);
+    x(middle) /= above + below;
+    for (int i = 1; i <= middle; ++i) {
+      x(middle - i) += factor_(middle - i) * x(middle - i + 1);
+      if (middle + i < n) x(middle + i) += factor_(middle + i) * x(middle + i - 1);
+    }
   }
+
+ private:
+  Vector<S, K> factor_;  ///< by which the neighbour nearer to the middle comes in
 };
 
-/// The motion on (TS^2)^k as a map to se(3)^k, in O(k): the tensions T_i of the rods solve their equations
-/// (ChainTensions) with b_i = l_i |w_i|^2 - [i = 1] g e_3.q_1, and
+/// The motion of (q, w) by SO(3)^k x R^3^k, in O(k): the tensions T_i of the rods solve their equations (ChainTensions)
+/// with b_i = l_i |w_i|^2 - [i = 1] g e_3.q_1, and
 ///
 ///     w_i' = q_i x (T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1} - [i = 1] g e_3) / l_i,
+///     F(q, w) = (w, w').
+///
+/// q_i.w_i is constant.
+template <int K, class S = double> class ChainRotationField {
+ public:
+  using Space = SpheresAndVectors<K, S>;
+  using Z = typename Space::Point;
+
+  explicit ChainRotationField(const PendulumChain<K>& chain)
+      : gravity_(chain.gravity), length_(chain.length), tension_(chain) {}
+
+  void operator()(const S&, const Z& z, Z& f) {
+    using V = Vector<S, 3>;
+    const int k = int(length_.size());
+    for (int i = 0; i < k; ++i) tension_.x(i) = Space::second(z, i).squaredNorm() * length_(i);
+    tension_.x(0) -= z(2, 0) * gravity_;
+    tension_.solve([&](int i) { return Space::first(z, i); });
+    for (int i = 0; i < k; ++i) {
+      V pull = V::Zero();
+      if (i == 0) pull(2) -= gravity_;
+      if (i > 0) pull += Space::first(z, i - 1) * (tension_.x(i - 1) * tension_.inverse_mass(i - 1));
+      if (i + 1 < k) pull += Space::first(z, i + 1) * (tension_.x(i + 1) * tension_.inverse_mass(i));
+      Space::set(f, i, Space::second(z, i), cross(Space::first(z, i), pull) * (1 / length_(i)));
+    }
+  }
+
+ private:
+  double gravity_;
+  Vector<double, K> length_;
+  ChainTensions<K, S> tension_;
+};
+
+/// The same motion on (TS^2)^k as a map to se(3)^k,
+///
 ///     F(q, w) = (w, q x w').
 template <int K, class S = double> class ChainVelocityField {
  public:
   using Space = CotangentSpheres<K, S>;
   using Z = typename Space::Point;
 
-  explicit ChainVelocityField(const PendulumChain<K>& chain) : chain_(chain), tension_(chain) {}
+  explicit ChainVelocityField(const PendulumChain<K>& chain) : rotations_(chain) {}
 
-  void operator()(double, const Z& z, Z& f) {
-    using V = Vector<S, 3>;
-    const int k = chain_.links();
-    const double g = chain_.gravity;
-    for (int i = 0; i < k; ++i) tension_.x(i) = Space::second(z, i).squaredNorm() * chain_.length(i);
-    tension_.x(0) -= z(2, 0) * g;
-    tension_.solve([&](int i) { return Space::first(z, i); });
-    for (int i = 0; i < k; ++i) {
-      V pull = V::Zero();
-      if (i == 0) pull(2) -= g;
-      if (i > 0) pull += Space::first(z, i - 1) * (tension_.x(i - 1) * tension_.inverse_mass(i - 1));
-      if (i + 1 < k) pull += Space::first(z, i + 1) * (tension_.x(i + 1) * tension_.inverse_mass(i));
-      const V q = Space::first(z, i);
-      Space::set(f, i, Space::second(z, i), cross(q, V(cross(q, pull) * (1 / chain_.length(i)))));
-    }
+  void operator()(const S& t, const Z& z, Z& f) {
+    rotations_(t, z, f);
+    for (int i = 0; i < z.cols(); ++i)
+      Space::set(f, i, Space::first(f, i), cross(Space::first(z, i), Space::second(f, i)));
   }
 
  private:
-  PendulumChain<K> chain_;
-  ChainTensions<K, S> tension_;
+  ChainRotationField<K, S> rotations_;
 };
 
 /// The motion on (T*S^2)^k as a map to se(3)^k, in O(k): with the equations of the tensions (ChainTensions) and b_i =

@@ -1,6 +1,7 @@
 #include <lagroid/systems/spheres/sphere_integrator.hpp>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace lagroid {
 
@@ -20,6 +21,13 @@ double off_spheres(const SphereIntegrator::Points& z) {
   }
   if (largest > 0) raise(sphere, along / largest);
   return sphere;
+}
+
+void detail::require_extrapolation(const SphereIntegratorOptions& options) {
+  if (!(options.tolerance > 0)) throw std::invalid_argument("extrapolation takes its order and steps from a tolerance");
+  if (!std::isfinite(options.step) || !(options.step > 0))
+    throw std::invalid_argument("extrapolation goes on, from node to node, by a finite step");
+  if (options.composition.stages() > 1) throw std::invalid_argument("steps of extrapolation are not composed");
 }
 
 }  // namespace lagroid

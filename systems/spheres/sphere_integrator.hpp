@@ -8,12 +8,13 @@
 ///     const auto motion = make_chain_integrator(chain, start, {.method = "munthe-kaas-54", .tolerance = 1e-10});
 ///
 /// (The chain is in pendulums/pendulum_chain.hpp.) Requires a start on the bundle, of a column for each factor. Throws
-/// std::invalid_argument for unknown methods, a tolerance that is negative or that the method has no estimate for,
-/// steps of zero, and compositions of methods that have none. `advance` reports a status; unless it is `converged`
-/// everything stays as it was.
+/// std::invalid_argument for unknown methods, a tolerance that is negative or that the method has no estimate for, none
+/// where it takes its order from one, steps of zero, and compositions of methods that have none. `advance` reports a
+/// status; unless it is `converged` everything stays as it was.
 
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/groupoids/spheres.hpp>
+#include <lagroid/solvers/extrapolation/extrapolation_integrator.hpp>
 #include <lagroid/solvers/integrators/compositions.hpp>
 #include <lagroid/solvers/lie_group/integrator.hpp>
 #include <lagroid/solvers/methods/method.hpp>
@@ -34,7 +35,7 @@ enum class SphereForm {
 };
 
 struct SphereIntegratorOptions {
-  std::string method;  ///< the name of a LieGroupMethod, or one of the system's own
+  std::string method;  ///< the name of a LieGroupMethod, "extrapolation", or one of the system's own
   SphereForm form = SphereForm::velocities;
   double step = 0.01;                    ///< from node to node
   double tolerance = 0;                  ///< of inner steps, which an embedded method then controls; 0: one step a node
@@ -49,7 +50,7 @@ class SphereIntegrator {
   using Points = CotangentSpheres<Eigen::Dynamic>::Point;
 
   virtual ~SphereIntegrator() = default;
-  /// To the next node. Of inner steps the report counts those tried.
+  /// To the next node. Of inner steps the report counts evaluations.
   virtual StepReport advance() = 0;
   /// In the form of the options.
   virtual Points point() const = 0;
@@ -69,7 +70,7 @@ namespace detail {
 template <class F> class EqualSphereSteps final : public SphereIntegrator {
  public:
   EqualSphereSteps(F field, const LieGroupMethod& method, const Points& start, double step)
-      : integrator_({int(start.cols())}, std::move(field), method, start, step) {}
+      : integrator_({{int(start.cols())}}, std::move(field), method, start, step) {}
 
   StepReport advance() override { return integrator_.advance(); }
   Points point() const override { return integrator_.point(); }
@@ -81,22 +82,24 @@ template <class F> class EqualSphereSteps final : public SphereIntegrator {
   LieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F> integrator_;
 };
 
-template <class F> class ControlledSphereSteps final : public SphereIntegrator {
+/// How an integrator between nodes is controlled.
+inline LieGroupControl control_of(const SphereIntegratorOptions& options) {
+  return {.tolerance = options.tolerance,
+          .first_step = options.step,
+          .most_steps = options.most_inner,
+          .stop = options.stop};
+}
+
+/// From node to node by an integrator with a tolerance.
+template <class Controlled> class ControlledSphereSteps : public SphereIntegrator {
  public:
-  ControlledSphereSteps(F field, const LieGroupMethod& method, const Points& start,
-                        const SphereIntegratorOptions& options)
-      : integrator_({int(start.cols())}, std::move(field), method, start,
-                    {.tolerance = options.tolerance,
-                     .first_step = options.step,
-                     .most_steps = options.most_inner,
-                     .stop = options.stop}),
-        node_(integrator_.place()),
-        step_(options.step) {}
+  ControlledSphereSteps(Controlled integrator, double step)
+      : integrator_(std::move(integrator)), node_(integrator_.place()), step_(step) {}
 
   StepReport advance() override {
-    const long before = tried();
+    const long before = integrator_.evaluations();
     StepReport report = integrator_.advance_to(double(index_ + 1) * step_);
-    report.iterations = int(tried() - before);
+    report.iterations = int(integrator_.evaluations() - before);
     if (!report.converged()) {
       integrator_.go_back_to(node_);
       return report;
@@ -119,14 +122,14 @@ template <class F> class ControlledSphereSteps final : public SphereIntegrator {
   }
 
  private:
-  long tried() const { return integrator_.steps() + integrator_.rejected(); }
-
-  using Controlled = ControlledLieGroupIntegrator<CotangentSpheres<Eigen::Dynamic>, F>;
   Controlled integrator_;
   typename Controlled::Place node_;
   double step_;
   long index_ = 0;
 };
+
+/// Whether options are such that extrapolation can follow them; throws std::invalid_argument where they are not.
+void require_extrapolation(const SphereIntegratorOptions& options);
 
 }  // namespace detail
 
@@ -135,19 +138,29 @@ template <class F> class ControlledSphereSteps final : public SphereIntegrator {
 template <class F>
 std::unique_ptr<SphereIntegrator> integrator_on_spheres(F field, const SphereIntegrator::Points& start,
                                                         const SphereIntegratorOptions& options) {
+  const CotangentSpheres<Eigen::Dynamic> space{{int(start.cols())}};
+  const auto controlled = [&]<class Controlled>(Controlled integrator) {
+    return std::make_unique<detail::ControlledSphereSteps<Controlled>>(std::move(integrator), options.step);
+  };
+  if (options.method == extrapolation_method.name) {
+    detail::require_extrapolation(options);
+    return controlled(ExtrapolationIntegrator(space, std::move(field), start, detail::control_of(options)));
+  }
   const LieGroupMethod* method = lie_group_methods::named(options.method);
   if (method == nullptr) throw std::invalid_argument("no Lie group method is called \"" + options.method + "\"");
   if (!(options.tolerance >= 0) || !std::isfinite(options.step) || options.step == 0)
     throw std::invalid_argument("an integrator on spheres has a finite step and no negative tolerance");
   if (options.composition.stages() > 1) throw std::invalid_argument("steps of " + options.method + " are not composed");
   if (options.tolerance > 0)
-    return std::make_unique<detail::ControlledSphereSteps<F>>(std::move(field), *method, start, options);
+    return controlled(
+        ControlledLieGroupIntegrator(space, std::move(field), *method, start, detail::control_of(options)));
   return std::make_unique<detail::EqualSphereSteps<F>>(std::move(field), *method, start, options.step);
 }
 
 template <int K> struct PendulumChain;
 
-/// A chain of any length. Its own method is "rattle", the variational one (ChainRattle). `start` is of the form of the
+/// A chain of any length. Its own method is "rattle", the variational one (ChainRattle); "extrapolation" goes by
+/// ChainRotationField, four rows side by side. `start` is of the form of the
 /// options. Throws std::invalid_argument as `integrator_on_spheres`, and where rattle is to have a tolerance. Compiled.
 std::unique_ptr<SphereIntegrator> make_chain_integrator(const PendulumChain<Eigen::Dynamic>& chain,
                                                         const SphereIntegrator::Points& start,

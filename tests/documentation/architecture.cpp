@@ -1,6 +1,7 @@
 // The folders of the sources: which include which, how many files and lines they have, what is named in them.
 #include "pages.hpp"
 
+#include <lagroid/solvers/extrapolation/extrapolation_table.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
 #include <lagroid/systems/pendulums/chain_rattle.hpp>
 #include <lagroid/systems/rotations/moser_veselov_method.hpp>
@@ -210,6 +211,7 @@ std::vector<std::string> spelt_methods(const std::string& sources) {
   for (const lagroid::IntegrationMethod& method : lagroid::declared_methods) ask(method.name);
   ask(lagroid::moser_veselov_method.name);
   ask(lagroid::rattle_method.name);
+  ask(lagroid::extrapolation_method.name);
   return out;
 }
 

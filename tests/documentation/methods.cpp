@@ -1,6 +1,7 @@
 // The pages on methods name those that are declared.
 #include "pages.hpp"
 
+#include <lagroid/solvers/extrapolation/extrapolation_table.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
 #include <lagroid/systems/pendulums/chain_rattle.hpp>
 #include <lagroid/systems/rotations/moser_veselov_method.hpp>
@@ -65,6 +66,7 @@ std::vector<std::string> misjudged_methods(const std::string& page) {
   for (const lagroid::IntegrationMethod& method : lagroid::declared_methods) wanted.emplace(method.name);
   wanted.emplace(lagroid::moser_veselov_method.name);
   wanted.emplace(lagroid::rattle_method.name);
+  wanted.emplace(lagroid::extrapolation_method.name);
   known.insert(wanted.begin(), wanted.end());
   for (const auto& each : lagroid::compositions_of(lagroid::OtherOrders::composed_flows)) known.emplace(each.name);
   for (const auto& each : lagroid::lie_group_methods::all) known.emplace(each.name);

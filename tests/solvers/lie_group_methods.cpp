@@ -57,6 +57,8 @@ TEST(HomogeneousSpaces, FulfilTheLaws) {
   holds(laws::homogeneous_laws(Spheres<any>{3}, on_space(Spheres<any>{3})));
   holds(laws::homogeneous_laws(CotangentSpheres<1>{}, on_space(CotangentSpheres<1>{})));
   holds(laws::homogeneous_laws(CotangentSpheres<any>{3}, on_space(CotangentSpheres<any>{3})));
+  holds(laws::homogeneous_laws(SpheresAndVectors<1>{}, on_space(SpheresAndVectors<1>{})));
+  holds(laws::homogeneous_laws(SpheresAndVectors<any>{3}, on_space(SpheresAndVectors<any>{3})));
   holds(laws::homogeneous_laws(Translations<SO3>{}, on_group<SO3>()));
   holds(laws::homogeneous_laws(Translations<SE3>{}, on_group<SE3>()));
   holds(laws::homogeneous_laws(LinearAction<3, 2>{}, draw_matrix<3, 2>, 0.7));

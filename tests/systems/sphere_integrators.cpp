@@ -64,6 +64,11 @@ TEST(SphereIntegrators, KeepTheirLaws) {
       const auto laws = laws::sphere_laws(by);
       EXPECT_TRUE(laws.holds()) << laws;
     }
+    auto extrapolated = subject("extrapolation", form);
+    extrapolated.options.tolerance = 1e-10;
+    const auto laws = laws::sphere_laws(extrapolated);
+    EXPECT_TRUE(laws.holds()) << laws;
+    EXPECT_TRUE(laws.law("errors fall with the tolerance").holds());
   }
 }
 
@@ -96,6 +101,17 @@ TEST(SphereIntegrators, WhatLieEulerIsNot) {
   EXPECT_TRUE(report.law("points stay on the spheres").holds());
 }
 
+/// One that does not listen to its tolerance.
+TEST(SphereIntegrators, WhatATolerancePromises) {
+  auto deaf = subject("extrapolation", SphereForm::velocities);
+  deaf.options.tolerance = 1e-10;
+  deaf.begin = [](const Points& z, SphereIntegratorOptions by) {
+    if (by.method == "extrapolation") by.tolerance = 1e-5;
+    return make_chain_integrator(chain(), z, by);
+  };
+  EXPECT_TRUE(laws::seen_broken(laws::sphere_laws(deaf).law("errors fall with the tolerance")));
+}
+
 TEST(SphereIntegrators, WhatClassicalMethodsLeave) {
   const auto report = laws::sphere_laws(subject("runge-kutta-4", SphereForm::velocities));
   EXPECT_TRUE(laws::seen_broken(report.law("points stay on the spheres")));
@@ -112,9 +128,11 @@ TEST(SphereIntegrators, FormsThatDisagree) {
 
 TEST(SphereIntegrators, AreTakenUpWithTheSameBits) {
   for (const SphereForm form : {SphereForm::velocities, SphereForm::momenta}) {
-    for (const char* method : {"rattle", "lie-euler", "commutator-free-4", "munthe-kaas-54", "runge-kutta-4"}) {
+    for (const char* method :
+         {"rattle", "lie-euler", "commutator-free-4", "munthe-kaas-54", "runge-kutta-4", "extrapolation"}) {
+      const bool controlled = std::string(method) == "extrapolation";
       for (const double tolerance : {0.0, 1e-8}) {
-        if (tolerance > 0 && std::string(method) != "munthe-kaas-54") continue;
+        if (tolerance > 0 ? !controlled && std::string(method) != "munthe-kaas-54" : controlled) continue;
         const SphereIntegratorOptions by{.method = method, .form = form, .step = 0.01, .tolerance = tolerance};
         const auto whole = make_chain_integrator(chain(), start(form), by);
         laws::detail::integrated(*whole, 37);
@@ -139,6 +157,9 @@ TEST(SphereIntegrators, RefuseWhatThereIsNot) {
   EXPECT_THROW(make_chain_integrator(chain(), z, {.method = "lie-euler", .tolerance = 1e-6}), std::invalid_argument);
   EXPECT_THROW(make_chain_integrator(chain(), z, {.method = "munthe-kaas-54", .tolerance = -1}), std::invalid_argument);
   EXPECT_THROW(make_chain_integrator(chain(), z, {.method = "lie-euler", .composition = compositions::suzuki}),
+               std::invalid_argument);
+  EXPECT_THROW(make_chain_integrator(chain(), z, {.method = "extrapolation"}), std::invalid_argument);
+  EXPECT_THROW(make_chain_integrator(chain(), z, {.method = "extrapolation", .step = -1, .tolerance = 1e-6}),
                std::invalid_argument);
   EXPECT_THROW(make_chain_integrator(chain(), z, {.method = "rattle", .step = 0}), std::invalid_argument);
   EXPECT_THROW(make_chain_integrator(chain(), z.leftCols(2), {.method = "rattle"}), std::invalid_argument);

@@ -5,6 +5,7 @@
 #include <lagroid/solvers/testing/order_laws.hpp>
 #include <lagroid/systems/pendulums/chain_rattle.hpp>
 #include <lagroid/systems/pendulums/pendulum_chain.hpp>
+#include <lagroid/systems/spheres/sphere_integrator.hpp>
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -25,6 +26,15 @@ TEST(PendulumChain, ControlledStepsReachTheReferences) {
       return integrator.point();
     };
     EXPECT_LT(largest(end(ChainVelocityField<any>(c.chain), c.velocities) - c.end_velocities), c.tolerance) << c.name;
+    for (const SphereForm form : {SphereForm::velocities, SphereForm::momenta}) {
+      const bool momenta = form == SphereForm::momenta;
+      const auto extrapolated =
+          make_chain_integrator(c.chain, momenta ? c.momenta : c.velocities,
+                                {.method = "extrapolation", .form = form, .step = c.horizon, .tolerance = 1e-15});
+      EXPECT_TRUE(extrapolated->advance().converged()) << c.name;
+      EXPECT_LT(largest(extrapolated->point() - (momenta ? c.end_momenta : c.end_velocities)), 10 * c.tolerance)
+          << c.name << momenta;
+    }
     EXPECT_LT(largest(end(ChainMomentumField<any>(c.chain), c.momenta) - c.end_momenta), c.tolerance) << c.name;
   }
 }

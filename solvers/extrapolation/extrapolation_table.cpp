@@ -1,0 +1,96 @@
+#include <lagroid/solvers/extrapolation/extrapolation_table.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace lagroid {
+
+namespace {
+
+/// Those of rows first to last, among so many.
+Eigen::VectorXd weights_of(int first, int last, int rows) {
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(rows);
+  for (int j = first; j <= last; ++j) {
+    double product = 1;
+    for (int i = first; i <= last; ++i)
+      if (i != j) product *= double(j * j) / double(j * j - i * i);
+    w(j - 1) = product;
+  }
+  return w;
+}
+
+}  // namespace
+
+ExtrapolationTable ExtrapolationTable::of(int rows, int lanes) {
+  ExtrapolationTable table;
+  table.rows = rows;
+  const auto width = std::size_t(lanes);
+  std::vector<std::vector<int>> rows_of(width);
+  std::vector<int> steps(width, 0);
+  for (int j = rows; j > 0; --j) {
+    const auto least = std::min_element(steps.begin(), steps.end());
+    *least += 2 * j;
+    rows_of[std::size_t(least - steps.begin())].push_back(j);
+  }
+  const std::vector<double> nothing(width, 0);
+  table.slots.assign(std::size_t(*std::max_element(steps.begin(), steps.end())), {nothing, nothing, {}, {}});
+  for (std::size_t lane = 0; lane < width; ++lane) {
+    auto slot = table.slots.begin();
+    for (const int row : rows_of[lane]) {
+      const double h = 1.0 / (2 * row);
+      for (int i = 0; i < 2 * row; ++i, ++slot) {
+        slot->time[lane] = i * h;
+        slot->reach[lane] = i == 0 ? h : 2 * h;
+      }
+      (slot - 1)->ends.push_back({int(lane), row});
+      if (row == rows_of[lane].back()) continue;
+      if ((slot - 1)->restarts.empty()) (slot - 1)->restarts = nothing;
+      (slot - 1)->restarts[lane] = 1;
+    }
+  }
+  const auto value = [&](int first, int last) { return weights_of(first, last, rows); };
+  table.weights.resize(rows, 3);
+  table.weights << value(1, rows), value(1, rows) - value(2, rows), value(1, rows - 1) - value(2, rows - 1);
+  table.growth = table.weights.col(0).cwiseAbs().sum();
+  return table;
+}
+
+ExtrapolationOrder::ExtrapolationOrder(double tolerance, int lanes) : tolerance_(tolerance) {
+  if (!(tolerance > 0) || lanes < 1)
+    throw std::invalid_argument("extrapolation has a positive tolerance, and a lane at least");
+  constexpr int fewest = ExtrapolationTable::fewest_rows;
+  for (int k = fewest - 1; k <= ExtrapolationTable::most_rows; ++k)
+    tables_[std::size_t(k)] = ExtrapolationTable::of(k, lanes);
+  // About what steps settle at; the first few find the rest.
+  rows_ = std::clamp(int(std::lround(2.5 - 0.5 * std::log10(tolerance))), fewest + 1, ExtrapolationTable::most_rows);
+}
+
+auto ExtrapolationOrder::judge(double h, double error, double error_below, double rounding) -> Verdict {
+  // Errors of T_k are O(h^(2k - 1)) over a step.
+  const double allowed = std::max(tolerance_, rounding);
+  const auto size = [&](int rows, double of) {
+    const double factor = 0.9 * std::pow(0.25 * allowed / std::max(of, 1e-300), 1.0 / (2 * rows - 1));
+    return h * std::clamp(factor, 0.1, 4.0);
+  };
+  const auto cost = [&](int rows) { return tables_[std::size_t(rows)].cost(); };
+  const double here = size(rows_, error);
+  const double lower = size(rows_ - 1, error_below);
+  const double work = cost(rows_) / here;
+  const double work_below = cost(rows_ - 1) / lower;
+  const bool accepted = error <= allowed;
+  const bool lower_pays = rows_ > ExtrapolationTable::fewest_rows && work_below < 0.9 * work;
+  const bool higher_may = accepted && rows_ < ExtrapolationTable::most_rows && work < 0.9 * work_below;
+  double next = here;
+  if (lower_pays) {
+    --rows_;
+    next = lower;
+  } else if (higher_may) {
+    next = here * cost(rows_ + 1) / cost(rows_);
+    ++rows_;
+  }
+  // A step that was refused is not tried again as it was.
+  return {accepted, accepted ? next : std::min(next, 0.7 * h)};
+}
+
+}  // namespace lagroid
