@@ -260,7 +260,14 @@ inline IntegratorOptions integrator_options(const std::string& mode, const std::
     throw py::value_error(fmt::format("max_iterations: must be from 0 to {}, got {}", most_iterations, max_iterations));
   if (!std::isfinite(tolerance)) throw py::value_error(fmt::format("tolerance: must be finite, got {}", tolerance));
   if (tolerance < 0) throw py::value_error(fmt::format("tolerance: must be zero or positive, got {}", tolerance));
-  options.step = {max_iterations, tolerance};
+  options.step.max_iterations = max_iterations;
+  if (declared.by_tolerance()) {
+    if (tolerance == 0)
+      throw py::value_error(fmt::format("tolerance: {} takes its order and its steps from one", method));
+    options.tolerance = tolerance;
+  } else {
+    options.step.tolerance = tolerance;
+  }
   return options;
 }
 

@@ -64,8 +64,8 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   /// H = U(q) + |p|^2 / (2 m): kick and drift (SplitSystem), whose Strang step is the trapezoid's, Stormer-Verlet.
   static constexpr int parts = 2;
   static constexpr bool nystrom = true;
-  template <int Part, class S>
-  FlowOf<Pair<N>, S> flow(double t, const Vector<S, N>& q, const Vector<S, N>& p) const
+  template <int Part, class S, class T>
+  FlowOf<Pair<N>, S> flow(const T& t, const Vector<S, N>& q, const Vector<S, N>& p) const
       requires(ObjectConstraints == 0) {
     if constexpr (Part == 0) {
       return {{q, q}, force(q) * S(t)};

@@ -73,9 +73,10 @@ std::vector<Key> grid_keys() { return {time_keys::steps, time_keys::step, time_k
 
 Table time_table(bool depends_on_time) {
   Table table{grid_keys()};
-  table.keys.insert(table.keys.end(), {time_keys::accuracy, time_keys::mode(), time_keys::without_root(),
-                                       time_keys::method(method_words()), time_keys::order(),
-                                       time_keys::composition(compositions_of(OtherOrders::composed_flows))});
+  table.keys.insert(
+      table.keys.end(),
+      {time_keys::accuracy, time_keys::mode(), time_keys::without_root(), time_keys::method(method_words()),
+       time_keys::order(), time_keys::composition(compositions_of(OtherOrders::composed_flows)), time_keys::tolerance});
   if (depends_on_time) table.keys.push_back(time_keys::start);
   return table;
 }

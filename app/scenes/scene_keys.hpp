@@ -41,6 +41,14 @@ KeyOf<OneOf> boundary_mode(std::vector<std::string> words);
 /// The first of the names is what there is without the key.
 KeyOf<OneOf> method(std::vector<std::string> names);
 KeyOf<OneOf> without_root();
+inline const KeyOf<Number> tolerance{
+    "tolerance",
+    {{"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }}},
+    "",
+    "of a method that estimates its error: inner steps of the size that the estimate asks for "
+    "lead from node to node; `step` is then the distance of the nodes",
+    {},
+    "steps are as long as `step`"};
 
 }  // namespace time_keys
 

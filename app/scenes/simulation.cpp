@@ -85,7 +85,16 @@ void read_options(const Section& time, const IntegrationMethod& method, const Ab
       time.fail("composition",
                 fmt::format("goes with steps that are composed, which \"{}\" ones are not; leave it out", method.name));
     if (read_key(time, time_keys::order(method.order)) != method.order)
-      time.fail("order", fmt::format("of \"{}\" is {}", method.name, method.order));
+      time.fail("order", method.by_tolerance()
+                             ? fmt::format("of \"{}\" follows its tolerance; leave it out", method.name)
+                             : fmt::format("of \"{}\" is {}", method.name, method.order));
+  }
+  if (method.by_tolerance()) {
+    if (!time.has("tolerance"))
+      time.fail("method", "takes its order and its steps from a tolerance: add tolerance = 1e-9");
+    options.tolerance = read_key(time, time_keys::tolerance);
+  } else if (time.has("tolerance")) {
+    time.fail("tolerance", fmt::format("goes with method = \"{}\"", extrapolation_method.name));
   }
   if (options.mode == TimeMode::adaptive) {
     options.without_root = choice_of(without_root_words, read_key(time, time_keys::without_root()));
@@ -162,6 +171,7 @@ std::vector<std::string> settings_of(const IntegratorOptions& options) {
       fmt::format("time.mode={}", method.equal_steps() ? mode_of_equal_steps : method.name)};
   if (method.equal_steps()) settings.push_back(fmt::format("time.method={}", method.name));
   if (method.composed()) settings.push_back(fmt::format("time.composition={}", options.composition.name));
+  if (method.by_tolerance()) settings.push_back(fmt::format("time.tolerance={:g}", options.tolerance));
   return settings;
 }
 

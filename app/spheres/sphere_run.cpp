@@ -6,6 +6,7 @@
 #include "sphere_time.hpp"
 
 #include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/solvers/step/step_messages.hpp>
 
 #include <fmt/format.h>
 
@@ -17,25 +18,12 @@ namespace {
 
 /// Why a step failed, and what to do.
 std::string sphere_failure(const StepReport& report, long step, double time, const SphereIntegratorOptions& options) {
-  const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
-  switch (report.status) {
-    case SolveStatus::not_finite:
-      return fmt::format("{}: a number overflowed or became NaN; use a smaller or a larger time.step", where);
-    case SolveStatus::no_step:
-      return fmt::format("{}: the error stays above time.tolerance = {:g} however small the inner steps; raise it",
-                         where, options.tolerance);
-    default:
-      if (options.tolerance > 0)
-        return fmt::format(
-            "{}: {} inner steps did not reach the next node; raise time.tolerance, or use a smaller "
-            "time.step",
-            where, options.most_inner);
-      return fmt::format(
-          "{}: no tensions were found that keep the rods' lengths over this step (a rod would turn by a right angle, "
-          "or "
-          "nearly, or a bob is too light for its neighbours); use a smaller time.step",
-          where);
-  }
+  if (options.tolerance > 0 || report.status == SolveStatus::not_finite)
+    return tolerance_failure(report, step, time, options.tolerance, options.most_inner);
+  return fmt::format(
+      "step {} (from t = {:.6g}): no tensions were found that keep the rods' lengths over this step (a rod would turn "
+      "by a right angle, or nearly, or a bob is too light for its neighbours); use a smaller time.step",
+      step, time);
 }
 
 /// States are compared as directions and momenta, whatever the form. Looking at a node costs about as much as a step.

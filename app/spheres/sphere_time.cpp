@@ -23,15 +23,6 @@ KeyOf<OneOf> form_key(const std::vector<SphereForm>& forms) {
   return key;
 }
 
-const KeyOf<Number> tolerance_key{
-    "tolerance",
-    {{"between 1e-16 and 1", [](double x) { return x >= 1e-16 && x <= 1; }}},
-    "",
-    "of a method that estimates its error: inner steps of the size that the estimate asks for "
-    "lead from node to node; `step` is then the distance of the nodes",
-    {},
-    "steps are as long as `step`"};
-
 /// Whether the method has steps that a tolerance controls.
 bool estimates_error(std::string_view name) {
   const LieGroupMethod* method = lie_group_methods::named(name);
@@ -67,7 +58,7 @@ KeyOf<OneOf> method_key(const SphereEntry& entry) {
 
 Table sphere_time_table(const SphereEntry& entry) {
   Table table{grid_keys()};
-  table.keys.insert(table.keys.end(), {method_key(entry), form_key(entry.forms), tolerance_key});
+  table.keys.insert(table.keys.end(), {method_key(entry), form_key(entry.forms), time_keys::tolerance});
   if (!entry.own_methods.empty())
     table.keys.insert(table.keys.end(), {time_keys::order(), time_keys::composition(compositions::all)});
   return table;
@@ -102,7 +93,7 @@ SphereIntegratorOptions read_sphere_time(const Section& scene, const SphereEntry
     time.fail("tolerance", fmt::format("goes with a method that estimates its error: method = \"{}\" or \"{}\"",
                                        extrapolation_method.name, lie_group_methods::munthe_kaas_54.name));
   options.stop = InterruptGuard::interrupted;
-  options.tolerance = read_key(time, tolerance_key);
+  options.tolerance = read_key(time, time_keys::tolerance);
   return options;
 }
 

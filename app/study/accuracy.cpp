@@ -12,8 +12,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -44,18 +49,73 @@ Goal read_goal(const Section& scene) {
   return goal;
 }
 
-/// A method's error over a part of the motion, as it was found: e(h) = error (h / step)^p.
-struct Found {
-  Method method;
-  double step = 0;
-  double error = 0;
-  double step_seconds = 0;
+/// Nodes of a method that goes by a tolerance, and the least of these.
+constexpr long tolerance_nodes = 100;
+constexpr double least_tolerance = 1e-15;
 
-  double step_for(double wanted) const {
-    // Never beyond what was tried: above it the law of the error need not hold.
-    return step * std::min(1.0, std::pow(wanted / error, 1.0 / method.order));
+constexpr std::string_view tolerance_setting = "time.tolerance=";
+
+bool by_tolerance(const Method& method) {
+  return std::any_of(method.settings.begin(), method.settings.end(),
+                     [](const std::string& each) { return each.starts_with(tolerance_setting); });
+}
+
+/// A method with a step, or one that goes by a tolerance with that.
+struct Candidate {
+  Method method;
+  bool tolerance = false;
+
+  /// The order of errors in what is set, and of the time in its inverse.
+  double order() const { return tolerance ? 1 : method.order; }
+  double work() const { return tolerance ? 1.0 / method.order : 1; }
+  /// What is tried next, and by how much the error then falls.
+  double finer(double setting) const { return tolerance ? 0.1 * setting : 0.5 * setting; }
+  double gain() const { return tolerance ? 10 : std::pow(2.0, method.order); }
+
+  Method at(double setting) const {
+    Method out = method;
+    if (!tolerance) return out;
+    for (std::string& each : out.settings)
+      if (each.starts_with(tolerance_setting)) each = fmt::format("{}{:.3g}", tolerance_setting, setting);
+    out.name = out.name.substr(0, out.name.find('/'));
+    return out;
   }
-  double cost(double wanted, double end) const { return end / step_for(wanted) * step_seconds; }
+  long steps(double setting, double end) const {
+    return tolerance ? tolerance_nodes : std::max(2L, long(std::ceil(end / setting * (1 - 1e-12))));
+  }
+  std::optional<Reached> reach(const Experiment& experiment, double setting, double end) const {
+    return lagroid::reach(experiment, at(setting), end, steps(setting, end));
+  }
+  /// The error with this setting, by that with a finer one; NaN where there is none.
+  double error_of(const Experiment& experiment, double setting, double end) const {
+    const auto coarse = reach(experiment, setting, end);
+    const auto fine = reach(experiment, finer(setting), end);
+    if (!coarse || !fine) return std::numeric_limits<double>::quiet_NaN();
+    return distance(coarse->state, fine->state) * gain() / (gain() - 1);
+  }
+  std::string told(double setting, double end) const {
+    if (tolerance) return fmt::format("{} with a tolerance of {:.3g}", at(setting).name, setting);
+    return fmt::format("{} with {} steps of {:.4g}", method.name, steps(setting, end),
+                       end / double(steps(setting, end)));
+  }
+};
+
+/// A method's error over a part of the motion, as it was found: e = error (set / setting)^order.
+struct Found : Candidate {
+  double setting = 0;  ///< a step, or a tolerance
+  double error = 0;
+  double seconds = 0;  ///< for a unit of time
+
+  double setting_for(double wanted) const {
+    // Never beyond what was tried: above it the law of the error need not hold.
+    return setting * std::min(1.0, std::pow(wanted / error, 1.0 / order()));
+  }
+  /// Infinite where round-off is in the way.
+  double cost(double wanted, double end) const {
+    const double needed = setting_for(wanted);
+    if (tolerance && needed < least_tolerance) return std::numeric_limits<double>::infinity();
+    return end * seconds * std::pow(setting / needed, work());
+  }
 };
 
 /// Whether two runs agree on how large the motion is: an error relative to that of a run gone astray says nothing.
@@ -80,7 +140,7 @@ std::optional<Found> halve(const Experiment& experiment, const Method& method, d
       // The error must fall as its order says, or be round-off: two coarse runs may agree by chance.
       const bool exact = error < 1e-12;
       if (last && error <= wanted && (exact || (error < *last && *last < 4 * gain * error)))
-        return Found{method, 2 * end / double(steps), error, coarse->seconds / (double(steps) / 2)};
+        return Found{{method}, 2 * end / double(steps), error, coarse->seconds / end};
       if (last && error < 1e-9 && error > 0.5 * *last) return std::nullopt;  // no more to be gained
       last = error;
     }
@@ -90,18 +150,50 @@ std::optional<Found> halve(const Experiment& experiment, const Method& method, d
   return std::nullopt;
 }
 
+/// Lowers the tolerance of the method tenfold until its error over the time `end` is below `wanted`, and falls, or a
+/// run takes over `longest`.
+std::optional<Found> tighten(const Experiment& experiment, const Method& method, double end, double wanted,
+                             double longest) {
+  const Candidate candidate{method, true};
+  std::optional<Reached> loose;
+  std::optional<double> last;
+  const auto start = std::chrono::steady_clock::now();
+  for (double tolerance = 1e-3; tolerance > least_tolerance && seconds_since(start) < 4 * longest;
+       tolerance = candidate.finer(tolerance)) {
+    auto tight = candidate.reach(experiment, tolerance, end);
+    if (tight && loose && agree_on_sizes(loose->state, tight->state)) {
+      const double error = distance(loose->state, tight->state) * candidate.gain() / (candidate.gain() - 1);
+      if (last && error <= wanted && (error < 1e-12 || error < *last))
+        return Found{candidate, 10 * tolerance, std::max(error, 1e-300), loose->seconds / end};
+      last = error;
+    }
+    if (tight && tight->seconds > longest) return std::nullopt;
+    loose = std::move(tight);
+  }
+  return std::nullopt;
+}
+
 /// How the error grew over the second half: e ~ t^power. None where that cannot be told.
 std::optional<double> growth(const Experiment& experiment, const Found& found, double end) {
-  const long steps = 2 * std::max(2L, std::lround(0.5 * end / found.step));
-  const auto error = [&](double until, long n) {
-    const auto coarse = reach(experiment, found.method, until, n);
-    const auto fine = reach(experiment, found.method, until, 2 * n);
-    return coarse && fine ? distance(coarse->state, fine->state) : std::numeric_limits<double>::quiet_NaN();
-  };
-  const double power = std::log2(error(end, steps) / error(0.5 * end, steps / 2));
+  const double power =
+      std::log2(found.error_of(experiment, found.setting, end) / found.error_of(experiment, found.setting, 0.5 * end));
   constexpr double most = 6;  // beyond that it is no power
   if (!std::isfinite(power) || power > most) return std::nullopt;
   return std::max(power, 1.0);
+}
+
+/// What `methods` of the goal leave: those with equal steps, and of each that goes by a tolerance one.
+std::vector<Candidate> candidates(const std::vector<Method>& methods) {
+  std::vector<Candidate> out;
+  for (const Method& each : methods) {
+    if (each.to_compare || (!each.equal_steps && !by_tolerance(each))) continue;
+    const Candidate candidate{each, by_tolerance(each)};
+    const auto same = [&](const Candidate& known) {
+      return candidate.tolerance && known.at(1).name == candidate.at(1).name;
+    };
+    if (std::none_of(out.begin(), out.end(), same)) out.push_back(candidate);
+  }
+  return out;
 }
 
 const Found& cheapest(const std::vector<Found>& all, double wanted, double end) {
@@ -119,23 +211,25 @@ AccuracyChoice choose_by_accuracy(const Section& scene) {
   const bool only_duration = scene.section("time", "").has("duration") && !scene.section("time", "").has("steps");
   const Section timed = only_duration ? scene.set({"time.steps=1000"}) : scene;
   const Experiment experiment = read_experiment(timed);
-  std::vector<Method> methods;
+  std::vector<Candidate> methods;
   try {
-    methods = matching(goal.methods, experiment.methods);
+    methods = candidates(matching(goal.methods, experiment.methods));
   } catch (const UnknownMethod& error) {
     scene.section("accuracy", "").fail("methods", error.what());
   }
-  std::erase_if(methods, [](const Method& m) { return !m.equal_steps || m.to_compare; });
-  if (methods.empty()) scene.section("accuracy", "").fail("methods", "leave no method with equal steps");
+  if (methods.empty())
+    scene.section("accuracy", "")
+        .fail("methods", "leave no method with equal steps, and none that goes by a tolerance");
   const double longest = goal.pilot / (4 * double(methods.size()));
   double share = 1;
   std::vector<Found> found;
   double end = experiment.end;
   for (; share > 1e-7; share *= 0.1) {
     end = share * experiment.end;
-    for (const Method& method : methods)
-      if (auto each = halve(experiment, method, end, margin * goal.target * share, longest))
-        found.push_back(std::move(*each));
+    for (const Candidate& each : methods)
+      if (auto reached =
+              (each.tolerance ? tighten : halve)(experiment, each.method, end, margin * goal.target * share, longest))
+        found.push_back(std::move(*reached));
     if (!found.empty()) break;
   }
   const auto give_up = [&] {
@@ -145,37 +239,43 @@ AccuracyChoice choose_by_accuracy(const Section& scene) {
                                     goal.target, experiment.end));
   };
   if (found.empty()) give_up();
-  const auto grown = share < 1 ? growth(experiment, cheapest(found, margin * goal.target * share, end), end)
-                               : std::optional<double>(1);
+  const auto at_part = [&](const Found& a, const Found& b) {
+    return a.cost(margin * goal.target * share, end) < b.cost(margin * goal.target * share, end);
+  };
+  std::sort(found.begin(), found.end(), at_part);
+  std::optional<double> grown;
+  if (share == 1) grown = 1;
+  for (auto each = found.begin(); !grown && each != found.end(); ++each) grown = growth(experiment, *each, end);
   if (!grown) give_up();
   const double power = *grown;
   const auto wanted = [&](double target) { return margin * target * std::pow(share, power); };
   const Found& best = cheapest(found, wanted(goal.target), experiment.end);
-  long steps = long(std::ceil(experiment.end / best.step_for(wanted(goal.target))));
+  double cost = best.cost(wanted(goal.target), experiment.end);
+  if (!std::isfinite(cost)) give_up();
+  double setting = best.setting_for(wanted(goal.target));
   // What was found over a part is tried over the whole, where there is time for that.
   bool verified = share == 1;
-  double cost = double(steps) * best.step_seconds;
   while (!verified && 3 * cost < 2 * goal.pilot) {
-    const auto coarse = reach(experiment, best.method, experiment.end, steps);
-    const auto fine = reach(experiment, best.method, experiment.end, 2 * steps);
-    verified = coarse && fine && distance(coarse->state, fine->state) <= goal.target;
+    verified = best.error_of(experiment, setting, experiment.end) <= goal.target;
     if (verified) break;
-    steps *= 2;
-    cost *= 2;
-    if (3 * cost >= 2 * goal.pilot) give_up();
+    cost *= std::pow(setting / best.finer(setting), best.work());
+    setting = best.finer(setting);
+    const bool too_long = 3 * cost >= 2 * goal.pilot || seconds_since(start) > 4 * goal.pilot;
+    if (too_long || (best.tolerance && setting < least_tolerance)) give_up();
   }
-  const double h = experiment.end / double(steps);
+  const long steps = best.steps(setting, experiment.end);
   const Found& better = cheapest(found, wanted(0.1 * goal.target), experiment.end);
 
   AccuracyChoice choice;
-  choice.scene = with_method(without_method(timed), best.method, h, experiment.end);
-  choice.notes.push_back(
-      fmt::format("accuracy: for an error of {:.2g} at t = {:g}, {} with {} steps of {:.4g}; to integrate "
-                  "costs about {}",
-                  goal.target, experiment.end, best.method.name, steps, h, duration(cost)));
-  choice.notes.push_back(fmt::format("accuracy: ten times better would cost about {}, by {} with steps of {:.4g}",
-                                     duration(better.cost(wanted(0.1 * goal.target), experiment.end)),
-                                     better.method.name, better.step_for(wanted(0.1 * goal.target))));
+  choice.scene = with_method(without_method(timed), best.at(setting), experiment.end / double(steps), experiment.end);
+  choice.notes.push_back(fmt::format("accuracy: for an error of {:.2g} at t = {:g}, {}; to integrate costs about {}",
+                                     goal.target, experiment.end, best.told(setting, experiment.end), duration(cost)));
+  const double better_cost = better.cost(wanted(0.1 * goal.target), experiment.end);
+  choice.notes.push_back(std::isfinite(better_cost)
+                             ? fmt::format("accuracy: ten times better would cost about {}, by {}",
+                                           duration(better_cost),
+                                           better.told(better.setting_for(wanted(0.1 * goal.target)), experiment.end))
+                             : "accuracy: ten times better is beyond round-off");
   const std::string took = duration(seconds_since(start));
   if (share == 1)
     choice.notes.push_back(

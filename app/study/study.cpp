@@ -114,7 +114,7 @@ std::unique_ptr<Reference> reference_of(const std::string& text, const Experimen
   if (at == 0) throw BadOption("--reference: name a method before the @, as in splitting@0.001");
   const auto method = chosen_methods("--reference", text.substr(0, at), experiment.methods);
   if (!method.front().equal_steps)
-    throw BadOption(fmt::format("--reference: steps of {} vary, and do not end where the scene does; name another",
+    throw BadOption(fmt::format("--reference: steps of {} vary, so that half of one says nothing; name another",
                                 method.front().name));
   const double h = positive_number(text.substr(at + 1), "--reference");
   if (h > experiment.end)

@@ -4,8 +4,8 @@
 /// Compositions of the exact flows of the parts are explicit symplectic methods of any order.
 ///
 ///     static constexpr int parts = 2;  // kinetic, then potential
-///     template <int I, class S>
-///     FlowOf<Pair<1>, S> flow(double t, const Vector<S, 1>& q, const Vector<S, 1>& p) const {
+///     template <int I, class S, class T>
+///     FlowOf<Pair<1>, S> flow(const T& t, const Vector<S, 1>& q, const Vector<S, 1>& p) const {
 ///       if constexpr (I == 0) return {{q, q + p * t}, p * 0.0};
 ///       return {{q, q}, q * -t};
 ///     }
@@ -47,7 +47,11 @@ template <class Sys> constexpr bool has_flows() {
 /// A system without forces or constraints on arrows whose energy is H = H_0 + ... + H_{parts - 1}. It writes
 ///
 ///     static constexpr int parts
-///     template <int I, class S> FlowOf<G, S> flow(double t, const Object<S>& q, const Vector<S, n>& mu) const
+///     template <int I, class S, class T> FlowOf<G, S> flow(const T& t, const Object<S>& q, const Vector<S, n>& mu)
+///     const
+///
+/// T is double, or S where S is a number for each lane of a register (SplitInLanes); with `double t` in its place the
+/// latter is not there for those who could use it, which are slower then.
 ///
 /// Invariants (checked by tests, not by the compiler): flow<I>(t, z) follows the Hamiltonian vector field of H_I on A*G
 /// for the time t, of either sign, exactly: q' = rho(dH_I/dmu), mu' = -rho^* dH_I/dq + ad^*_{dH_I/dmu} mu; its arrow is
@@ -61,6 +65,15 @@ template <class Sys> constexpr bool has_flows() {
 template <class Sys>
 concept SplitSystem = DiscreteSystem<Sys> && Variational<Sys> && Sys::arrow_constraints == 0 &&
                       HasTimeStep<Sys>&& Sys::parts >= 1 && detail::has_flows<Sys>();
+
+/// A split system whose flows take a time of their own in each lane of S.
+template <class Sys, class S>
+concept SplitInLanes = SplitSystem<Sys> &&
+    requires(const Sys& system, const S& t, const ObjectOf<typename Sys::GroupoidType, S>& q,
+             const Vector<S, Sys::dimension>& mu) {
+  system.template flow<0>(t, q, mu);
+  system.template flow<Sys::parts - 1>(t, q, mu);
+};
 
 template <class Sys>
 concept NystromSystem = SplitSystem<Sys> && requires {

@@ -127,9 +127,19 @@ class Systems(unittest.TestCase):
         system = lagroid.Kepler(h=0.1)
         self.assertIn("order 8", system.integrator(momentum=[0, 1.2], object=[1, 0], order=8).method)
         self.assertIn("explicit", system.integrator(momentum=[0, 1.2], object=[1, 0], method="splitting").method)
+        extrapolated = system.integrator(momentum=[0, 1.2], object=[1, 0], method="extrapolation", tolerance=1e-12)
+        self.assertIn("extrapolation", extrapolated.method)
+        composed = lagroid.Kepler(h=0.01).integrator(momentum=[0, 1.2], object=[1, 0], order=8)
+        np.testing.assert_allclose(extrapolated.integrate(20).object[-1], composed.integrate(200).object[-1], atol=1e-10)
         trajectory = system.integrator(momentum=[0, 1.2], object=[1, 0], mode="controlled").integrate(20)
         self.assertGreater(np.ptp(trajectory.step_size), 1e-3)
-        wrongs = ({"mode": "fast"}, {"order": 3}, {"composition": "none"}, {"order": 4, "composition": "kahan-li-8"})
+        wrongs = (
+            {"mode": "fast"},
+            {"order": 3},
+            {"composition": "none"},
+            {"order": 4, "composition": "kahan-li-8"},
+            {"method": "extrapolation"},
+        )
         for wrong in wrongs:
             with self.assertRaises(ValueError):
                 system.integrator(momentum=[0, 1.2], object=[1, 0], **wrong)  # type: ignore[arg-type]

@@ -12,6 +12,7 @@
 #include <lagroid/run/motion/motion.hpp>
 #include <lagroid/run/motion/parameter_values.hpp>
 #include <lagroid/run/motion/system_node.hpp>
+#include <lagroid/solvers/extrapolation/extrapolation_table.hpp>
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/solvers/step/step_messages.hpp>
@@ -94,7 +95,9 @@ template <DiscreteSystem Sys> class SystemMotion : public Motion {
 
   StepReport advance() override { return integrator_->advance(); }
   std::string failure(const StepReport& report, long step) const override {
-    return step_failure(report, step, integrator_->point().time, options_.mode);
+    const double time = integrator_->point().time;
+    if (options_.tolerance > 0) return tolerance_failure(report, step, time, options_.tolerance, most_inner_steps);
+    return step_failure(report, step, time, options_.mode);
   }
 
   long evaluations(const StepReport& report) const override { return stages_ > 0 ? stages_ : report.iterations; }

@@ -24,38 +24,16 @@
 /// Throws std::invalid_argument as ControlledSteps. Status as there: `not_finite`, `no_step`, `not_converged`.
 
 #include <lagroid/core/hamiltonian/homogeneous_space.hpp>
-#include <lagroid/core/scalars/batch.hpp>
 #include <lagroid/solvers/extrapolation/extrapolation_table.hpp>
+#include <lagroid/solvers/extrapolation/row_register.hpp>
 #include <lagroid/solvers/lie_group/controlled_steps.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
 
 #include <limits>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace lagroid {
-
-namespace detail {
-
-/// A double as a register of one lane.
-template <class S> struct RowRegister {
-  static constexpr int width = 1;
-  static double load(const std::vector<double>& x) { return x[0]; }
-  static double get(double x, int) { return x; }
-  /// x where the lane is chosen, else y.
-  static double choose(const std::vector<double>& chosen, double x, double y) { return chosen[0] != 0 ? x : y; }
-};
-template <int W> struct RowRegister<Batch<W>> {
-  static constexpr int width = W;
-  using B = Batch<W>;
-  static B load(const std::vector<double>& x) { return B::load(x.data()); }
-  static double get(const B& x, int lane) { return x[lane]; }
-  static B choose(const std::vector<double>& chosen, const B& x, const B& y) {
-    return select(load(chosen) != B(0.0), x, y);
-  }
-};
-
-}  // namespace detail
 
 /// A step of the order and size that the tolerance asks for, for ControlledSteps.
 template <HomogeneousSpace M> class ExtrapolationStep {
@@ -66,9 +44,10 @@ template <HomogeneousSpace M> class ExtrapolationStep {
   using Table = ExtrapolationTable;
   using Memory = ExtrapolationOrder::Memory;
 
-  ExtrapolationStep(M space, double tolerance)
+  explicit ExtrapolationStep(M space, double tolerance = 1e-10,
+                             double longest = std::numeric_limits<double>::infinity())
       : space_(std::move(space)),
-        order_(tolerance, lanes),
+        order_(tolerance, lanes, 2, longest),
         earlier_(space_.zero_point()),
         later_(earlier_),
         slope_(space_.zero_algebra()),
@@ -88,15 +67,14 @@ template <HomogeneousSpace M> class ExtrapolationStep {
     advance(field, t, h, table, z);
     if (!extrapolate(table, z, next)) return {false, false, 0.2 * h, evaluations};
     const auto largest = [](const auto& x) { return x.cwiseAbs().maxCoeff(); };
-    const auto verdict =
-        order_.judge(h, largest(sums_.col(1)), largest(sums_.col(2)), largest(next) * table.growth * rounding);
+    const auto verdict = order_.judge(h, largest(sums_.col(1)), largest(sums_.col(2)), largest(next));
     if (verdict.accepted) project(next);
     return {verdict.accepted, true, verdict.next, evaluations};
   }
 
   /// One step of size h by k rows, whatever its error.
   template <class F> void step(F& field, double t, double h, int rows, const Point& z, Point& next) {
-    const Table table = Table::of(rows, lanes);
+    const Table table = Table::of(rows, lanes, 2);
     advance(field, t, h, table, z);
     extrapolate(table, z, next);
     project(next);
@@ -109,7 +87,6 @@ template <HomogeneousSpace M> class ExtrapolationStep {
  private:
   using L = detail::RowRegister<S>;
   static constexpr int lanes = L::width;
-  static constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
 
   /// The rows of the table, whose ends are then columns of ends_. Each step of a lane is (a, b) <- (b, exp(2 h F(b))
   /// a), the first from a = b = z by half of that.
@@ -117,14 +94,14 @@ template <HomogeneousSpace M> class ExtrapolationStep {
     for (Eigen::Index i = 0; i < z.size(); ++i) later_.data()[i] = earlier_.data()[i] = S(z.data()[i]);
     for (const Table::Slot& slot : table.slots) {
       field(L::load(slot.time) * h + t, later_, slope_);
-      move(L::load(slot.reach) * h);
+      move(L::load(slot.step) * (2.0 - L::load(slot.first)) * h);
       for (const Table::End& end : slot.ends)
         for (Eigen::Index i = 0; i < z.size(); ++i) ends_(i, end.row - 1) = L::get(later_.data()[i], end.lane);
-      if (slot.restarts.empty()) continue;
+      if (slot.others.empty()) continue;
       for (Eigen::Index i = 0; i < z.size(); ++i) {
         const S start(z.data()[i]);
-        later_.data()[i] = L::choose(slot.restarts, start, later_.data()[i]);
-        earlier_.data()[i] = L::choose(slot.restarts, start, earlier_.data()[i]);
+        later_.data()[i] = L::choose(slot.others, start, later_.data()[i]);
+        earlier_.data()[i] = L::choose(slot.others, start, earlier_.data()[i]);
       }
     }
   }
@@ -181,8 +158,9 @@ template <HomogeneousSpace M, class F> class ExtrapolationIntegrator : public Co
 
   /// Throws std::invalid_argument for control that is not positive, or a start of another size than the points of M.
   ExtrapolationIntegrator(M space, F field, Point start, const LieGroupControl& control, double time = 0)
-      : ControlledSteps<ExtrapolationStep<M>, F>({std::move(space), control.tolerance}, std::move(field),
-                                                 std::move(start), control, time) {}
+      : ControlledSteps<ExtrapolationStep<M>, F>(
+            ExtrapolationStep<M>(std::move(space), control.tolerance, control.largest_step), std::move(field),
+            std::move(start), control, time) {}
 };
 
 }  // namespace lagroid

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace lagroid {
 
@@ -22,7 +24,8 @@ Eigen::VectorXd weights_of(int first, int last, int rows) {
 
 }  // namespace
 
-ExtrapolationTable ExtrapolationTable::of(int rows, int lanes) {
+ExtrapolationTable ExtrapolationTable::of(int rows, int lanes, int unit) {
+  if (rows < 1 || rows > most_rows) throw std::invalid_argument("a table of extrapolation has eight rows at most");
   ExtrapolationTable table;
   table.rows = rows;
   const auto width = std::size_t(lanes);
@@ -30,23 +33,27 @@ ExtrapolationTable ExtrapolationTable::of(int rows, int lanes) {
   std::vector<int> steps(width, 0);
   for (int j = rows; j > 0; --j) {
     const auto least = std::min_element(steps.begin(), steps.end());
-    *least += 2 * j;
+    *least += unit * j;
     rows_of[std::size_t(least - steps.begin())].push_back(j);
   }
   const std::vector<double> nothing(width, 0);
-  table.slots.assign(std::size_t(*std::max_element(steps.begin(), steps.end())), {nothing, nothing, {}, {}});
+  const Slot idle{nothing, nothing, nothing, nothing, {}, {}};
+  table.slots.assign(std::size_t(*std::max_element(steps.begin(), steps.end())), idle);
   for (std::size_t lane = 0; lane < width; ++lane) {
     auto slot = table.slots.begin();
     for (const int row : rows_of[lane]) {
-      const double h = 1.0 / (2 * row);
-      for (int i = 0; i < 2 * row; ++i, ++slot) {
-        slot->time[lane] = i * h;
-        slot->reach[lane] = i == 0 ? h : 2 * h;
+      const int n = unit * row;
+      for (int i = 0; i < n; ++i, ++slot) {
+        slot->time[lane] = double(i) / n;
+        slot->step[lane] = 1.0 / n;
+        slot->first[lane] = i == 0 ? 1 : 0;
+        slot->last[lane] = i + 1 == n ? 1 : 0;
       }
-      (slot - 1)->ends.push_back({int(lane), row});
+      Slot& end = *(slot - 1);
+      end.ends.push_back({int(lane), row});
       if (row == rows_of[lane].back()) continue;
-      if ((slot - 1)->restarts.empty()) (slot - 1)->restarts = nothing;
-      (slot - 1)->restarts[lane] = 1;
+      if (end.others.empty()) end.others = nothing;
+      end.others[lane] = 1;
     }
   }
   const auto value = [&](int first, int last) { return weights_of(first, last, rows); };
@@ -56,31 +63,35 @@ ExtrapolationTable ExtrapolationTable::of(int rows, int lanes) {
   return table;
 }
 
-ExtrapolationOrder::ExtrapolationOrder(double tolerance, int lanes) : tolerance_(tolerance) {
-  if (!(tolerance > 0) || lanes < 1)
-    throw std::invalid_argument("extrapolation has a positive tolerance, and a lane at least");
+ExtrapolationOrder::ExtrapolationOrder(double tolerance, int lanes, int unit, double longest)
+    : tolerance_(tolerance), longest_(longest) {
+  if (!(tolerance > 0) || !(longest > 0) || lanes < 1 || unit < 1)
+    throw std::invalid_argument("extrapolation has a positive tolerance and steps, a lane at least, and rows of steps");
   constexpr int fewest = ExtrapolationTable::fewest_rows;
+  Tables tables;
   for (int k = fewest - 1; k <= ExtrapolationTable::most_rows; ++k)
-    tables_[std::size_t(k)] = ExtrapolationTable::of(k, lanes);
+    tables[std::size_t(k)] = ExtrapolationTable::of(k, lanes, unit);
+  tables_ = std::make_shared<const Tables>(std::move(tables));
   // About what steps settle at; the first few find the rest.
   rows_ = std::clamp(int(std::lround(2.5 - 0.5 * std::log10(tolerance))), fewest + 1, ExtrapolationTable::most_rows);
 }
 
-auto ExtrapolationOrder::judge(double h, double error, double error_below, double rounding) -> Verdict {
-  // Errors of T_k are O(h^(2k - 1)) over a step.
-  const double allowed = std::max(tolerance_, rounding);
+auto ExtrapolationOrder::judge(double h, double error, double error_below, double number) -> Verdict {
+  // What the first row changes of T_k is O(h^(2k - 1)) over a step.
+  const double allowed = std::max(tolerance_, std::numeric_limits<double>::epsilon() * table().growth * number);
   const auto size = [&](int rows, double of) {
     const double factor = 0.9 * std::pow(0.25 * allowed / std::max(of, 1e-300), 1.0 / (2 * rows - 1));
     return h * std::clamp(factor, 0.1, 4.0);
   };
-  const auto cost = [&](int rows) { return tables_[std::size_t(rows)].cost(); };
+  const auto cost = [&](int rows) { return (*tables_)[std::size_t(rows)].cost(); };
   const double here = size(rows_, error);
   const double lower = size(rows_ - 1, error_below);
-  const double work = cost(rows_) / here;
-  const double work_below = cost(rows_ - 1) / lower;
+  const double work = cost(rows_) / std::min(here, longest_);
+  const double work_below = cost(rows_ - 1) / std::min(lower, longest_);
   const bool accepted = error <= allowed;
   const bool lower_pays = rows_ > ExtrapolationTable::fewest_rows && work_below < 0.9 * work;
-  const bool higher_may = accepted && rows_ < ExtrapolationTable::most_rows && work < 0.9 * work_below;
+  const bool higher_may =
+      accepted && rows_ < ExtrapolationTable::most_rows && work < 0.9 * work_below && here < longest_;
   double next = here;
   if (lower_pays) {
     --rows_;

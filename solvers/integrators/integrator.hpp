@@ -40,15 +40,17 @@ enum class WithoutRoot {
 
 /// How a fixed step is made.
 enum class StepKind {
-  variational,  ///< implicitly, from the discrete Lagrangian
-  splitting,    ///< explicitly, of the flows of a SplitSystem
-  runge_kutta,  ///< explicitly, of the rates of a system, by the classical method: to compare with, it keeps nothing
+  variational,    ///< implicitly, from the discrete Lagrangian
+  splitting,      ///< explicitly, of the flows of a SplitSystem
+  extrapolation,  ///< explicitly, by splitting steps extrapolated to none, as many as a tolerance asks for
+  runge_kutta,    ///< explicitly, of the rates of a system, by the classical method: to compare with, it keeps nothing
 };
 
 struct IntegratorOptions {
   TimeMode mode = TimeMode::fixed;
   StepKind fixed = StepKind::variational;
   Composition composition = compositions::single;  ///< of fixed steps
+  double tolerance = 0;                            ///< of extrapolation: of an inner step, relative to the motion
   WithoutRoot without_root = WithoutRoot::stop;    ///< of adaptive ones
   StepMethod method = StepMethod::newton;
   StepOptions step = {};
@@ -100,10 +102,10 @@ template <DiscreteSystem Sys> struct Integrators;
 }  // namespace detail
 
 /// An integrator from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed,
-/// and one with a time scale for controlled steps, a SplitSystem for splitting, an AttractiveSystem for a transformed
-/// time, one that HasRates for Runge-Kutta steps and a variational one with a step `h` for orders above two (throws
-/// std::invalid_argument).
-/// Include `integrator_methods.hpp` for a system of your own; those of `systems/` are compiled.
+/// and one with a time scale for controlled steps, a SplitSystem for splitting and extrapolation, an AttractiveSystem
+/// for a transformed time, one that HasRates for Runge-Kutta steps and a variational one with a step `h` for orders
+/// above two (throws std::invalid_argument). Include `integrator_methods.hpp` for a system of your own; those of
+/// `systems/` are compiled.
 template <DiscreteSystem Sys>
 std::unique_ptr<Integrator<Sys>> make_integrator(const Sys& system, const State<typename Sys::GroupoidType>& initial,
                                                  const ArrowOf<typename Sys::GroupoidType>& configuration,

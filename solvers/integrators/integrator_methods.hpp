@@ -2,6 +2,7 @@
 /// Defines the integrators by their options: what `make_integrator` and `step_for_accuracy` make. Include it for a
 /// system of your own; those of systems/ are compiled in the library.
 
+#include <lagroid/solvers/extrapolation/extrapolated_splitting.hpp>
 #include <lagroid/solvers/integrators/adaptive.hpp>
 #include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/integrators/fixed_step_integrator.hpp>
@@ -48,6 +49,10 @@ template <DiscreteSystem Sys> struct detail::Integrators {
       if (options.fixed == StepKind::splitting)
         return std::make_unique<IntegratorOf<Sys, SplittingIntegrator<Sys>>>(system, initial, configuration,
                                                                              options.composition);
+    if constexpr (SplitSystem<Sys>)
+      if (options.fixed == StepKind::extrapolation)
+        return std::make_unique<IntegratorOf<Sys, ExtrapolatedSplitting<Sys>>>(system, initial, configuration,
+                                                                               options.tolerance);
     if constexpr (HasRates<Sys>)
       if (options.fixed == StepKind::runge_kutta)
         return std::make_unique<IntegratorOf<Sys, RungeKuttaIntegrator<Sys>>>(system, initial, configuration);

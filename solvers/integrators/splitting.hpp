@@ -77,7 +77,8 @@ template <SplitSystem Sys, class S> class SplitMotion {
     follow<0>(begun);
   }
 
-  template <int I> void follow(double t) {
+  /// Flow I for the time t, a double or a number for each lane of S.
+  template <int I, class T> void follow(const T& t) {
     const auto flow = system_.template flow<I>(t, object_, momentum());
     arrow_ = system_.groupoid.compose(arrow_, flow.arrow);
     object_ = system_.groupoid.target(flow.arrow);
@@ -85,9 +86,35 @@ template <SplitSystem Sys, class S> class SplitMotion {
     remainder_ += flow.remainder;
   }
 
+  /// A symmetric step of all flows but flow 0.
+  template <class T> void follow_others(const T& t) {
+    if (Sys::parts > 1 && two_flows_) {
+      follow<Sys::parts - 1>(t);
+    } else {
+      inner<1>(t);
+    }
+  }
+  /// Goes back to where it began, from `object`, in lanes: `choose(begun, now)` selects numbers.
+  template <class Choose> void begin_again(const Object& object, const Choose& choose) {
+    const G& groupoid = system_.groupoid;
+    const auto chosen = [&](auto begun, const auto& now) {
+      for (Eigen::Index i = 0; i < begun.size(); ++i) begun(i) = choose(begun(i), now(i));
+      return begun;
+    };
+    const auto at = chosen(groupoid.coordinates_of_object(object), groupoid.coordinates_of_object(object_));
+    const auto gone =
+        chosen(groupoid.coordinates_of_arrow(groupoid.unit(object)), groupoid.coordinates_of_arrow(arrow_));
+    object_ = groupoid.template object_at<S>(at);
+    arrow_ = groupoid.template arrow_at<S>(gone);
+    momentum_change_ = chosen(zero(), momentum_change_);
+    remainder_ = chosen(zero(), remainder_);
+  }
+
   const Object& object() const { return object_; }
   Momentum momentum() const { return start_ + momentum_change_; }
   const Momentum& momentum_change() const { return momentum_change_; }
+  /// What rounding took of the arrow, g tau(remainder).
+  const Momentum& remainder() const { return remainder_; }
   const typename G::template Arrow<S>& arrow() const { return arrow_; }
 
   bool finite() const { return momentum().allFinite() && system_.groupoid.coordinates_of_arrow(arrow_).allFinite(); }
@@ -114,15 +141,7 @@ template <SplitSystem Sys, class S> class SplitMotion {
     }
   }
 
-  /// All flows but flow 0.
-  void follow_others(double t) {
-    if (Sys::parts > 1 && two_flows_) {
-      follow<Sys::parts - 1>(t);
-    } else {
-      inner<1>(t);
-    }
-  }
-  template <int I> void inner(double t) {
+  template <int I, class T> void inner(const T& t) {
     if constexpr (I + 1 < Sys::parts) {
       follow<I>(0.5 * t);
       inner<I + 1>(t);

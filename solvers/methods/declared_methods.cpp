@@ -77,6 +77,8 @@ std::string why_not(const IntegratorOptions& options, const Capabilities& able) 
   if (const Requirement* what = unmet(method.needs, able)) return lacks(method.name, *what);
   if (method.equal_steps() && method.other_orders == OtherOrders::composed_steps && options.composition.stages() > 1)
     if (const Requirement* what = unmet(requirements::of_composed_steps, able)) return lacks("orders above two", *what);
+  if (method.by_tolerance() && !(options.tolerance > 0))
+    return std::string(method.name) + " takes its order and its steps from a tolerance, which has to be positive";
   if (options.mode == TimeMode::adaptive && options.without_root == WithoutRoot::controlled)
     if (const Requirement* what = unmet(requirements::of_controlled, able))
       return lacks("controlled steps without a root", *what);
@@ -93,6 +95,15 @@ std::vector<NamedMethod> named_methods(const Capabilities& able) {
   std::vector<NamedMethod> all;
   for (const IntegrationMethod& method : declared_methods) {
     if (unmet(method.needs, able)) continue;
+    if (method.by_tolerance()) {
+      for (const auto& [word, tolerance] : studied_tolerances) {
+        IntegratorOptions options = options_of(method);
+        options.tolerance = tolerance;
+        all.push_back(
+            {std::string(method.name) + "/" + std::string(word), method.order, method.stages, false, options});
+      }
+      continue;
+    }
     if (!method.composed()) {
       all.push_back({std::string(method.name), method.order, method.stages, method.equal_steps(), options_of(method),
                      method.to_compare});

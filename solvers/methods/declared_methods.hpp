@@ -98,19 +98,28 @@ struct IntegrationMethod : DeclaredMethod {
   std::span<const Requirement> needs = {};
 
   constexpr bool equal_steps() const { return mode == TimeMode::fixed; }
+  /// Whether `tolerance` is an option of it.
+  constexpr bool by_tolerance() const { return fixed == StepKind::extrapolation; }
   /// Whether `composition` and `order` are options of it.
   constexpr bool composed() const {
     return other_orders == OtherOrders::composed_steps || other_orders == OtherOrders::composed_flows;
   }
 };
 
+/// Of orders 4 to 16, whichever costs least. It goes by a tolerance, from node to node.
+inline constexpr DeclaredMethod extrapolation_method{.name = "extrapolation",
+                                                     .order = 16,
+                                                     .stages = 8,
+                                                     .source = {"deuflhard1983", "orders and steps of extrapolation"}};
+
 /// In the order in which studies list them. The first is what there is by default.
-inline constexpr std::array<IntegrationMethod, 6> declared_methods{{
+inline constexpr std::array<IntegrationMethod, 7> declared_methods{{
     {{.name = "variational", .other_orders = OtherOrders::composed_steps, .implicit = true}},
     {{.name = "splitting", .other_orders = OtherOrders::composed_flows},
      TimeMode::fixed,
      StepKind::splitting,
      requirements::of_splitting},
+    {extrapolation_method, TimeMode::fixed, StepKind::extrapolation, requirements::of_splitting},
     {{.name = "runge-kutta", .order = 4, .stages = 4, .to_compare = true},
      TimeMode::fixed,
      StepKind::runge_kutta,
@@ -196,6 +205,9 @@ struct NamedMethod {
   IntegratorOptions options{};
   bool to_compare = false;  ///< there to be compared with, and not chosen for anyone
 };
+
+/// The tolerances of a method that goes by one, as studies name them.
+inline constexpr std::array<Word<double>, 3> studied_tolerances{{{"1e-6", 1e-6}, {"1e-9", 1e-9}, {"1e-12", 1e-12}}};
 
 /// All that `make_integrator` takes of a system with these abilities, with Newton's iteration where there is one.
 std::vector<NamedMethod> named_methods(const Capabilities& able);

@@ -47,6 +47,21 @@ std::string step_failure(const StepReport& report, long step, double time, TimeM
   }
 }
 
+std::string tolerance_failure(const StepReport& report, long step, double time, double tolerance, long most) {
+  const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
+  switch (report.status) {
+    case SolveStatus::not_finite:
+      return fmt::format("{}: a number overflowed or became NaN; use a smaller or a larger time.step", where);
+    case SolveStatus::no_step:
+      return fmt::format("{}: the error stays above time.tolerance = {:g} however small the inner steps; raise it",
+                         where, tolerance);
+    default:
+      return fmt::format(
+          "{}: {} inner steps did not reach the next node; raise time.tolerance, or use a smaller time.step", where,
+          most);
+  }
+}
+
 std::string without_root_note(long count, long steps, WithoutRoot instead) {
   return fmt::format("{} of {} steps: the discrete energy determines no positive step size; the size {} was taken",
                      count, steps, instead == WithoutRoot::constant ? "of the first step" : "that the control gives");

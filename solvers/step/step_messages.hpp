@@ -14,6 +14,8 @@ namespace lagroid {
 
 /// A sentence on a step that failed: its number, the time before it (s), and what to do.
 std::string step_failure(const StepReport& report, long step, double time, TimeMode mode);
+/// The same of a node that inner steps by a tolerance were to reach, `most` of them.
+std::string tolerance_failure(const StepReport& report, long step, double time, double tolerance, long most);
 /// A note on steps whose size is not that of the mode.
 std::string without_root_note(long count, long steps, WithoutRoot instead);
 /// What a method declares of itself.

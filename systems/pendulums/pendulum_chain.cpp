@@ -1,7 +1,6 @@
 #include <lagroid/systems/pendulums/chain_rattle.hpp>
 #include <lagroid/systems/spheres/sphere_integrator.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -35,11 +34,8 @@ template <int K> class RattleIntegrator final : public SphereIntegrator {
   ChainRattle<K> rattle_;
 };
 
-/// Rows side by side, as many as there are lanes in the machine's registers up to four: more would wait for the
-/// longest.
-using RowScalar = Batch<std::min(4, widest_batch)>;
-using RowSpace = SpheresAndVectors<Eigen::Dynamic, RowScalar>;
-using ExtrapolatedRotations = ExtrapolationIntegrator<RowSpace, ChainRotationField<Eigen::Dynamic, RowScalar>>;
+using RowSpace = SpheresAndVectors<Eigen::Dynamic, RowBatch>;
+using ExtrapolatedRotations = ExtrapolationIntegrator<RowSpace, ChainRotationField<Eigen::Dynamic, RowBatch>>;
 
 /// Extrapolation of (q, w) on (S^2 x R^3)^k, of which (TS^2)^k is kept by the field, and by extrapolation as far as the
 /// tolerance goes: points are projected to it.
@@ -47,7 +43,7 @@ class ExtrapolatedChain final : public detail::ControlledSphereSteps<Extrapolate
  public:
   ExtrapolatedChain(const Chain& chain, const Points& start, const SphereIntegratorOptions& options)
       : ControlledSphereSteps(
-            {RowSpace{{chain.links()}}, ChainRotationField<Eigen::Dynamic, RowScalar>(chain),
+            {RowSpace{{chain.links()}}, ChainRotationField<Eigen::Dynamic, RowBatch>(chain),
              options.form == SphereForm::momenta ? chain.to_velocities(start) : start, detail::control_of(options)},
             options.step),
         chain_(chain),

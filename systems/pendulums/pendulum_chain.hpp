@@ -171,13 +171,12 @@ template <int K, class S> struct ChainTensions {
     const auto eliminate = [&](int from, int to, double r, S& extra) {
       const V a = q(from);
       const V b = q(to);
-      const S pivot = extra + r;
-      const S inverse = S(1.0) / pivot;
+      const S inverse = S(1.0) / (extra + r);
       const S factor = a.dot(b) * r * inverse;
       x(to) += factor * x(from);
       x(from) *= inverse;
       factor_(from) = factor;
-      extra = (cross(a, b).squaredNorm() * r + extra) / pivot * r;
+      extra = (cross(a, b).squaredNorm() * r + extra) * inverse * r;
     };
     for (int i = 0; i < middle; ++i) {
       eliminate(i, i + 1, inverse_mass(i), above);

@@ -54,7 +54,8 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   /// Rounding is kept from the sphere and its tangent planes.
   static constexpr int parts = 2;
   static constexpr bool nystrom = true;
-  template <int Part, class S> FlowOf<Pair<3>, S> flow(double t, const Vector<S, 3>& q, const Vector<S, 3>& p) const {
+  template <int Part, class S, class T>
+  FlowOf<Pair<3>, S> flow(const T& t, const Vector<S, 3>& q, const Vector<S, 3>& p) const {
     const double square = length * length;
     if constexpr (Part == 0) {
       const S along = q(2) * (bob_mass * gravity * t / square);

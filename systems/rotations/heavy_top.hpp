@@ -52,8 +52,8 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   static constexpr bool nystrom = true;
   /// A body with two equal moments turns by the last flow alone.
   bool two_flows() const { return RotationSplitting(inertia).is_symmetric(); }
-  template <int Part, class S>
-  FlowOf<GroupoidType, S> flow(double t, const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
+  template <int Part, class S, class T>
+  FlowOf<GroupoidType, S> flow(const T& t, const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
     if constexpr (Part == 0) {
       const Vector<S, 3> w = weight.template cast<S>();
       return {{Matrix<S, 3, 3>::Identity(), v}, v.cross(w) * S(t)};

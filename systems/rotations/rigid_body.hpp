@@ -42,7 +42,8 @@ struct RigidBody : System<RigidBody, SO3> {
 
   /// The energy split into that of a symmetric top and a rest (SplitSystem, RotationSplitting).
   static constexpr int parts = 2;
-  template <int Part, class S> FlowOf<SO3, S> flow(double t, const Vector<S, 0>&, const Vector<S, 3>& mu) const {
+  template <int Part, class S, class T>
+  FlowOf<SO3, S> flow(const T& t, const Vector<S, 0>&, const Vector<S, 3>& mu) const {
     const RotationSplitting kinetic(inertia);
     if constexpr (Part == 0) return kinetic.rest(t, mu);
     if constexpr (Part == 1) return kinetic.symmetric(t, mu);

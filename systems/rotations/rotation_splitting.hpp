@@ -58,12 +58,12 @@ class RotationSplitting {
   /// Whether nothing is left for the rest.
   bool is_symmetric() const { return inverse_(a_) == inverse_(b_); }
 
-  template <class S> FlowOf<SO3, S> symmetric(double t, const Vector<S, 3>& mu) const {
+  template <class T, class S> FlowOf<SO3, S> symmetric(const T& t, const Vector<S, 3>& mu) const {
     FlowOf<SO3, S> out = axial_turn(c_, S(mu(c_) * (t * (inverse_(c_) - inverse_(b_)))), mu);
     out.arrow = SO3::multiply(SO3::exp(Vector<S, 3>(mu * S(t * inverse_(b_)))), out.arrow);
     return out;
   }
-  template <class S> FlowOf<SO3, S> rest(double t, const Vector<S, 3>& mu) const {
+  template <class T, class S> FlowOf<SO3, S> rest(const T& t, const Vector<S, 3>& mu) const {
     return axial_turn(a_, S(mu(a_) * (t * (inverse_(a_) - inverse_(b_)))), mu);
   }
 

@@ -39,7 +39,7 @@ struct SphereIntegratorOptions {
   SphereForm form = SphereForm::velocities;
   double step = 0.01;                    ///< from node to node
   double tolerance = 0;                  ///< of inner steps, which an embedded method then controls; 0: one step a node
-  long most_inner = 1'000'000;           ///< of these, from one node to the next
+  long most_inner = most_inner_steps;    ///< of these, from one node to the next
   std::function<bool()> stop = nullptr;  ///< called before each of these; true ends the step, which is then not made
   Composition composition = compositions::single;  ///< of a symmetric method of the system's own
 };
@@ -86,6 +86,7 @@ template <class F> class EqualSphereSteps final : public SphereIntegrator {
 inline LieGroupControl control_of(const SphereIntegratorOptions& options) {
   return {.tolerance = options.tolerance,
           .first_step = options.step,
+          .largest_step = options.step,
           .most_steps = options.most_inner,
           .stop = options.stop};
 }

@@ -147,7 +147,9 @@ inline double tolerance_defect(const SphereSubject& subject) {
       return sphere_distance(end(subject.options.method, tolerance), exact, exact);
     };
     const double coarse = error(1e-6);
-    if (coarse > 1e-7) return std::max(0.0, std::log10(error(1e-11) / coarse) + 4);
+    if (!(coarse > 1e-7)) continue;
+    const double missing = std::log10(error(1e-11) / coarse) + 4;
+    return missing < 0 ? 0 : missing;
   }
   throw std::runtime_error("nothing moves");
 }

@@ -219,6 +219,7 @@ TEST_F(PendulumChains, WhatIsWrongIsSaidInOneLine) {
       {two + hanging + grid + "method = \"ratle\"\n", "did you mean \"rattle\"?"},
       {two + hanging + grid + "form = \"positions\"\n", "time.form: \"positions\" is none of velocities, momenta"},
       {two + hanging + grid + "tolerance = 1e-6\n", "time.tolerance: goes with a method that estimates its error"},
+      {two + hanging + grid + "method = \"extrapolation\"\n", "time.method: takes its order and its steps"},
       {two + hanging + grid + "method = \"munthe-kaas-54\"\ntolerance = 0\n", "time.tolerance: must be between"},
       {two + hanging + grid + "mode = \"adaptive\"\n", "time.mode: unknown key"},
       {two + hanging + grid + "accuracy = 1e-3\n", "time.accuracy"},

@@ -102,6 +102,8 @@ TEST(LieGroupPage, WhatItNamesExists) {
   EXPECT_EQ(unknown_names(prose_of(read("docs/lie_group_integrators.md"))), none);
 }
 
+TEST(ExtrapolationPage, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/extrapolation.md"))), none); }
+
 TEST(LieGroupPage, ItsCodeIsThatOfTheExample) {
   EXPECT_EQ(foreign_blocks(read("docs/lie_group_integrators.md"), "cpp", read("examples/my_hamiltonian.cpp")), none);
 }

@@ -302,6 +302,11 @@ double error_reached(const Section& scene) {
   const std::string composition = time.has("composition") ? time.text("composition", "") : "";
   if (name == "moser-veselov") name += "/" + std::to_string(time.integer("order", 2, 10));
   if (!composition.empty() && composition != "single") name += "/" + composition;
+  if (time.has("tolerance")) {
+    Method by_tolerance = method_named(experiment.methods, name + "/1e-9");
+    by_tolerance.settings.back() = "time.tolerance=" + std::to_string(time.number("tolerance") * 1e15) + "e-15";
+    return measure_once(experiment, by_tolerance, experiment.step, reference.get(), 100).trajectory;
+  }
   return measure_once(experiment, method_named(experiment.methods, name), experiment.step, reference.get(), 100)
       .trajectory;
 }

@@ -55,8 +55,13 @@ TEST(DeclaredMethods, EveryOrderHasItsComposition) {
 TEST(DeclaredMethods, WhatASystemLacksIsToldInASentence) {
   const Capabilities orbit = capabilities_of(Kepler{}), disk = capabilities_of(RollingDisk{});
   for (const IntegrationMethod& method : declared_methods) {
-    EXPECT_EQ(why_not(options_of(method), orbit), "") << method.name;
-    const std::string why = why_not(options_of(method), disk);
+    IntegratorOptions options = options_of(method);
+    if (method.by_tolerance()) {
+      EXPECT_NE(why_not(options, orbit).find("a tolerance"), std::string::npos);
+      options.tolerance = 1e-6;
+    }
+    EXPECT_EQ(why_not(options, orbit), "") << method.name;
+    const std::string why = why_not(options, disk);
     if (method.needs.empty()) {
       EXPECT_EQ(why, "");
     } else {
@@ -84,10 +89,13 @@ TEST(DeclaredMethods, NamedOnesAreThoseWhoseNeedsAreMet) {
   std::set<std::string> of_orbit;
   for (const NamedMethod& m : named_methods(capabilities_of(Kepler{}))) {
     of_orbit.insert(m.name);
-    EXPECT_EQ(m.equal_steps, integration_method(m.options).equal_steps()) << m.name;
+    const IntegrationMethod& method = integration_method(m.options);
+    EXPECT_EQ(m.equal_steps, method.equal_steps() && !method.by_tolerance()) << m.name;
+    EXPECT_EQ(m.options.tolerance > 0, method.by_tolerance()) << m.name;
     EXPECT_TRUE(!integration_method(m.options).composed() || m.order == m.options.composition.order) << m.name;
   }
-  for (const IntegrationMethod& method : declared_methods) EXPECT_TRUE(of_orbit.contains(std::string(method.name)));
+  for (const IntegrationMethod& method : declared_methods)
+    EXPECT_TRUE(of_orbit.contains(std::string(method.name) + (method.by_tolerance() ? "/1e-9" : ""))) << method.name;
   for (const char* composed : {"variational/suzuki", "splitting/nystrom-6", "transformed/kahan-li-8"})
     EXPECT_TRUE(of_orbit.contains(composed)) << composed;
 }

@@ -50,40 +50,44 @@ struct Turning {
 };
 
 TEST(ExtrapolationTables, HoldEachRowOnceWholeAndInOrder) {
-  for (const int lanes : {1, 2, 4, 8})
-    for (int rows = 1; rows <= Table::most_rows; ++rows) {
-      const Table table = Table::of(rows, lanes);
-      std::map<int, int> ended;
-      std::vector<int> steps(std::size_t(lanes), 0);
-      std::vector<double> moved(std::size_t(lanes), 0);
-      int all = 0;
-      for (const Table::Slot& slot : table.slots) {
-        for (std::size_t lane = 0; lane < steps.size(); ++lane) {
-          if (slot.reach[lane] == 0) continue;
-          ++all;
-          // z_{i+1} = exp(2 h F(z_i)) z_{i-1} goes on from where z_i is.
-          EXPECT_NEAR(slot.time[lane], steps[lane] == 0 ? 0 : slot.reach[lane] / 2 * steps[lane], 1e-15);
-          ++steps[lane];
-          moved[lane] = steps[lane] == 1 ? slot.reach[lane] : slot.time[lane] + slot.reach[lane] / 2;
+  EXPECT_THROW(Table::of(Table::most_rows + 1, 4, 2), std::invalid_argument);
+  for (const int unit : {1, 2})
+    for (const int lanes : {1, 2, 4, 8})
+      for (int rows = 1; rows <= Table::most_rows; ++rows) {
+        const Table table = Table::of(rows, lanes, unit);
+        std::map<int, int> ended;
+        std::vector<int> steps(std::size_t(lanes), 0);
+        int all = 0;
+        for (const Table::Slot& slot : table.slots) {
+          for (std::size_t lane = 0; lane < steps.size(); ++lane) {
+            if (slot.step[lane] == 0) continue;
+            ++all;
+            EXPECT_EQ(slot.first[lane], steps[lane] == 0);
+            EXPECT_NEAR(slot.time[lane], slot.step[lane] * steps[lane], 1e-15);
+            ++steps[lane];
+            EXPECT_EQ(slot.last[lane], std::lround(1 / slot.step[lane]) == steps[lane]);
+          }
+          for (const Table::End& end : slot.ends) {
+            const auto lane = std::size_t(end.lane);
+            ++ended[end.row];
+            EXPECT_EQ(steps[lane], unit * end.row);
+            EXPECT_EQ(slot.last[lane], 1);
+            const bool more = &slot != &table.slots.back() && (&slot + 1)->step[lane] > 0;
+            EXPECT_EQ(!slot.others.empty() && slot.others[lane] == 1, more);
+            steps[lane] = 0;
+          }
         }
-        for (const Table::End& end : slot.ends) {
-          ++ended[end.row];
-          EXPECT_EQ(steps[std::size_t(end.lane)], 2 * end.row);
-          EXPECT_NEAR(moved[std::size_t(end.lane)], 1, 1e-15);
-          steps[std::size_t(end.lane)] = 0;
-        }
+        EXPECT_EQ(all, unit * rows * (rows + 1) / 2);
+        EXPECT_EQ(int(ended.size()), rows);
+        for (const auto& [row, times] : ended) EXPECT_EQ(times, 1) << row;
+        EXPECT_GE(int(table.slots.size()), std::max(unit * rows, (all + lanes - 1) / lanes));
+        EXPECT_LE(int(table.slots.size()), std::max(unit * rows, all / lanes + 2));
       }
-      EXPECT_EQ(all, rows * (rows + 1));
-      EXPECT_EQ(int(ended.size()), rows);
-      for (const auto& [row, times] : ended) EXPECT_EQ(times, 1) << row;
-      EXPECT_GE(int(table.slots.size()), std::max(2 * rows, (all + lanes - 1) / lanes));
-      EXPECT_LE(int(table.slots.size()), std::max(2 * rows, all / lanes + 2));
-    }
 }
 
 TEST(ExtrapolationTables, AreExactOnPolynomialsInTheSquareOfTheStep) {
   for (int rows = 2; rows <= Table::most_rows; ++rows) {
-    const Table table = Table::of(rows, 4);
+    const Table table = Table::of(rows, 4, 2);
     for (int power = 0; power <= rows; ++power) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (int j = 1; j <= rows; ++j) sum += table.weights.row(j - 1).transpose() * std::pow(2.0 / j, 2 * power);

@@ -9,6 +9,7 @@
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/integrators/splitting.hpp>
 #include <lagroid/solvers/integrators/transformed.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
 
 #include <fmt/format.h>
 
@@ -74,6 +75,22 @@ template <class Make> auto landed(const Make& make, double span) {
   return integrator;
 }
 
+/// So many steps, watched.
+template <class Sys, class P, class Coordinates>
+Task stepping(const P& problem, const std::shared_ptr<lagroid::Integrator<Sys>>& integrator, long steps,
+              const Coordinates& coordinates) {
+  return [=] {
+    Watch<P> watch(problem);
+    for (long i = 0; i < steps; ++i) {
+      const lagroid::StepReport report = integrator->advance();
+      if (!report.converged())
+        return watch.fail(coordinates(integrator->point()), std::string(to_string(report.status)));
+      watch.step([&] { return coordinates(integrator->point()); });
+    }
+    return watch.finish(coordinates(integrator->point()));
+  };
+}
+
 /// An integrator of steps that `make` prepares for a step size; `coordinates` tells a point as the problem wants it.
 template <class Sys, class P, class Make, class Coordinates>
 Method integrated(const P& problem, std::string name, int order, double coarsest, const Make& make,
@@ -81,16 +98,7 @@ Method integrated(const P& problem, std::string name, int order, double coarsest
   return {ours, std::move(name), false, coarsest, ladder(order), [=](double end, double setting) -> Task {
             const long steps = std::lround(end / setting);
             const std::shared_ptr<lagroid::Integrator<Sys>> integrator = make(end / double(steps));
-            return [=] {
-              Watch<P> watch(problem);
-              for (long i = 0; i < steps; ++i) {
-                const lagroid::StepReport report = integrator->advance();
-                if (!report.converged())
-                  return watch.fail(coordinates(integrator->point()), std::string(to_string(report.status)));
-                watch.step([&] { return coordinates(integrator->point()); });
-              }
-              return watch.finish(coordinates(integrator->point()));
-            };
+            return stepping<Sys>(problem, integrator, steps, coordinates);
           }};
 }
 
@@ -118,6 +126,25 @@ Method integrated_to_the_end(const P& problem, std::string name, int order, doub
           }};
 }
 
+/// Extrapolation by a tolerance, in nodes a hundred units of time apart.
+template <class Sys, class P, class Coordinates>
+Method extrapolated(const P& problem, const Sys& system, const lagroid::State<typename Sys::GroupoidType>& start,
+                    const lagroid::ArrowOf<typename Sys::GroupoidType>& configuration, const Coordinates& coordinates) {
+  return {ours,
+          std::string(lagroid::extrapolation_method.name),
+          true,
+          1e-2,
+          std::sqrt(10.0),
+          [=](double end, double tolerance) -> Task {
+            const long nodes = std::lround(std::ceil(end / 100));
+            Sys stepped = system;
+            stepped.h = end / double(nodes);
+            const std::shared_ptr<lagroid::Integrator<Sys>> integrator = lagroid::make_integrator(
+                stepped, start, configuration, {.fixed = lagroid::StepKind::extrapolation, .tolerance = tolerance});
+            return stepping<Sys>(problem, integrator, nodes, coordinates);
+          }};
+}
+
 /// All ways that a system has.
 template <class Sys, class P, class Coordinates>
 std::vector<Method> integrators(const P& problem, const Sys& system,
@@ -125,6 +152,8 @@ std::vector<Method> integrators(const P& problem, const Sys& system,
                                 const lagroid::ArrowOf<typename Sys::GroupoidType>& configuration,
                                 const Coordinates& coordinates) {
   std::vector<Method> out;
+  if constexpr (lagroid::SplitSystem<Sys>)
+    out.push_back(extrapolated<Sys>(problem, system, start, configuration, coordinates));
   for (const Way& way : ways(system)) {
     const auto make = [=](double h, const auto& state, const auto& at) {
       Sys stepped = system;

@@ -49,6 +49,28 @@ TEST_F(CommandLine, UnitsDoNotMatterOrTheirLimitIsSaid) {
   }
 }
 
+/// Extrapolation goes by its tolerance, whatever the units, and is refused where it has none or nothing to go by.
+TEST_F(CommandLine, ExtrapolationFollowsItsTolerance) {
+  const auto place = [](const Outcome& r) {
+    EXPECT_EQ(r.code, 0) << r.err;
+    return nlohmann::json::parse(r.out).at("final").at("position").at(0).get<double>();
+  };
+  const std::string pendulum = "run " + example("pendulum") + " --json --set time.step=0.1 --set time.steps=200 ";
+  const std::string by = pendulum + "--set time.method=extrapolation --set time.tolerance=";
+  const double fine = place(run(pendulum + "--set time.step=0.001 --set time.steps=20000 --set time.method=splitting "
+                                           "--set time.order=8"));
+  EXPECT_NEAR(place(run(by + "1e-6")), fine, 1e-4);
+  EXPECT_NEAR(place(run(by + "1e-12")), fine, 1e-9);
+  for (const std::string mass : {"1e200", "1e300", "1e-160", "1e-280"})
+    EXPECT_NEAR(place(run(by + "1e-12 --set parameters.mass=" + mass)), fine, 1e-9) << mass;
+  expect_refused(pendulum + "--set time.method=extrapolation", "time.method: takes its order and its steps");
+  expect_refused(pendulum + "--set time.tolerance=1e-9", "time.tolerance: goes with method = \"extrapolation\"");
+  expect_refused(by + "1e-9 --set time.order=8", "follows its tolerance; leave it out");
+  expect_refused(by + "1e-9 --set time.composition=suzuki", "time.composition: goes with steps that are composed");
+  expect_refused("run " + example("damped_pendulum") + " --set time.method=extrapolation --set time.tolerance=1e-9",
+                 "has no explicit splitting");
+}
+
 /// Far from the origin a step moves positions by less than they can tell: what is kept then says nothing of the motion.
 TEST_F(CommandLine, PositionsWithoutTheDigitsOfTheMotionAreUnjudged) {
   const auto verdicts = [&](const std::string& x) {
