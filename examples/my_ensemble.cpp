@@ -3,6 +3,7 @@
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/system.hpp>
 #include <lagroid/groupoids/pair.hpp>
+#include <lagroid/run/events/ensemble_events.hpp>
 #include <lagroid/solvers/ensemble/ensemble.hpp>
 
 #include <algorithm>
@@ -39,9 +40,24 @@ int main() {
     largest = std::max(largest, std::abs(energy(point.state) / start - 1));
   };
   Ensemble<Spring> ensemble(Spring{}, initial);
+
+  // Where each passes the middle on its way up.
+  EnsembleEvent<Spring> middle("middle", [](const auto& node) { return node.state.object(0); });
+  middle.direction = Event::Direction::rising;
+  EnsembleWatch<Spring> watch(Spring{}, {middle}, ensemble.size());
+  options.visit = watch.visitor();
+
   ensemble.advance_to(2000, options);
 
+  double shortest = 1e9, longest = 0;
+  const auto passages = watch.happened();
+  for (std::size_t i = 1; i < passages.size(); ++i) {
+    if (passages[i].member != passages[i - 1].member) continue;
+    shortest = std::min(shortest, passages[i].time - passages[i - 1].time);
+    longest = std::max(longest, passages[i].time - passages[i - 1].time);
+  }
   const double error = *std::max_element(worst.begin(), worst.end());
   std::printf("%ld members, %ld failed, energy within %.1e\n", ensemble.size(), ensemble.failures(), error);
+  std::printf("periods from %.6f to %.6f\n", shortest, longest);
   return ensemble.failures() == 0 && error < 0.01 ? 0 : 1;
 }

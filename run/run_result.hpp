@@ -106,6 +106,7 @@ struct Happening {
   std::size_t event = 0;  ///< which of EventTable::watched
   long step = 0;          ///< in which it did, from 1 on
   double time = 0;        ///< s
+  double time_error = 0;  ///< what rounding of the function leaves open of it (FunctionWatch::uncertainty), s
   Passing passing = Passing::rising;
   bool together = false;       ///< at the same time as the one before, as far as times can be told apart
   std::vector<double> values;  ///< of the node's columns, EventTable::columns
@@ -132,6 +133,7 @@ struct EventSpan {
   double first = 0;
   double last = 0;
   double mean_interval = 0;  ///< zero where it happened once
+  double error = 0;          ///< of that, by those of the first and the last time
 };
 /// None where it did not.
 std::optional<EventSpan> span_of(const EventTable& events, std::size_t event);

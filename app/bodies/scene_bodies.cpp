@@ -390,8 +390,9 @@ Table bodies_table() {
        KeyOf<Tables>{"effect", {table_of(effect_kinds())}, "", "what acts on bodies", {}, "none"}}};
 }
 
-SceneBodies read_scene_bodies(const Section& scene) {
+SceneBodies read_scene_bodies(const Section& scene, bool on_its_way) {
   SceneBodies out;
+  out.is_on_its_way = on_its_way;
   out.scene.rotation = read_key(scene, rotation) == *rotation.fallback ? Retraction::exponential : Retraction::cayley;
   out.projects = read_key(scene, project_velocities);
   for (const auto& table : scene.tables("body")) read_kind(body_kinds(), out, table);

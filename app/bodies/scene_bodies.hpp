@@ -70,14 +70,17 @@ struct SceneBodies {
   bool driven = false;      ///< forces that are not derived from a potential
   bool timed = false;       ///< forces and motions that time gives: energy is not kept
   bool vakonomic = false;
-  bool counts_cost = false;  ///< of the controls: the kinetic terms
-  double damping_rate = 0;   ///< the largest drag over what it slows down, 1/s
-  bool is_off = false;       ///< what is read now does not act at the start
-  bool isolated = true;      ///< nothing acts from outside: momenta are conserved
-  double extent = 0;         ///< size of the scene at the start, m
+  bool counts_cost = false;    ///< of the controls: the kinetic terms
+  double damping_rate = 0;     ///< the largest drag over what it slows down, 1/s
+  bool is_off = false;         ///< what is read now does not act at the start
+  bool is_on_its_way = false;  ///< with other numbers: joints hold where the bodies are then, not at the start
+  bool isolated = true;        ///< nothing acts from outside: momenta are conserved
+  double extent = 0;           ///< size of the scene at the start, m
 
   /// Whether velocities at the start need not agree with what is read now.
-  bool is_free_to_start() const { return projects || is_off; }
+  bool is_free_to_start() const { return projects || is_free_in_place(); }
+  /// Nor places.
+  bool is_free_in_place() const { return is_off || is_on_its_way; }
 
   /// The ends of a table, by `end_keys`; without points, by the first of these.
   std::array<Attachment, 2> ends(const Section& table, bool with_points = true);
@@ -140,7 +143,7 @@ inline bool is_composable(const SceneBodies& bodies) {
   return !bodies.dissipates && !bodies.nonholonomic && !bodies.vakonomic;
 }
 
-/// Reads [[body]], [[joint]] and [[effect]].
-SceneBodies read_scene_bodies(const Section& scene);
+/// Reads [[body]], [[joint]] and [[effect]]; `on_its_way` with numbers that are not those of its start.
+SceneBodies read_scene_bodies(const Section& scene, bool on_its_way = false);
 
 }  // namespace lagroid::app

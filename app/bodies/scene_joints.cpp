@@ -70,7 +70,7 @@ void require_turning(const Section& table, const std::array<Attachment, 2>& ends
 
 void require_together(const SceneBodies& bodies, const Section& table, const std::array<Attachment, 2>& ends) {
   const double apart = (ends[1].place - ends[0].place).norm();
-  if (!bodies.is_off && apart > 1e-9 * (1 + ends[0].place.norm()))
+  if (!bodies.is_free_in_place() && apart > 1e-9 * (1 + ends[0].place.norm()))
     table.fail("points", fmt::format("the two points are {:.6g} m apart at the start, and must be one: \"{}\" has "
                                      "its own at ({:.10g}, {:.10g}, {:.10g}), \"{}\" at ({:.10g}, {:.10g}, {:.10g})",
                                      apart, ends[0].name(), ends[0].place(0), ends[0].place(1), ends[0].place(2),
@@ -95,7 +95,7 @@ void keep_in_plane(SceneBodies& bodies, const std::array<Attachment, 2>& ends, c
 void require_in_plane(const SceneBodies& bodies, const Section& table, const std::array<Attachment, 2>& ends,
                       const Vec& across) {
   const double off = across.dot(ends[1].place - ends[0].place);
-  if (!bodies.is_off && std::abs(off) > 1e-9 * (1 + ends[0].place.norm() + ends[1].place.norm()))
+  if (!bodies.is_free_in_place() && std::abs(off) > 1e-9 * (1 + ends[0].place.norm() + ends[1].place.norm()))
     table.fail("points", fmt::format("the point of \"{}\" is {:.6g} m off where the joint lets it go, at the start",
                                      ends[1].name(), off));
 }
@@ -120,7 +120,7 @@ void read_rod(SceneBodies& bodies, const Section& table) {
   const double apart = (ends[1].place - ends[0].place).stableNorm();
   const double given = read_key_or(table, length, apart);
   if (!(given > 0)) table.fail("points", "the ends of the rod meet; a joint of kind \"ball\" makes two points one");
-  if (!bodies.is_off && std::abs(given - apart) > 1e-9 * given)
+  if (!bodies.is_free_in_place() && std::abs(given - apart) > 1e-9 * given)
     table.fail("length", fmt::format("is {:.10g} m, but its ends are {:.10g} m apart at the start; leave it out to "
                                      "take that",
                                      given, apart));

@@ -142,7 +142,7 @@ void SceneNode::add_body(const NamedBody& b) {
          "angular velocity in the body",
          false,
          {}},
-        [spin, inertia = b.inertia](double* row) { put(spin().cwiseQuotient(inertia), row); });
+        [this, spin, a = b.body.attitude](double* row) { put(spin().cwiseQuotient(motion_.moments(a)), row); });
   }
   if (b.linear < 0) return;
   const auto momentum = [this, linear = b.linear](double* row) { put(linear_momentum(linear), row); };
@@ -163,7 +163,7 @@ void SceneNode::add_body(const NamedBody& b) {
        {}},
       momentum);
   add({b.name + ".angular_velocity", {column(b.name, "w")}, "rad/s", "of the body in the plane", false, {}},
-      [this, linear = b.linear, inertia = b.inertia(2)](double* row) { *row = linear_momentum(linear)(2) / inertia; });
+      [this, linear = b.linear](double* row) { *row = linear_momentum(linear)(2) / motion_.inertia(linear)(2); });
 }
 
 const Vec& SceneNode::linear_momentum(int linear) const {

@@ -4,6 +4,7 @@
 #include "../scenes/simulation.hpp"
 #include "scene_bodies.hpp"
 #include "scene_node.hpp"
+#include "scene_numbers.hpp"
 #include "scene_picture.hpp"
 
 #include <lagroid/solvers/step/step_messages.hpp>
@@ -34,6 +35,9 @@ const KeyOf<Number> tolerance{"tolerance",
                               solver_keys::tolerance.meaning,
                               0.0};
 
+/// Joints are violated by less, over the sizes of their terms.
+constexpr double joints_hold = 1e-8;
+
 /// The words of [time] mode and method; the first are the defaults.
 std::vector<std::string> modes() {
   return {std::string(mode_of_equal_steps), std::string(integration_method({.mode = TimeMode::controlled}).name)};
@@ -57,17 +61,16 @@ multibody::Options read_options(const Section& scene, const SceneBodies& bodies)
   return options;
 }
 
-/// The motion of the scene from its start. Refuses starts that are none.
-std::unique_ptr<Multibody> begin(const Section& scene, SceneBodies& bodies, double step,
-                                 const multibody::Options& options) {
+/// The motion of the scene at its start. Refuses scenes that have none.
+std::unique_ptr<Multibody> motion_of(const Section& scene, SceneBodies& bodies, double step,
+                                     const multibody::Options& options) {
   if (const double damped = step * bodies.damping_rate; !(damped <= 2))
     scene.section("time", "")
         .fail("step", fmt::format("drag stops a body within less than half a step (drag over inertia times the step is "
                                   "{:.4g}): use a step below {:.3g}",
                                   damped, 2 / bodies.damping_rate));
-  std::unique_ptr<Multibody> motion;
   try {
-    motion = std::make_unique<Multibody>(std::move(bodies.scene), step, options);
+    return std::make_unique<Multibody>(std::move(bodies.scene), step, options);
   } catch (const std::domain_error& error) {
     scene.fail("joint", fmt::format("{}, on bodies that joints tie together", error.what()));
   } catch (const std::invalid_argument& error) {
@@ -78,8 +81,14 @@ std::unique_ptr<Multibody> begin(const Section& scene, SceneBodies& bodies, doub
                 "without joints and other effects");
     scene.fail("", fmt::format("{}: a position, a length or a point is too large or too small", error.what()));
   }
+}
+
+/// The same, begun. Refuses starts that are none.
+std::unique_ptr<Multibody> begin(const Section& scene, SceneBodies& bodies, double step,
+                                 const multibody::Options& options) {
+  std::unique_ptr<Multibody> motion = motion_of(scene, bodies, step, options);
   if (bodies.projects) motion->make_tangent();
-  if (const double defect = motion->velocity_defect(); !(defect < 1e-8))
+  if (const double defect = motion->velocity_defect(); !(defect < joints_hold))
     scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
                                "them, or take what the joints allow of them with project_velocities = true",
                                defect));
@@ -104,6 +113,10 @@ class BodiesMotion final : public Motion {
   BodiesMotion(const Section& scene, std::string name, SceneBodies bodies, double step,
                const multibody::Options& options, std::set<std::string> chosen)
       : name_(std::move(name)),
+        scene_(scene),
+        first_numbers_(numbers_of_scene(scene)),
+        step_(step),
+        options_(options),
         bodies_(std::move(bodies)),
         chosen_(std::move(chosen)),
         controlled_(options.controlled),
@@ -161,11 +174,12 @@ class BodiesMotion final : public Motion {
   }
   Changeable changeable() const override {
     Changeable out;
-    // Controlled steps follow what acts, and would have to begin anew.
-    if (controlled_) return out;
     for (const NamedBody& body : bodies_.bodies)
       out.momenta.push_back(
           {body.name, (body.linear >= 0 ? 3u : 0u) + (body.body.attitude.index >= 0 ? std::size_t(3) : 0)});
+    // Controlled steps are of a time scale of all that acts.
+    if (controlled_) return out;
+    for (const SceneNumber& number : numbers_) out.parameters.push_back(number.name);
     const multibody::Switches& switches = motion_->switches();
     for (std::size_t k = 1; k < switches.names.size(); ++k)
       out.switches.push_back({switches.names[k], switches.on[k] != 0});
@@ -173,8 +187,9 @@ class BodiesMotion final : public Motion {
   }
   std::string refused(double share, const MotionChange& change) override {
     if (!go_within(share)) return "a part of the step does not converge; use a smaller time.step";
+    if (!change.parameters.empty()) return refused_numbers(change);
     for (const Switched& each : change.switches)
-      if (const double defect = motion_->violation(number_of(each)); each.on && !(defect < 1e-8))
+      if (const double defect = motion_->violation(number_of(each)); each.on && !(defect < joints_hold))
         return fmt::format("\"{}\" is switched on where it does not hold: it is violated by a share {:.3g}", each.name,
                            defect);
     return "";
@@ -183,18 +198,18 @@ class BodiesMotion final : public Motion {
     StepReport report;
     if (!go_within(share)) return report;
     if (!change.kick.empty()) kick(change.kick);
-    if (!change.switches.empty()) {
-      std::vector<char> on = motion_->switches().on;
-      for (const Switched& each : change.switches) on[std::size_t(number_of(each))] = each.on;
-      motion_->switch_to(on);
-    }
+    if (!change.switches.empty()) motion_->switch_to(switched(change.switches));
+    if (!change.parameters.empty()) set_numbers(changed_numbers(change.parameters));
     const multibody::SceneState end = *std::exchange(whole_, std::nullopt);
     const double rest = (1 - share) * std::exchange(whole_step_, 0.0);
     kept_ = motion_->state();
     kept_.index = end.index - 1;
     report.status = SolveStatus::converged;
     if (rest > 0) report = motion_->advance_by(rest);
-    if (report.converged()) motion_->end_part(end.index, end.at.time);
+    if (report.converged())
+      motion_->end_part(end);
+    else
+      motion_->restore(end);
     rest_ = rest;
     return report;
   }
@@ -223,6 +238,9 @@ class BodiesMotion final : public Motion {
   void describe(RunResult& result) const override {
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     if (bodies_.counts_cost) result.cost = cost_;
+    if (numbers_ != first_numbers_)
+      result.notes.emplace_back(
+          "numbers of the scene were changed on the way; the pictures are made with the first ones");
     result.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
                                      {"attitude", "A carries body to space"},
                                      {"momenta", "tangent to the joints"}};
@@ -232,6 +250,15 @@ class BodiesMotion final : public Motion {
     result.shapes = shapes_of(bodies_, chosen_);
   }
   void serialize(NumberArchive& archive) override {
+    std::vector<double> values;
+    for (const SceneNumber& number : numbers_) values.push_back(number.value);
+    const std::vector<double> first = values;
+    if (!values.empty()) archive(values);
+    if (values != first) {
+      std::vector<SceneNumber> numbers = numbers_;
+      for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i].value = values[i];
+      set_numbers(std::move(numbers));
+    }
     motion_->serialize(archive);
     archive(cost_);
   }
@@ -246,6 +273,49 @@ class BodiesMotion final : public Motion {
     motion_->restore(kept_);
     const double size = share * whole_step_;
     return size == 0 || motion_->advance_by(size).converged();
+  }
+  std::vector<SceneNumber> changed_numbers(const std::vector<ParameterValue>& to) const {
+    std::vector<SceneNumber> numbers = numbers_;
+    for (const ParameterValue& each : to)
+      std::find_if(numbers.begin(), numbers.end(), [&](const SceneNumber& n) { return n.name == each.name; })->value =
+          each.value;
+    return numbers;
+  }
+  /// Why numbers cannot become others here, together with what is switched.
+  std::string refused_numbers(const MotionChange& change) const {
+    try {
+      const std::unique_ptr<Multibody> motion = motion_with(changed_numbers(change.parameters));
+      motion->switch_to(switched(change.switches));
+      if (const double defect = motion->constraint_residual(); !(defect < joints_hold))
+        return fmt::format("with what it sets the joints do not hold: they are violated by a share {:.3g}", defect);
+    } catch (const SceneError& error) {
+      return error.problem();
+    } catch (const std::invalid_argument& error) {
+      return fmt::format("what it sets makes another scene of it: {}", error.what());
+    }
+    return "";
+  }
+  std::vector<char> switched(const std::vector<Switched>& changes) const {
+    std::vector<char> on = motion_->switches().on;
+    for (const Switched& each : changes) on[std::size_t(number_of(each))] = each.on;
+    return on;
+  }
+  /// The motion where it is, of the scene with these numbers.
+  std::unique_ptr<Multibody> motion_with(const std::vector<SceneNumber>& numbers) const {
+    const Section scene = scene_with(scene_, numbers);
+    SceneBodies bodies = read_scene_bodies(scene, true);
+    // What is watched for was chosen at the start.
+    if ((bodies.timed && !bodies_.timed) || (bodies.driven && !bodies_.driven) ||
+        (bodies.dissipates && !bodies_.dissipates))
+      scene.fail("", "what it sets begins to drive or to damp the scene; let a small number do so from the start");
+    std::unique_ptr<Multibody> motion = motion_of(scene, bodies, step_, options_);
+    motion->go_on_from(*motion_);
+    return motion;
+  }
+  /// What is seen knows the motion by its place.
+  void set_numbers(std::vector<SceneNumber> numbers) {
+    *motion_ = std::move(*motion_with(numbers));
+    numbers_ = std::move(numbers);
   }
   int number_of(const Switched& each) const {
     const std::vector<std::string>& names = motion_->switches().names;
@@ -266,6 +336,11 @@ class BodiesMotion final : public Motion {
   }
 
   std::string name_;
+  Section scene_;
+  std::vector<SceneNumber> first_numbers_;
+  std::vector<SceneNumber> numbers_ = first_numbers_;  ///< as they are now
+  double step_;
+  multibody::Options options_;
   SceneBodies bodies_;
   std::set<std::string> chosen_;
   bool controlled_;

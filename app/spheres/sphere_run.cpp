@@ -10,7 +10,9 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -52,7 +54,7 @@ class SphereMotion final : public Motion {
   }
 
   long index() const override { return index_; }
-  double time() const override { return integrator_->time(); }
+  double time() const override { return double(index_) * options_.step; }
   double step_size() const override { return options_.step; }
   const Observables& look() override {
     node_.see(index_, time(), integrator_->point());
@@ -62,18 +64,28 @@ class SphereMotion final : public Motion {
   void keep_node() override {
     kept_ = integrator_->point();
     kept_time_ = time();
+    rest_ = 1;
   }
   const Observables* look_within(double share) override {
-    SphereIntegratorOptions part = options_;
-    part.step *= share;
-    if (share == 0) {
-      node_.see(index_, kept_time_, kept_);
-      return &node_;
-    }
-    const auto step = system_->begin(kept_, part);
-    if (!step->advance().converged()) return nullptr;
-    node_.see(index_, kept_time_ + part.step, step->point());
+    const std::optional<Points> inside = within(share);
+    if (!inside) return nullptr;
+    node_.see(index_, time_within(share), *inside);
     return &node_;
+  }
+  Changeable changeable() const override { return {.momenta = {{"", std::size_t(3 * system_->count())}}}; }
+  StepReport change_within(double share, const MotionChange& change) override {
+    StepReport report;
+    const std::optional<Points> inside = within(share);
+    if (!inside) return report;
+    kept_time_ = time_within(share);
+    rest_ *= 1 - share;
+    kept_ = kicked(*inside, change.kick);
+    const std::optional<Points> end = within(1);
+    if (!end) return report;
+    // What an integrator remembers of its steps is of another motion.
+    integrator_ = system_->begin(*end, options_);
+    report.status = SolveStatus::converged;
+    return report;
   }
   std::vector<NamedVector> state() const override {
     const auto z = system_->in_form(integrator_->point(), options_.form, SphereForm::momenta);
@@ -102,14 +114,38 @@ class SphereMotion final : public Motion {
   }
 
  private:
+  using Points = SphereIntegrator::Points;
+
+  double time_within(double share) const { return kept_time_ + share * rest_ * options_.step; }
+  /// Where a share of the last step, or of what a change left of it, leads to; none where it does not converge.
+  std::optional<Points> within(double share) const {
+    SphereIntegratorOptions part = options_;
+    part.step *= share * rest_;
+    if (part.step == 0) return kept_;
+    const auto step = system_->begin(kept_, part);
+    if (!step->advance().converged()) return std::nullopt;
+    return step->point();
+  }
+  /// With these vectors added to the momenta, as far as they are tangent to the spheres.
+  Points kicked(const Points& z, const std::vector<double>& by) const {
+    Points changed = system_->in_form(z, options_.form, SphereForm::momenta);
+    for (Eigen::Index i = 0; i < changed.cols(); ++i) {
+      const Vector<double, 3> q = changed.col(i).head<3>();
+      const auto kick = Eigen::Map<const Vector<double, 3>>(by.data() + 3 * i);
+      changed.col(i).tail<3>() += kick - q * (q.dot(kick) / q.squaredNorm());
+    }
+    return system_->in_form(changed, SphereForm::momenta, options_.form);
+  }
+
   std::shared_ptr<const SphereSystem> system_;
   SphereIntegratorOptions options_;
   std::unique_ptr<SphereIntegrator> integrator_;
   int stages_;
   SphereNode node_;
   long index_ = 0;
-  SphereIntegrator::Points kept_;  ///< from which steps are made in part
+  Points kept_;  ///< from which steps are made in part
   double kept_time_ = 0;
+  double rest_ = 1;  ///< of a step, that begins there
 };
 
 }  // namespace

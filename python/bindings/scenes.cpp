@@ -214,6 +214,7 @@ py::list events(const RunResult& result) {
     py::dict each;
     each["event"] = table.watched[row.event].name;
     each["t"] = row.time;
+    each["t_error"] = row.time_error;
     each["step"] = row.step;
     each["passing"] = std::string(to_string(row.passing));
     each["together"] = row.together;
@@ -377,7 +378,7 @@ void bind_scenes(py::module_& module) {
       .def_property_readonly(
           "events", events,
           "What happened of what the scene watches for, in the order of time: a dict each, of event, "
-          "t, step, passing, together and the columns of the state there.")
+          "t, t_error, step, passing, together and the columns of the state there.")
       .def_property_readonly(
           "conventions", [](const RunResult& r) { return r.trajectory.conventions; }, "What the numbers mean.")
       .def_property_readonly(

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -33,13 +34,13 @@ template <class Iterator> Iterator together_with(Iterator first, Iterator end) {
   return std::find_if(first, end, [first](const auto& each) { return each.share > first->share + indistinguishable; });
 }
 
-/// Of every quantity that is known inside of steps its value; of the others zeros.
-std::vector<std::vector<double>> quantities_within(const Observables& node) {
-  std::vector<std::vector<double>> all;
+/// Of every quantity that is known inside of steps its value and the size of its terms; of the others zeros.
+std::vector<QuantityWithin> quantities_within(const Observables& node) {
+  std::vector<QuantityWithin> all;
   for (std::size_t i = 0; i < node.quantities().size(); ++i) {
     const Watched& quantity = node.quantities()[i];
-    all.emplace_back(quantity.components.size());
-    if (!quantity.on_arrows && !quantity.adds_up) node.measure(i, all.back().data());
+    QuantityWithin& each = all.emplace_back(std::vector<double>(quantity.components.size()));
+    if (!quantity.on_arrows && !quantity.adds_up) each.size = node.measure(i, each.value.data());
   }
   return all;
 }
@@ -150,19 +151,24 @@ std::string_view to_string(Passing passing) {
 }
 
 std::optional<EventSpan> span_of(const EventTable& events, std::size_t event) {
-  std::optional<EventSpan> span;
+  const Happening* first = nullptr;
+  const Happening* last = nullptr;
   for (const Happening& row : events.rows) {
     if (row.event != event || row.passing == Passing::touching) continue;
-    if (!span) span = EventSpan{row.time, row.time};
-    span->last = row.time;
+    if (first == nullptr) first = &row;
+    last = &row;
   }
-  const long count = events.watched[event].count;
-  if (span && count > 1) span->mean_interval = (span->last - span->first) / double(count - 1);
+  if (first == nullptr) return std::nullopt;
+  EventSpan span{first->time, last->time};
+  if (const long intervals = events.watched[event].count - 1; intervals > 0) {
+    span.mean_interval = (span.last - span.first) / double(intervals);
+    span.error = (first->time_error + last->time_error) / double(intervals);
+  }
   return span;
 }
 
 EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
-    : motion_(motion), time_(motion.time()), arrived_(time_) {
+    : motion_(motion), time_(motion.time()), arrived_(time_), begun_(time_) {
   if (const std::string why = motion.why_not_cut(); !why.empty())
     throw RunError(fmt::format("{}: nothing inside of steps can be found: {}", named(events.front()), why));
   const Observables& node = motion.look();
@@ -262,7 +268,7 @@ bool EventWatch::change(Group together) {
                          return a.share < b.share;
                        })->share;
   MotionChange change;
-  std::vector<std::vector<double>> before;
+  std::vector<QuantityWithin> before;
   for (const Found& found : together) {
     Watch& watch = watches_[found.event];
     if (!watch.event.changes_motion() || found.passing == Passing::touching) continue;
@@ -282,9 +288,11 @@ bool EventWatch::change(Group together) {
         time_, arrived_)};
   const Observables& changed = within(0);
   measure_change(before, changed);
+  begun_ = changed.time();
   std::vector<double> there;
   for (Watch& watch : watches_) there.push_back(watch.value(changed));
   const Observables& node = motion_.look();
+  arrived_ = node.time();  // a rest of a transformed time lasts as long as it does
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const auto fired = std::find_if(together.begin(), together.end(), [&](const Found& f) { return f.event == i; });
     const auto passing = fired == together.end() ? std::nullopt : std::optional(fired->passing);
@@ -311,28 +319,36 @@ void EventWatch::add_change(Watch& watch, const Observables& inside, MotionChang
   for (const std::string& name : event.switch_off) change.switches.push_back({name, false});
 }
 
-void EventWatch::measure_change(const std::vector<std::vector<double>>& before, const Observables& changed) {
-  const std::vector<std::vector<double>> after = quantities_within(changed);
+void EventWatch::measure_change(const std::vector<QuantityWithin>& before, const Observables& changed) {
+  const std::vector<QuantityWithin> after = quantities_within(changed);
   if (shifts_.empty())
-    for (const std::vector<double>& each : after) shifts_.emplace_back(each.size());
-  for (std::size_t i = 0; i < after.size(); ++i)
-    for (std::size_t k = 0; k < after[i].size(); ++k) {
-      if (!std::isfinite(after[i][k]))
+    for (const QuantityWithin& each : after) shifts_.emplace_back(std::vector<double>(each.value.size()));
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    for (std::size_t k = 0; k < after[i].value.size(); ++k) {
+      if (!std::isfinite(after[i].value[k]))
         throw NoChange{fmt::format("after its change at t = {:.6g} {} is no finite number any more; use a smaller one",
                                    changed.time(), changed.quantities()[i].name)};
-      shifts_[i][k] += after[i][k] - before[i][k];
+      shifts_[i].value[k] += after[i].value[k] - before[i].value[k];
     }
+    shifts_[i].size = std::max({shifts_[i].size, before[i].size, after[i].size});
+  }
 }
 
 void EventWatch::settle(Judge& judge) {
-  for (std::size_t i = 0; i < shifts_.size(); ++i) judge.shift(i, shifts_[i].data());
+  for (std::size_t i = 0; i < shifts_.size(); ++i) judge.shift(i, shifts_[i].value.data(), shifts_[i].size);
   shifts_.clear();
 }
 
 bool EventWatch::happens(const Found& found) {
-  const Event& event = watches_[found.event].event;
+  Watch& watch = watches_[found.event];
+  const Event& event = watch.event;
+  const double uncertainty = watch.function.uncertainty({found.share, found.passing}, [&](double share) {
+    const Observables* inside = motion_.look_within(share);
+    return inside == nullptr ? std::numeric_limits<double>::quiet_NaN() : watch.value(*inside);
+  });
   const Observables& inside = within(found.share);
-  Happening happening{found.event, step_, inside.time(), found.passing, false, values_within(inside)};
+  Happening happening{found.event,   step_, inside.time(),        uncertainty * std::abs(arrived_ - begun_),
+                      found.passing, false, values_within(inside)};
   happening.together = !table_.rows.empty() && std::abs(happening.time - table_.rows.back().time) <=
                                                    indistinguishable * std::abs(arrived_ - time_);
   table_.rows.push_back(std::move(happening));
@@ -400,22 +416,27 @@ void EventWatch::report(RunResult& result) const {
 std::vector<double> EventWatch::flat_rows() const {
   std::vector<double> out;
   for (const Happening& row : table_.rows) {
-    out.insert(out.end(),
-               {double(row.event), double(row.step), row.time, double(int(row.passing)), double(row.together)});
+    out.insert(out.end(), {double(row.event), double(row.step), row.time, row.time_error, double(int(row.passing)),
+                           double(row.together)});
     out.insert(out.end(), row.values.begin(), row.values.end());
   }
   return out;
 }
 
 void EventWatch::restore(const std::vector<double>& rows) {
-  constexpr std::size_t own = 5;
+  constexpr std::size_t own = 6;
   const std::size_t width = own + table_.columns.size();
   if (rows.size() % width != 0) throw std::out_of_range("events of another computation");
   table_.rows.clear();
   for (WatchedEvent& each : table_.watched) each.count = each.touches = 0;
   for (auto at = rows.begin(); at != rows.end(); at += std::ptrdiff_t(width)) {
-    Happening row{std::size_t(at[0]),  long(at[1]), at[2],
-                  Passing(int(at[3])), at[4] != 0,  std::vector<double>(at + own, at + std::ptrdiff_t(width))};
+    Happening row{std::size_t(at[0]),
+                  long(at[1]),
+                  at[2],
+                  at[3],
+                  Passing(int(at[4])),
+                  at[5] != 0,
+                  std::vector<double>(at + own, at + std::ptrdiff_t(width))};
     WatchedEvent& watched = table_.watched.at(row.event);
     ++(row.passing == Passing::touching ? watched.touches : watched.count);
     table_.rows.push_back(std::move(row));

@@ -32,6 +32,12 @@
 
 namespace lagroid {
 
+/// A quantity inside of a step, and the size of the terms that it is made of.
+struct QuantityWithin {
+  std::vector<double> value;
+  double size = 0;
+};
+
 class EventWatch {
  public:
   enum class Goes { on, ended, failed };
@@ -45,6 +51,7 @@ class EventWatch {
   Goes pass(const Observables& node) {
     looked_within_ = false;
     suspects_.clear();
+    begun_ = time_;
     arrived_ = node.time();
     step_ = node.index();
     for (std::size_t i = 0; i < watches_.size(); ++i)
@@ -104,7 +111,7 @@ class EventWatch {
   bool change(Group together);
   /// Adds what one of them does at the point where it happens.
   void add_change(Watch& watch, const Observables& inside, MotionChange& change) const;
-  void measure_change(const std::vector<std::vector<double>>& before, const Observables& changed);
+  void measure_change(const std::vector<QuantityWithin>& before, const Observables& changed);
   /// Records it; false where the run ends.
   bool happens(const Found& found);
   std::vector<double> flat_rows() const;
@@ -115,13 +122,13 @@ class EventWatch {
   EventTable table_;
   double time_;     ///< of the node before
   double arrived_;  ///< at the node after
+  double begun_;    ///< where the step begins, or what a change left of it
   long step_ = 0;   ///< which leads there
   std::vector<std::size_t> suspects_;
   std::size_t looking_for_ = 0;  ///< of the watches, for a message
   bool looked_within_ = false;
   const Observables* end_ = nullptr;
-  std::vector<std::vector<double>>
-      shifts_;  ///< of every quantity, what changes of the motion have moved it by since the last node
+  std::vector<QuantityWithin> shifts_;  ///< what changes of the motion have moved them by since the last node
   std::string reason_;
 };
 

@@ -164,4 +164,18 @@ std::optional<double> FunctionWatch::turn_of(const StepFunction& g, bool is_mini
   return turn;
 }
 
+double FunctionWatch::uncertainty(const FoundInStep& found, const StepFunction& g) const {
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  try {
+    if (found.passing == Passing::rising || found.passing == Passing::falling)
+      return std::fmin(1, rounding * largest_ / std::abs(slope_within(g, found.share)));
+    constexpr double around = 1.0 / 64;
+    const double low = std::max(0.0, found.share - around), high = std::min(1.0, found.share + around);
+    const double curvature = (slope_within(g, high) - slope_within(g, low)) / (high - low);
+    return std::fmin(1, rounding * slope_rounding * largest_ / std::abs(curvature));
+  } catch (const NoNumber&) {
+    return 1;
+  }
+}
+
 }  // namespace lagroid

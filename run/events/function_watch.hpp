@@ -43,6 +43,10 @@ class FunctionWatch {
   /// What happened in the step, or in what next_from left of it.
   std::vector<FoundInStep> find(const StepFunction& g);
 
+  /// Of one of these, what rounding of the function leaves open of its share: the rounding over the slope there, of a
+  /// turn that of the slope over the curvature. At most 1.
+  double uncertainty(const FoundInStep& found, const StepFunction& g) const;
+
   /// Occasions on which nothing could be found, and the first of them.
   struct Count {
     long times = 0;

@@ -68,12 +68,12 @@ void write_csv(const Trajectory& trajectory, const fs::path& file) {
 }
 
 void write_events(const EventTable& events, const fs::path& file) {
-  std::string out = "event,t,step,passing,together";
+  std::string out = "event,t,t_error,step,passing,together";
   for (const std::string& column : events.columns) out += "," + in_csv(column);
   out += '\n';
   for (const Happening& row : events.rows) {
-    out += fmt::format("{},{:.17g},{},{},{}", in_csv(events.watched[row.event].name), row.time, row.step,
-                       to_string(row.passing), int(row.together));
+    out += fmt::format("{},{:.17g},{:.2g},{},{},{}", in_csv(events.watched[row.event].name), row.time, row.time_error,
+                       row.step, to_string(row.passing), int(row.together));
     for (const double value : row.values) out += fmt::format(",{:.17g}", value);
     out += '\n';
   }
@@ -95,14 +95,16 @@ std::vector<std::string> joined_in_parts(const std::vector<std::string>& labels)
 void add_events(const H5::H5File& out, const EventTable& events) {
   const H5::Group group = out.createGroup("events");
   std::vector<std::string> names, passing;
-  std::vector<double> time, values;
+  std::vector<double> time, error, values;
   for (const Happening& row : events.rows) {
     names.push_back(events.watched[row.event].name);
     passing.emplace_back(to_string(row.passing));
     time.push_back(row.time);
+    error.push_back(row.time_error);
     values.insert(values.end(), row.values.begin(), row.values.end());
   }
   set_attribute(add_dataset(group, "time", time, 1), "unit", "s");
+  set_attribute(add_dataset(group, "time_error", error, 1), "unit", "s");
   if (events.rows.empty()) return;
   add_texts(group, "event", names);
   add_texts(group, "passing", passing);

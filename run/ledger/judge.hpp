@@ -23,8 +23,8 @@ class Judge {
   explicit Judge(const Observables& node);
 
   void observe(const Observables& node);
-  /// Something changed a quantity by so much on the way to the next node.
-  void shift(std::size_t quantity, const double* by) { watches_[quantity].shift(by); }
+  /// Something changed a quantity by so much on the way to the next node, where its terms had the size.
+  void shift(std::size_t quantity, const double* by, double size) { watches_[quantity].shift(by, size); }
   /// Of the node seen last, how far the quantity is from its first value.
   double drift(std::size_t quantity) const { return watches_[quantity].drift(); }
 

@@ -71,15 +71,14 @@ void QuantityWatch::observe(const double* values, double size, double noise) {
   ++samples_;
 }
 
-void QuantityWatch::shift(const double* by) {
+void QuantityWatch::shift(const double* by, double size) {
   double square = 0;
   for (std::size_t i = 0; i < first_.size(); ++i) {
     first_[i] += by[i];
     square += by[i] * by[i];
   }
-  if (square == 0) return;
   ++shifts_;
-  size_ = worse(size_, std::sqrt(square));
+  size_ = worse(size_, worse(size, std::sqrt(square)));
 }
 
 double QuantityWatch::drift() const {

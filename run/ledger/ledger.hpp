@@ -46,8 +46,9 @@ class QuantityWatch {
   /// `size` is the size of the terms the quantity is made of; round-off is relative to it. `noise` is what one
   /// evaluation loses beyond that, where the quantity is evaluated anew at each point and not updated by steps.
   void observe(const double* values, double size, double noise = 0);
-  /// Something changed the quantity by so much; it is held to its promise from there, with the round-off of the change.
-  void shift(const double* by);
+  /// Something changed the quantity by so much, where its terms had the size; it is held to its promise from there,
+  /// with the round-off of the change.
+  void shift(const double* by, double size);
   LedgerEntry entry() const;
   /// The norm of the last deviation from the first value.
   double drift() const;

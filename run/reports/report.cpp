@@ -73,7 +73,10 @@ Json json(const EventTable& events) {
     if (const auto span = span_of(events, i)) {
       each["first"] = span->first;
       each["last"] = span->last;
-      if (event.count > 1) each["mean_interval"] = span->mean_interval;
+      if (event.count > 1) {
+        each["mean_interval"] = span->mean_interval;
+        each["mean_interval_error"] = span->error;
+      }
     }
     if (!event.plot.empty()) each["plot"] = event.plot;
     watched.push_back(std::move(each));
@@ -82,6 +85,7 @@ Json json(const EventTable& events) {
   for (const Happening& row : events.rows)
     rows.push_back({{"event", events.watched[row.event].name},
                     {"t", row.time},
+                    {"t_error", row.time_error},
                     {"step", row.step},
                     {"passing", to_string(row.passing)},
                     {"together", row.together},

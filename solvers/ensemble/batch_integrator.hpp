@@ -40,13 +40,24 @@ template <DiscreteSystem Sys, int W> class BatchIntegrator {
   /// One step of all that still go on.
   void advance(const Sys& system);
 
+  /// A lane goes no further.
+  void end(int lane) {
+    stopped_at_[std::size_t(lane)] = index(lane);
+    ended_[std::size_t(lane)] = true;
+  }
+  /// Whether a lane takes the next step.
+  bool goes_on(int lane) const {
+    return status_[std::size_t(lane)] == SolveStatus::converged && !ended_[std::size_t(lane)];
+  }
   /// Steps that a lane has taken.
-  long index(int lane) const { return stopped(lane) ? stopped_at_[std::size_t(lane)] : index_; }
+  long index(int lane) const { return goes_on(lane) ? index_ : stopped_at_[std::size_t(lane)]; }
   /// Of all that go on.
   long index() const { return index_; }
-  /// Converged while the lane goes on; then why it does not.
+  /// Converged, unless a step failed: then why.
   SolveStatus status(int lane) const { return status_[std::size_t(lane)]; }
 
+  /// Of all lanes.
+  const State<G, B>& states() const { return state_; }
   State<G> state(const Sys& system, int lane) const {
     const auto& groupoid = system.groupoid;
     return {groupoid.template object_at<double>(detail::lane_of(groupoid.coordinates_of_object(state_.object), lane)),
@@ -66,10 +77,9 @@ template <DiscreteSystem Sys, int W> class BatchIntegrator {
   using Unknowns = Vector<B, size>;
   using Fibre = AlgebroidVector<G, B>;
 
-  bool stopped(int lane) const { return status_[std::size_t(lane)] != SolveStatus::converged; }
   Mask going() const {
     std::array<double, std::size_t(W)> lanes;
-    for (int lane = 0; lane < W; ++lane) lanes[std::size_t(lane)] = stopped(lane) ? 0 : 1;
+    for (int lane = 0; lane < W; ++lane) lanes[std::size_t(lane)] = goes_on(lane) ? 1 : 0;
     return B::load(lanes.data()) > 0.0;
   }
   /// The arrow within half its own size of its prediction.
@@ -96,6 +106,7 @@ template <DiscreteSystem Sys, int W> class BatchIntegrator {
   long index_ = 0;
   std::array<long, std::size_t(W)> stopped_at_{};
   std::array<SolveStatus, std::size_t(W)> status_{};
+  std::array<bool, std::size_t(W)> ended_{};
 };
 
 template <DiscreteSystem Sys, int W> LAGROID_FLATTEN void BatchIntegrator<Sys, W>::advance(const Sys& system) {

@@ -28,12 +28,15 @@
 namespace lagroid {
 
 /// How an ensemble advances.
-template <DiscreteSystem Sys> struct EnsembleOptions {
+template <DiscreteSystem Sys, int Width = widest_batch> struct EnsembleOptions {
   int threads = 1;  ///< 0: all available ones
   /// Called with every member that goes on, at every step whose number is a multiple of `every`: in order for one
   /// member, from all threads at once for several. It may write to places of that member's own.
   std::function<void(long member, const TrajectoryPoint<Sys>& point)> observe = nullptr;
   long every = 1;  ///< at least 1; std::invalid_argument otherwise
+  /// Called with every batch where it is taken up and after each of its steps, from several threads for several
+  /// batches: what looks at all lanes together, and may end some of them (EnsembleWatch).
+  std::function<void(long batch, BatchIntegrator<Sys, Width>& members)> visit = nullptr;
   /// Called now and then; once it returns true the advance ends, and another one goes on from there.
   std::function<bool()> interrupted = nullptr;
 };
@@ -52,6 +55,7 @@ template <DiscreteSystem Sys> struct EnsembleOptions {
 template <DiscreteSystem Sys, int Width = widest_batch> class Ensemble {
  public:
   using G = typename Sys::GroupoidType;
+  using Options = EnsembleOptions<Sys, Width>;
 
   /// Configurations are the unit arrows, unless given: the arrows whose targets are the initial objects, one for every
   /// member (see TrajectoryPoint). Throws std::invalid_argument where their number is another.
@@ -61,7 +65,7 @@ template <DiscreteSystem Sys, int Width = widest_batch> class Ensemble {
   long size() const { return size_; }
 
   /// Takes all members that have not failed to step `index`, counted from the start. False if interrupted.
-  bool advance_to(long index, const EnsembleOptions<Sys>& options = {});
+  bool advance_to(long index, const Options& options = {});
 
   State<G> state(long member) const { return integrator(member).state(system_, lane(member)); }
   /// Step, state, configuration and time that a member has reached.
@@ -82,7 +86,7 @@ template <DiscreteSystem Sys, int Width = widest_batch> class Ensemble {
   static int lane(long member) { return int(member % Width); }
   const Integrator& integrator(long member) const { return integrators_[std::size_t(member / Width)]; }
   static TrajectoryPoint<Sys> point(const Integrator& integrator, const Sys& system, int lane);
-  void advance(long batch, long index, const EnsembleOptions<Sys>& options);
+  void advance(long batch, long index, const Options& options);
 
   Sys system_;
   long size_;
@@ -119,8 +123,7 @@ TrajectoryPoint<Sys> Ensemble<Sys, Width>::point(const Integrator& integrator, c
   return out;
 }
 
-template <DiscreteSystem Sys, int Width>
-bool Ensemble<Sys, Width>::advance_to(long index, const EnsembleOptions<Sys>& options) {
+template <DiscreteSystem Sys, int Width> bool Ensemble<Sys, Width>::advance_to(long index, const Options& options) {
   if (options.every < 1) throw std::invalid_argument("an ensemble is observed at every step, or at every n-th, n > 0");
   constexpr long batches_per_task = 4;
   const long count = long(integrators_.size());
@@ -141,16 +144,17 @@ bool Ensemble<Sys, Width>::advance_to(long index, const EnsembleOptions<Sys>& op
 }
 
 template <DiscreteSystem Sys, int Width>
-void Ensemble<Sys, Width>::advance(long batch, long index, const EnsembleOptions<Sys>& options) {
+void Ensemble<Sys, Width>::advance(long batch, long index, const Options& options) {
   Integrator& integrator = integrators_[std::size_t(batch)];
   Sys system = system_;
+  if (options.visit) options.visit(batch, integrator);
   while (integrator.index() < index) {
     if constexpr (TimeDependent<Sys>) system.time = system_.time + double(integrator.index()) * system_.h;
     integrator.advance(system);
-    if (!options.observe || integrator.index() % options.every != 0) continue;
-    for (int lane = 0; lane < Width; ++lane)
-      if (integrator.status(lane) == SolveStatus::converged)
-        options.observe(batch * Width + lane, point(integrator, system_, lane));
+    if (options.observe && integrator.index() % options.every == 0)
+      for (int lane = 0; lane < Width; ++lane)
+        if (integrator.goes_on(lane)) options.observe(batch * Width + lane, point(integrator, system_, lane));
+    if (options.visit) options.visit(batch, integrator);
   }
 }
 

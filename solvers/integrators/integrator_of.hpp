@@ -2,7 +2,8 @@
 /// Puts an integrator of a known type behind the interface `Integrator`, at the cost of one virtual call a step.
 ///
 /// Its steps can be made in part where it has `cut(from, share, to)` or, if it can be copied, `begin_cut(from, share)`,
-/// after which its next step is that part.
+/// after which its next step is that part. After a change it goes on by `go_on_from(point)`, where nodes stay in time
+/// but for integrators whose steps are equal in one of their own (`has_own_time`), with `follow_energy_of(state)`.
 
 #include <lagroid/solvers/integrators/integrator.hpp>
 
@@ -91,6 +92,7 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
   static constexpr bool has_systems = requires(Integrating & all, const ChangeSystem& how) {
     all.for_each_system(how);
   };
+  static constexpr bool has_own_time = requires { Integrating::has_own_time; };
   /// Makes the rest of the last step from the point that a share of it leads to, after a change.
   template <class Change> [[gnu::cold]] StepReport go_on_after(double share, const Change& change) {
     StepReport report;
@@ -100,13 +102,14 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
       if (!report.converged()) return report;
       inside.index = kept_.index;
       change(inside);
+      if constexpr (has_own_time) integrator_.follow_energy_of(inside.state);
       kept_ = inside;
       rest_ *= 1 - share;
       TrajectoryPoint<Sys> reached;
       report = cut(1, reached);
       if (!report.converged()) return report;
       reached.index = point().index;
-      reached.time = point().time;
+      if (!has_own_time) reached.time = point().time;
       integrator_.go_on_from(reached);
     }
     return report;

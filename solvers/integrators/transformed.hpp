@@ -39,7 +39,7 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
                         const Composition& composition = compositions::single)
       : system_(std::move(system)),
         composition_(composition),
-        energy_(system_.kinetic_energy(initial.momentum) + system_.potential_energy(initial.object)),
+        energy_(energy_of(initial)),
         step_(-system_.h * system_.potential_energy(initial.object)),
         trajectory_(system_.groupoid, initial, configuration) {
     if (!composition.kicks.empty()) throw std::invalid_argument("transformed time takes compositions of steps");
@@ -63,6 +63,14 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
     step_ *= share;
     trajectory_ = CompensatedTrajectory<Sys>(system_.groupoid, from.state, from.configuration);
   }
+  /// Steps end where they end in time.
+  static constexpr bool has_own_time = true;
+  /// Goes on with the motions of the energy that this state has.
+  void follow_energy_of(const State<G>& state) { energy_ = energy_of(state); }
+  /// Goes on from a point of that energy, which no step of its own led to.
+  void go_on_from(const TrajectoryPoint<Sys>& point) { trajectory_.go_on_from(point); }
+  /// Visits the system that its steps are of, to change it.
+  template <class F> void for_each_system(const F& f) { f(system_); }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
     archive(energy_, step_);
@@ -70,6 +78,10 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
   }
 
  private:
+  double energy_of(const State<G>& state) const {
+    return system_.kinetic_energy(state.momentum) + system_.potential_energy(state.object);
+  }
+
   Sys system_;
   Composition composition_;
   double energy_;

@@ -66,7 +66,7 @@ LawReport ensemble_laws_of(const Sys& system, const Draw& draw, int members, int
   };
   const auto advanced = [&](const std::vector<State<G>>& initial, int threads = 1) {
     Members ensemble(system, initial);
-    EnsembleOptions<Sys> options;
+    typename Members::Options options;
     options.threads = threads;
     ensemble.advance_to(steps, options);
     return ensemble;

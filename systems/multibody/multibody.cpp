@@ -230,7 +230,8 @@ void Multibody::compose(const Composition& composition) {
 
 StepReport Multibody::advance() {
   const double end = step_ * double(state_.index + 1);
-  const StepReport report = stage_steps_.empty() ? advance_to(end) : advance_by_stages(end);
+  const StepReport report =
+      stage_steps_.empty() ? advance_to(end) : advance_by_stages(step_ * double(state_.index), end);
   if (report.converged()) ++state_.index;
   return report;
 }
@@ -255,7 +256,7 @@ StepReport Multibody::advance_by(double size) {
     for (double& stage : stages) stage *= share;
     stages.swap(stage_steps_);
     for (SceneState::Guess& stage : state_.stages) shorten(stage);
-    report = advance_by_stages(end);
+    report = advance_by_stages(state_.at.time, end);
     stages.swap(stage_steps_);
   }
   std::swap(control, state_.control);
@@ -263,7 +264,7 @@ StepReport Multibody::advance_by(double size) {
   return report;
 }
 
-StepReport Multibody::advance_by_stages(double end) {
+StepReport Multibody::advance_by_stages(double start, double end) {
   before_ = state_;
   StepReport worst;
   worst.status = SolveStatus::converged;
@@ -273,7 +274,7 @@ StepReport Multibody::advance_by_stages(double end) {
     gone += stage_steps_[i];
     workspace_.inertia.set_step(model_.factors, stage_steps_[i]);
     swap(state_.guess, state_.stages[i]);
-    const StepReport report = advance_to(last ? end : step_ * double(state_.index) + gone);
+    const StepReport report = advance_to(last ? end : start + gone);
     swap(state_.guess, state_.stages[i]);
     worst.status = report.status;
     worst.iterations += report.iterations;
@@ -382,11 +383,13 @@ void Multibody::make_tangent() {
   add_multipliers(state_.momentum, state_.spin, -1);
 }
 
-void Multibody::end_part(long index, double time) {
-  state_.index = index;
-  state_.at.time = time;
+void Multibody::end_part(const SceneState& node) {
+  const double size = state_.control ? node.step : step_;
+  state_.index = node.index;
+  state_.at.time = node.at.time;
+  state_.time_compensation = node.time_compensation;
   // What was long for the part is short for a step; of a very short one there is nothing to be learned.
-  const double longer = state_.step > 1e-3 * step_ ? step_ / state_.step : 1;
+  const double longer = state_.step > 1e-3 * size ? size / state_.step : 1;
   const auto lengthen = [longer](SceneState::Guess& guess) {
     for (auto& multipliers : guess.multipliers)
       for (double& lambda : multipliers) lambda *= longer;
@@ -394,7 +397,8 @@ void Multibody::end_part(long index, double time) {
   };
   lengthen(state_.guess);
   for (SceneState::Guess& stage : state_.stages) lengthen(stage);
-  state_.step = step_;
+  state_.step = size;
+  if (state_.control) state_.control->pass(time_scale_rate(), size);
   follow_state();
 }
 
@@ -404,6 +408,16 @@ void Multibody::switch_to(const std::vector<char>& on) {
   forget_rows();
   begin();
   leave_out_dependent();
+}
+
+void Multibody::go_on_from(const Multibody& other) {
+  if (!state_.fits(other.state_)) throw std::invalid_argument("a motion of another scene");
+  state_ = other.state_;
+  model_.switches.on = other.model_.switches.on;
+  forget_rows();
+  begin();
+  leave_out_dependent();
+  follow_state();
 }
 
 void Multibody::forget_rows() {

@@ -69,8 +69,9 @@ class Multibody {
   void restore(const SceneState& state);
   /// Visits the state.
   void serialize(NumberArchive& archive);
-  /// Goes on from here by usual steps, after one of another size, as from the node `index` at this time.
-  void end_part(long index, double time);
+  /// Goes on from here by usual steps, after one of another size, as from the node at which that state is, with its
+  /// index, time and step; controlled ones follow the time scale here.
+  void end_part(const SceneState& node);
 
   /// What can be switched (Scene::begin_switch), and whether it acts. The first is all that has no name.
   const Switches& switches() const { return model_.switches; }
@@ -80,6 +81,10 @@ class Multibody {
   /// from now on do not allow, the next step leaves what they do, as an inelastic catch. Requires steps of equal size,
   /// and a small `violation`.
   void switch_to(const std::vector<char>& on);
+  /// Goes on from where another motion is, of a scene that differs from this one in numbers alone. Momenta stay what
+  /// they are, and of velocities that its joints do not allow the next step leaves what they do. Throws
+  /// std::invalid_argument where it is none of such a scene.
+  void go_on_from(const Multibody& other);
   /// Adds to the momentum of a linear factor (Scene::linear_of; of a planar body with its angular momentum), and to the
   /// angular momentum of what turns in its own frame; -1 for none. What joints do not allow of it the next step takes.
   void kick(int linear, const Vec& momentum, Attitude attitude, const Vec& spin);
@@ -100,6 +105,9 @@ class Multibody {
   Attitude operator()(Attitude a) const { return model_.places(a); }
   /// Where `Scene::linear_of` is found in `configuration()` and in the momenta.
   int linear_place(int linear) const { return model_.linear_places[std::size_t(linear)]; }
+  /// Inertia (kg; in the plane kg, kg, kg m^2) and principal moments (kg m^2), as they are now.
+  const Vec& inertia(int linear) const { return model_.factors.inertia[std::size_t(linear_place(linear))]; }
+  const Vec& moments(Attitude a) const { return model_.factors.moments[std::size_t((*this)(a).index)]; }
   const Quaternion& quaternion(Attitude a) const { return state_.attitude[std::size_t((*this)(a).index)]; }
 
   /// Inertia times velocity at this node, tangent to the joints (as it is reported); in the order
@@ -157,7 +165,7 @@ class Multibody {
   /// One step of the size that inertia is set to, which ends at the time `end`.
   StepReport advance_to(double end);
   /// A step of stages. Where one of them fails, the state is again what it was before the first.
-  StepReport advance_by_stages(double end);
+  StepReport advance_by_stages(double start, double end);
   /// Solves for the arrow that begins here, and finds what acts at its target.
   StepReport solve();
   /// Whether rows left out still follow from the others a good way along the motion that begins here.

@@ -55,7 +55,7 @@ inline std::string prose_of(std::string page) {
 
 /// The files, tests and identifiers in `backquotes` and the laws in "quotes" that do not exist.
 inline std::vector<std::string> unknown_names(const std::string& page) {
-  const std::string headers = text_of({"core", "groupoids", "solvers", "systems"}, ".hpp");
+  const std::string headers = text_of({"core", "groupoids", "run", "solvers", "systems"}, ".hpp");
   const std::string tests = text_of({"tests"}, ".cpp");
   std::vector<std::string> out;
   const auto require = [&](const std::string& name, bool exists) {

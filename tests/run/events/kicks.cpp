@@ -61,6 +61,29 @@ TEST(Events, AKickAtTheApocentreMakesTheOrbitACircle) {
   }
 }
 
+/// Steps that are equal in another time take the energy after the kick.
+TEST(Events, AKickGoesOnInTransformedTime) {
+  Orbit system;
+  system.h = 0.05;
+  const double apocentre = 1.44 / (2 - 1.44), speed = 1 / std::sqrt(apocentre);
+  Event fire = event_at_zero("apocentre", "q1*mu1 + q2*mu2", falling);
+  for (const char* each : {"mu1", "mu2"})
+    fire.kick.push_back(fmt::format("{}*({}/sqrt(mu1^2 + mu2^2) - 1)", each, speed));
+  const RunResult result = run_transformed(system, {{1, 0}, {0, 1.2}}, compositions::kahan_li_8,
+                                           {.steps = 1000, .events = {fire, event_at_zero("axis", "q2", rising)}});
+  ASSERT_TRUE(result.converged()) << result.message;
+  EXPECT_EQ(result.events.watched[0].count, 1);
+  EXPECT_NEAR(std::hypot(result.final.position[0], result.final.position[1]), apocentre, 1e-9);
+  for (const LedgerEntry& entry : result.ledger.entries) EXPECT_FALSE(entry.broken()) << entry.name;
+  const std::vector<double>& time = result.trajectory.time;
+  EXPECT_TRUE(std::is_sorted(time.begin(), time.end()));
+  const std::vector<double> rounds = times_of(result, "axis");
+  ASSERT_GE(rounds.size(), 3u);
+  const double period = 2 * std::numbers::pi * apocentre * std::sqrt(apocentre);
+  EXPECT_NEAR(rounds[1] - rounds[0], period, 1e-9);
+  EXPECT_NEAR(rounds[2] - rounds[1], period, 1e-9);
+}
+
 TEST(Events, KicksThatFollowEachOtherWithoutEndAreSaid) {
   Event event = wall();
   event.direction = both;

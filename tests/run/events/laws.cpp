@@ -3,9 +3,11 @@
 
 #include <lagroid/run/events/event_watch.hpp>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -227,6 +229,29 @@ TEST(Events, StepsThatCannotBeCutEndTheRunWithTheReason) {
       << result.message;
   motion.why = "its steps are whole";
   EXPECT_THROW(drive(motion, extent, {}, result), RunError);
+}
+
+/// The nearer to an extremum a zero lies, the less is known of its time.
+TEST(Events, TimesErrByRoundingOverTheSlope) {
+  for (const double below : {0.5, 1e-4, 1e-8}) {
+    const RunResult result = turn(100, {event_at_zero("near the top", fmt::format("q + {:.17g}", 1 - below))});
+    ASSERT_GE(result.events.rows.size(), 2u) << below;
+    const Happening& row = result.events.rows[0];
+    const double slope = std::sqrt(1 - (1 - below) * (1 - below));
+    const double exact = std::acos(below - 1);
+    EXPECT_LT(row.time_error, 2e-14 / slope) << below;
+    EXPECT_GT(row.time_error, 2e-16 / slope) << below;
+    EXPECT_NEAR(row.time, exact, 1e-12 / slope) << below;
+    EXPECT_NEAR(span_of(result.events, 0)->error * double(result.events.watched[0].count - 1),
+                row.time_error + result.events.rows.back().time_error, 1e-20);
+  }
+  Event lowest{.name = "lowest", .when = "q"};
+  lowest.at = Event::At::minimum;
+  const RunResult result = turn(100, {lowest});
+  ASSERT_GE(result.events.rows.size(), 1u);
+  EXPECT_NEAR(result.events.rows[0].time, std::numbers::pi, 1e-9);
+  EXPECT_GT(result.events.rows[0].time_error, 1e-14);
+  EXPECT_LT(result.events.rows[0].time_error, 1e-9);
 }
 
 }  // namespace

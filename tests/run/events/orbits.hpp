@@ -20,6 +20,7 @@ namespace lagroid {
 
 /// A unit mass about a fixed centre.
 struct Orbit : MechanicalSystem<Orbit, 2> {
+  static constexpr bool attractive = true;
   static double mass() { return 1; }
   template <class S> S potential(const Vector<S, 2>& q) const {
     using std::sqrt;
@@ -74,17 +75,27 @@ struct ThreePoints : MechanicalSystem<ThreePoints, 6> {
   }
 };
 
-/// Runs the system by composed splittings.
+/// Runs the system by an integrator of this kind.
+template <class Integrating, class Sys>
+RunResult run_by(const Sys& system, const State<typename Sys::GroupoidType>& start, const Composition& composition,
+                 IntegratorOptions how, const RunOptions<Sys>& options) {
+  how.composition = composition;
+  return run<Sys>(system,
+                  std::make_unique<detail::IntegratorOf<Sys, Integrating>>(
+                      system, start, Sys::GroupoidType::unit(start.object), composition),
+                  how, options);
+}
+/// By composed splittings.
 template <class Sys>
 RunResult run_split(const Sys& system, const State<typename Sys::GroupoidType>& start, const Composition& composition,
                     const RunOptions<Sys>& options) {
-  IntegratorOptions how;
-  how.fixed = StepKind::splitting;
-  how.composition = composition;
-  return run<Sys>(system,
-                  std::make_unique<detail::IntegratorOf<Sys, SplittingIntegrator<Sys>>>(
-                      system, start, Sys::GroupoidType::unit(start.object), composition),
-                  how, options);
+  return run_by<SplittingIntegrator<Sys>>(system, start, composition, {.fixed = StepKind::splitting}, options);
+}
+/// In transformed time.
+template <class Sys>
+RunResult run_transformed(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                          const Composition& composition, const RunOptions<Sys>& options) {
+  return run_by<TransformedIntegrator<Sys>>(system, start, composition, {.mode = TimeMode::transformed}, options);
 }
 
 /// The times at which an event happened.

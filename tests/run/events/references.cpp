@@ -145,17 +145,9 @@ TEST(EventReferences, ThreeBodiesMeetClosely) {
     }
     events.push_back(event_at_zero("end", fmt::format("t - {}", until)));
     events.back().then = Event::Then::stop;
-    IntegratorOptions how;
-    how.mode = TimeMode::transformed;
-    how.composition = compositions::kahan_li_8;
     const RunOptions<ThreePoints> options{.steps = 1'000'000, .every = 1000, .events = events};
-    const RunResult result =
-        is_transformed
-            ? run<ThreePoints>(system,
-                               std::make_unique<detail::IntegratorOf<ThreePoints, TransformedIntegrator<ThreePoints>>>(
-                                   system, start, Pair<6>::unit(start.object), how.composition),
-                               how, options)
-            : run_split(system, start, how.composition, options);
+    const RunResult result = is_transformed ? run_transformed(system, start, compositions::kahan_li_8, options)
+                                            : run_split(system, start, compositions::kahan_li_8, options);
     ASSERT_TRUE(result.converged()) << result.message;
     std::vector<Happening> near;  // minima farther apart are no encounters
     for (const Happening& row : result.events.rows) {

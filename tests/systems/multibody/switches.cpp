@@ -216,7 +216,7 @@ TEST(Switches, StepsGoOnAfterParts) {
     EXPECT_TRUE(whole.advance().converged());
     EXPECT_TRUE(parts.advance_by(0.3 * h).converged());
     EXPECT_TRUE(parts.advance_by(0.7 * h).converged());
-    parts.end_part(whole.index(), whole.time());
+    parts.end_part(whole.state());
     EXPECT_EQ(parts.step(), h);
     advance(whole, before);
     advance(parts, before);
