@@ -146,15 +146,38 @@ template <int K, class S = double> struct SpheresAndVectors : detail::PairsOfVec
   using Pairs::first, Pairs::second, Pairs::set;
   using typename Pairs::Algebra, typename Pairs::Point, typename Pairs::V;
 
-  void act(const Algebra& u, Point& z) const { act(S(1.0), u, z); }
-  /// z <- exp(h u) z.
-  void act(const S& h, const Algebra& u, Point& z) const {
+  void act(const Algebra& u, Point& z) const {
     for (int i = 0; i < z.cols(); ++i) {
-      const V xi = first(u, i) * h;
+      const V xi = first(u, i);
       const V q = first(z, i);
       const S x = xi.squaredNorm();
       const V xq = cross(xi, q);
-      set(z, i, q + stumpff<1>(x) * xq + stumpff<2>(x) * cross(xi, xq), second(z, i) + second(u, i) * h);
+      set(z, i, q + stumpff<1>(x) * xq + stumpff<2>(x) * cross(xi, xq), second(z, i) + second(u, i));
+    }
+  }
+  /// z <- cay(2 h u) z, by angles 2 arctan(h |xi|): no sine and no cosine. With -h it goes back.
+  void leap(const S& h, const Algebra& u, Point& z) const {
+    for (int i = 0; i < z.cols(); ++i) {
+      const V xi = first(u, i) * h;
+      const V q = first(z, i);
+      const V xq = cross(xi, q);
+      const S c = S(2.0) / (xi.squaredNorm() + 1.0);
+      set(z, i, q + (xq + cross(xi, xq)) * c, second(z, i) + second(u, i) * (h * 2.0));
+    }
+  }
+  /// The same, or where `halved` is 1 and not 0 what has to be done twice for that: by arctan(h |xi|).
+  void leap(const S& h, const S& halved, const Algebra& u, Point& z) const {
+    using std::sqrt;
+    for (int i = 0; i < z.cols(); ++i) {
+      const V xi = first(u, i) * h;
+      const V q = first(z, i);
+      const V xq = cross(xi, q);
+      const S square = S(1.0) / (xi.squaredNorm() + 1.0);  // of the cosine of the half
+      const S cosine = sqrt(square);
+      const S whole = square * 2.0;
+      const S c1 = whole + halved * (cosine - whole);
+      const S c2 = whole + halved * (square / (cosine + 1.0) - whole);
+      set(z, i, q + xq * c1 + cross(xi, xq) * c2, second(z, i) + second(u, i) * (h * (S(2.0) - halved)));
     }
   }
   void generator(const Algebra& u, const Point& z, Point& v) const {

@@ -20,6 +20,10 @@
 /// **Side by side.** Rows do not depend on each other. Where M and F are over Batch<W> (core/scalars/batch.hpp) as many
 /// go on side by side; each lane holds what it would alone.
 ///
+/// **Other moves** than exponentials serve where each is its half done twice and undone by -h: a space may have
+/// `leap(h, u, z)` in place of exp(2 h u), and `leap(h, halved, u, z)`, which in lanes where `halved` is 1 does half of
+/// it (SpheresAndVectors).
+///
 /// Requires a field(t, z, u) that writes an element of the algebra, over the scalar of M, and a start on M, of doubles.
 /// Throws std::invalid_argument as ControlledSteps. Status as there: `not_finite`, `no_step`, `not_converged`.
 
@@ -94,7 +98,8 @@ template <HomogeneousSpace M> class ExtrapolationStep {
     for (Eigen::Index i = 0; i < z.size(); ++i) later_.data()[i] = earlier_.data()[i] = S(z.data()[i]);
     for (const Table::Slot& slot : table.slots) {
       field(L::load(slot.time) * h + t, later_, slope_);
-      move(L::load(slot.step) * (2.0 - L::load(slot.first)) * h);
+      move(L::load(slot.step) * h, slot);
+      earlier_.swap(later_);
       for (const Table::End& end : slot.ends)
         for (Eigen::Index i = 0; i < z.size(); ++i) ends_(i, end.row - 1) = L::get(later_.data()[i], end.lane);
       if (slot.others.empty()) continue;
@@ -105,17 +110,20 @@ template <HomogeneousSpace M> class ExtrapolationStep {
       }
     }
   }
-  void move(const S& reach) {
-    if constexpr (requires { space_.act(reach, slope_, earlier_); }) {
-      space_.act(reach, slope_, earlier_);
+  /// By 2 h, at the beginning of a row by h.
+  void move(const S& h, const Table::Slot& slot) {
+    if constexpr (requires { space_.leap(h, slope_, earlier_); }) {
+      if (slot.begins)
+        space_.leap(h, L::load(slot.first), slope_, earlier_);
+      else
+        space_.leap(h, slope_, earlier_);
     } else {
-      slope_ *= reach;
+      slope_ *= h * (2.0 - L::load(slot.first));
       space_.act(slope_, earlier_);
     }
-    earlier_.swap(later_);
   }
 
-  /// next <- T_k, from increments, so that their rounding is theirs, and not that of z. False where it is not finite.
+  /// next <- T_k, of increments, so that their rounding is theirs, and not that of z. False where it is not finite.
   bool extrapolate(const Table& table, const Point& z, Point& next) {
     sums_.setZero();
     for (int j = 0; j < table.rows; ++j) {

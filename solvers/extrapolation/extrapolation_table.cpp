@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -37,7 +39,7 @@ ExtrapolationTable ExtrapolationTable::of(int rows, int lanes, int unit) {
     rows_of[std::size_t(least - steps.begin())].push_back(j);
   }
   const std::vector<double> nothing(width, 0);
-  const Slot idle{nothing, nothing, nothing, nothing, {}, {}};
+  const Slot idle{nothing, nothing, nothing, nothing, {}, {}, false};
   table.slots.assign(std::size_t(*std::max_element(steps.begin(), steps.end())), idle);
   for (std::size_t lane = 0; lane < width; ++lane) {
     auto slot = table.slots.begin();
@@ -47,6 +49,7 @@ ExtrapolationTable ExtrapolationTable::of(int rows, int lanes, int unit) {
         slot->time[lane] = double(i) / n;
         slot->step[lane] = 1.0 / n;
         slot->first[lane] = i == 0 ? 1 : 0;
+        slot->begins = slot->begins || i == 0;
         slot->last[lane] = i + 1 == n ? 1 : 0;
       }
       Slot& end = *(slot - 1);
@@ -63,17 +66,29 @@ ExtrapolationTable ExtrapolationTable::of(int rows, int lanes, int unit) {
   return table;
 }
 
+/// Made once: a short motion takes little more time than they do.
+auto ExtrapolationOrder::tables_of(int lanes, int unit) -> std::shared_ptr<const Tables> {
+  static std::mutex one_at_a_time;
+  static std::map<std::pair<int, int>, std::shared_ptr<const Tables>> known;
+  const std::lock_guard lock(one_at_a_time);
+  std::shared_ptr<const Tables>& tables = known[{lanes, unit}];
+  if (!tables) {
+    Tables made;
+    for (int k = ExtrapolationTable::fewest_rows - 1; k <= ExtrapolationTable::most_rows; ++k)
+      made[std::size_t(k)] = ExtrapolationTable::of(k, lanes, unit);
+    tables = std::make_shared<const Tables>(std::move(made));
+  }
+  return tables;
+}
+
 ExtrapolationOrder::ExtrapolationOrder(double tolerance, int lanes, int unit, double longest)
     : tolerance_(tolerance), longest_(longest) {
   if (!(tolerance > 0) || !(longest > 0) || lanes < 1 || unit < 1)
     throw std::invalid_argument("extrapolation has a positive tolerance and steps, a lane at least, and rows of steps");
-  constexpr int fewest = ExtrapolationTable::fewest_rows;
-  Tables tables;
-  for (int k = fewest - 1; k <= ExtrapolationTable::most_rows; ++k)
-    tables[std::size_t(k)] = ExtrapolationTable::of(k, lanes, unit);
-  tables_ = std::make_shared<const Tables>(std::move(tables));
+  tables_ = tables_of(lanes, unit);
   // About what steps settle at; the first few find the rest.
-  rows_ = std::clamp(int(std::lround(2.5 - 0.5 * std::log10(tolerance))), fewest + 1, ExtrapolationTable::most_rows);
+  rows_ = std::clamp(int(std::lround(2.5 - 0.5 * std::log10(tolerance))), ExtrapolationTable::fewest_rows + 1,
+                     ExtrapolationTable::most_rows);
 }
 
 auto ExtrapolationOrder::judge(double h, double error, double error_below, double number) -> Verdict {

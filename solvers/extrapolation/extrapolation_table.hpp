@@ -46,6 +46,7 @@ struct ExtrapolationTable {
     std::vector<double> last;    ///< whether it is the last of its row
     std::vector<double> others;  ///< whether another row begins after it; empty where none does in any lane
     std::vector<End> ends;       ///< after it
+    bool begins = false;         ///< whether it is the first of a row in some lane
   };
 
   int rows = 0;             ///< k
@@ -89,7 +90,8 @@ class ExtrapolationOrder {
   double longest_;
   int rows_ = 0;
   using Tables = std::array<ExtrapolationTable, ExtrapolationTable::most_rows + 1>;
-  std::shared_ptr<const Tables> tables_;  ///< of all that an integrator was copied to
+  static std::shared_ptr<const Tables> tables_of(int lanes, int unit);
+  std::shared_ptr<const Tables> tables_;
 };
 
 }  // namespace lagroid

@@ -151,11 +151,12 @@ template <int K> struct PendulumChain {
 /// sums of what is positive, where 1/m_i + 1/m_{i-1} - (q_i.q_{i-1} / m_{i-1})^2 / d_{i-1} would cancel beside a light
 /// bob on rods that are nearly in line.
 template <int K, class S> struct ChainTensions {
-  Vector<double, K> inverse_mass;
+  Vector<double, K> mass, inverse_mass;
   Vector<S, K> x;
 
   explicit ChainTensions(const PendulumChain<K>& chain)
-      : inverse_mass(chain.mass.cwiseInverse()),
+      : mass(chain.mass),
+        inverse_mass(chain.mass.cwiseInverse()),
         x(Vector<S, K>::Zero(chain.links())),
         factor_(Vector<S, K>::Zero(chain.links())) {}
 
@@ -164,33 +165,57 @@ template <int K, class S> struct ChainTensions {
     using V = Vector<S, 3>;
     const int n = int(x.size());
     const int middle = n / 2;
-    S above(0.0);
-    S below(inverse_mass(n - 1));
-    // Eliminates x_from from the equation of its neighbour; the bob between them has the inverse mass r. Squares of r
-    // would overflow.
-    const auto eliminate = [&](int from, int to, double r, S& extra) {
+    // e = above.over / above.under, and f: quotients are on no recurrence, which is short so.
+    End above{S(0.0), S(1.0), x(0)};
+    End below{S(inverse_mass(n - 1)), S(1.0), x(n - 1)};
+    // Eliminates x_from from the equation of its neighbour, over the bob between them.
+    const auto eliminate = [&](int from, int to, int bob, End& end) {
       const V a = q(from);
       const V b = q(to);
-      const S inverse = S(1.0) / (extra + r);
-      const S factor = a.dot(b) * r * inverse;
-      x(to) += factor * x(from);
-      x(from) *= inverse;
+      const S under = end.over * mass(bob) + end.under;
+      const S inverse = end.under / under;  // of the pivot, over the bob's mass
+      const S factor = a.dot(b) * inverse;
+      x(from) = end.x * inverse * mass(bob);
       factor_(from) = factor;
-      extra = (cross(a, b).squaredNorm() * r + extra) * inverse * r;
+      end.x = x(to) + factor * end.x;
+      end.over += cross(a, b).squaredNorm() * end.under * inverse_mass(bob);
+      end.under = under;
     };
     for (int i = 0; i < middle; ++i) {
-      eliminate(i, i + 1, inverse_mass(i), above);
+      eliminate(i, i + 1, i, above);
       const int from = n - 1 - i;
-      if (from > middle) eliminate(from, from - 1, inverse_mass(from - 1), below);
+      if (from > middle) eliminate(from, from - 1, from - 1, below);
+      if (i % fractions_last == fractions_last - 1) {
+        above.reduce();
+        below.reduce();
+      }
     }
-    x(middle) /= above + below;
+    // Of the middle both have its right hand side.
+    S up = (above.x + below.x - x(middle)) / (above.over / above.under + below.over / below.under);
+    S down = up;
+    x(middle) = up;
     for (int i = 1; i <= middle; ++i) {
-      x(middle - i) += factor_(middle - i) * x(middle - i + 1);
-      if (middle + i < n) x(middle + i) += factor_(middle + i) * x(middle + i - 1);
+      up = x(middle - i) + factor_(middle - i) * up;
+      x(middle - i) = up;
+      if (middle + i < n) {
+        down = x(middle + i) + factor_(middle + i) * down;
+        x(middle + i) = down;
+      }
     }
   }
 
  private:
+  /// What was eliminated from one end: e or f as a fraction, and the right hand side.
+  struct End {
+    S over, under, x;
+    void reduce() {
+      over /= under;
+      under = S(1.0);
+    }
+  };
+  /// By how many links numerators and denominators may grow: masses of neighbours may differ by 1e70.
+  static constexpr int fractions_last = 4;
+
   Vector<S, K> factor_;  ///< by which the neighbour nearer to the middle comes in
 };
 
@@ -207,7 +232,13 @@ template <int K, class S = double> class ChainRotationField {
   using Z = typename Space::Point;
 
   explicit ChainRotationField(const PendulumChain<K>& chain)
-      : gravity_(chain.gravity), length_(chain.length), tension_(chain) {}
+      : gravity_(chain.gravity), length_(chain.length), tension_(chain) {
+    above_ = below_ = length_.cwiseInverse();
+    for (int i = 0; i < chain.links(); ++i) {
+      below_(i) *= tension_.inverse_mass(i);
+      above_(i) *= i > 0 ? tension_.inverse_mass(i - 1) : 0;
+    }
+  }
 
   void operator()(const S&, const Z& z, Z& f) {
     using V = Vector<S, 3>;
@@ -217,16 +248,17 @@ template <int K, class S = double> class ChainRotationField {
     tension_.solve([&](int i) { return Space::first(z, i); });
     for (int i = 0; i < k; ++i) {
       V pull = V::Zero();
-      if (i == 0) pull(2) -= gravity_;
-      if (i > 0) pull += Space::first(z, i - 1) * (tension_.x(i - 1) * tension_.inverse_mass(i - 1));
-      if (i + 1 < k) pull += Space::first(z, i + 1) * (tension_.x(i + 1) * tension_.inverse_mass(i));
-      Space::set(f, i, Space::second(z, i), cross(Space::first(z, i), pull) * (1 / length_(i)));
+      if (i == 0) pull(2) -= gravity_ / length_(0);
+      if (i > 0) pull += Space::first(z, i - 1) * (tension_.x(i - 1) * above_(i));
+      if (i + 1 < k) pull += Space::first(z, i + 1) * (tension_.x(i + 1) * below_(i));
+      Space::set(f, i, Space::second(z, i), cross(Space::first(z, i), pull));
     }
   }
 
  private:
   double gravity_;
   Vector<double, K> length_;
+  Vector<double, K> above_, below_;  ///< 1/(l_i m_{i-1}) and 1/(l_i m_i)
   ChainTensions<K, S> tension_;
 };
 

