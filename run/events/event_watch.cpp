@@ -39,7 +39,8 @@ std::vector<QuantityWithin> quantities_within(const Observables& node) {
   std::vector<QuantityWithin> all;
   for (std::size_t i = 0; i < node.quantities().size(); ++i) {
     const Watched& quantity = node.quantities()[i];
-    QuantityWithin& each = all.emplace_back(std::vector<double>(quantity.components.size()));
+    all.push_back({std::vector<double>(quantity.components.size())});
+    QuantityWithin& each = all.back();
     if (!quantity.on_arrows && !quantity.adds_up) each.size = node.measure(i, each.value.data());
   }
   return all;
@@ -322,7 +323,7 @@ void EventWatch::add_change(Watch& watch, const Observables& inside, MotionChang
 void EventWatch::measure_change(const std::vector<QuantityWithin>& before, const Observables& changed) {
   const std::vector<QuantityWithin> after = quantities_within(changed);
   if (shifts_.empty())
-    for (const QuantityWithin& each : after) shifts_.emplace_back(std::vector<double>(each.value.size()));
+    for (const QuantityWithin& each : after) shifts_.push_back({std::vector<double>(each.value.size())});
   for (std::size_t i = 0; i < after.size(); ++i) {
     for (std::size_t k = 0; k < after[i].value.size(); ++k) {
       if (!std::isfinite(after[i].value[k]))
