@@ -77,9 +77,9 @@ struct SceneBodies {
   bool isolated = true;        ///< nothing acts from outside: momenta are conserved
   double extent = 0;           ///< size of the scene at the start, m
 
-  /// Whether velocities at the start need not agree with what is read now.
+  /// Whether joints that are read now need not allow the velocities that bodies have at the start.
   bool is_free_to_start() const { return projects || is_free_in_place(); }
-  /// Nor places.
+  /// Whether they need not hold where the bodies are at the start.
   bool is_free_in_place() const { return is_off || is_on_its_way; }
 
   /// The ends of a table, by `end_keys`; without points, by the first of these.

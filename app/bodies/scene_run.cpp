@@ -114,7 +114,6 @@ class BodiesMotion final : public Motion {
                const multibody::Options& options, std::set<std::string> chosen)
       : name_(std::move(name)),
         scene_(scene),
-        first_numbers_(numbers_of_scene(scene)),
         step_(step),
         options_(options),
         bodies_(std::move(bodies)),
@@ -179,7 +178,7 @@ class BodiesMotion final : public Motion {
           {body.name, (body.linear >= 0 ? 3u : 0u) + (body.body.attitude.index >= 0 ? std::size_t(3) : 0)});
     // Controlled steps are of a time scale of all that acts.
     if (controlled_) return out;
-    for (const SceneNumber& number : numbers_) out.parameters.push_back(number.name);
+    for (const SceneNumber& number : numbers()) out.parameters.push_back(number.name);
     const multibody::Switches& switches = motion_->switches();
     for (std::size_t k = 1; k < switches.names.size(); ++k)
       out.switches.push_back({switches.names[k], switches.on[k] != 0});
@@ -238,7 +237,7 @@ class BodiesMotion final : public Motion {
   void describe(RunResult& result) const override {
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     if (bodies_.counts_cost) result.cost = cost_;
-    if (numbers_ != first_numbers_)
+    if (numbers_ && *numbers_ != numbers_of_scene(scene_))
       result.notes.emplace_back(
           "numbers of the scene were changed on the way; the pictures are made with the first ones");
     result.trajectory.conventions = {{"position", "of centres of mass, pivots or point masses, in space, z up"},
@@ -251,13 +250,13 @@ class BodiesMotion final : public Motion {
   }
   void serialize(NumberArchive& archive) override {
     std::vector<double> values;
-    for (const SceneNumber& number : numbers_) values.push_back(number.value);
+    for (const SceneNumber& number : numbers()) values.push_back(number.value);
     const std::vector<double> first = values;
     if (!values.empty()) archive(values);
     if (values != first) {
-      std::vector<SceneNumber> numbers = numbers_;
-      for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i].value = values[i];
-      set_numbers(std::move(numbers));
+      std::vector<SceneNumber> then = numbers();
+      for (std::size_t i = 0; i < then.size(); ++i) then[i].value = values[i];
+      set_numbers(std::move(then));
     }
     motion_->serialize(archive);
     archive(cost_);
@@ -274,12 +273,17 @@ class BodiesMotion final : public Motion {
     const double size = share * whole_step_;
     return size == 0 || motion_->advance_by(size).converged();
   }
+  /// As they are now. Most scenes have no use for them, and large ones many.
+  const std::vector<SceneNumber>& numbers() const {
+    if (!numbers_) numbers_ = numbers_of_scene(scene_);
+    return *numbers_;
+  }
   std::vector<SceneNumber> changed_numbers(const std::vector<ParameterValue>& to) const {
-    std::vector<SceneNumber> numbers = numbers_;
+    std::vector<SceneNumber> out = numbers();
     for (const ParameterValue& each : to)
-      std::find_if(numbers.begin(), numbers.end(), [&](const SceneNumber& n) { return n.name == each.name; })->value =
+      std::find_if(out.begin(), out.end(), [&](const SceneNumber& n) { return n.name == each.name; })->value =
           each.value;
-    return numbers;
+    return out;
   }
   /// Why numbers cannot become others here, together with what is switched.
   std::string refused_numbers(const MotionChange& change) const {
@@ -337,8 +341,7 @@ class BodiesMotion final : public Motion {
 
   std::string name_;
   Section scene_;
-  std::vector<SceneNumber> first_numbers_;
-  std::vector<SceneNumber> numbers_ = first_numbers_;  ///< as they are now
+  mutable std::optional<std::vector<SceneNumber>> numbers_;  ///< once something asked for them
   double step_;
   multibody::Options options_;
   SceneBodies bodies_;

@@ -21,6 +21,7 @@
 /// which counts for nothing. Nothing throws but what g throws. Members' nodes have the bits that they have without.
 
 #include <lagroid/run/events/event.hpp>
+#include <lagroid/run/events/function_watch.hpp>
 #include <lagroid/run/events/within_step.hpp>
 #include <lagroid/solvers/ensemble/ensemble.hpp>
 #include <lagroid/solvers/integrators/cut_step.hpp>
@@ -52,11 +53,6 @@ template <DiscreteSystem Sys, int Width = widest_batch> struct EnsembleEvent {
   template <class F>
   EnsembleEvent(std::string called, F function)
       : name(std::move(called)), of_one(function), of_lanes(std::move(function)) {}
-
-  /// Whether a passage in that direction is one.
-  bool is_passed(bool rises) const {
-    return direction == Event::Direction::both || (direction == Event::Direction::rising) == rises;
-  }
 
   std::string name;
   Event::Direction direction = Event::Direction::both;
@@ -110,7 +106,8 @@ class EnsembleWatch {
         for (int lane = 0; lane < Width; ++lane) {
           const bool has_risen = rises.get(std::size_t(lane));
           if (!std::isfinite(before[lane]) || !std::isfinite(now[lane])) continue;
-          if (members.goes_on(lane) && (has_risen || falls.get(std::size_t(lane))) && events_[i].is_passed(has_risen))
+          if (members.goes_on(lane) && (has_risen || falls.get(std::size_t(lane))) &&
+              is_in_direction(events_[i].direction, before[lane], now[lane]))
             look_into_step(batch, members, i, lane, before[lane], now[lane]);
         }
     }
@@ -145,14 +142,11 @@ class EnsembleWatch {
   [[gnu::cold, gnu::noinline]] void look_into_step(long batch, const BatchIntegrator<Sys, Width>& members,
                                                    std::size_t event, int lane, double before, double now) {
     PerBatch& known = batches_[std::size_t(batch)];
-    const G& groupoid = system_.groupoid;
     TrajectoryPoint<Sys> from, inside;
     from.index = members.index() - 1;
     from.time = time_at(from.index);
-    from.state = {
-        groupoid.template object_at<double>(detail::lane_of(groupoid.coordinates_of_object(known.states.object), lane)),
-        detail::lane_of(known.states.momentum, lane)};
-    from.configuration = groupoid.unit(from.state.object);
+    from.state = detail::state_of_lane<Width>(system_.groupoid, known.states, lane);
+    from.configuration = system_.groupoid.unit(from.state.object);
     StepPredictor<Sys> predictor(system_, std::make_unique<NewtonStep<Sys>>());
     bool is_cut = true;
     const auto go = [&](double share) {
@@ -166,13 +160,8 @@ class EnsembleWatch {
       go(share);
       return is_cut ? events_[event].of_one({system_, inside.time, inside.state}) : before;
     };
-    EnsembleHappening<Sys> found{batch * Width + lane,
-                                 event,
-                                 members.index(),
-                                 from.time,
-                                 before < now ? Passing::rising : Passing::falling,
-                                 true,
-                                 from.state};
+    EnsembleHappening<Sys> found{batch * Width + lane,    event, members.index(), from.time,
+                                 passing_of(before, now), true,  from.state};
     try {
       const RootInStep root = root_within(g, 0, 1, before, now);
       if (is_cut && (root.is_jump || (from.index == known.first && root.share <= at_the_start))) return;

@@ -10,8 +10,6 @@ namespace {
 constexpr double round_off = 1e-12;
 constexpr double tiny = std::numeric_limits<double>::min();
 
-Passing direction_of(double from, double to) { return from < to ? Passing::rising : Passing::falling; }
-
 }  // namespace
 
 void FunctionWatch::see(double value, double time) {
@@ -106,7 +104,7 @@ void FunctionWatch::find_zeros(const StepFunction& g, std::vector<FoundInStep>& 
     if (root.is_jump)
       jumps_.add(time_);
     else
-      found.push_back({root.share, direction_of(at_a, at_b)});
+      found.push_back({root.share, passing_of(at_a, at_b)});
   };
   // Near zero for good, a sign is one of round-off.
   constexpr double small = 1e-9;
@@ -120,7 +118,7 @@ void FunctionWatch::find_zeros(const StepFunction& g, std::vector<FoundInStep>& 
     const double slope = slope_within(g, 1);
     constexpr double level = 1e-6;
     if ((before_ < 0) == (slope > 0) && std::abs(slope) > level * std::abs(before_)) {
-      if (counts(before_, -before_)) found.push_back({1, direction_of(before_, -before_)});
+      if (counts(before_, -before_)) found.push_back({1, passing_of(before_, -before_)});
     } else if (std::abs(slope) <= level * std::abs(before_)) {
       found.push_back({1, Passing::touching});
     }

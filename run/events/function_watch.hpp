@@ -24,6 +24,13 @@
 
 namespace lagroid {
 
+/// How a function passes zero from one value to another.
+inline Passing passing_of(double from, double to) { return from < to ? Passing::rising : Passing::falling; }
+/// Whether that is a direction in which it counts.
+inline bool is_in_direction(Event::Direction direction, double from, double to) {
+  return direction == Event::Direction::both || (direction == Event::Direction::rising) == (from < to);
+}
+
 /// Where in a step something happened, as a share of it.
 struct FoundInStep {
   double share;
@@ -85,9 +92,7 @@ class FunctionWatch {
   void see(double value, double time);
   bool is_first_step() const { return nodes_ == 2 && is_whole_; }
   bool passes_zero() const { return (before_ < 0) != (now_ < 0); }
-  bool counts(double from, double to) const {
-    return direction_ == Event::Direction::both || (direction_ == Event::Direction::rising) == (from < to);
-  }
+  bool counts(double from, double to) const { return is_in_direction(direction_, from, to); }
   bool may_touch() const;
   bool may_turn() const;
   void find_zeros(const StepFunction& g, std::vector<FoundInStep>& found);

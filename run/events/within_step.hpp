@@ -29,7 +29,7 @@ struct RootInStep {
 /// bracket, of two neighbouring numbers, at which it is smaller.
 RootInStep root_within(const StepFunction& g, double a, double b, double at_a, double at_b);
 
-/// A rounding of the function of a slope, to one of the slope.
+/// By how much a slope within a step is more rounded than its function: of central differences.
 inline constexpr double slope_rounding = 384;
 
 /// The derivative at a share, by differences of order four: central ones and, near the ends, those inwards.

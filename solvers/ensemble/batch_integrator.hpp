@@ -58,11 +58,7 @@ template <DiscreteSystem Sys, int W> class BatchIntegrator {
 
   /// Of all lanes.
   const State<G, B>& states() const { return state_; }
-  State<G> state(const Sys& system, int lane) const {
-    const auto& groupoid = system.groupoid;
-    return {groupoid.template object_at<double>(detail::lane_of(groupoid.coordinates_of_object(state_.object), lane)),
-            detail::lane_of(state_.momentum, lane)};
-  }
+  State<G> state(const Sys& system, int lane) const { return detail::state_of_lane<W>(system.groupoid, state_, lane); }
   ArrowOf<G> configuration(const Sys& system, int lane) const {
     return detail::arrow_of_lane<W>(system.groupoid, configuration_, lane);
   }

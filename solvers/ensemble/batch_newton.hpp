@@ -47,6 +47,10 @@ LAGROID_INLINE inline void blend_arrow(const G& groupoid, const Mask& where, con
 template <int W, class G> ArrowOf<G> arrow_of_lane(const G& groupoid, const ArrowOf<G, Batch<W>>& g, int lane) {
   return groupoid.template arrow_at<double>(lane_of(groupoid.coordinates_of_arrow(g), lane));
 }
+template <int W, class G> State<G> state_of_lane(const G& groupoid, const State<G, Batch<W>>& state, int lane) {
+  return {groupoid.template object_at<double>(lane_of(groupoid.coordinates_of_object(state.object), lane)),
+          lane_of(state.momentum, lane)};
+}
 template <int W, class G>
 void set_arrow_of_lane(const G& groupoid, ArrowOf<G, Batch<W>>& g, int lane, const ArrowOf<G>& x) {
   auto c = groupoid.coordinates_of_arrow(g);

@@ -18,10 +18,9 @@
 ///     const StepReport report = orbit.advance();  // to the next node, after h
 ///
 /// Requires a SplitSystem; its step `h`, of either sign, is the distance of the nodes, between which steps are as long
-/// as the tolerance allows: the error of one, in components of place and momentum, each relative to the
-/// largest so far. The
-/// constructor throws std::invalid_argument for a tolerance that is not positive and for a configuration that does not
-/// end at the initial object. Status: `no_step` where the error stays above the tolerance however small the step,
+/// as the tolerance allows: the error of one, in components of place and momentum, each relative to the largest so far.
+/// The constructor throws std::invalid_argument for a tolerance that is not positive and for a configuration that does
+/// not end at the initial object. Status: `no_step` where the error stays above the tolerance however small the step,
 /// `not_finite`, `not_converged` where a node takes more than a million steps; all leave everything as it was. The
 /// report counts Strang steps. (Gragg 1965; Deuflhard 1983; Hairer, Norsett, Wanner, Solving ODEs I, II.9 and II.14.)
 
@@ -31,6 +30,7 @@
 #include <lagroid/solvers/generating/constrained_momentum.hpp>
 #include <lagroid/solvers/integrators/integrator.hpp>
 #include <lagroid/solvers/integrators/splitting.hpp>
+#include <lagroid/solvers/lie_group/controlled_steps.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
 
 #include <algorithm>
@@ -73,11 +73,10 @@ template <SplitSystem Sys> class ExtrapolatedSplitting {
     double gone = 0;
     for (long tried = 1; gone < node; ++tried) {
       const double left = node - gone;
-      // No crumb is left for the last step.
-      const double step = next_ < left && left < 2 * next_ ? 0.5 * left : std::min(next_, left);
-      const Attempt attempt = try_step(std::copysign(step, system_.h));
-      report.iterations += attempt.strang_steps;
-      next_ = std::min(attempt.accepted && step < next_ ? std::max(next_, attempt.next) : attempt.next, node);
+      const double step = detail::step_on_the_way(next_, left);
+      const StepAttempt attempt = try_step(std::copysign(step, system_.h));
+      report.iterations += attempt.evaluations;
+      next_ = std::min(detail::size_after(attempt, step, next_), node);
       if (attempt.accepted) gone = step == left ? node : gone + step;
       const bool too_many = tried >= most_inner_steps && gone < node;
       if (!too_many && (attempt.accepted || gone + next_ > gone)) continue;
@@ -119,13 +118,6 @@ template <SplitSystem Sys> class ExtrapolatedSplitting {
   using Place = Vector<double, coordinates>;
   using Momentum = Vector<double, n>;
 
-  struct Attempt {
-    bool accepted;
-    bool finite;
-    double next;
-    int strang_steps;
-  };
-
   /// The largest component, whose square might overflow.
   template <class X> static double largest(const X& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0; }
   /// The largest so far: of places by the coordinates of their units.
@@ -135,7 +127,8 @@ template <SplitSystem Sys> class ExtrapolatedSplitting {
     momentum_size_ = std::max(momentum_size_, largest(momentum));
   }
 
-  Attempt try_step(double step) {
+  /// Of which evaluations are Strang steps.
+  StepAttempt try_step(double step) {
     const G& groupoid = system_.groupoid;
     const State<G> from = point().state;
     const ExtrapolationTable& table = order_.table();

@@ -46,6 +46,16 @@ struct LieGroupControl {
 
 namespace detail {
 
+/// The size of a step where so much is left to go: no crumb is left for the last one.
+inline double step_on_the_way(double size, double left) {
+  return size < left && left < 2 * size ? 0.5 * left : std::min(size, left);
+}
+/// The size to go on with, after a step of size `taken` that was to have `size`: one that was cut short to end where it
+/// had to says nothing against longer ones.
+inline double size_after(const StepAttempt& attempt, double taken, double size) {
+  return attempt.accepted && taken < size ? std::max(size, attempt.next) : attempt.next;
+}
+
 template <class Point> void require_size(const Point& like, const Point& z) {
   if (z.rows() != like.rows() || z.cols() != like.cols())
     throw std::invalid_argument("the start of an integrator is a point of " + std::to_string(z.cols()) +
@@ -87,9 +97,7 @@ template <class Step, class F> class ControlledSteps {
     const long before = steps_ + rejected_;
     while (time_ < end) {
       const double left = end - time_;
-      double h = std::min({h_, left, control_.largest_step});
-      // No crumb is left for the last step.
-      if (h < left && left < 2 * h) h = 0.5 * left;
+      const double h = detail::step_on_the_way(std::min(h_, control_.largest_step), left);
       const bool too_many = steps_ + rejected_ - before >= control_.most_steps || (control_.stop && control_.stop());
       if (!(time_ + h > time_) || too_many) {
         report.status = too_many  ? SolveStatus::not_converged
@@ -135,15 +143,13 @@ template <class Step, class F> class ControlledSteps {
     const StepAttempt attempt = step_.attempt(field_, time_, h, point_, trial_);
     finite_ = attempt.finite;
     evaluations_ += attempt.evaluations;
+    h_ = detail::size_after(attempt, h, h_);
     if (!attempt.accepted) {
-      h_ = attempt.next;
       ++rejected_;
       return;
     }
     std::swap(point_, trial_);
     time_ = reached;
-    // A step that was cut short to end where it had to says nothing against longer ones.
-    h_ = h < h_ ? std::max(h_, attempt.next) : attempt.next;
     ++steps_;
   }
 

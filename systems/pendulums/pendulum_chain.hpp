@@ -165,7 +165,7 @@ template <int K, class S> struct ChainTensions {
     using V = Vector<S, 3>;
     const int n = int(x.size());
     const int middle = n / 2;
-    // e = above.over / above.under, and f: quotients are on no recurrence, which is short so.
+    // e_i and f_i as fractions over / under: the recurrences then have no quotient to wait for.
     End above{S(0.0), S(1.0), x(0)};
     End below{S(inverse_mass(n - 1)), S(1.0), x(n - 1)};
     // Eliminates x_from from the equation of its neighbour, over the bob between them.
@@ -185,12 +185,12 @@ template <int K, class S> struct ChainTensions {
       eliminate(i, i + 1, i, above);
       const int from = n - 1 - i;
       if (from > middle) eliminate(from, from - 1, from - 1, below);
-      if (i % fractions_last == fractions_last - 1) {
+      if (i % links_between_reductions == links_between_reductions - 1) {
         above.reduce();
         below.reduce();
       }
     }
-    // Of the middle both have its right hand side.
+    // Both ends have come to the middle with its own right hand side, which counts once.
     S up = (above.x + below.x - x(middle)) / (above.over / above.under + below.over / below.under);
     S down = up;
     x(middle) = up;
@@ -213,8 +213,8 @@ template <int K, class S> struct ChainTensions {
       under = S(1.0);
     }
   };
-  /// By how many links numerators and denominators may grow: masses of neighbours may differ by 1e70.
-  static constexpr int fractions_last = 4;
+  /// Over each link numerators and denominators grow, by up to the ratio of neighbouring masses.
+  static constexpr int links_between_reductions = 4;
 
   Vector<S, K> factor_;  ///< by which the neighbour nearer to the middle comes in
 };
