@@ -6,6 +6,7 @@ and parts/files.
 """
 import csv
 import json
+import os
 import pathlib
 import random
 import re
@@ -69,6 +70,59 @@ class Parts(unittest.TestCase):
                     "parameters.length")
         self.assertIn("by parameters.length", table.stdout)
         self.assertIn("digits", table.stdout)
+
+    def test_gradients_of_composed_steps_tend_to_those_of_the_flow(self):
+        def end(*settings):
+            told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.duration=3", *settings,
+                       "--wrt", "initial,parameters.length", "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertGreater(found["digits_agreed"], 7)
+            return [x for row in found["derivatives"] for x in row]
+
+        exact = end("--set", "time.order=8", "--set", "time.steps=400")
+        error = [max(abs(a - b) for a, b in zip(end("--set", "time.order=4", "--set", f"time.steps={n}"), exact))
+                 for n in (40, 80)]
+        self.assertLess(error[1], error[0] / 12)  # 16, of order four
+
+    def test_gradients_go_through_events(self):
+        kicked = ('event=[{name = "wall", when = "sin(q) - 0.3*cos(2*pi*t)", direction = "falling", kick = ["-0.4*p + 0.1*q^2"]},'
+                  '{name = "turn", when = "p", direction = "rising"}]')
+        scene = ("gradient", examples / "pendulum.toml", "--set", "time.steps=150", "--set", kicked)
+        told = run(of_part("pendulum"), *scene, "--of", "final,events,event.wall.1,node.149.p", "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertGreater(found["digits_agreed"], 7)
+        self.assertIn("event.turn.1.t", found["of"])
+        self.assertEqual(found["of"].count("event.wall.1.t"), 1)
+        # The run itself says the same of where and when.
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            done = run(of_part("pendulum"), "run", *scene[1:], "--out", out, "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = self.rows_of(out / "trajectory.csv")
+            value = dict(zip(found["of"], found["values"]))
+            self.assertAlmostEqual(value["final.q"], float(rows[-1]["q"]), delta=1e-12)
+            self.assertAlmostEqual(value["node.149.p"], float(rows[-2]["p"]), delta=1e-12)
+            first = next(row for row in self.rows_of(out / "events.csv") if row["event"] == "wall")
+            self.assertAlmostEqual(value["event.wall.1.t"], float(first["t"]), delta=1e-10)
+        # An end that an event makes: on the wall whatever the start, at a time that depends on it.
+        stopped = 'event=[{name = "floor", when = "q", then = "stop"}]'
+        told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", stopped, "--of", "final.t,final.q",
+                   "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertGreater(max(map(abs, found["derivatives"][0])), 0.01)
+        self.assertLess(max(map(abs, found["derivatives"][1])), 1e-12)
+        # A period does not depend on the mass, for a start whose momentum is zero.
+        told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", stopped, "--of", "event.floor.1.t",
+                   "--set", "initial.momentum=[0]", "--wrt", "parameters.mass,parameters.length", "--json")
+        by_mass, by_length = json.loads(told.stdout)["derivatives"][0]
+        self.assertLess(abs(by_mass), 1e-12)
+        self.assertGreater(by_length, 0.01)
+        told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", "--set", stopped, os.devnull)
+        self.assertEqual(told.returncode, 2)
+        self.assertIn("without events", told.stderr)
 
     def test_errors_become_what_those_of_runs_that_are_drawn_become(self):
         told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.steps=50", "--of", "final",
@@ -226,9 +280,18 @@ class Parts(unittest.TestCase):
             ("--of", "energy"): "ask for final.NAME",
             ("--wrt", "parameters.quadrature"): "nothing of that name is differentiable",
             ("--wrt", "mass"): "initial.NAME or parameters.NAME",
-            ("--set", "time.mode=adaptive"): "equal steps of order two",
-            ("--set", "time.order=4"): "equal steps of order two",
-            ("--set", 'event=[{name = "x", when = "q"}]'): "gradient is of the whole run",
+            ("--set", "time.mode=adaptive"): "gradient takes equal steps",
+            ("--set", "time.method=runge-kutta-4"): "gradient takes equal steps",
+            ("--set", "time.order=4", "--set", 'event=[{name = "x", when = "q"}]'): "by steps of order two",
+            ("--set", 'event=[{name = "x", when = "q", at = "maximum"}]'): "not of minima and maxima",
+            ("--set", 'event=[{name = "x", when = "q", set = ["gravity = 2"]}]'): "whose system changes on the way",
+            ("--set", 'event=[{name = "x", when = "energy"}]'): "derivatives are of t, q, p",
+            ("--set", 'event=[{name = "x", when = "q - 9"}]', "--of", "events"): "none has happened",
+            ("--set", 'event=[{name = "x", when = "q"}]', "--of", "event.x.9.t"): "has happened 1 times",
+            ("--set", 'event=[{name = "x", when = "q"}]', "--of", "event.y.1.t"): "the events are x",
+            ("--set", 'event=[{name = "x", when = "q"}]', "--of", "integral.q"): "ask for final.NAME",
+            ("--set", 'event=[{name = "x", when = "q"}]', "--of", "node.3.t"): "depend on nothing",
+            ("--set", 'event=[{name = "x", when = "q", then = "stop"}]', "--of", "node.40"): "the run is stopped before",
         }.items():
             told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.steps=50", *words)
             self.assertEqual(told.returncode, 2, f"{words}: {told.stdout}")

@@ -39,6 +39,7 @@ struct Nodes {
   double step;
 };
 Nodes nodes_of(const GradientSubject& subject) {
+  if (subject.through_events) throw GradientRefused("a fit takes runs without events; leave out [[event]]");
   const auto motion = subject.begin({}, {});
   const double start = motion->time();
   if (!motion->advance().converged()) throw GradientRefused("the first step of the scene's own run does not converge");

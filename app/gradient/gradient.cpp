@@ -162,8 +162,9 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
   GradientOptions options;
   add_scene_options(app, options);
   app.add_option("--of", options.of,
-                 "final.NAME, node.K.NAME or integral.NAME, separated by commas: position, "
-                 "momentum, configuration or a column of them (default: all at the end)")
+                 "final.NAME, node.K.NAME, integral.NAME or, of events, event.NAME.K.COLUMN, separated by commas: "
+                 "position, momentum, configuration, a column of them, the time t of an event; events: the times of all "
+                 "(default: all at the end)")
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_option("--wrt", options.by, "initial.NAME or parameters.NAME, separated by commas (default: all)")

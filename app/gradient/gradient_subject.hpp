@@ -6,6 +6,7 @@
 ///
 /// Errors of `begin`: WithoutDerivative later, at the first linearised step; std::invalid_argument for an unknown name.
 
+#include <lagroid/run/events/event_sensitivities.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 
 #include <functional>
@@ -39,6 +40,10 @@ struct GradientSubject {
   std::function<std::unique_ptr<LinearisedMotion>(const std::vector<std::string>& parameters,
                                                   const std::vector<Nudge>&)>
       begin;
+  std::vector<std::string> events = {};  ///< of the scene, by their names
+  /// The run through them, observed where they happen and at a node, or at the end for -1; null in a scene without.
+  std::function<EventSensitivities(const std::vector<std::string>& parameters, const std::vector<Nudge>&, long node)>
+      through_events = nullptr;
 };
 
 }  // namespace lagroid::app

@@ -3,15 +3,22 @@
 ///
 ///     const GradientSubject subject = gradient_subject_of(module.prepare(scene, context), scene);
 ///
-/// Errors: SceneError for a scene that is no initial value by equal steps of order two.
+/// Errors: SceneError for a scene that is no initial value by equal steps, or of composed ones with events;
+/// std::invalid_argument for an event without derivatives.
 
 #include "../scenes/simulation.hpp"
 #include "../scenes/system_module.hpp"
+#include "event_gradient.hpp"
 #include "gradient_subject.hpp"
 
 #include <lagroid/groupoids/pair.hpp>
+#include <lagroid/run/expressions/varied_expression.hpp>
+#include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 
+#include <fmt/format.h>
+
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +36,72 @@ inline void name_all(std::vector<GradientName>& out, const std::string& group, i
     out.push_back({group, int(labels.size()) == count ? labels[std::size_t(i)] : group + "." + std::to_string(i)});
 }
 
+/// Where a run begins.
+template <DiscreteSystem Sys> struct Started {
+  Sys system;
+  State<typename Sys::GroupoidType> start;
+  ArrowOf<typename Sys::GroupoidType> configuration;
+};
+template <DiscreteSystem Sys> Started<Sys> nudged(Started<Sys> from, const std::vector<Nudge>& nudges) {
+  using G = typename Sys::GroupoidType;
+  AlgebroidVector<G> v = AlgebroidVector<G>::Zero();
+  for (const Nudge& nudge : nudges) {
+    if (!nudge.parameter.empty()) {
+      const ParameterPlaces of = places_of_parameters(from.system, {nudge.parameter});
+      const_cast<double&>(*of.members.front()) += nudge.by;  // of `from`, which is no constant
+    } else {
+      (nudge.index < G::dimension ? v(nudge.index) : from.start.momentum(nudge.index - G::dimension)) += nudge.by;
+    }
+  }
+  if (nudges.empty()) return from;
+  const G& groupoid = from.system.groupoid;
+  const ArrowOf<G> displaced = groupoid.tau(from.start.object, v);
+  from.start.object = groupoid.target(displaced);
+  from.configuration = groupoid.compose(from.configuration, displaced);
+  return from;
+}
+
+template <DiscreteSystem Sys>
+std::unique_ptr<Integrator<Sys>> integrator_of(const Started<Sys>& from, const Composition& composition) {
+  if constexpr (StepDependent<Sys>)
+    if (composition.stages() > 1)
+      return std::make_unique<lagroid::detail::IntegratorOf<Sys, CompositionIntegrator<Sys>>>(
+          from.system, from.start, from.configuration, composition, [] { return std::make_unique<NewtonStep<Sys>>(); });
+  SensitivityOptions<Sys> options;
+  options.configuration = from.configuration;
+  return lagroid::detail::newton_integrator(from.system, from.start, options);
+}
+
+/// The events of a scene, of the time and of what is observed. Throws std::invalid_argument for one that has no
+/// derivative.
+template <DiscreteSystem Sys, class Observe>
+std::vector<SmoothEvent<Sys>> smooth_events(const std::vector<Event>& events, const std::vector<GradientName>& observed,
+                                            const Observe& observe) {
+  using Node = EventNode<Sys>;
+  std::vector<SmoothEvent<Sys>> out;
+  for (const Event& event : events) {
+    auto expressions = std::make_shared<EventExpressions>(event, observed, Sys::dimension);
+    const auto numbers = [observe](const Node& node) {
+      const VariedVector seen = observe(node);
+      VariedVector all(seen.size() + 1);
+      all << node.time, seen;
+      return all;
+    };
+    SmoothEvent<Sys> smooth{event.name,
+                            [expressions, numbers](const Node& node) { return expressions->when(numbers(node)); },
+                            event.direction, event.then, event.count};
+    if (!event.kick.empty())
+      smooth.kick = [expressions, numbers](const Node& node) {
+        const VariedVector at = numbers(node);
+        VariedVector by(Sys::dimension);
+        for (int i = 0; i < Sys::dimension; ++i) by(i) = expressions->kick[std::size_t(i)](at);
+        return by;
+      };
+    out.push_back(std::move(smooth));
+  }
+  return out;
+}
+
 }  // namespace differentiating
 
 template <DiscreteSystem Sys>
@@ -37,14 +110,12 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   using differentiating::name_all;
   if (!prepared.begin)
     scene.fail("boundary", "gradient takes initial values: how a stationary path depends on its ends is no run");
-  if (scene.has("event"))
-    scene.fail("event", "gradient is of the whole run, step by step, without events; leave them out");
-  if (!prepared.plain)
+  if (!prepared.by_newton)
     scene.fail("time",
-               "gradient takes equal steps of order two, solved by Newton to round-off; leave out mode, method, "
-               "order and composition, [solver] and reduce");
+               "gradient takes equal steps, perhaps composed, solved by Newton to round-off; leave out mode, "
+               "method, [solver] and reduce");
   const Sys system = prepared.system;
-  const NewtonInitialValue<Sys>& value = *prepared.plain;
+  const NewtonInitialValue<Sys>& value = *prepared.by_newton;
   constexpr int n = G::dimension;
   GradientSubject out;
   out.system = value.presentation.name;
@@ -68,38 +139,44 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   }
   for (int i = 0; i < n; ++i) out.sizes.push_back(value.initial.momentum(i));
   for (const double* member : all.members) out.sizes.push_back(*member);
-  out.begin = [system, initial = value.initial, configuration = value.configuration](
+  const auto started = [system, initial = value.initial,
+                        configuration = value.configuration](const std::vector<Nudge>& nudges) {
+    return differentiating::nudged(differentiating::Started<Sys>{system, initial, configuration}, nudges);
+  };
+  const auto observe = [](const auto& node) {
+    const auto object = node.system.groupoid.coordinates_of_object(node.object);
+    const auto arrow = node.system.groupoid.coordinates_of_arrow(node.configuration);
+    VariedVector all_of_it(object.size() + n + arrow.size());
+    all_of_it << object, node.momentum, arrow;
+    return all_of_it;
+  };
+  out.begin = [started, observe, composition = value.composition](
                   const std::vector<std::string>& parameters,
                   const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {
-    Sys changed = system;
-    State<G> start = initial;
-    AlgebroidVector<G> v = AlgebroidVector<G>::Zero();
-    for (const Nudge& nudge : nudges) {
-      if (!nudge.parameter.empty()) {
-        const ParameterPlaces of = places_of_parameters(changed, {nudge.parameter});
-        const_cast<double&>(*of.members.front()) += nudge.by;  // of `changed`, which is no constant
-      } else {
-        (nudge.index < n ? v(nudge.index) : start.momentum(nudge.index - n)) += nudge.by;
-      }
-    }
-    ArrowOf<G> from = configuration;
-    if (!nudges.empty()) {
-      const ArrowOf<G> displaced = system.groupoid.tau(initial.object, v);
-      start.object = system.groupoid.target(displaced);
-      from = system.groupoid.compose(configuration, displaced);
-    }
-    const auto observe = [](const ObservedNode<Sys>& node) {
-      const auto object = node.system.groupoid.coordinates_of_object(node.object);
-      const auto arrow = node.system.groupoid.coordinates_of_arrow(node.configuration);
-      VariedVector all_of_it(object.size() + n + arrow.size());
-      all_of_it << object, node.momentum, arrow;
-      return all_of_it;
-    };
-    SensitivityOptions<Sys> options;
-    options.configuration = from;
-    return std::make_unique<LinearisedMotionOf<Sys>>(
-        changed, lagroid::detail::newton_integrator<Sys>(changed, start, options), parameters, observe);
+    const auto from = started(nudges);
+    return std::make_unique<LinearisedMotionOf<Sys>>(from.system, differentiating::integrator_of(from, composition),
+                                                     parameters, observe);
   };
+  if (!value.extent.events.empty()) {
+    if (value.composition.stages() > 1)
+      scene.fail("event",
+                 "gradient goes through events by steps of order two; leave out order and composition, or them");
+    if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
+      const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);
+      for (const SmoothEvent<Sys>& event : events) out.events.push_back(event.name);
+      out.through_events = [started, observe, events, steps = out.steps](const std::vector<std::string>& parameters,
+                                                                         const std::vector<Nudge>& nudges, long node) {
+        const auto from = started(nudges);
+        SensitivityOptions<Sys> options{.steps = steps, .parameters = parameters, .configuration = from.configuration};
+        options.observed.node = node;
+        return event_sensitivities<Sys>(from.system, from.start, events, options, observe);
+      };
+    } else {
+      scene.fail("event", fmt::format("{} has a Lagrangian that does not take its step, so that parts of steps have no "
+                                      "derivatives; leave the events out",
+                                      out.system));
+    }
+  }
   return out;
 }
 

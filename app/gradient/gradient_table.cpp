@@ -1,5 +1,7 @@
 #include "gradient_table.hpp"
 
+#include "event_gradient.hpp"
+
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 
 #include <fmt/format.h>
@@ -45,22 +47,6 @@ Asked row_of(const std::string& word, long steps) {
   throw GradientRefused(fmt::format("{}: ask for {}", word, places_of_rows));
 }
 
-/// What `name` chooses: all, those of a group, or one.
-std::vector<int> chosen(const std::vector<GradientName>& all, const std::string& word, const std::string& name) {
-  std::vector<int> out;
-  for (int i = 0; i < int(all.size()); ++i) {
-    const GradientName& each = all[std::size_t(i)];
-    if (name.empty() || each.group == name || each.name == name || each.name.starts_with(name + ".")) out.push_back(i);
-  }
-  if (!out.empty()) return out;
-  std::vector<std::string> names;
-  for (const GradientName& each : all)
-    for (const std::string& one : {each.group, each.name})
-      if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
-  throw GradientRefused(
-      fmt::format("{}: nothing of that name is differentiable here; there are {}", word, fmt::join(names, ", ")));
-}
-
 Observed observed_at(const std::string& place) {
   if (place == "final") return Observed::at_end();
   if (place == "integral") return Observed::integral();
@@ -69,12 +55,6 @@ Observed observed_at(const std::string& place) {
 
 /// final, node.10, integral of a row.
 std::string place_of(const std::string& row) { return row.substr(0, row.find('.', row.starts_with("node.") ? 5 : 0)); }
-
-std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns) {
-  std::vector<std::string> out;
-  for (const int i : columns.parameters) out.push_back(subject.parameters[std::size_t(i)].name);
-  return out;
-}
 
 /// Functions at a place, by all columns, in the direction that costs less.
 Propagated propagated(const GradientSubject& subject, const GradientColumns& columns, const Observed& observed,
@@ -92,24 +72,12 @@ Propagated propagated(const GradientSubject& subject, const GradientColumns& col
   return out;
 }
 
-/// The values at a place, of a run from a start that differs.
-Eigen::VectorXd values_of(const GradientSubject& subject, const Nudge& nudge, const Observed& observed) {
-  const auto motion = subject.begin({}, {nudge});
-  const Propagated out =
-      propagate_forward(*motion, subject.steps, Eigen::MatrixXd::Zero(motion->states(), 0), observed);
-  if (!out.converged()) throw GradientRefused("a run beside this one ended early: " + out.message);
-  return out.values;
-}
-
 /// By central differences of runs, three widths, extrapolated.
-Eigen::VectorXd difference(const GradientSubject& subject, Nudge nudge, double size, const Observed& observed) {
+Eigen::VectorXd difference(const std::function<Eigen::VectorXd(double)>& values, double size) {
   double width = 2e-3 * std::max(std::abs(size), 1e-2);
   std::vector<Eigen::VectorXd> row;
   for (int level = 0; level < 3; ++level, width /= 2) {
-    nudge.by = width;
-    const Eigen::VectorXd above = values_of(subject, nudge, observed);
-    nudge.by = -width;
-    Eigen::VectorXd next = (above - values_of(subject, nudge, observed)) / (2 * width);
+    Eigen::VectorXd next = (values(width) - values(-width)) / (2 * width);
     double power = 4;
     for (Eigen::VectorXd& each : row) {
       const Eigen::VectorXd better = next + (next - each) / (power - 1);
@@ -123,6 +91,73 @@ Eigen::VectorXd difference(const GradientSubject& subject, Nudge nudge, double s
 
 }  // namespace
 
+std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::string& word, const std::string& name) {
+  std::vector<int> out;
+  for (int i = 0; i < int(all.size()); ++i) {
+    const GradientName& each = all[std::size_t(i)];
+    if (name.empty() || each.group == name || each.name == name || each.name.starts_with(name + ".")) out.push_back(i);
+  }
+  if (!out.empty()) return out;
+  std::vector<std::string> names;
+  for (const GradientName& each : all)
+    for (const std::string& one : {each.group, each.name})
+      if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
+  throw GradientRefused(
+      fmt::format("{}: nothing of that name is differentiable here; there are {}", word, fmt::join(names, ", ")));
+}
+
+std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns) {
+  std::vector<std::string> out;
+  for (const int i : columns.parameters) out.push_back(subject.parameters[std::size_t(i)].name);
+  return out;
+}
+
+GradientTable table_of(const GradientSubject& subject, const std::vector<std::string>& by, bool check) {
+  GradientTable out;
+  out.system = subject.system;
+  out.steps = subject.steps;
+  out.checked = check;
+  const GradientColumns columns = columns_of(subject, by);
+  for (const int i : columns.start) out.columns.push_back("initial." + subject.start[std::size_t(i)].name);
+  for (const std::string& name : names_of(subject, columns)) out.columns.push_back("parameters." + name);
+  return out;
+}
+
+void set_growth(GradientTable& table, double growth) {
+  Propagated propagated;
+  propagated.growth = std::max(1.0, growth);
+  table.growth = propagated.growth;
+  table.digits_left = propagated.digits_left();
+}
+
+void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
+                              const std::function<Eigen::VectorXd(const std::vector<Nudge>&)>& values) {
+  table.differences.resize(table.derivatives.rows(), table.derivatives.cols());
+  for (std::size_t j = 0; j < table.columns.size(); ++j) {
+    const bool of_start = j < columns.start.size();
+    const int index = of_start ? columns.start[j] : columns.parameters[j - columns.start.size()];
+    Nudge nudge;
+    if (of_start) {
+      nudge.index = index;
+    } else {
+      nudge.parameter = subject.parameters[std::size_t(index)].name;
+    }
+    const double size = subject.sizes[std::size_t(index) + (of_start ? 0 : subject.start.size())];
+    table.differences.col(Eigen::Index(j)) = difference(
+        [&](double by) {
+          nudge.by = by;
+          return values({nudge});
+        },
+        size);
+  }
+  table.digits_agreed = 16;
+  for (Eigen::Index i = 0; i < table.derivatives.rows(); ++i) {
+    const double size = table.derivatives.row(i).cwiseAbs().maxCoeff();
+    const double off = (table.derivatives.row(i) - table.differences.row(i)).cwiseAbs().maxCoeff();
+    if (off > 0 && size > 0) table.digits_agreed = std::min(table.digits_agreed, std::max(0.0, std::log10(size / off)));
+  }
+}
+
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words) {
   GradientColumns out;
   for (const std::string& word : words) {
@@ -130,10 +165,10 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
     std::vector<int> more;
     if (const auto of_start = split_after(word, "initial")) {
       into = &out.start;
-      more = chosen(subject.start, word, of_start->name);
+      more = chosen_names(subject.start, word, of_start->name);
     } else if (const auto of_system = split_after(word, "parameters")) {
       into = &out.parameters;
-      more = chosen(subject.parameters, word, of_system->name);
+      more = chosen_names(subject.parameters, word, of_system->name);
     } else {
       throw GradientRefused(fmt::format("{}: derivatives are by initial.NAME or parameters.NAME", word));
     }
@@ -145,6 +180,7 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
 
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
                                          const std::vector<Nudge>& nudges) {
+  if (subject.through_events) return values_through_events(subject, table.rows, nudges);
   Eigen::VectorXd out(Eigen::Index(table.rows.size()));
   for (std::size_t first = 0; first < table.rows.size();) {
     const std::string place = place_of(table.rows[first]);
@@ -160,17 +196,13 @@ std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const G
 
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
                             const std::vector<std::string>& by, bool check) {
-  GradientTable out;
-  out.system = subject.system;
-  out.steps = subject.steps;
-  out.checked = check;
+  if (subject.through_events) return differentiate_through_events(subject, of, by, check);
+  GradientTable out = table_of(subject, by, check);
   const GradientColumns columns = columns_of(subject, by);
-  for (const int i : columns.start) out.columns.push_back("initial." + subject.start[std::size_t(i)].name);
-  for (const std::string& name : names_of(subject, columns)) out.columns.push_back("parameters." + name);
   std::vector<std::pair<std::string, std::vector<int>>> places;
   for (const std::string& word : of) {
     const Asked asked = row_of(word, subject.steps);
-    const std::vector<int> rows = chosen(subject.observed, word, asked.name);
+    const std::vector<int> rows = chosen_names(subject.observed, word, asked.name);
     auto place =
         std::find_if(places.begin(), places.end(), [&](const auto& each) { return each.first == asked.place; });
     if (place == places.end()) place = places.insert(places.end(), {asked.place, {}});
@@ -183,7 +215,6 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
   const auto width = Eigen::Index(out.columns.size());
   out.values.resize(Eigen::Index(count));
   out.derivatives.resize(Eigen::Index(count), width);
-  if (check) out.differences.resize(Eigen::Index(count), width);
   for (const auto& [place, rows] : places) {
     const Observed observed = observed_at(place);
     const Propagated found = propagated(subject, columns, observed, rows.size());
@@ -195,7 +226,6 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
     }
     if (found.growth >= out.growth) out.digits_left = found.digits_left();
     out.growth = std::max(out.growth, found.growth);
-    const auto first = Eigen::Index(out.rows.size());
     for (const int row : rows) {
       const auto at = Eigen::Index(out.rows.size());
       out.rows.push_back(place + "." + subject.observed[std::size_t(row)].name);
@@ -203,30 +233,13 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
       out.values(at) = found.values(row);
       out.derivatives.row(at) = found.derivatives.row(row);
     }
-    if (!check) continue;
-    for (Eigen::Index j = 0; j < width; ++j) {
-      const auto from_start = Eigen::Index(columns.start.size());
-      const bool of_start = j < from_start;
-      const int index = of_start ? columns.start[std::size_t(j)] : columns.parameters[std::size_t(j - from_start)];
-      Nudge nudge;
-      if (of_start) {
-        nudge.index = index;
-      } else {
-        nudge.parameter = subject.parameters[std::size_t(index)].name;
-      }
-      const double size = subject.sizes[std::size_t(index) + (of_start ? 0 : subject.start.size())];
-      const Eigen::VectorXd all = difference(subject, nudge, size, observed);
-      for (std::size_t i = 0; i < rows.size(); ++i) out.differences(first + Eigen::Index(i), j) = all(rows[i]);
-    }
   }
-  if (check) {
-    out.digits_agreed = 16;
-    for (Eigen::Index i = 0; i < out.derivatives.rows(); ++i) {
-      const double size = out.derivatives.row(i).cwiseAbs().maxCoeff();
-      const double off = (out.derivatives.row(i) - out.differences.row(i)).cwiseAbs().maxCoeff();
-      if (off > 0 && size > 0) out.digits_agreed = std::min(out.digits_agreed, std::max(0.0, std::log10(size / off)));
-    }
-  }
+  if (check)
+    compare_with_differences(subject, columns, out, [&](const std::vector<Nudge>& nudges) {
+      const auto values = values_of(subject, out, nudges);
+      if (!values) throw GradientRefused("a run beside this one ended early");
+      return *values;
+    });
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "gradient_subject.hpp"
 
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -43,6 +44,18 @@ struct GradientColumns {
   std::vector<int> parameters;  ///< and in GradientSubject::parameters
 };
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words);
+/// The names of its parameters.
+std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns);
+/// What `name` chooses: all, those of a group, or one.
+std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::string& word, const std::string& name);
+
+/// A table with its columns, still without rows.
+GradientTable table_of(const GradientSubject& subject, const std::vector<std::string>& by, bool check);
+void set_growth(GradientTable& table, double growth);
+/// Adds extrapolated differences of the rows, which `values` has of runs from starts that differ.
+void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
+                              const std::function<Eigen::VectorXd(const std::vector<Nudge>&)>& values);
+
 /// The rows of the table, one after another, of a run from a start that differs; none where it ended early.
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
                                          const std::vector<Nudge>& nudges);

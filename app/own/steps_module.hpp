@@ -38,7 +38,7 @@ template <DiscreteSystem Sys> class StepsModule final : public SystemModule {
     const InitialValue<Sys> initial = read_initial(system, scene, presentation.momentum);
     const IntegratorChoice choice = read_integrator(scene, capabilities_of(system));
     const RunExtent extent = read_extent(scene, context);
-    if (!is_plain(choice)) throw NeedsAllMethods{};
+    if (!by_newton_steps(choice) || choice.options.composition.stages() > 1) throw NeedsAllMethods{};
     scene.finish();
     auto integrator = std::make_unique<lagroid::detail::IntegratorOf<Sys, FixedStepIntegrator<Sys>>>(
         system, initial.state, initial.configuration, std::make_unique<NewtonStep<Sys>>());

@@ -24,10 +24,10 @@ template <DiscreteSystem Sys> struct NewtonInitialValue;
 template <DiscreteSystem Sys> struct PreparedScene {
   Sys system;
   std::function<RunResult(const Observer<Sys>&)> run;
-  std::function<std::unique_ptr<Motion>()> begin;                  ///< the motion alone; null for boundary values
-  std::vector<Method> methods = {};                                ///< by which the scene could be integrated
-  std::shared_ptr<const NewtonInitialValue<Sys>> plain = nullptr;  ///< null where it is none
-  std::string reduced_by = {};                                     ///< the reduction that it names, or none
+  std::function<std::unique_ptr<Motion>()> begin;                      ///< the motion alone; null for boundary values
+  std::vector<Method> methods = {};                                    ///< by which the scene could be integrated
+  std::shared_ptr<const NewtonInitialValue<Sys>> by_newton = nullptr;  ///< null where it is none
+  std::string reduced_by = {};                                         ///< the reduction that it names, or none
 };
 
 }  // namespace lagroid::app

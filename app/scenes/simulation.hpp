@@ -80,19 +80,23 @@ std::vector<Event> read_events(const Section& scene);
 /// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint, [[event]].
 RunExtent read_extent(const Section& scene, const RunContext& context);
 
+/// An initial value by equal steps, each perhaps composed, that Newton's iteration solves to round-off.
 template <DiscreteSystem Sys> struct NewtonInitialValue {
   State<typename Sys::GroupoidType> initial;
   ArrowOf<typename Sys::GroupoidType> configuration;
   Presentation<Sys> presentation;
+  Composition composition;
   RunExtent extent;
+  /// Whether the scene sets nothing of its steps beyond their size and number, and watches for nothing.
+  bool is_plain() const { return composition.stages() == 1 && extent.events.empty(); }
 };
 
-/// Whether it is one: the scene sets nothing of steps and solver beyond their size and number.
-inline bool is_plain(const IntegratorChoice& choice) {
+/// Whether the scene is one: it sets nothing of the solver.
+inline bool by_newton_steps(const IntegratorChoice& choice) {
   const IntegratorOptions& o = choice.options;
-  return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.composition.stages() == 1 &&
-         o.method == StepMethod::newton && o.step.tolerance == 0 &&
-         o.step.max_iterations == IntegratorOptions().step.max_iterations && choice.accuracy == 0;
+  return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.method == StepMethod::newton &&
+         o.step.tolerance == 0 && o.step.max_iterations == IntegratorOptions().step.max_iterations &&
+         choice.accuracy == 0;
 }
 
 /// The system's motion as the scene specifies it.
@@ -156,16 +160,16 @@ PreparedScene<Sys> simulation(const Section& scene, const RunContext& context, c
   const IntegratorChoice choice = read_integrator(scene, able);
   const RunExtent extent = read_extent(scene, context);
   scene.finish();
-  std::shared_ptr<const NewtonInitialValue<Sys>> plain;
-  if (is_plain(choice) && extent.events.empty())
-    plain = std::make_shared<const NewtonInitialValue<Sys>>(
-        NewtonInitialValue<Sys>{initial, configuration, presentation, extent});
+  std::shared_ptr<const NewtonInitialValue<Sys>> by_newton;
+  if (by_newton_steps(choice))
+    by_newton = std::make_shared<const NewtonInitialValue<Sys>>(
+        NewtonInitialValue<Sys>{initial, configuration, presentation, choice.options.composition, extent});
   return {system,
           [=](const Observer<Sys>& observer) {
             return simulate(system, presentation, initial, configuration, choice, extent, context, observer);
           },
           [=] { return motion_of(system, presentation, initial, configuration, choice.options); },
-          integration_methods(able), plain};
+          integration_methods(able), by_newton};
 }
 
 }  // namespace lagroid::app

@@ -10,7 +10,7 @@
 /// finite number. Errors: std::invalid_argument for a text that is none, with the columns there are.
 
 #include <lagroid/run/events/event.hpp>
-#include <lagroid/run/events/expression.hpp>
+#include <lagroid/run/expressions/expression.hpp>
 #include <lagroid/run/motion/observables.hpp>
 
 #include <cstddef>

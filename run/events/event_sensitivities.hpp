@@ -49,14 +49,17 @@ template <class Sys> struct EventNode {
   ArrowOf<G, VariedNumber> configuration;
 };
 
+/// What is observed of a node.
+template <class Sys> using ObserveEventNode = std::function<VariedVector(const EventNode<Sys>&)>;
+
 /// An event with derivatives: where its function passes zero.
 template <DiscreteSystem Sys> struct SmoothEvent {
   std::string name;
   std::function<VariedNumber(const EventNode<Sys>&)> function;
   Event::Direction direction = Event::Direction::both;
   Event::Then then = Event::Then::record;
-  long count = 1;                                                ///< the run stops when it has happened so often
-  std::function<VariedVector(const EventNode<Sys>&)> kick = {};  ///< added to the momentum there
+  long count = 1;                   ///< the run stops when it has happened so often
+  ObserveEventNode<Sys> kick = {};  ///< added to the momentum there
 };
 
 struct EventSensitivities {
@@ -70,11 +73,19 @@ struct EventSensitivities {
     double time;
     Eigen::RowVectorXd by_start;
     Eigen::RowVectorXd by_parameters;
+    Eigen::VectorXd observed;           ///< before a kick; none unless there is a function to observe
+    Eigen::MatrixXd observed_by_start;  ///< a row for each of them
+    Eigen::MatrixXd observed_by_parameters;
   };
   std::vector<Happened> happened;
+  long steps = 0;                 ///< that were made whole
+  bool is_stopped = false;        ///< by an event, which is the last that happened
   double time = 0;                ///< of the end: of the last node, or of the event that stopped the run
   Eigen::MatrixXd by_start;       ///< of (displacement, momentum) at the end, as those of `sensitivities`
   Eigen::MatrixXd by_parameters;  ///< a column for each
+  Eigen::VectorXd observed;       ///< at the end, or at the node that was asked for
+  Eigen::MatrixXd observed_by_start;
+  Eigen::MatrixXd observed_by_parameters;
 
   bool converged() const { return status == SolveStatus::converged; }
 };
@@ -126,10 +137,13 @@ template <DiscreteSystem Sys> class EventPropagation {
   static constexpr int m = Sys::constraints;
 
   EventPropagation(const Sys& system, std::unique_ptr<Integrator<Sys>> integrator,
-                   const std::vector<SmoothEvent<Sys>>& events, const std::vector<std::string>& parameters)
+                   const std::vector<SmoothEvent<Sys>>& events, const std::vector<std::string>& parameters,
+                   ObserveEventNode<Sys> observe, long observed_node)
       : system_(system),
         integrator_(std::move(integrator)),
         events_(events),
+        observe_(std::move(observe)),
+        observed_node_(observed_node),
         places_(places_of_parameters(system_.plain(), parameters)),
         members_(places_.members),
         count_(2 * n + int(places_.members.size())),
@@ -150,6 +164,7 @@ template <DiscreteSystem Sys> class EventPropagation {
     out_.parameters = places_.names;
     base_ = integrator_->point();
     for (std::size_t i = 0; i < events_.size(); ++i) watches_[i].next(value_at(i, base_), base_.time);
+    if (observed_node_ == 0) observe_end();
     for (long k = 0; k < steps && !is_over_; ++k) advance(k + 1);
     if (out_.converged()) finish();
     return std::move(out_);
@@ -235,6 +250,8 @@ template <DiscreteSystem Sys> class EventPropagation {
     Linearised step = linearise(is_kicked_ ? cut(1) : node);
     step.end.topRows(2 * n) -= step.by_duration * time_by_;
     move_base(step, integrator_->point(), Eigen::RowVectorXd::Zero(count_));
+    out_.steps = number;
+    if (number == observed_node_) observe_end();
   } catch (const StepReport& report) {
     fail(report.status, "step " + std::to_string(number) + ", or a part of it, did not converge");
   } catch (const NoNumber&) {
@@ -271,11 +288,16 @@ template <DiscreteSystem Sys> class EventPropagation {
     if (found.passing == Passing::touching || std::abs(rate) <= grazing * terms)
       return fail(SolveStatus::singular, named(found) + " only grazes zero, where its time has no derivative: t = " +
                                              std::to_string(inside.time));
+    if (!g.derivatives.allFinite())
+      return fail(SolveStatus::singular,
+                  "the function of " + named(found) + " has no derivative at t = " + std::to_string(inside.time));
     const Eigen::RowVectorXd duration_by = -by / rate;
     Linearised at = step;
     at.end.topRows(2 * n) += step.by_duration * duration_by;
     const Eigen::RowVectorXd time_by = time_by_ + duration_by;
-    out_.happened.push_back({found.event, inside.time, time_by.head(2 * n), time_by.tail(count_ - 2 * n)});
+    out_.happened.push_back({found.event, inside.time, time_by.head(2 * n), time_by.tail(count_ - 2 * n), {}, {}, {}});
+    auto& last = out_.happened.back();
+    set_observed(inside, at.end, time_by, last.observed, last.observed_by_start, last.observed_by_parameters);
     ++happened_[found.event];
     const bool stops = event.then == Event::Then::stop && happened_[found.event] >= event.count;
     if (event.kick) {
@@ -288,7 +310,7 @@ template <DiscreteSystem Sys> class EventPropagation {
     } else if (stops) {
       move_base(at, inside, time_by);
     }
-    if (stops) is_over_ = true;
+    if (stops) is_over_ = out_.is_stopped = true;
   }
 
   void kick(const Found& found, const Point& inside, const Linearised& at, const Eigen::RowVectorXd& time_by) {
@@ -297,6 +319,9 @@ template <DiscreteSystem Sys> class EventPropagation {
       throw std::invalid_argument(named(found) + ": its kick has " + std::to_string(k.values.size()) +
                                   " numbers, the momentum has " + std::to_string(n));
     const AlgebroidVector<G> by = k.values;
+    if (!k.derivatives.allFinite())
+      return fail(SolveStatus::singular,
+                  "the kick of " + named(found) + " has no derivative at t = " + std::to_string(inside.time));
     const StepReport report = integrator_->kick(found.share, by);
     if (!report.converged()) throw report;
     Linearised kicked = at;
@@ -313,7 +338,22 @@ template <DiscreteSystem Sys> class EventPropagation {
     time_by_ = time_by;
   }
 
+  /// What is observed at a point, by directions there and the derivative of its time.
+  void set_observed(const Point& point, const Eigen::MatrixXd& directions, const Eigen::RowVectorXd& time_by,
+                    Eigen::VectorXd& values, Eigen::MatrixXd& by_start, Eigen::MatrixXd& by_parameters) const {
+    if (!observe_) return;
+    const NodeValues here = observe(point, observe_);
+    const Eigen::MatrixXd by = here.derivatives.leftCols(count_) * directions + here.derivatives.col(count_) * time_by;
+    values = here.values;
+    by_start = by.leftCols(2 * n);
+    by_parameters = by.rightCols(count_ - 2 * n);
+  }
+  void observe_end() {
+    set_observed(base_, directions_, time_by_, out_.observed, out_.observed_by_start, out_.observed_by_parameters);
+  }
+
   void finish() {
+    if (observed_node_ < 0) observe_end();
     const NodeValues momentum = observe(base_, [](const EventNode<Sys>& node) { return VariedVector(node.momentum); });
     Eigen::MatrixXd end = directions_.topRows(2 * n);
     end.bottomRows(n) = momentum.derivatives.leftCols(count_) * directions_;
@@ -325,6 +365,8 @@ template <DiscreteSystem Sys> class EventPropagation {
   VaryingStep<Sys> system_;
   std::unique_ptr<Integrator<Sys>> integrator_;
   const std::vector<SmoothEvent<Sys>>& events_;
+  ObserveEventNode<Sys> observe_;
+  long observed_node_;  ///< -1: the end
   ParameterPlaces places_;
   std::vector<const double*> members_;  ///< and the step's size, and its start
   int count_;                           ///< directions: (v, mu, theta)
@@ -341,13 +383,16 @@ template <DiscreteSystem Sys> class EventPropagation {
 
 }  // namespace detail
 
-/// By equal steps of order two, from the start until the last step or the event that stops the run.
+/// By equal steps of order two, from the start until the last step or the event that stops the run. `observe`, if any,
+/// is looked at where events happen and at the end, or at the node that options.observed asks for.
 template <DiscreteSystem Sys>
-requires StepDependent<Sys> || TimeDependent<Sys> EventSensitivities
-event_sensitivities(const Sys& system, const State<typename Sys::GroupoidType>& start,
-                    const std::vector<SmoothEvent<Sys>>& events, const SensitivityOptions<Sys>& options = {}) {
+requires StepDependent<Sys> || TimeDependent<Sys> EventSensitivities event_sensitivities(
+    const Sys& system, const State<typename Sys::GroupoidType>& start, const std::vector<SmoothEvent<Sys>>& events,
+    const SensitivityOptions<Sys>& options = {}, ObserveEventNode<Sys> observe = {}) {
+  if (options.observed.kind == Observed::Kind::integral)
+    throw std::invalid_argument("events leave no equal steps over which to integrate: observe a node, or the end");
   detail::EventPropagation<Sys> motion(system, detail::newton_integrator(system, start, options), events,
-                                       options.parameters);
+                                       options.parameters, std::move(observe), options.observed.node);
   return motion.run(options.steps);
 }
 

@@ -92,26 +92,43 @@ class Release:
     def missing(self):
         return [name for name in self.pieces if self.done().get(name, {}).get("result") != "passed"]
 
+    def latest(self, name):
+        """How a piece went when it last ran: of this commit, or else of an earlier one that led to it."""
+        if name in self.done():
+            return {**self.done()[name], "commit": self.commit}
+        earlier = [{**entries[name], "commit": commit} for commit, entries in self.journal.items()
+                   if name in entries and self.leads_here(commit)]
+        return max(earlier, key=lambda entry: entry["when"], default={"result": "not yet"})
+
+    def leads_here(self, commit):
+        return subprocess.run(["git", "merge-base", "--is-ancestor", commit, self.commit], cwd=self.root,
+                              capture_output=True).returncode == 0
+
     def table(self):
         rows = []
         for name, piece in self.pieces.items():
             entry = self.done().get(name, {"result": "not yet"})
-            seconds = f"{entry['seconds']} s" if entry.get("seconds") and entry["result"] != "not run" else ""
-            rows.append((name, entry["result"], seconds, entry.get("when", ""), entry.get("reason") or piece.what))
+            rows.append((name, entry["result"], took(entry), entry.get("when", ""), entry.get("reason") or piece.what))
         return rows
 
     def write_page(self):
         """docs/verified.md: what ran, when, on what, with which result, and what did not run and why."""
         lines = ["<!-- Written by `./lagroid release`. -->", "# What was run", "",
-                 f"By `./lagroid release`, on commit {self.commit}. A row is a piece of the whole; what its commands are says",
-                 "`tests/release/pieces.py`.", ""]
-        lines += [f"- {each}" for each in sorted({entry["machine"] for entry in self.done().values()})]
-        lines += ["", "| piece | what | compiler | result | took | when | why not |", "|---|---|---|---|---|---|---|"]
-        for name, result, seconds, when, _ in self.table():
-            entry = self.done().get(name, {})
-            reason, compiler = entry.get("reason", "").replace("|", "\\|"), entry.get("compiler", "")
-            lines.append(f"| {name} | {self.pieces[name].what} | {compiler} | {result} | {seconds} | {when} | {reason} |")
+                 f"By `./lagroid release`, up to commit {self.commit}. A row is a piece of the whole, as it went on the last "
+                 "commit on",
+                 "which it ran; what its commands are says `tests/release/pieces.py`.", ""]
+        rows = {name: self.latest(name) for name in self.pieces}
+        lines += [f"- {each}" for each in sorted({entry["machine"] for entry in rows.values() if "machine" in entry})]
+        lines += ["", "| piece | what | compiler | result | took | commit | when | why not |", "|---|---|---|---|---|---|---|---|"]
+        for name, entry in rows.items():
+            cells = (name, self.pieces[name].what, entry.get("compiler", ""), entry["result"], took(entry),
+                     entry.get("commit", "")[:10], entry.get("when", ""), entry.get("reason", "").replace("|", "\\|"))
+            lines.append("| " + " | ".join(cells) + " |")
         (self.root / page_of_it).write_text("\n".join(lines) + "\n")
+
+
+def took(entry):
+    return f"{entry['seconds']} s" if entry.get("seconds") and entry["result"] != "not run" else ""
 
 
 def stop(child):

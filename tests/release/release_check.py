@@ -63,6 +63,21 @@ class Pieces(unittest.TestCase):
         self.run_pieces(pieces)
         self.assertEqual(self.runs(), 3)
 
+    def test_the_page_says_on_which_commit_a_piece_last_ran(self):
+        pieces = [self.counted("first"), self.counted("second")]
+        self.run_pieces(pieces, "first")
+        self.git("checkout", "-q", "--", ".")
+        self.commit("source", "2")
+        self.run_pieces(pieces, "second")
+        page = (self.root / page_of_it).read_text()
+        commits = {name: Release(self.root, pieces).latest(name)["commit"] for name in ("first", "second")}
+        self.assertNotEqual(*commits.values())
+        for name, commit in commits.items():
+            self.assertRegex(page, rf"\| {name} \| .* \| passed \| .* \| {commit[:10]} \|")
+        # What another branch saw is not of this one.
+        self.git("checkout", "-q", "-f", "HEAD~1")
+        self.assertEqual(Release(self.root, pieces).latest("second"), {"result": "not yet"})
+
     def test_a_cut_run_goes_on_with_the_next_piece(self):
         def cut():
             raise KeyboardInterrupt

@@ -99,6 +99,36 @@ TEST(EventSensitivities, ThroughBouncesAreThoseOfTheFormula) {
   EXPECT_NEAR(end.by_parameters(1, 0), momentum(2), 1e-11);
 }
 
+TEST(EventSensitivities, ObserveWhereEventsHappenAndAtANode) {
+  Ball ball;
+  ball.h = 0.11;
+  const double g = 2, q = 1, v = 0.3, root = std::sqrt(v * v + 2 * g * q);
+  const auto observe = [](const EventNode<Ball>& node) {
+    VariedVector both(2);
+    both << node.object(0), node.momentum(0) * node.time;
+    return both;
+  };
+  SensitivityOptions<Ball> options{.steps = 12, .parameters = {"gravity"}};
+  options.observed = Observed::at_node(4);
+  const EventSensitivities run = event_sensitivities<Ball>(ball, thrown, Events{bouncing(0.8)}, options, observe);
+  ASSERT_TRUE(run.converged()) << run.message;
+  ASSERT_EQ(run.happened.size(), 1u);
+  const double t = (v + root) / g;
+  // Before the kick: on the floor, with the speed of the fall.
+  EXPECT_NEAR(run.happened[0].observed(0), 0, 1e-13);
+  EXPECT_NEAR(run.happened[0].observed(1), -root * t, 1e-12);
+  EXPECT_NEAR(run.happened[0].observed_by_start.row(0).norm(), 0, 1e-12);
+  EXPECT_NEAR(run.happened[0].observed_by_start(1, 1), -v / root * t - root * (1 + v / root) / g, 1e-11);
+  EXPECT_NEAR(run.happened[0].observed_by_parameters(1, 0), -q / root * t - root * (q / root / g - t / g), 1e-11);
+  // Node four is on the way up and down: q + v t - g t^2 / 2.
+  const double s = 0.44;
+  EXPECT_NEAR(run.observed(0), q + v * s - g * s * s / 2, 1e-13);
+  EXPECT_NEAR(run.observed_by_start(0, 1), s, 1e-13);
+  EXPECT_NEAR(run.observed_by_parameters(1, 0), -s * s, 1e-12);
+  options.observed = Observed::integral();
+  EXPECT_THROW(event_sensitivities<Ball>(ball, thrown, Events{}, options, observe), std::invalid_argument);
+}
+
 TEST(EventSensitivities, AreWhatDifferencesTendTo) {
   // A bob that a wall throws back twice, with a push that depends on where and when.
   SmoothEvent<Bob> wall{"wall", [](const EventNode<Bob>& node) { return node.object(0) + 0.2; }};

@@ -1,4 +1,4 @@
-#include <lagroid/run/events/expression.hpp>
+#include <lagroid/run/expressions/expression.hpp>
 
 #include <algorithm>
 #include <locale>
@@ -16,6 +16,10 @@ class Shifted final : public Expression {
   Shifted(std::size_t name, const double* value, double shift) : name_(name), value_(value), shift_(shift) {}
   double value() const override { return *value_ + shift_; }
   std::vector<std::size_t> used() const override { return {name_}; }
+  double differentiate(double* by) override {
+    *by = 1;
+    return value();
+  }
 
  private:
   std::size_t name_;

@@ -1,4 +1,4 @@
-#include <lagroid/run/events/expression.hpp>
+#include <lagroid/run/expressions/expression.hpp>
 
 #include <stdexcept>
 

@@ -1,49 +1,21 @@
-#include <lagroid/run/events/expression.hpp>
+#include <lagroid/run/expressions/differentiated_by_muparser.hpp>
+#include <lagroid/run/expressions/expression.hpp>
+#include <lagroid/run/expressions/muparser_text.hpp>
 
 #include <fmt/format.h>
 #include <muParser.h>
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
+#include <memory>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 #include <string_view>
 
 namespace lagroid::detail {
 
 namespace {
-
-bool in_a_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-/// The name under which muparser, whose names are words, knows the i-th.
-std::string word_of(std::size_t i) { return fmt::format("column_{}_", i); }
-
-/// The text with words in place of the names, of which the longest that fits is meant.
-std::string in_words(const std::string& text, const std::vector<std::string>& names) {
-  std::vector<std::size_t> longest_first(names.size());
-  std::iota(longest_first.begin(), longest_first.end(), std::size_t(0));
-  std::stable_sort(longest_first.begin(), longest_first.end(),
-                   [&](std::size_t a, std::size_t b) { return names[a].size() > names[b].size(); });
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto fits = [&](std::size_t i) {
-      const std::size_t end = at + names[i].size();
-      const bool begins = at == 0 || !in_a_word(text[at - 1]) || !in_a_word(names[i].front());
-      return begins && text.compare(at, names[i].size(), names[i]) == 0 &&
-             (end == text.size() || !in_a_word(text[end]) || !in_a_word(names[i].back()));
-    };
-    const auto found = std::find_if(longest_first.begin(), longest_first.end(), fits);
-    if (found == longest_first.end()) {
-      out += text[at++];
-    } else {
-      out += word_of(*found);
-      at += names[*found].size();
-    }
-  }
-  return out;
-}
 
 /// Whether one of its signs "=" is no part of a comparison.
 bool assigns(const std::string& text) {
@@ -57,7 +29,8 @@ bool assigns(const std::string& text) {
 
 class MuParserExpression final : public Expression {
  public:
-  MuParserExpression(const std::string& text, const std::vector<std::string>& names, const double* values) {
+  MuParserExpression(const std::string& text, const std::vector<std::string>& names, const double* values)
+      : text_(text), names_(names), values_(values) {
     if (assigns(text)) throw std::invalid_argument("\"=\" sets nothing here: write what is to be zero");
     try {
       parser_.DefineConst("pi", std::numbers::pi);
@@ -78,10 +51,22 @@ class MuParserExpression final : public Expression {
   }
   double value() const override { return parser_.Eval(); }
   std::vector<std::size_t> used() const override { return used_; }
+  double differentiate(double* by) override {
+    if (!differentiated_) differentiated_ = std::make_unique<DifferentiatedByMuParser>(text_, names_, used_, values_);
+    const double here = value();
+    const double again = differentiated_->differentiate(by);
+    // A condition that is a number, not a comparison, is judged by muparser itself and may be judged otherwise there.
+    if (!(std::abs(again - here) <= 1e-9 * std::abs(here))) std::fill_n(by, used_.size(), std::nan(""));
+    return here;
+  }
 
  private:
   mu::Parser parser_;
   std::vector<std::size_t> used_;
+  std::string text_;
+  std::vector<std::string> names_;
+  const double* values_;
+  std::unique_ptr<DifferentiatedByMuParser> differentiated_;  ///< once derivatives are asked for
 };
 
 }  // namespace

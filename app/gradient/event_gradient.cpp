@@ -1,0 +1,234 @@
+#include "event_gradient.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <stdexcept>
+
+namespace lagroid::app {
+
+namespace {
+
+std::vector<std::string> names_in(const std::vector<GradientName>& observed) {
+  std::vector<std::string> names{"t"};
+  for (const GradientName& each : observed) names.push_back(each.name);
+  return names;
+}
+VariedExpression smooth(const std::string& text, const std::string& event, const std::vector<std::string>& names) try {
+  return {text, names};
+} catch (const std::invalid_argument& error) {
+  throw std::invalid_argument(fmt::format("event \"{}\": \"{}\": {}; derivatives are of {}", event, text, error.what(),
+                                          fmt::join(names, ", ")));
+}
+
+/// What a row shows: the time, or what is observed, of the end, a node or an event.
+struct Row {
+  long node = -1;   ///< -1: the end
+  int event = -1;   ///< of the scene, or none
+  long which = 0;   ///< the how-manieth time it happened, from zero
+  int column = -1;  ///< of what is observed; -1: the time
+  std::string name = {};
+};
+
+/// A number that a word ends with, or goes on after with a dot; the rest of the word, behind it.
+std::optional<std::pair<long, std::string>> number_first(const std::string& word) {
+  long number = 0;
+  const auto read = std::from_chars(word.data(), word.data() + word.size(), number);
+  const std::size_t end = std::size_t(read.ptr - word.data());
+  if (read.ec != std::errc() || (end < word.size() && word[end] != '.')) return std::nullopt;
+  return std::pair(number, word.substr(std::min(word.size(), end + 1)));
+}
+
+class Rows {
+ public:
+  Rows(const GradientSubject& subject, const EventSensitivities& run) : subject_(subject), run_(run) {}
+
+  std::vector<Row> of(const std::string& word) const {
+    if (word == "final" || word.starts_with("final."))
+      return columns({}, "final", word.substr(std::min<std::size_t>(6, word.size())), word);
+    if (word.starts_with("node.")) {
+      const auto number = number_first(word.substr(5));
+      if (!number || number->first < 0 || number->first > subject_.steps)
+        throw GradientRefused(fmt::format("{}: a node is a number from 0 to {}", word, subject_.steps));
+      return columns({.node = number->first}, fmt::format("node.{}", number->first), number->second, word);
+    }
+    if (word == "events") return times();
+    if (word.starts_with("event."))
+      for (std::size_t i = 0; i < subject_.events.size(); ++i) {
+        const std::string& name = subject_.events[i];
+        if (word.compare(6, name.size() + 1, name + ".") != 0) continue;
+        const auto number = number_first(word.substr(6 + name.size() + 1));
+        if (!number) continue;
+        require_happened(i, number->first, word);
+        return columns({.event = int(i), .which = number->first - 1}, fmt::format("event.{}.{}", name, number->first),
+                       number->second, word);
+      }
+    throw GradientRefused(
+        fmt::format("{}: ask for final.NAME, node.K.NAME, events or event.NAME.K.COLUMN; the events are {}", word,
+                    fmt::join(subject_.events, ", ")));
+  }
+
+ private:
+  /// All columns, those of a group, or one.
+  std::vector<Row> columns(const Row& place, const std::string& where, const std::string& name,
+                           const std::string& word) const {
+    std::vector<Row> out;
+    const auto add = [&](int column, const std::string& called) {
+      out.push_back(place);
+      out.back().column = column;
+      out.back().name = where + "." + called;
+    };
+    if (place.node < 0 && (name == "t" || name.empty())) add(-1, "t");
+    if (name != "t")
+      for (const int column : chosen_names(subject_.observed, word, name))
+        add(column, subject_.observed[std::size_t(column)].name);
+    if (out.empty()) throw GradientRefused(fmt::format("{}: the times of nodes depend on nothing", word));
+    return out;
+  }
+  std::vector<Row> times() const {
+    std::vector<Row> out;
+    std::vector<long> counts(subject_.events.size(), 0);
+    for (const auto& each : run_.happened) {
+      const long which = counts[each.event]++;
+      out.push_back({.event = int(each.event),
+                     .which = which,
+                     .name = fmt::format("event.{}.{}.t", subject_.events[each.event], which + 1)});
+    }
+    if (out.empty()) throw GradientRefused("events: none has happened");
+    return out;
+  }
+  void require_happened(std::size_t event, long number, const std::string& word) const {
+    const auto happened = std::count_if(run_.happened.begin(), run_.happened.end(),
+                                        [&](const auto& each) { return each.event == event; });
+    if (number < 1 || number > happened)
+      throw GradientRefused(fmt::format("{}: \"{}\" has happened {} times", word, subject_.events[event], happened));
+  }
+
+  const GradientSubject& subject_;
+  const EventSensitivities& run_;
+};
+
+/// Of a run: the value of a row with its derivatives by starts and by parameters. None where there is no such row.
+struct Read {
+  double value;
+  Eigen::RowVectorXd by_start;
+  Eigen::RowVectorXd by_parameters;
+};
+std::optional<Read> read(const EventSensitivities& run, const Row& row) {
+  const auto of_column = [&](const auto& place) {
+    return Read{place.observed(row.column), place.observed_by_start.row(row.column),
+                place.observed_by_parameters.row(row.column)};
+  };
+  if (row.event < 0) {
+    if (row.node > run.steps) return std::nullopt;
+    if (row.column >= 0) return of_column(run);
+    if (run.is_stopped) return Read{run.time, run.happened.back().by_start, run.happened.back().by_parameters};
+    return Read{run.time, Eigen::RowVectorXd::Zero(run.by_start.cols()),
+                Eigen::RowVectorXd::Zero(run.by_parameters.cols())};
+  }
+  long left = row.which;
+  for (const auto& each : run.happened)
+    if (each.event == std::size_t(row.event) && left-- == 0) {
+      if (row.column >= 0) return of_column(each);
+      return Read{each.time, each.by_start, each.by_parameters};
+    }
+  return std::nullopt;
+}
+
+/// The run as far as a node is asked for: one for each node, and one for the rest.
+class Runs {
+ public:
+  Runs(const GradientSubject& subject, std::vector<std::string> parameters, std::vector<Nudge> nudges)
+      : subject_(subject), parameters_(std::move(parameters)), nudges_(std::move(nudges)) {}
+  const EventSensitivities& to(long node) {
+    const auto found = runs_.find(node);
+    if (found != runs_.end()) return found->second;
+    return runs_.emplace(node, subject_.through_events(parameters_, nudges_, node)).first->second;
+  }
+
+ private:
+  const GradientSubject& subject_;
+  std::vector<std::string> parameters_;
+  std::vector<Nudge> nudges_;
+  std::map<long, EventSensitivities> runs_;
+};
+
+}  // namespace
+
+EventExpressions::EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta)
+    : when(smooth(event.when, event.name, names_in(observed))) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument(fmt::format("event \"{}\": {}; leave it out", event.name, why));
+  };
+  if (event.at != Event::At::zero) refuse("derivatives are of events at zero, not of minima and maxima");
+  if (!event.set.empty() || !event.switch_on.empty() || !event.switch_off.empty())
+    refuse("a run whose system changes on the way has no derivatives here");
+  if (event.call) refuse("what it calls has no derivative");
+  if (!event.kick.empty() && int(event.kick.size()) != momenta)
+    refuse(fmt::format("its kick has {} numbers, the momentum has {}", event.kick.size(), momenta));
+  for (const std::string& text : event.kick) kick.push_back(smooth(text, event.name, names_in(observed)));
+}
+
+std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject,
+                                                     const std::vector<std::string>& rows,
+                                                     const std::vector<Nudge>& nudges) {
+  Runs runs(subject, {}, nudges);
+  if (!runs.to(-1).converged()) return std::nullopt;
+  Eigen::VectorXd out(Eigen::Index(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) try {
+      const Row row = Rows(subject, runs.to(-1)).of(rows[i]).front();
+      const auto value = read(runs.to(row.node), row);
+      if (!value) return std::nullopt;
+      out(Eigen::Index(i)) = value->value;
+    } catch (const GradientRefused&) {
+      return std::nullopt;  // an event that has not happened there
+    }
+  return out;
+}
+
+GradientTable differentiate_through_events(const GradientSubject& subject, const std::vector<std::string>& of,
+                                           const std::vector<std::string>& by, bool check) {
+  GradientTable out = table_of(subject, by, check);
+  const GradientColumns columns = columns_of(subject, by);
+  Runs runs(subject, names_of(subject, columns), {});
+  const EventSensitivities& whole = runs.to(-1);
+  out.steps_solved = whole.steps;
+  out.states_kept = 1;
+  if (!whole.converged()) {
+    out.failure = whole.message;
+    return out;
+  }
+  std::vector<Row> rows;
+  for (const std::string& word : of)
+    for (Row& row : Rows(subject, whole).of(word))
+      if (std::none_of(rows.begin(), rows.end(), [&](const Row& each) { return each.name == row.name; }))
+        rows.push_back(std::move(row));
+  const auto width = Eigen::Index(out.columns.size());
+  out.values.resize(Eigen::Index(rows.size()));
+  out.derivatives.resize(Eigen::Index(rows.size()), width);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto found = read(runs.to(rows[i].node), rows[i]);
+    if (!found)
+      throw GradientRefused(fmt::format("{}: the run is stopped before, at t = {:.6g}", rows[i].name, whole.time));
+    const auto at = Eigen::Index(i);
+    out.rows.push_back(rows[i].name);
+    out.values(at) = found->value;
+    for (std::size_t j = 0; j < columns.start.size(); ++j)
+      out.derivatives(at, Eigen::Index(j)) = found->by_start(columns.start[j]);
+    for (std::size_t j = 0; j < columns.parameters.size(); ++j)
+      out.derivatives(at, Eigen::Index(columns.start.size() + j)) = found->by_parameters(Eigen::Index(j));
+  }
+  set_growth(out, whole.by_start.colwise().norm().maxCoeff());
+  if (check)
+    compare_with_differences(subject, columns, out, [&](const std::vector<Nudge>& nudges) {
+      const auto values = values_through_events(subject, out.rows, nudges);
+      if (!values) throw GradientRefused("a run beside this one ended early, or other events happened in it");
+      return *values;
+    });
+  return out;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,37 @@
+#pragma once
+/// The derivatives of `lagroid gradient` of a run through events: of the end or a node, as ever, and of where events
+/// happen.
+///
+///     const GradientTable table = differentiate_through_events(subject, {"event.floor.1.t"}, {"initial"}, false);
+///
+/// Rows are final.NAME, final.t, node.K.NAME, events (the times of all), event.NAME.K and event.NAME.K.COLUMN, K from
+/// one. Errors: GradientRefused, one line, for what has no derivative, no such name, or has not happened.
+
+#include "gradient_table.hpp"
+
+#include <lagroid/run/expressions/varied_expression.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+/// The texts of an event of a scene, of the time `t` and of what is observed.
+struct EventExpressions {
+  /// Throws std::invalid_argument for an event that has no derivative, or texts that are none.
+  EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta);
+
+  VariedExpression when;
+  std::vector<VariedExpression> kick;
+};
+
+GradientTable differentiate_through_events(const GradientSubject& subject, const std::vector<std::string>& of,
+                                           const std::vector<std::string>& by, bool check);
+
+/// The rows of a table again, of a run that starts from elsewhere; none where it ended early or other events happened.
+std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject,
+                                                     const std::vector<std::string>& rows,
+                                                     const std::vector<Nudge>& nudges);
+
+}  // namespace lagroid::app
