@@ -9,7 +9,9 @@
 
 #include "gradient_table.hpp"
 
+#include <lagroid/run/events/event.hpp>
 #include <lagroid/run/expressions/varied_expression.hpp>
+#include <lagroid/run/motion/motion.hpp>
 
 #include <optional>
 #include <string>
@@ -30,8 +32,10 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
                                            const std::vector<std::string>& by, bool check);
 
 /// The rows of a table again, of a run that starts from elsewhere; none where it ended early or other events happened.
-std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject,
-                                                     const std::vector<std::string>& rows,
+std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject, const GradientTable& table,
                                                      const std::vector<Nudge>& nudges);
+
+/// Throws std::invalid_argument for events that a run of the motion would refuse.
+void require_events(const std::vector<Event>& events, Motion& motion);
 
 }  // namespace lagroid::app

@@ -46,9 +46,9 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
   const Section scene = read_scene(options.scene, options.overrides);
   const SystemModule& module = module_of_scene(scene);
   for (const AskGradient ask : subjects) {
-    const auto subject = ask(module, scene);
-    if (!subject) continue;
     try {
+      const auto subject = ask(module, scene);
+      if (!subject) continue;
       return use(*subject);
     } catch (const GradientRefused& refusal) {
       return refuse(options.json, exit_bad_input, "invalid_command_line", refusal.what());
@@ -161,10 +161,11 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
   CLI::App app{"exact derivatives of a scene's run, by its start and its parameters", "lagroid gradient"};
   GradientOptions options;
   add_scene_options(app, options);
-  app.add_option("--of", options.of,
-                 "final.NAME, node.K.NAME, integral.NAME or, of events, event.NAME.K.COLUMN, separated by commas: "
-                 "position, momentum, configuration, a column of them, the time t of an event; events: the times of all "
-                 "(default: all at the end)")
+  app.add_option(
+         "--of", options.of,
+         "final.NAME, node.K.NAME, integral.NAME or, of events, event.NAME.K.COLUMN, separated by commas: "
+         "position, momentum, configuration, a column of them, the time t of an event; events: the times of all "
+         "(default: all at the end)")
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_option("--wrt", options.by, "initial.NAME or parameters.NAME, separated by commas (default: all)")

@@ -6,7 +6,7 @@
 ///
 /// Errors of `begin`: WithoutDerivative later, at the first linearised step; std::invalid_argument for an unknown name.
 
-#include <lagroid/run/events/event_sensitivities.hpp>
+#include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 
 #include <functional>

@@ -12,12 +12,14 @@
 #include "gradient_subject.hpp"
 
 #include <lagroid/groupoids/pair.hpp>
+#include <lagroid/run/events/event_sensitivities.hpp>
 #include <lagroid/run/expressions/varied_expression.hpp>
 #include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -97,6 +99,7 @@ std::vector<SmoothEvent<Sys>> smooth_events(const std::vector<Event>& events, co
         for (int i = 0; i < Sys::dimension; ++i) by(i) = expressions->kick[std::size_t(i)](at);
         return by;
       };
+    smooth.tolerance = std::max(event.tolerance, smooth.tolerance);
     out.push_back(std::move(smooth));
   }
   return out;
@@ -162,6 +165,7 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
       scene.fail("event",
                  "gradient goes through events by steps of order two; leave out order and composition, or them");
     if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
+      require_events(value.extent.events, *prepared.begin());
       const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);
       for (const SmoothEvent<Sys>& event : events) out.events.push_back(event.name);
       out.through_events = [started, observe, events, steps = out.steps](const std::vector<std::string>& parameters,

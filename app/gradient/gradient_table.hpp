@@ -20,6 +20,14 @@ class GradientRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a row shows of a run through events: the time, or what is observed, of the end, a node or an event.
+struct EventRow {
+  long node = -1;   ///< -1: the end
+  int event = -1;   ///< of the scene, or none
+  long which = 0;   ///< the how-manieth time it happened, from zero
+  int column = -1;  ///< of what is observed; -1: the time
+};
+
 struct GradientTable {
   std::string system;
   long steps = 0;
@@ -33,9 +41,12 @@ struct GradientTable {
   long steps_solved = 0;
   long states_kept = 0;
   bool checked = false;
-  Eigen::MatrixXd differences;  ///< extrapolated, of the program
-  double digits_agreed = 0;     ///< the fewest, to the largest of each row
-  std::string failure;          ///< of a run that ended early
+  Eigen::MatrixXd differences;        ///< extrapolated, of the program
+  double digits_agreed = 0;           ///< the fewest, to the largest of each row
+  std::string failure;                ///< of a run that ended early
+  std::vector<EventRow> event_rows;   ///< through events: what the rows are
+  std::vector<std::size_t> happened;  ///< through events: which, in their order
+  std::vector<std::string> notes;     ///< on them
 };
 
 /// The starts and the parameters that words initial.NAME and parameters.NAME choose, each once.
@@ -52,9 +63,11 @@ std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::s
 /// A table with its columns, still without rows.
 GradientTable table_of(const GradientSubject& subject, const std::vector<std::string>& by, bool check);
 void set_growth(GradientTable& table, double growth);
-/// Adds extrapolated differences of the rows, which `values` has of runs from starts that differ.
+/// Adds extrapolated differences of the rows, which `values` has of runs from starts that differ (none of those that
+/// cannot be compared): of several relative widths, at each entry those that agree best.
 void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
-                              const std::function<Eigen::VectorXd(const std::vector<Nudge>&)>& values);
+                              const std::function<std::optional<Eigen::VectorXd>(const std::vector<Nudge>&)>& values,
+                              const std::vector<double>& widths = {2e-3});
 
 /// The rows of the table, one after another, of a run from a start that differs; none where it ended early.
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,

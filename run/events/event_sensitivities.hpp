@@ -22,6 +22,7 @@
 /// the partial step; Hiskens and Pai, IEEE Trans. Circuits Syst. I 47, 2000, 204 (flows).
 
 #include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/run/events/function_watch.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 
@@ -60,34 +61,7 @@ template <DiscreteSystem Sys> struct SmoothEvent {
   Event::Then then = Event::Then::record;
   long count = 1;                   ///< the run stops when it has happened so often
   ObserveEventNode<Sys> kick = {};  ///< added to the momentum there
-};
-
-struct EventSensitivities {
-  SolveStatus status = SolveStatus::converged;
-  std::string message;
-  std::vector<std::string> parameters;
-  /// An event that happened, and how its time depends on the start, 2 n numbers (displacement, momentum), and on the
-  /// parameters.
-  struct Happened {
-    std::size_t event;
-    double time;
-    Eigen::RowVectorXd by_start;
-    Eigen::RowVectorXd by_parameters;
-    Eigen::VectorXd observed;           ///< before a kick; none unless there is a function to observe
-    Eigen::MatrixXd observed_by_start;  ///< a row for each of them
-    Eigen::MatrixXd observed_by_parameters;
-  };
-  std::vector<Happened> happened;
-  long steps = 0;                 ///< that were made whole
-  bool is_stopped = false;        ///< by an event, which is the last that happened
-  double time = 0;                ///< of the end: of the last node, or of the event that stopped the run
-  Eigen::MatrixXd by_start;       ///< of (displacement, momentum) at the end, as those of `sensitivities`
-  Eigen::MatrixXd by_parameters;  ///< a column for each
-  Eigen::VectorXd observed;       ///< at the end, or at the node that was asked for
-  Eigen::MatrixXd observed_by_start;
-  Eigen::MatrixXd observed_by_parameters;
-
-  bool converged() const { return status == SolveStatus::converged; }
+  double tolerance = 1e-8;          ///< nearer to zero, relative to the largest value so far, its function touches it
 };
 
 namespace detail {
@@ -153,7 +127,7 @@ template <DiscreteSystem Sys> class EventPropagation {
     if constexpr (TimeDependent<Sys>) members_.push_back(&system_.time);
     for (const SmoothEvent<Sys>& event : events) {
       if (!event.function) throw std::invalid_argument("event \"" + event.name + "\": it has no function");
-      watches_.emplace_back(Event{.name = event.name, .direction = event.direction, .tolerance = grazing});
+      watches_.emplace_back(Event{.name = event.name, .direction = event.direction, .tolerance = event.tolerance});
       happened_.push_back(0);
     }
   }
@@ -167,12 +141,18 @@ template <DiscreteSystem Sys> class EventPropagation {
     if (observed_node_ == 0) observe_end();
     for (long k = 0; k < steps && !is_over_; ++k) advance(k + 1);
     if (out_.converged()) finish();
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      for (const std::string& note : watches_[i].notes())
+        out_.notes.push_back("event \"" + events_[i].name + "\": " + note);
     return std::move(out_);
   }
 
  private:
   static constexpr double grazing = 1e-8;
   static constexpr double together = 1e-9;  // of a step
+  /// Of a step: a rest that is shorter is made with the next step, for its own derivative is that of momenta which are
+  /// differences of places over its duration.
+  static constexpr double shortest = 5e-7;
   using Point = TrajectoryPoint<Sys>;
   struct Found {
     std::size_t event;
@@ -234,29 +214,50 @@ template <DiscreteSystem Sys> class EventPropagation {
   }
   void advance(long number) try {
     integrator_->keep_node();
-    is_kicked_ = false;
+    kicks_ = 0;
+    const double begun = integrator_->point().time;
     const StepReport report = integrator_->advance();
     if (!report.converged()) throw report;
     const Point node = integrator_->point();
     std::vector<std::size_t> suspects;
-    for (std::size_t i = 0; i < events_.size(); ++i)
-      if (watches_[i].next(value_at(i, node), node.time)) suspects.push_back(i);
-    for (int kicks = 0; !suspects.empty() && !is_over_; ++kicks) {
-      if (kicks == 100) return fail(SolveStatus::not_converged, "events follow their own kicks without end");
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      const double value = value_at(i, node);
+      if (watches_[i].next(value, node.time)) suspects.push_back(i);
+      if (number == 1 && watches_[i].starts_there() && decides(events_[i]) &&
+          is_in_direction(events_[i].direction, -value, value))
+        return fail(SolveStatus::singular, "the function of event \"" + events_[i].name +
+                                               "\" is zero at the start, and what follows has no derivative there");
+    }
+    while (!suspects.empty() && !is_over_) {
+      if (kicks_ == 100) return fail(SolveStatus::not_converged, "events follow their own kicks without end");
       look_into_rest(std::exchange(suspects, {}), suspects);
     }
     if (is_over_) return;
+    out_.steps = number;
+    if (kicks_ > 0 && node.time - base_.time < shortest * (node.time - begun)) {
+      if (number == observed_node_)
+        fail(SolveStatus::singular,
+             "node " + std::to_string(number) + " is the time of a kick, where it has no derivative");
+      is_kicked_at_node_ = true;
+      return;
+    }
+    is_kicked_at_node_ = false;
     // The rest of a step after a kick ends where the step does: what its start is late it is shorter.
-    Linearised step = linearise(is_kicked_ ? cut(1) : node);
+    Linearised step = linearise(kicks_ > 0 ? cut(1) : node);
     step.end.topRows(2 * n) -= step.by_duration * time_by_;
     move_base(step, integrator_->point(), Eigen::RowVectorXd::Zero(count_));
-    out_.steps = number;
     if (number == observed_node_) observe_end();
   } catch (const StepReport& report) {
-    fail(report.status, "step " + std::to_string(number) + ", or a part of it, did not converge");
+    const std::string kicked =
+        ", after " + std::to_string(kicks_) + " kicks in it: an event that follows its own kick wants a direction";
+    fail(report.status,
+         "step " + std::to_string(number) + ", or a part of it, did not converge" + (kicks_ > 0 ? kicked : ""));
   } catch (const NoNumber&) {
     fail(SolveStatus::left_domain, "step " + std::to_string(number) + ": the function of an event is no finite number");
   }
+
+  /// Whether the motion depends on when it happens.
+  static bool decides(const SmoothEvent<Sys>& event) { return event.kick || event.then == Event::Then::stop; }
 
   void look_into_rest(const std::vector<std::size_t>& suspects, std::vector<std::size_t>& next) {
     std::vector<Found> found;
@@ -329,11 +330,12 @@ template <DiscreteSystem Sys> class EventPropagation {
     Point from = inside;
     from.state.momentum += by;
     move_base(kicked, from, time_by);
-    is_kicked_ = true;
+    ++kicks_;
   }
 
   void move_base(const Linearised& step, const Point& to, const Eigen::RowVectorXd& time_by) {
     directions_ = step.end;
+    out_.growth = std::max(out_.growth, directions_.topLeftCorner(2 * n, 2 * n).colwise().norm().maxCoeff());
     base_ = to;
     time_by_ = time_by;
   }
@@ -353,6 +355,8 @@ template <DiscreteSystem Sys> class EventPropagation {
   }
 
   void finish() {
+    if (is_kicked_at_node_ && !out_.is_stopped)
+      return fail(SolveStatus::singular, "the end is the time of a kick, where it has no derivative");
     if (observed_node_ < 0) observe_end();
     const NodeValues momentum = observe(base_, [](const EventNode<Sys>& node) { return VariedVector(node.momentum); });
     Eigen::MatrixXd end = directions_.topRows(2 * n);
@@ -376,7 +380,8 @@ template <DiscreteSystem Sys> class EventPropagation {
   std::vector<FunctionWatch> watches_;
   std::vector<long> happened_;
   EventSensitivities out_;
-  bool is_kicked_ = false;  ///< in this step
+  int kicks_ = 0;                   ///< in this step
+  bool is_kicked_at_node_ = false;  ///< and its rest is to be made with the next step
   bool is_over_ = false;
   bool is_compared_ = false;
 };

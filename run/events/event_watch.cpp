@@ -382,12 +382,7 @@ void EventWatch::report(RunResult& result) const {
     const WatchedEvent& watched = table_.watched[i];
     result.ledger.entries.push_back(counted_entry(named(watch.event), watched.count, result.steps));
     const auto note = [&](const std::string& text) { result.notes.push_back(named(watch.event) + ": " + text); };
-    const FunctionWatch& function = watch.function;
-    if (function.starts_there())
-      note(fmt::format("its function is {} at the start, which is not counted",
-                       watch.event.at == Event::At::zero      ? "zero"
-                       : watch.event.at == Event::At::minimum ? "smallest"
-                                                              : "largest"));
+    for (const std::string& told : watch.function.notes()) note(told);
     if (watch.changes > 0)
       note(fmt::format("{} the motion {} times; the ledger's first values are moved by it",
                        watch.event.set.empty() && watch.event.switch_on.empty() && watch.event.switch_off.empty()
@@ -396,21 +391,6 @@ void EventWatch::report(RunResult& result) const {
                        watch.changes));
     if (watched.touches > 0)
       note(fmt::format("its function came to zero {} times without passing it; not counted", watched.touches));
-    if (function.jumps().times > 0)
-      note(
-          fmt::format("its function changes sign by a jump or a pole, not through zero, {} times, first in the step to "
-                      "t = {:.6g}; not counted",
-                      function.jumps().times, function.jumps().first));
-    if (function.flat().times > 0)
-      note(fmt::format(
-          "its function is constant to round-off in {} steps where it seems to turn or to pass, first in that to t = "
-          "{:.6g}; not counted",
-          function.flat().times, function.flat().first));
-    if (function.undefined().times > 0)
-      note(
-          fmt::format("its function was no finite number at {} of {} nodes, the first at t = {:.6g}; nothing was "
-                      "found next to them",
-                      function.undefined().times, result.steps + 1, function.undefined().first));
   }
 }
 

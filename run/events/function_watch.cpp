@@ -1,5 +1,7 @@
 #include <lagroid/run/events/function_watch.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace lagroid {
@@ -174,6 +176,31 @@ double FunctionWatch::uncertainty(const FoundInStep& found, const StepFunction& 
   } catch (const NoNumber&) {
     return 1;
   }
+}
+
+std::vector<std::string> FunctionWatch::notes() const {
+  std::vector<std::string> out;
+  if (starts_there_)
+    out.push_back(fmt::format("its function is {} at the start, which is not counted", at_ == Event::At::zero ? "zero"
+                                                                                       : at_ == Event::At::minimum
+                                                                                           ? "smallest"
+                                                                                           : "largest"));
+  if (jumps_.times > 0)
+    out.push_back(
+        fmt::format("its function changes sign by a jump or a pole, not through zero, {} times, first in the "
+                    "step to t = {:.6g}; not counted",
+                    jumps_.times, jumps_.first));
+  if (flat_.times > 0)
+    out.push_back(
+        fmt::format("its function is constant to round-off in {} steps where it seems to turn or to pass, "
+                    "first in that to t = {:.6g}; not counted",
+                    flat_.times, flat_.first));
+  if (undefined_.times > 0)
+    out.push_back(
+        fmt::format("its function was no finite number at {} of {} nodes, the first at t = {:.6g}; nothing "
+                    "was found next to them",
+                    undefined_.times, nodes_, undefined_.first));
+  return out;
 }
 
 }  // namespace lagroid

@@ -20,6 +20,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace lagroid {
@@ -70,6 +71,8 @@ class FunctionWatch {
   const Count& jumps() const { return jumps_; }          ///< a sign that changed without a zero
   const Count& flat() const { return flat_; }            ///< an extremum of round-off
   bool starts_there() const { return starts_there_; }    ///< the first node is a zero, or an extremum, of the function
+  /// Those of them that are to be told, in words.
+  std::vector<std::string> notes() const;
 
   template <class Archive> void serialize(Archive& archive) {
     archive("nodes", nodes_);

@@ -215,6 +215,8 @@ double DifferentiatedByMuParser::differentiate(double* by) {
   for (std::size_t i = 0; i < used_.size(); ++i) numbers_[2 + i].value = values_[used_[i]];
   const Number& result = numbers_[std::size_t(evaluate())];
   std::copy(result.by.begin(), result.by.end(), by);
+  largest_ = 0;
+  for (const Number& each : numbers_) largest_ = std::max(largest_, std::abs(each.value));
   return result.value;
 }
 

@@ -28,6 +28,8 @@ class DifferentiatedByMuParser {
 
   /// The value, and its derivatives by the names used, in their order.
   double differentiate(double* by);
+  /// The size of the largest number on the way to the last value: what its rounding is of.
+  double largest() const { return largest_; }
 
   struct Number {
     double value;
@@ -42,7 +44,8 @@ class DifferentiatedByMuParser {
   const double* values_;
   std::vector<double> handles_;  ///< of the names used
   std::vector<Number> numbers_;  ///< first zero and one, then the names used, then constants of the text
-  std::size_t kept_ = 0;         ///< those of the numbers that every evaluation begins with
+  double largest_ = 0;
+  std::size_t kept_ = 0;  ///< those of the numbers that every evaluation begins with
 };
 
 }  // namespace lagroid::detail

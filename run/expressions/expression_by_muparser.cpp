@@ -56,7 +56,7 @@ class MuParserExpression final : public Expression {
     const double here = value();
     const double again = differentiated_->differentiate(by);
     // A condition that is a number, not a comparison, is judged by muparser itself and may be judged otherwise there.
-    if (!(std::abs(again - here) <= 1e-9 * std::abs(here))) std::fill_n(by, used_.size(), std::nan(""));
+    if (!(std::abs(again - here) <= 1e-9 * differentiated_->largest())) std::fill_n(by, used_.size(), std::nan(""));
     return here;
   }
 

@@ -10,12 +10,15 @@ VariedExpression::VariedExpression(const std::string& text, const std::vector<st
 
 VariedNumber VariedExpression::operator()(const VariedVector& numbers) {
   for (const std::size_t i : used_) values_[i] = numbers(Eigen::Index(i)).value;
-  VariedNumber out(expression_->differentiate(by_.data()));
-  for (std::size_t k = 0; k < used_.size(); ++k) {
-    const VariedNumber& x = numbers(Eigen::Index(used_[k]));
-    out = out + (x - VariedNumber(x.value)) * by_[k];
+  const double value = expression_->differentiate(by_.data());
+  // The value stays one where there is no derivative.
+  VariedNumber::Tangent tangent{};
+  for (int i = 0; i < VariedNumber::directions; ++i) {
+    double sum = 0;
+    for (std::size_t k = 0; k < used_.size(); ++k) sum += by_[k] * numbers(Eigen::Index(used_[k])).tangent(i);
+    tangent.set(i, sum);
   }
-  return out;
+  return {value, tangent};
 }
 
 }  // namespace lagroid

@@ -98,7 +98,8 @@ class Release:
             return {**self.done()[name], "commit": self.commit}
         earlier = [{**entries[name], "commit": commit} for commit, entries in self.journal.items()
                    if name in entries and self.leads_here(commit)]
-        return max(earlier, key=lambda entry: entry["when"], default={"result": "not yet"})
+        # Of those within a minute the one that was written last.
+        return max(reversed(earlier), key=lambda entry: entry["when"], default={"result": "not yet"})
 
     def leads_here(self, commit):
         return subprocess.run(["git", "merge-base", "--is-ancestor", commit, self.commit], cwd=self.root,
@@ -114,9 +115,8 @@ class Release:
     def write_page(self):
         """docs/verified.md: what ran, when, on what, with which result, and what did not run and why."""
         lines = ["<!-- Written by `./lagroid release`. -->", "# What was run", "",
-                 f"By `./lagroid release`, up to commit {self.commit}. A row is a piece of the whole, as it went on the last "
-                 "commit on",
-                 "which it ran; what its commands are says `tests/release/pieces.py`.", ""]
+                 f"By `./lagroid release`, up to commit {self.commit}. A row is a piece of the whole, as it went when it",
+                 "last ran, and the commit it ran on; what its commands are says `tests/release/pieces.py`.", ""]
         rows = {name: self.latest(name) for name in self.pieces}
         lines += [f"- {each}" for each in sorted({entry["machine"] for entry in rows.values() if "machine" in entry})]
         lines += ["", "| piece | what | compiler | result | took | commit | when | why not |", "|---|---|---|---|---|---|---|---|"]

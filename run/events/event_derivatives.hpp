@@ -1,0 +1,50 @@
+#pragma once
+/// What `event_sensitivities` finds: how the times of events, what is observed there and the end of a run depend on its
+/// start, 2 n numbers (displacement, momentum), and on parameters.
+///
+///     const EventSensitivities fall = event_sensitivities(bob, start, {floor}, {.steps = 100});
+///     if (fall.converged()) use(fall.happened[0].by_start);
+///
+/// Requires nothing; nothing throws.
+
+#include <lagroid/solvers/status.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+struct EventSensitivities {
+  SolveStatus status = SolveStatus::converged;
+  std::string message;
+  std::vector<std::string> parameters;
+  /// An event that happened, and how its time depends on the start, 2 n numbers (displacement, momentum), and on the
+  /// parameters.
+  struct Happened {
+    std::size_t event;
+    double time;
+    Eigen::RowVectorXd by_start;
+    Eigen::RowVectorXd by_parameters;
+    Eigen::VectorXd observed;           ///< before a kick; none unless there is a function to observe
+    Eigen::MatrixXd observed_by_start;  ///< a row for each of them
+    Eigen::MatrixXd observed_by_parameters;
+  };
+  std::vector<Happened> happened;
+  std::vector<std::string> notes;  ///< of functions that are undefined, jump, or are zero at the start
+  long steps = 0;                  ///< that were made whole
+  bool is_stopped = false;         ///< by an event, which is the last that happened
+  double growth = 1;               ///< the largest factor by which directions of the start grew on the way
+  double time = 0;                 ///< of the end: of the last node, or of the event that stopped the run
+  Eigen::MatrixXd by_start;        ///< of (displacement, momentum) at the end, as those of `sensitivities`
+  Eigen::MatrixXd by_parameters;   ///< a column for each
+  Eigen::VectorXd observed;        ///< at the end, or at the node that was asked for
+  Eigen::MatrixXd observed_by_start;
+  Eigen::MatrixXd observed_by_parameters;
+
+  bool converged() const { return status == SolveStatus::converged; }
+};
+
+}  // namespace lagroid
