@@ -82,6 +82,7 @@ class GradientTable(NamedTuple):
     digits_left: float
     differences: Optional[NDArray[np.float64]]
     digits_agreed: Optional[float]
+    notes: list[str]
 
 
 def gradient(
@@ -93,8 +94,8 @@ def gradient(
     check: bool = False,
 ) -> GradientTable:
     """The derivatives of a scene's run by its start and its parameters, exact, by the program lagroid-gradient
-    (docs/gradients.md): `of` what, as "final.position", "node.10.px" or "integral.x", and `wrt` what, as
-    "initial.momentum" or "parameters.strength". `check` compares with extrapolated differences of runs. Raises
+    (docs/gradients.md): `of` what, as "final.position", "node.10.px", "integral.x" or, through the scene's events,
+    "event.floor.1.t", and `wrt` what, as "initial.momentum" or "parameters.strength". `check` compares with extrapolated differences of runs. Raises
     ProgramError where the program is missing, SceneError where it refuses, SolveError where a step of the run fails."""
     arguments = ["--of", ",".join(of), "--wrt", ",".join(wrt)] + (["--check"] if check else [])
     found = told_by("gradient", scene, set, arguments)
@@ -110,6 +111,7 @@ def gradient(
         found["digits_left"],
         None if differences is None else np.array(differences),
         found.get("digits_agreed"),
+        found.get("notes", []),
     )
 
 
