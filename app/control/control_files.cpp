@@ -77,7 +77,42 @@ std::string in_words(const ConstraintViolation& each) {
 
 }  // namespace
 
+namespace {
+
+std::string loop_text(const ControlResult& found) {
+  const LoopSummary& loop = *found.loop;
+  const ControlReport& r = found.report;
+  std::string out = fmt::format("{} on {}, in a closed loop that looks {} stages ahead: {}\n", found.problem,
+                                found.groupoid, loop.stages, to_string(r.status));
+  out += fmt::format("  samples          {} in {:.12g}; {} not converged in their iterations\n", loop.samples,
+                     found.times.back(), loop.not_converged);
+  out += fmt::format("  cost             {:.12g}\n", r.cost);
+  if (loop.samples == 0) return out;
+  out += fmt::format("  iterations       median {}, of 99.9 % at most {}, most {}\n", loop.iterations_of(50),
+                     loop.iterations_of(99.9), loop.iterations.rbegin()->first);
+  const auto at = [&](double percent) { return duration(loop.latency.percentile(percent)); };
+  out += fmt::format("  a solve took     median {}, 99 % {}, 99.9 % {}, longest {}\n", at(50), at(99), at(99.9),
+                     duration(loop.latency.longest()));
+  return out;
+}
+
+nlohmann::ordered_json loop_json(const LoopSummary& loop) {
+  nlohmann::ordered_json out;
+  out["stages"] = loop.stages;
+  out["samples"] = loop.samples;
+  out["not_converged"] = loop.not_converged;
+  out["iterations"] = nlohmann::ordered_json::object();
+  for (const auto& [count, times] : loop.iterations) out["iterations"][std::to_string(count)] = times;
+  for (const auto& [name, percent] : {std::pair("median", 50.0), std::pair("99", 99.0), std::pair("99.9", 99.9)})
+    out["seconds"][name] = loop.latency.percentile(percent);
+  out["seconds"]["longest"] = loop.latency.longest();
+  return out;
+}
+
+}  // namespace
+
 std::string control_text(const ControlResult& found) {
+  if (found.loop) return loop_text(found);
   const ControlReport& r = found.report;
   std::string out = fmt::format("{} on {}, {} stages: {}\n", found.problem, found.groupoid, found.control_rows.size(),
                                 to_string(r.status));
@@ -120,6 +155,7 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   out["violated"] = nlohmann::ordered_json::array();
   for (const auto& each : r.worst) out["violated"].push_back(in_words(each));
   out["seconds"] = found.seconds;
+  if (found.loop) out["loop"] = loop_json(*found.loop);
   return out;
 }
 

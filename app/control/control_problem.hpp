@@ -8,15 +8,30 @@
 #include "../keys/key.hpp"
 
 #include <lagroid/solvers/control/control_search.hpp>
+#include <lagroid/solvers/control/latency.hpp>
 
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace lagroid::app {
+
+/// How a closed loop went.
+struct LoopSummary {
+  long stages = 0;  ///< that each plan looks ahead
+  long samples = 0;
+  long not_converged = 0;          ///< in the iterations that a sample is allowed
+  std::map<int, long> iterations;  ///< how often a sample took so many
+  Latency latency;
+
+  /// The number of iterations with which so many percent of the samples came out.
+  long iterations_of(double percent) const;
+};
 
 /// A solution in the words of its scene: node by node, what a plot and a file show.
 struct ControlResult {
@@ -36,7 +51,10 @@ struct ControlResult {
   std::map<ControlStatus, int> outcomes;  ///< of the starts
   int iterations = 0;                     ///< of all starts
   double seconds = 0;                     ///< of processor time
+  std::optional<LoopSummary> loop = {};   ///< of a scene with [loop]: rows are those of the closed loop
 };
+
+class SceneLoop;
 
 class ControlProblem {
  public:
@@ -48,6 +66,9 @@ class ControlProblem {
   virtual std::vector<Key> parameters() const = 0;
   /// Reads the scene and solves it. `keep_going` is called before each start. Throws SceneError.
   virtual ControlResult solve(const Section& scene, const std::function<bool(int start)>& keep_going) const = 0;
+  /// A control loop that begins with the solution. Throws SceneError.
+  virtual std::unique_ptr<SceneLoop> loop(const Section& scene,
+                                          const std::function<bool(int start)>& keep_going) const = 0;
 };
 
 /// All of this program.

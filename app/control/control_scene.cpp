@@ -30,6 +30,28 @@ const KeyOf<Number> patience_key{"patience",
                                  "converged, at least 100; 0: none is",
                                  ControlSearchOptions().patience};
 
+const KeyOf<Whole> samples_key{"samples", {1, 100'000'000}, "", "how often the problem is solved anew"};
+const KeyOf<Number> disturbance_key{"disturbance",
+                                    {nonnegative},
+                                    "",
+                                    "standard deviation of what chance adds to each number of a state, at each sample",
+                                    LoopScene().disturbance};
+const KeyOf<Whole> loop_iterations_key{"iterations",
+                                       {1, 1'000'000},
+                                       "",
+                                       "of a sample, at most; 1 is the real-time iteration",
+                                       long(LoopScene().iterations)};
+const KeyOf<Number> loop_tolerance_key{"tolerance",
+                                       {{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }}},
+                                       "",
+                                       "on every part of a sample's KKT residual",
+                                       LoopScene().tolerance};
+const KeyOf<Number> usable_key{"usable",
+                               {nonnegative},
+                               "",
+                               "a plan that did not converge is followed where its constraints are violated by no more",
+                               LoopScene().usable};
+
 KeyOf<NumberArray> end_key(const std::string& name, std::span<const std::string> states) {
   return {name, {states.size()}, "", fmt::format("{} of the {}", fmt::join(states, ", "), name)};
 }
@@ -68,6 +90,16 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   out.search.solver.tolerance = read_key(solver, tolerance_key);
   out.search.patience = read_key(solver, patience_key);
   out.search.solver.max_iterations = int(read_key(solver, iterations_key));
+  if (scene.has("loop")) {
+    if (out.duration_is_free) scene.fail("loop", "looks ahead for a time that is given; leave out horizon.free");
+    const Section loop = scene.section("loop", "samples");
+    out.loop = LoopScene{.samples = read_key(loop, samples_key),
+                         .disturbance = read_key(loop, disturbance_key),
+                         .seed = out.search.seed,
+                         .iterations = int(read_key(loop, loop_iterations_key)),
+                         .tolerance = read_key(loop, loop_tolerance_key),
+                         .usable = read_key(loop, usable_key)};
+  }
   return out;
 }
 
@@ -79,7 +111,9 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
       KeyOf<Table>{"boundary", {{end_key("start", states), end_key("end", states)}}, "", "both ends"},
       KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key}}, "", "how long, in how many arrows"},
       optional_table("bounds", {bounds}, "of the controls"),
-      optional_table("solver", {{starts_key, seed_key, tolerance_key, iterations_key, patience_key}}, "of the search")};
+      optional_table("solver", {{starts_key, seed_key, tolerance_key, iterations_key, patience_key}}, "of the search"),
+      optional_table("loop", {{samples_key, disturbance_key, loop_iterations_key, loop_tolerance_key, usable_key}},
+                     "the problem solved anew at every sample, of the length of a stage")};
 }
 
 }  // namespace lagroid::app

@@ -1,8 +1,10 @@
 #pragma once
-/// What every scene of an optimal control problem holds beside its parameters: ends, horizon, bounds, solver.
+/// What every scene of an optimal control problem holds beside its parameters: ends, horizon, bounds, solver, loop.
 
 #include "control_problem.hpp"
+#include "scene_loop.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,13 +20,14 @@ struct ControlScene {
   long stages = 100;
   std::vector<std::pair<double, double>> bounds;  ///< of each control
   ControlSearchOptions search;
+  std::optional<LoopScene> loop;
 };
 
 /// Reads them; `states` and `controls` name what the problem has. Throws SceneError.
 ControlScene read_control_scene(const Section& scene, std::span<const std::string> states,
                                 std::span<const std::string> controls);
 
-/// The keys of [boundary], [horizon], [bounds] and [solver] of a problem.
+/// The keys of [boundary], [horizon], [bounds], [solver] and [loop] of a problem.
 std::vector<Key> control_scene_keys(const ControlProblem& problem);
 
 }  // namespace lagroid::app

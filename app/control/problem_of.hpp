@@ -5,10 +5,14 @@
 #include "../keys/parameter.hpp"
 #include "../reading/kinds.hpp"
 #include "control_scene.hpp"
+#include "scene_loop.hpp"
 
+#include <lagroid/solvers/control/control_loop.hpp>
 #include <lagroid/solvers/processor_time.hpp>
 #include <lagroid/systems/control/flows/flow_states.hpp>
 
+#include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,33 +44,112 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   std::vector<Key> parameters() const override { return parameter_keys<Parametrised>(); }
 
   ControlResult solve(const Section& scene, const std::function<bool(int)>& keep_going) const override {
+    const Posed posed = read(scene);
+    const double before = processor_time();
+    ControlResult out;
+    if (posed.scene.loop) {
+      const State start = Eigen::Map<const State>(posed.scene.start.data());
+      Loop loop(posed, search(posed, keep_going));
+      out = close_loop(*this, loop, *posed.scene.loop, {start.begin(), start.end()}, keep_going);
+      out.groupoid = G::name();
+    } else {
+      out = described(posed, search(posed, keep_going));
+    }
+    out.seconds = processor_time() - before;
+    out.lower.assign(posed.task.lower.begin(), posed.task.lower.end());
+    out.upper.assign(posed.task.upper.begin(), posed.task.upper.end());
+    return out;
+  }
+  std::unique_ptr<SceneLoop> loop(const Section& scene, const std::function<bool(int)>& keep_going) const override {
+    const Posed posed = read(scene);
+    if (posed.scene.duration_is_free)
+      scene.fail("horizon", "a loop looks ahead for a time that is given; leave out free");
+    return std::make_unique<Loop>(posed, search(posed, keep_going));
+  }
+
+ private:
+  /// What a scene asks for.
+  struct Posed {
     ControlTask<Sys> task;
+    ControlScene scene;
+  };
+  Posed read(const Section& scene) const {
+    Posed posed;
+    ControlTask<Sys>& task = posed.task;
     if constexpr (is_actuated) {
       task.system.system = read_parameters<Parametrised>(scene);
     } else {
       task.system = read_parameters<Parametrised>(scene);
     }
-    const ControlScene read = read_control_scene(scene, states(), controls());
+    posed.scene = read_control_scene(scene, states(), controls());
     scene.finish();
-    const State start = Eigen::Map<const State>(read.start.data());
-    const State end = Eigen::Map<const State>(read.end.data());
-    task.boundary = arrow(task.system, start, end);
+    const ControlScene& read = posed.scene;
+    task.boundary = arrow(task.system, Eigen::Map<const State>(read.start.data()), end_of(read));
     task.duration = read.duration;
     task.duration_is_free = read.duration_is_free;
     for (int i = 0; i < Sys::controls; ++i) {
       task.lower(i) = read.bounds[std::size_t(i)].first;
       task.upper(i) = read.bounds[std::size_t(i)].second;
     }
-    const double before = processor_time();
-    const ControlSearch<Sys> found = search_control(task, read.stages, read.search, keep_going);
-    ControlResult out = described(task.system.groupoid, start, found);
-    out.seconds = processor_time() - before;
-    out.lower.assign(task.lower.begin(), task.lower.end());
-    out.upper.assign(task.upper.begin(), task.upper.end());
-    return out;
+    return posed;
+  }
+  static State end_of(const ControlScene& scene) { return Eigen::Map<const State>(scene.end.data()); }
+  static ControlSearch<Sys> search(const Posed& posed, const std::function<bool(int)>& keep_going) {
+    return search_control(posed.task, posed.scene.stages, posed.scene.search, keep_going);
+  }
+  static const ControlSolution<Sys>& best_of(const ControlSearch<Sys>& found) {
+    return found.minima.empty() ? found.best_failure : found.minima.front();
   }
 
- private:
+  class Loop final : public SceneLoop {
+   public:
+    Loop(const Posed& posed, const ControlSearch<Sys>& found)
+        : system_(posed.task.system),
+          end_(end_of(posed.scene)),
+          state_(Eigen::Map<const State>(posed.scene.start.data())),
+          usable_(posed.scene.loop.value_or(LoopScene()).usable),
+          loop_(posed.task, best_of(found).trajectory, options(posed.scene)),
+          report_(best_of(found).report) {
+      // Its multipliers are wanted as well.
+      if (report_.converged()) report_ = loop_.begin();
+    }
+    const ControlReport& report() const override { return report_; }
+    void advance(std::span<const double> state) override {
+      state_ = Eigen::Map<const State>(state.data());
+      const ArrowOf<G> boundary = arrow(system_, state_, end_);
+      report_ = loop_.advance(boundary);
+      if (report_.converged() || loop_.is_usable(report_, usable_)) return;
+      const int in_vain = report_.iterations;
+      report_ = loop_.restart(boundary);
+      report_.iterations += in_vain;
+    }
+    std::vector<double> control() const override { return {loop_.control().begin(), loop_.control().end()}; }
+    double cost() const override { return system_.cost(plan().arrows.front(), loop_.control(), plan().step); }
+    std::vector<double> predicted() const override {
+      const State next = States::reached(state_, plan().arrows.front());
+      return {next.begin(), next.end()};
+    }
+    double step() const override { return plan().step; }
+    long stages() const override { return long(plan().arrows.size()); }
+    const Latency& latency() const override { return loop_.latency(); }
+
+   private:
+    static ControlLoopOptions options(const ControlScene& scene) {
+      const LoopScene loop = scene.loop.value_or(LoopScene());
+      ControlLoopOptions out{.iterations = loop.iterations, .solver = scene.search.solver};
+      out.solver.tolerance = loop.tolerance;
+      return out;
+    }
+    const ControlTrajectory<Sys>& plan() const { return loop_.plan(); }
+
+    Sys system_;
+    State end_;
+    State state_;
+    double usable_;
+    ControlLoop<Sys> loop_;
+    ControlReport report_;
+  };
+
   static ArrowOf<G> arrow(const Sys& system, const State& start, const State& end) {
     if constexpr (requires { system.avoided; }) {
       return States::arrow(start, end, system.avoided);
@@ -75,8 +158,10 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     }
   }
 
-  ControlResult described(const G& groupoid, const State& start, const ControlSearch<Sys>& found) const {
-    const ControlSolution<Sys>& best = found.minima.empty() ? found.best_failure : found.minima.front();
+  ControlResult described(const Posed& posed, const ControlSearch<Sys>& found) const {
+    const G& groupoid = posed.task.system.groupoid;
+    const State start = Eigen::Map<const State>(posed.scene.start.data());
+    const ControlSolution<Sys>& best = best_of(found);
     ControlResult out;
     out.problem = name_;
     out.groupoid = G::name();

@@ -6,13 +6,16 @@
 #include "scene.hpp"
 
 #include <control/control_files.hpp>
+#include <control/scene_loop.hpp>
 #include <families/family.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,6 +40,35 @@ std::shared_ptr<ControlResult> solve_scene(const Scene& scene, const std::option
     return found;
   }));
 }
+
+/// A control loop with the words of its scene.
+class BoundLoop {
+ public:
+  explicit BoundLoop(const Scene& scene) {
+    const app::Section file = scene.read();
+    app::require_command(file, "control");
+    problem_ = &app::control_problem(file);
+    loop_ =
+        computing([&] { return problem_->loop(file, [](int) { return !lagroid::InterruptGuard::interrupted(); }); });
+  }
+  const app::ControlProblem& problem() const { return *problem_; }
+  const app::SceneLoop& loop() const { return *loop_; }
+  py::array advance(const std::vector<double>& state) {
+    if (state.size() != problem_->states().size())
+      throw py::value_error(fmt::format("the state has {} numbers ({}), here are {}", problem_->states().size(),
+                                        fmt::join(problem_->states(), ", "), state.size()));
+    for (const double x : state)
+      if (!std::isfinite(x)) throw py::value_error("a state is of finite numbers");
+    return owned(computing([&] {
+      loop_->advance(state);
+      return loop_->control();
+    }));
+  }
+
+ private:
+  const app::ControlProblem* problem_;
+  std::unique_ptr<app::SceneLoop> loop_;
+};
 
 /// (rows, columns), a copy.
 py::array table(const std::vector<std::vector<double>>& rows) {
@@ -89,6 +121,38 @@ void bind_control(py::module_& module) {
           "JSON, as lagroid control --json prints it.")
       .def("__repr__", [](const R& r) {
         return fmt::format("<{}: {}, cost {:.10g}>", r.problem, to_string(r.report.status), r.report.cost);
+      });
+  using L = BoundLoop;
+  py::class_<L>(
+      module, "ControlLoop",
+      "Model predictive control: a scene's problem, solved anew at every sample from where the motion is found "
+      "to be (docs/optimal_control.md).")
+      .def(py::init<const Scene&>(), py::arg("scene"))
+      .def_property_readonly(
+          "state_names", [](const L& l) { return l.problem().states(); }, "Of the numbers of a state.")
+      .def_property_readonly(
+          "control_names", [](const L& l) { return l.problem().controls(); }, "Of the numbers of a control.")
+      .def("advance", &L::advance, py::arg("state"), "A sample later, at this state: the control until the next one.")
+      .def_property_readonly(
+          "control", [](const L& l) { return owned(l.loop().control()); }, "To be applied until the next sample.")
+      .def_property_readonly(
+          "predicted", [](const L& l) { return owned(l.loop().predicted()); },
+          "The state at the next sample, by the plan.")
+      .def_property_readonly(
+          "step", [](const L& l) { return l.loop().step(); }, "From a sample to the next.")
+      .def_property_readonly(
+          "status", [](const L& l) { return std::string(to_string(l.loop().report().status)); },
+          "Of the last solve: converged, or why not.")
+      .def_property_readonly(
+          "iterations", [](const L& l) { return l.loop().report().iterations; }, "Of the last solve.")
+      .def_property_readonly(
+          "violation", [](const L& l) { return l.loop().report().violation; },
+          "Of the last plan's constraints, the largest.")
+      .def(
+          "latency", [](const L& l, double percent) { return l.loop().latency().percentile(percent); },
+          py::arg("percent"), "Seconds in which so many percent of the samples were solved, to five percent.")
+      .def("__repr__", [](const L& l) {
+        return fmt::format("<loop of {}: {} samples>", l.problem().name(), l.loop().latency().count());
       });
   module.def("control", solve_scene, py::arg("scene"), py::arg("folder"));
 }

@@ -25,7 +25,7 @@ from ._lagroid import (
 from .errors import DataError, Error, Interrupted, OutputError, ProgramError, SceneError, SolveError
 from .groupoids import SE2, SE3, SO3, Groupoid, MatrixGroup, Pair
 from .learning import LearnedHamiltonian, Measures, Trajectories, learn, trajectories
-from .optimal_control import ControlResult, control
+from .optimal_control import ControlLoop, ControlResult, control, control_loop
 from .optimisation import Manifold, Optimum, ProductManifold, Sphere, Stiefel, minimise, optimize
 from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
 from .scenes import require, resume, run, scene_text, systems
@@ -35,6 +35,7 @@ from .sweeps import Sweep, sweep
 __all__ = [
     "BoundarySolution",
     "Columns",
+    "ControlLoop",
     "ControlResult",
     "DataError",
     "Endpoint",

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from typing import Any, Optional
 
 from . import _lagroid
-from ._lagroid import ControlResult
+from ._lagroid import ControlLoop, ControlResult
 from .scenes import SceneLike, made
 
-__all__ = ["ControlResult", "control"]
+__all__ = ["ControlLoop", "ControlResult", "control", "control_loop"]
 
 
 def control(
@@ -23,3 +23,10 @@ def control(
     also where no start converged: see `status` and `message`. Raises SceneError where the scene is mistaken, and after
     Ctrl-C KeyboardInterrupt."""
     return _lagroid.control(made(scene, set), out)
+
+
+def control_loop(scene: SceneLike, *, set: Optional[Mapping[str, Any]] = None) -> ControlLoop:
+    """Model predictive control by a scene of `lagroid control`: its first plan is the cheapest that is found, and
+    `advance(state)` makes the next one, a sample of the length of a stage later, from where the motion is by then.
+    Samples are solved as `[loop]` of the scene says, if it has one. Raises SceneError where the scene is mistaken."""
+    return ControlLoop(made(scene, set))

@@ -47,7 +47,9 @@ InteriorPoint::InteriorPoint(Transcription& transcription, ControlOptions option
       right_(sizes_),
       step_(sizes_),
       first_step_(sizes_),
-      first_slack_step_(multipliers_) {}
+      first_slack_step_(multipliers_) {
+  filter_.reserve(std::size_t(options.max_iterations) + 1);
+}
 
 // ---- values, gradients, errors
 
@@ -145,6 +147,28 @@ void InteriorPoint::begin() {
   largest_allowed_ = 1e4 * std::max(1.0, violation);
   small_violation_ = 1e-4 * std::max(1.0, violation);
   least_squares_costates();
+}
+
+void InteriorPoint::begin_again() {
+  report_ = {};
+  barrier_ = sizes_.inequality == 0 ? 0.1 * options_.tolerance : options_.resumed_barrier;
+  last_shift_ = 0;
+  filter_.clear();
+  transcription_.values(values_);
+  // Of an inequality that was active, s = mu / z; of another, its own distance.
+  for (std::size_t i = 0; i < slacks_.numbers().size(); ++i) {
+    double& s = slacks_.numbers()[i];
+    double& z = multipliers_.numbers()[i];
+    s = std::max(-values_.inequality.numbers()[i], barrier_ / std::max(z, barrier_));
+    z = barrier_ / s;
+  }
+  const double violation = merit(values_, slacks_).violation;
+  largest_allowed_ = 1e4 * std::max(1.0, violation);
+  small_violation_ = 1e-4 * std::max(1.0, violation);
+}
+
+void InteriorPoint::move_on() {
+  for (StageRows* rows : {&costates_, &multipliers_}) std::copy((*rows)[1], (*rows)[sizes_.stages], (*rows)[0]);
 }
 
 /// lambda that minimises |d(l + <lambda, phi> + <z, gamma>)|; zero where that is large, as where rows of dphi are
@@ -385,7 +409,34 @@ void InteriorPoint::describe() {
   report_.violation = largest_violation();
   report_.cost = 0;
   for (long k = 0; k < sizes_.stages; ++k) report_.cost += values_.cost[k][0];
-  if (report_.converged()) return;
+}
+
+/// Where it did not converge: what is violated most, and what to do.
+void InteriorPoint::explain() {
+  switch (report_.status) {
+    case ControlStatus::converged:
+      return;
+    case ControlStatus::infeasible:
+      report_.message =
+          "the violation of the constraints has a local minimum here; start from another trajectory, "
+          "or relax the constraints that are listed";
+      break;
+    case ControlStatus::stagnated:
+      report_.message =
+          "no step is better, though the KKT residual is above the tolerance: scale the cost, give a "
+          "tolerance that rounding allows, or start elsewhere";
+      break;
+    case ControlStatus::not_converged:
+      report_.message = fmt::format("not converged in {} iterations; start from another trajectory, or allow more",
+                                    options_.max_iterations);
+      break;
+    case ControlStatus::singular:
+      report_.message = "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
+      break;
+    case ControlStatus::not_finite:
+      report_.message = "a cost or constraint of the trajectory to start from is not finite; give another";
+      break;
+  }
   for (long k = 0; k < sizes_.stages; ++k) {
     for (int i = 0; i < sizes_.equalities_of(k); ++i)
       report_.worst.push_back({k, i, true, std::abs(values_.equality[k][i])});
@@ -398,51 +449,50 @@ void InteriorPoint::describe() {
   std::erase_if(report_.worst, [&](const auto& each) { return !(each.amount > options_.tolerance); });
 }
 
-ControlReport InteriorPoint::solve() {
-  begin();
+/// From where it begins, until it is converged or knows why not.
+void InteriorPoint::iterate(int most_iterations) {
   if (!merit(values_, slacks_).finite()) {
     report_.status = ControlStatus::not_finite;
-    report_.message = "a cost or constraint of the trajectory to start from is not finite; give another";
-    describe();
-    return report_;
+    return;
   }
   evaluate();
-  for (; report_.iterations < options_.max_iterations; ++report_.iterations) {
+  for (; report_.iterations < most_iterations; ++report_.iterations) {
     if (error(0).largest() <= options_.tolerance) {
       report_.status = ControlStatus::converged;
-      break;
+      return;
     }
     update_barrier();
     if (!direction()) {
       report_.status = ControlStatus::singular;
-      report_.message = "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
-      break;
+      return;
     }
     if (line_search() == Outcome::stuck) {
       if (largest_violation() <= options_.tolerance) {
         report_.status = ControlStatus::stagnated;
-        report_.message =
-            "no step is better, though the KKT residual is above the tolerance: scale the cost, give a "
-            "tolerance that rounding allows, or start elsewhere";
-        break;
+        return;
       }
       if (!restore()) {
-        if (report_.iterations >= options_.max_iterations) break;
-        report_.status = ControlStatus::infeasible;
-        report_.message =
-            "the violation of the constraints has a local minimum here; start from another trajectory, "
-            "or relax the constraints that are listed";
-        break;
+        if (report_.iterations < most_iterations) report_.status = ControlStatus::infeasible;
+        return;
       }
     }
     evaluate();
   }
-  if (report_.converged()) {
-    report_.is_strict_minimum = direction() && shift_ == 0;
-  } else if (report_.status == ControlStatus::not_converged) {
-    report_.message = fmt::format("not converged in {} iterations; start from another trajectory, or allow more",
-                                  options_.max_iterations);
-  }
+  if (error(0).largest() <= options_.tolerance) report_.status = ControlStatus::converged;
+}
+
+ControlReport InteriorPoint::solve() {
+  begin();
+  iterate(options_.max_iterations);
+  if (report_.converged()) report_.is_strict_minimum = direction() && shift_ == 0;
+  describe();
+  explain();
+  return report_;
+}
+
+ControlReport InteriorPoint::resume(int most_iterations) {
+  begin_again();
+  iterate(most_iterations);
   describe();
   return report_;
 }

@@ -55,9 +55,10 @@ constexpr std::string_view to_string(ControlStatus status) {
 
 struct ControlOptions {
   int max_iterations = 500;
-  double tolerance = 1e-10;    ///< on every part of the KKT residual
-  double first_barrier = 0.1;  ///< mu, at first
-  double least_slack = 1e-2;   ///< of an inequality at the start
+  double tolerance = 1e-10;       ///< on every part of the KKT residual
+  double first_barrier = 0.1;     ///< mu, at first
+  double least_slack = 1e-2;      ///< of an inequality at the start
+  double resumed_barrier = 1e-4;  ///< mu, at first, where `resume` goes on
 };
 
 /// A constraint that is violated: row `row` of phi (equality) or gamma at a stage.
@@ -89,6 +90,11 @@ class InteriorPoint {
   explicit InteriorPoint(Transcription& transcription, ControlOptions options = {});
 
   ControlReport solve();
+  /// The same from a trajectory that is near one that was solved, with the multipliers as they are: for the next sample
+  /// of a control loop. At most so many iterations; a report without words, for it allocates nothing.
+  ControlReport resume(int most_iterations);
+  /// The multipliers of stage k + 1 become those of stage k, of a horizon that has moved on; the last stage keeps its.
+  void move_on();
 
   /// The costates lambda of the equalities, and the multipliers z >= 0 of the inequalities, at the trajectory.
   const StageRows& costates() const { return costates_; }
@@ -109,6 +115,8 @@ class InteriorPoint {
   enum class Outcome { advanced, stuck };
 
   void begin();
+  void begin_again();
+  void iterate(int most_iterations);
   void evaluate();
   Merit merit(const StageValues& values, const StageRows& slacks) const;
   KktError error(double barrier);
@@ -130,6 +138,7 @@ class InteriorPoint {
   void least_squares_costates();
   void update_barrier();
   void describe();
+  void explain();
   double largest_violation() const;
 
   Transcription& transcription_;

@@ -30,10 +30,8 @@ template <class Sys> struct ControlSolution {
   ControlReport report;
 };
 
-/// From a trajectory of one's own.
-template <class Sys>
-ControlSolution<Sys> solve_control(const ControlTask<Sys>& task, ControlTrajectory<Sys> start,
-                                   const ControlOptions& options = {}) {
+/// Throws std::invalid_argument for bounds, a duration or a trajectory that are none.
+template <class Sys> void require_control_task(const ControlTask<Sys>& task, const ControlTrajectory<Sys>& start) {
   for (int i = 0; i < Sys::controls; ++i)
     if (!(task.lower(i) < task.upper(i)))
       throw std::invalid_argument(fmt::format("control {}: its lower bound {} is not below its upper bound {}", i + 1,
@@ -41,6 +39,13 @@ ControlSolution<Sys> solve_control(const ControlTask<Sys>& task, ControlTrajecto
   if (!(task.duration > 0)) throw std::invalid_argument(fmt::format("duration: {} is not positive", task.duration));
   if (start.arrows.size() < 2 || start.controls.size() != start.arrows.size())
     throw std::invalid_argument("a trajectory has at least two arrows, and as many controls");
+}
+
+/// From a trajectory of one's own.
+template <class Sys>
+ControlSolution<Sys> solve_control(const ControlTask<Sys>& task, ControlTrajectory<Sys> start,
+                                   const ControlOptions& options = {}) {
+  require_control_task(task, start);
   TranscriptionOf<Sys> transcription(task, std::move(start));
   InteriorPoint solver(transcription, options);
   ControlSolution<Sys> out;

@@ -6,8 +6,8 @@
 ///     solver.solve();
 ///     const ControlTrajectory<DubinsCar>& found = transcription.trajectory();
 ///
-/// A stage's derivatives, exact second ones included, are automatic: in one pass along the arrow's frame where the
-/// groupoid has one, else in a pass for every variable. Nothing throws.
+/// A stage's derivatives, exact second ones included, are automatic, in one pass: along the arrow's frame where the
+/// groupoid has one, else along both ends. Nothing throws.
 
 #include <lagroid/core/derivatives/arrow_frame.hpp>
 #include <lagroid/core/derivatives/displaced_arrow.hpp>
@@ -45,6 +45,27 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   }
 
   const ControlTrajectory<Sys>& trajectory() const { return now_.path; }
+  const A& boundary() const { return now_.boundary; }  ///< the product of its arrows
+
+  /// Stage k + 1 becomes stage k, and the last one rests where it ends, with the control that it had. `boundary` leads
+  /// from where the motion is now to the end: the first arrow takes up the difference.
+  void move_on(const A& boundary) {
+    const G& groupoid = task_.system.groupoid;
+    ControlTrajectory<Sys>& path = now_.path;
+    std::move(path.arrows.begin() + 1, path.arrows.end(), path.arrows.begin());
+    std::move(path.controls.begin() + 1, path.controls.end(), path.controls.begin());
+    path.arrows.back() = groupoid.unit(groupoid.target(boundary));
+    A rest = path.arrows.back();
+    for (std::size_t k = path.arrows.size() - 1; k-- > 1;) rest = groupoid.compose(path.arrows[k], rest);
+    path.arrows.front() = groupoid.project(groupoid.compose(boundary, groupoid.inverse(rest)));
+    now_.boundary = boundary;
+    tried_ = now_;
+  }
+  /// Another trajectory of as many stages, and what its arrows lead to.
+  void stand_at(ControlTrajectory<Sys> path, const A& boundary) {
+    now_ = {std::move(path), boundary};
+    tried_ = now_;
+  }
 
   const TranscriptionSizes& sizes() const override { return sizes_; }
   const std::vector<bool>& free_start() const override { return free_start_; }
@@ -215,43 +236,35 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     }
   }
 
-  /// In a pass for every variable, by the operations of the groupoid alone.
+  /// Along both ends, by the operations of the groupoid alone.
   void along_ends(long stage, const double* lambda, const double* z, StageDerivatives& out) const {
-    // Rows of d numbers lie in registers.
-    using M = HyperDual<double, 1, d>;
+    using J = SecondJet<double, d>;
     const G& groupoid = task_.system.groupoid;
     const auto at = std::size_t(stage);
-    for (int direction = 0; direction < d; ++direction) {
-      const auto variable = [&](double x, int q) {
-        M out_of(x);
-        out_of.set_right(q, 1);
-        if (q == direction) out_of.set_left(0, 1);
-        return out_of;
-      };
-      Vector<M, n> a;
-      Vector<M, n> b;
-      Vector<M, Sys::controls> u;
-      for (int i = 0; i < n; ++i) {
-        a(i) = variable(0, i);
-        b(i) = variable(0, n + i);
-      }
-      for (int i = 0; i < Sys::controls; ++i) u(i) = variable(now_.path.controls[at](i), 2 * n + i);
-      const double h = now_.path.step;
-      const M step = variable(0, d - 1).chain(h, h, h);  // h exp(x)
-      const ArrowOf<G, M> g = groupoid.translate(a, groupoid.template cast<M>(now_.path.arrows[at]), b);
-      const Functions<M> f = functions<M>(g, u, step, stage);
-      const auto row_of = [](const M& x) { return Vector<double, d>(x.mixed().transpose()); };
-      Eigen::Map<Vector<double, d>> column(out.hessian[stage] + direction * d);
-      column = row_of(f.cost);
-      for (int i = 0; i < all_equalities; ++i) column += lambda[i] * row_of(f.equality(i));
-      for (int i = 0; i < Sys::inequalities; ++i) column += z[i] * row_of(f.inequality(i));
-      if (direction > 0) continue;
-      Eigen::Map<Vector<double, d>>(out.gradient[stage]) = f.cost.right();
-      for (int i = 0; i < all_equalities; ++i)
-        Eigen::Map<Vector<double, d>>(out.equality[stage] + i * d) = f.equality(i).right();
-      for (int i = 0; i < Sys::inequalities; ++i)
-        Eigen::Map<Vector<double, d>>(out.inequality[stage] + i * d) = f.inequality(i).right();
+    Vector<J, n> a;
+    Vector<J, n> b;
+    Vector<J, Sys::controls> u;
+    for (int i = 0; i < n; ++i) {
+      a(i) = J::variable(0, i);
+      b(i) = J::variable(0, n + i);
     }
+    for (int i = 0; i < Sys::controls; ++i) u(i) = J::variable(now_.path.controls[at](i), 2 * n + i);
+    const double h = now_.path.step;
+    const J step = J::variable(0, d - 1).chain(h, h, h);  // h exp(x)
+    const ArrowOf<G, J> g = groupoid.translate(a, groupoid.template cast<J>(now_.path.arrows[at]), b);
+    const Functions<J> f = functions<J>(g, u, step, stage);
+    const auto place = [](const J& of, double* row) { Eigen::Map<Vector<double, d>>{row} = of.gradient(); };
+    place(f.cost, out.gradient[stage]);
+    J lagrangian = f.cost;
+    for (int i = 0; i < all_equalities; ++i) {
+      place(f.equality(i), out.equality[stage] + i * d);
+      lagrangian += f.equality(i) * lambda[i];
+    }
+    for (int i = 0; i < Sys::inequalities; ++i) {
+      place(f.inequality(i), out.inequality[stage] + i * d);
+      lagrangian += f.inequality(i) * z[i];
+    }
+    Eigen::Map<Matrix<double, d, d>>{out.hessian[stage]} = lagrangian.hessian();
   }
 
   ControlTask<Sys> task_;

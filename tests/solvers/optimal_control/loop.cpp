@@ -1,0 +1,153 @@
+// Model predictive control: a problem solved anew at every sample, from the last plan and its multipliers.
+#include "../../support/allocation_counter.hpp"
+
+#include <lagroid/solvers/control/control_loop.hpp>
+#include <lagroid/systems/control/flows/double_integrator.hpp>
+#include <lagroid/systems/control/flows/satellite_turn.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace lagroid {
+namespace {
+
+using States = FlowStates<SatelliteTurn::GroupoidType>;
+
+/// Torques at their bounds, and a cone in the way.
+ControlTask<SatelliteTurn> turn() {
+  SatelliteTurn satellite;
+  satellite.avoided << 0.8369922322356853, 0.09964193240901018, 0.5380664350086549;
+  satellite.cone = 0.4363323129985824;
+  States::State end;
+  end << 2 * Vector<double, 3>(0.2, 1, 0.1).normalized(), 0, 0, 0;
+  ControlTask<SatelliteTurn> task{satellite, States::arrow(States::State::Zero(), end, satellite.avoided), 5};
+  task.lower.setConstant(-0.6);
+  task.upper.setConstant(0.6);
+  return task;
+}
+
+/// What chance does to a state.
+class Chance {
+ public:
+  explicit Chance(double size) : normal_(0, size) {}
+  Vector<double, 6> operator()() {
+    Vector<double, 6> off;
+    for (double& x : off) x = normal_(generator_);
+    return off;
+  }
+
+ private:
+  std::mt19937 generator_{1};
+  std::normal_distribution<double> normal_;
+};
+
+TEST(ControlLoops, ASampleTakesAFewIterations) {
+  ControlLoop<SatelliteTurn> loop(turn(), 50);
+  ASSERT_TRUE(loop.begin().converged());
+  Chance chance(0.003);
+  std::vector<int> iterations;
+  constexpr int samples = 120;
+  for (int k = 0; k < samples; ++k) {
+    const ControlReport report = loop.advance(loop.followed(chance()));
+    ASSERT_TRUE(report.converged()) << "sample " << k << ": " << to_string(report.status);
+    EXPECT_LE(report.stationarity, 1e-8);
+    EXPECT_LE(report.violation, 1e-8);
+    EXPECT_LE(report.complementarity, 1e-8);
+    EXPECT_LE(loop.control().cwiseAbs().maxCoeff(), 0.6);
+    iterations.push_back(report.iterations);
+  }
+  std::sort(iterations.begin(), iterations.end());
+  EXPECT_LE(iterations[samples / 2], 6);
+  EXPECT_LE(iterations.back(), 20);
+  EXPECT_EQ(loop.latency().count(), samples);
+  // It holds the satellite where it is to be.
+  const Vector<double, 6> left = SatelliteTurn::GroupoidType().tau_inverse(loop.followed());
+  EXPECT_LT(left.norm(), 0.1);
+}
+
+// The plan of a sample is what a solve from nothing finds.
+TEST(ControlLoops, PlansAreThoseOfSolvesFromNothing) {
+  ControlTask<SatelliteTurn> task = turn();
+  ControlLoop<SatelliteTurn> loop(task, 30);
+  ASSERT_TRUE(loop.begin().converged());
+  Chance chance(0.01);
+  for (int k = 0; k < 12; ++k) {
+    task.boundary = loop.followed(chance());
+    const ControlReport report = loop.advance(task.boundary);
+    ASSERT_TRUE(report.converged()) << k;
+    const auto anew = solve_control(task, 30);
+    ASSERT_TRUE(anew.report.converged()) << k;
+    EXPECT_NEAR(report.cost, anew.report.cost, 1e-6 * anew.report.cost) << k;
+    EXPECT_LT((loop.control() - anew.trajectory.controls.front()).norm(), 1e-5) << k;
+  }
+}
+
+TEST(ControlLoops, ASampleAllocatesNothing) {
+  if (allocation_count() < 0) GTEST_SKIP() << "allocations are not counted here";
+  ControlLoop<SatelliteTurn> loop(turn(), 20);
+  ASSERT_TRUE(loop.begin().converged());
+  Chance chance(0.01);
+  loop.advance(loop.followed(chance()));
+  const long before = allocation_count();
+  for (int k = 0; k < 30; ++k) loop.advance(loop.followed(chance()));
+  EXPECT_EQ(allocation_count() - before, 0);
+}
+
+// One iteration a sample: plans are not those of the problem, but come to be.
+TEST(ControlLoops, RealTimeIterationsContract) {
+  ControlLoop<SatelliteTurn> loop(turn(), 50, {.iterations = 1});
+  ASSERT_TRUE(loop.begin().converged());
+  double violation = 0;
+  for (int k = 0; k < 100; ++k) {
+    const ControlReport report = loop.advance(loop.followed());
+    EXPECT_LE(report.iterations, 1);
+    violation = report.violation;
+    EXPECT_TRUE(loop.is_usable(report, 0.1)) << k << ": " << violation;
+  }
+  EXPECT_LT(violation, 1e-6);
+  EXPECT_LT(SatelliteTurn::GroupoidType().tau_inverse(loop.followed()).norm(), 0.05);
+}
+
+// On R^2: a cart that is to stop, and is pushed off by more than its brakes can take back in the time that is left.
+TEST(ControlLoops, WhatCannotBeIsTypedAndTheLoopStartsAnew) {
+  using Line = FlowStates<Pair<2>>;
+  ControlTask<DoubleIntegrator> task{{}, Line::arrow({1, 0}, {0, 0}), 3};
+  task.lower(0) = -1;
+  task.upper(0) = 1;
+  ControlLoop<DoubleIntegrator> loop(task, 30, {.iterations = 60});
+  ASSERT_TRUE(loop.begin().converged());
+  ASSERT_TRUE(loop.advance(loop.followed()).converged());
+  const ControlReport far = loop.advance(Line::arrow({50, 0}, {0, 0}));
+  EXPECT_FALSE(far.converged());
+  EXPECT_FALSE(loop.is_usable(far, 1e-3));
+  EXPECT_TRUE(loop.restart(Line::arrow({0.5, 0}, {0, 0})).converged());
+  EXPECT_TRUE(loop.advance(loop.followed()).converged());
+}
+
+TEST(ControlLoops, RefuseWhatTheyCannotLookAheadFor) {
+  ControlTask<SatelliteTurn> task = turn();
+  task.duration_is_free = true;
+  EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 20), std::invalid_argument);
+  task.duration_is_free = false;
+  task.lower = task.upper;
+  EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 20), std::invalid_argument);
+}
+
+TEST(Latencies, ArePercentilesToFivePercent) {
+  Latency latency;
+  EXPECT_EQ(latency.percentile(50), 0);
+  for (int i = 1; i <= 1000; ++i) latency.add(1e-5 * i);
+  EXPECT_NEAR(latency.percentile(50), 5e-3, 0.05 * 5e-3);
+  EXPECT_NEAR(latency.percentile(99), 9.9e-3, 0.05 * 9.9e-3);
+  EXPECT_EQ(latency.percentile(100), 1e-2);
+  EXPECT_EQ(latency.longest(), 1e-2);
+  latency.add(1e9);
+  EXPECT_EQ(latency.percentile(100), 1e9);
+}
+
+}  // namespace
+}  // namespace lagroid
