@@ -231,16 +231,24 @@ int reproduce_learning(const ReproduceOptions& options) {
 int reproduce_poisson(const ReproduceOptions& options) {
   const bool json = options.json;
   const OutputFolder folder = folder_for_report(options.poisson_out, poisson_name, poisson_report_files);
-  std::vector<PoissonRow> rows;
+  PoissonFindings found;
   {
-    Progress progress(poisson_name, 100, !json);
-    rows = run_poisson_study(options.poisson_steps, [&](long done, long all) { progress.update(100 * done / all); });
+    // The systems, what work they are, the noise.
+    Progress progress(poisson_name, 300, !json);
+    const auto part = [&](long which) {
+      return [&progress, which](long done, long all) { progress.update(100 * which + 100 * done / all); };
+    };
+    found.rows = run_poisson_study(options.poisson_steps, part(0));
+    found.work = run_poisson_work(part(1));
+    if (options.poisson_paths > 0) found.noise = run_noise_study(options.poisson_paths, part(2));
   }
+  const std::vector<PoissonRow>& rows = found.rows;
   std::string note;
-  const auto files = write_poisson_report(rows, options.poisson_steps,
-                                          fmt::format("./lagroid reproduce {} --steps {} --out {}", poisson_name,
-                                                      options.poisson_steps, quoted(options.poisson_out)),
-                                          options.poisson_out, note);
+  const auto files =
+      write_poisson_report(found, options.poisson_steps,
+                           fmt::format("./lagroid reproduce {} --steps {} --paths {} --out {}", poisson_name,
+                                       options.poisson_steps, options.poisson_paths, quoted(options.poisson_out)),
+                           options.poisson_out, note);
   nlohmann::ordered_json result;
   result["status"] = "done";
   result["runs"] = rows.size();
@@ -249,6 +257,10 @@ int reproduce_poisson(const ReproduceOptions& options) {
     result["systems"][row.system][row.method] = {
         {"order", row.order}, {"poisson_defect", row.defect}, {"casimirs", row.casimir}};
     text += text_of(row);
+  }
+  for (const NoiseRow& row : found.noise) {
+    result["noise"][row.what] = {{"theory", row.promised}, {"found", row.found}, {"error", row.error}};
+    text += fmt::format("  {:<48} {:.4g} +- {:.2g}, theory {:.4g}\n", row.what, row.found, row.error, row.promised);
   }
   return conclude(std::move(result), std::move(text), files, note, json);
 }
@@ -363,6 +375,9 @@ void learning_options(CLI::App& command, ReproduceOptions& options) {
 
 void poisson_options(CLI::App& command, ReproduceOptions& options) {
   command.add_option("--out", options.poisson_out, "the folder for report.md and CSV")->capture_default_str();
+  command.add_option("--paths", options.poisson_paths, "of noise, for each of 20 batches; 0 leaves noise out")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1'000'000));
   command.add_option("--steps", options.poisson_steps, "of size 0.1, over which Casimirs and energy are watched")
       ->check(CLI::Range(10L, 100'000'000L))
       ->capture_default_str();

@@ -25,6 +25,7 @@ struct ReproduceOptions {
   std::string learning_out = "out/learning-hamiltonians";
   std::string poisson_out = "out/poisson";
   long poisson_steps = 10000;
+  int poisson_paths = 50;
   std::string scaling_out = "out/sweep-scaling";
 };
 

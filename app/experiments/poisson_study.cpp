@@ -7,6 +7,7 @@
 #include <lagroid/solvers/status.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -96,6 +97,22 @@ PoissonRow measured_row(const PoissonEntry& entry, const AnyPoissonSystem& syste
   return row;
 }
 
+/// Of systems of which something is asked in the text: one in the plane, one of rotations, one of a lattice.
+constexpr std::array<std::string_view, 3> systems_of_work{keys::lotka_volterra, keys::euler_top, keys::toda_ring};
+
+PoissonWork measured_work(const PoissonEntry& entry, const AnyPoissonSystem& system, const std::vector<double>& start,
+                          const DeclaredMethod& method, int steps, const std::vector<double>& exact) {
+  PoissonWork out{std::string(entry.name), std::string(method.name), steps, 0, std::numeric_limits<double>::infinity()};
+  for (int repeat = 0; repeat < 9; ++repeat) {
+    const auto begun = std::chrono::steady_clock::now();
+    const auto end = end_of(system, start, method.name, steps);
+    const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - begun;
+    out.microseconds = std::min(out.microseconds, spent.count());
+    out.error = distance(end, exact);
+  }
+  return out;
+}
+
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.2g}", x) : "-"; }
 std::string order_of(const PoissonRow& row) {
   return std::isfinite(row.order) ? fmt::format("{:.2f}", row.order) : "-";
@@ -104,7 +121,74 @@ std::string casimirs_of(const PoissonRow& row) {
   return entry_named(row.system).casimirs.empty() ? "-" : number(row.casimir);
 }
 
-std::string report_of(const std::vector<PoissonRow>& rows, long steps, const std::string& command) {
+/// What theory promises of noise, and what is found.
+std::string noise_table(const std::vector<NoiseRow>& rows) {
+  std::string out =
+      "\n## Noise\n\nEuler's top with noise along its axes. Errors are standard errors, of orders by leaving out one "
+      "batch of paths after another.\n\n| | theory | found | error | apart |\n|---|---|---|---|---|\n";
+  for (const NoiseRow& row : rows)
+    out += row.error > 0 ? fmt::format("| {} | {:.4g} | {:.4f} | {:.4f} | {:.1f} errors |\n", row.what, row.promised,
+                                       row.found, row.error, std::abs(row.found - row.promised) / row.error)
+                         : fmt::format("| {} | {:.4g} | {:.1e} | | rounding |\n", row.what, row.promised, row.found);
+  return out;
+}
+
+/// Of each system, the cheapest method for some errors.
+std::string work_table(const std::vector<PoissonWork>& work) {
+  std::string out =
+      "\n## Work against error\n\n![work against error](work.svg)\n\nMicroseconds for 2 s at the largest step with "
+      "that "
+      "error at most, of steps of 0.2 s and their halves; a dash where none had it.\n";
+  constexpr std::array errors{1e-3, 1e-6, 1e-9};
+  for (const std::string_view system : systems_of_work) {
+    out += fmt::format("\n| {} | 1e-3 | 1e-6 | 1e-9 |\n|---|---|---|---|\n", system);
+    std::vector<std::string> methods;
+    for (const PoissonWork& each : work)
+      if (each.system == system && std::find(methods.begin(), methods.end(), each.method) == methods.end())
+        methods.push_back(each.method);
+    for (const std::string& method : methods) {
+      out += fmt::format("| {} |", method);
+      for (const double error : errors) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const PoissonWork& each : work)
+          if (each.system == system && each.method == method && each.error <= error)
+            least = std::min(least, each.microseconds);
+        out += std::isfinite(least) ? fmt::format(" {:.3g} |", least) : " - |";
+      }
+      out += "\n";
+    }
+  }
+  return out;
+}
+
+std::string work_script(const std::vector<PoissonWork>& work) {
+  std::string out =
+      "# Draws work.csv; run by lagroid, or by hand: gnuplot work.gp\n"
+      "set datafile separator ','\nset grid\nset logscale xy\nset format '10^{%T}'\nset xlabel 'microseconds for 2 s'\n"
+      "set ylabel 'error'\nset key outside right noenhanced\n";
+  for (const auto& [file, terminal] : {std::pair("work.svg", "svg size 900,1100 background 'white'"),
+                                       std::pair("work.png", "pngcairo size 900,1100")}) {
+    out += fmt::format("\nset terminal {}\nset output '{}'\nset multiplot layout {},1\n", terminal, file,
+                       systems_of_work.size());
+    for (const std::string_view system : systems_of_work) {
+      std::vector<std::string> curves;
+      for (const PoissonWork& each : work) {
+        const std::string curve = fmt::format(
+            "'work.csv' using (strcol('system') eq '{}' && strcol('method') eq '{}' ? column('microseconds') : NaN):"
+            "'error' with linespoints title '{}'",
+            system, each.method, each.method);
+        if (each.system == system && std::find(curves.begin(), curves.end(), curve) == curves.end())
+          curves.push_back(curve);
+      }
+      out += fmt::format("set title '{}' noenhanced\nplot {}\n", system, fmt::join(curves, ", \\\n  "));
+    }
+    out += "unset multiplot\nset output\n";
+  }
+  return out;
+}
+
+std::string report_of(const PoissonFindings& found, long steps, const std::string& command) {
+  const std::vector<PoissonRow>& rows = found.rows;
   std::string out = fmt::format(
       "# Integrators on Poisson manifolds\n\n"
       "    {}\n\n"
@@ -125,6 +209,8 @@ std::string report_of(const std::vector<PoissonRow>& rows, long steps, const std
                        casimirs_of(row), number(row.energy_first),
                        row.ended.empty() ? number(row.energy_last) : row.ended, row.microseconds);
   }
+  out += work_table(found.work);
+  if (!found.noise.empty()) out += noise_table(found.noise);
   return out;
 }
 
@@ -136,7 +222,38 @@ std::string csv_of(const std::vector<PoissonRow>& rows) {
   return out;
 }
 
+std::string work_csv(const std::vector<PoissonWork>& work) {
+  std::string out = "system,method,steps,error,microseconds\n";
+  for (const PoissonWork& each : work)
+    out += fmt::format("{},{},{},{},{}\n", each.system, each.method, each.steps, each.error, each.microseconds);
+  return out;
+}
+std::string noise_csv(const std::vector<NoiseRow>& rows) {
+  std::string out = "what,theory,found,error\n";
+  for (const NoiseRow& row : rows)
+    out += fmt::format("\"{}\",{},{},{}\n", row.what, row.promised, row.found, row.error);
+  return out;
+}
+
 }  // namespace
+
+std::vector<PoissonWork> run_poisson_work(const std::function<void(long, long)>& report) {
+  std::vector<PoissonWork> out;
+  for (std::size_t i = 0; i < systems_of_work.size(); ++i) {
+    const auto& start = *std::find_if(starts().begin(), starts().end(),
+                                      [&](const Start& each) { return each.system == systems_of_work[i]; });
+    const PoissonEntry& entry = entry_named(start.system);
+    const auto system = entry.read(parse_scene(fmt::format("system = \"{}\"\n", entry.name), "poisson study", {}));
+    const auto exact = end_of(*system, start.state, "hamilton-jacobi-6", 640);
+    for (const DeclaredMethod* method : entry.methods)
+      for (int steps = 10; steps <= 640; steps *= 2) {
+        const PoissonWork work = measured_work(entry, *system, start.state, *method, steps, exact);
+        if (std::isfinite(work.error) && work.error > 1e-13) out.push_back(work);
+      }
+    report(long(i) + 1, long(systems_of_work.size()));
+  }
+  return out;
+}
 
 std::vector<PoissonRow> run_poisson_study(long steps, const std::function<void(long, long)>& report) {
   long all = 0;
@@ -158,17 +275,21 @@ std::string text_of(const PoissonRow& row) {
                      row.method, order_of(row), number(row.defect), casimirs_of(row));
 }
 
-const std::vector<const char*> poisson_report_files{"report.md", "poisson.csv"};
+const std::vector<const char*> poisson_report_files{"report.md", "poisson.csv", "work.csv", "noise.csv",
+                                                    "work.gp",   "work.svg",    "work.png"};
 
-std::vector<std::filesystem::path> write_poisson_report(const std::vector<PoissonRow>& rows, long steps,
+std::vector<std::filesystem::path> write_poisson_report(const PoissonFindings& found, long steps,
                                                         const std::string& command, const std::filesystem::path& folder,
                                                         std::string& note) {
   const auto data = [&](const std::filesystem::path& staging) {
-    write_text(csv_of(rows), staging / "poisson.csv");
-    write_text(report_of(rows, steps, command), staging / "report.md");
-    return std::vector<std::string>{"poisson.csv", "report.md"};
+    write_text(csv_of(found.rows), staging / "poisson.csv");
+    write_text(work_csv(found.work), staging / "work.csv");
+    write_text(noise_csv(found.noise), staging / "noise.csv");
+    write_text(work_script(found.work), staging / "work.gp");
+    write_text(report_of(found, steps, command), staging / "report.md");
+    return std::vector<std::string>{"poisson.csv", "work.csv", "noise.csv", "work.gp", "report.md"};
   };
-  return write_and_draw(folder, poisson_report_files, data, {}, note);
+  return write_and_draw(folder, poisson_report_files, data, {"work.gp", {"work.svg", "work.png"}}, note);
 }
 
 }  // namespace lagroid::app

@@ -1,6 +1,8 @@
 #pragma once
 /// What integrators on Poisson manifolds keep, and at which order they converge, measured on the library's systems.
 
+#include "poisson_noise.hpp"
+
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -24,13 +26,30 @@ struct PoissonRow {
 /// Every method of each system, over runs of so many steps of size 0.1. `report(done, all)` is called after each.
 std::vector<PoissonRow> run_poisson_study(long steps, const std::function<void(long, long)>& report);
 
+/// Work against error of one system by one method: over two units of time, by steps of one size.
+struct PoissonWork {
+  std::string system;
+  std::string method;
+  int steps = 0;
+  double error = 0;
+  double microseconds = 0;  ///< the whole run, the fastest of several
+};
+/// Of a few systems, every method.
+std::vector<PoissonWork> run_poisson_work(const std::function<void(long, long)>& report);
+
+struct PoissonFindings {
+  std::vector<PoissonRow> rows;
+  std::vector<PoissonWork> work;
+  std::vector<NoiseRow> noise;
+};
+
 /// Its order, defect and Casimirs in a line; a dash for what has no number.
 std::string text_of(const PoissonRow& row);
 
 extern const std::vector<const char*> poisson_report_files;
 
-/// report.md and poisson.csv.
-std::vector<std::filesystem::path> write_poisson_report(const std::vector<PoissonRow>& rows, long steps,
+/// report.md, poisson.csv, work.csv, noise.csv and the figure of work against error.
+std::vector<std::filesystem::path> write_poisson_report(const PoissonFindings& found, long steps,
                                                         const std::string& command, const std::filesystem::path& folder,
                                                         std::string& note);
 

@@ -3,10 +3,9 @@
 /// motion is found to be, and the first control of the plan is applied.
 ///
 ///     ControlLoop<SatelliteTurn> loop(task, 50);
-///     if (!loop.begin().converged()) return;
-///     for (;;) {
+///     for (ControlReport report = loop.begin(); report.converged();) {
 ///       apply(loop.control());
-///       const ControlReport report = loop.advance(arrow(measured_state(), end));  // a sample later
+///       report = loop.advance(from(measured_state()));  // a sample later, to the end
 ///     }
 ///
 /// The horizon moves on with the motion: as many stages of the same step, toward the same end. Each solve goes on from

@@ -12,7 +12,7 @@
 ///     const GroupoidFormula<FrozenChart<LotkaVolterra>> formula;
 ///     const auto at = formula.at(Vector<double, 2>(2, 0.5), 0.1, Vector<double, 2>(0, 0));  // at.residual, at.end
 ///
-/// A formula is solved by ImplicitStep (implicit_step.hpp). Returns over the scalar of its arguments; `known` is false
+/// A formula is solved by FormulaStep (steps.hpp). Returns over the scalar of its arguments; `known` is false
 /// where a flow left the domain in which it is known. Nothing throws.
 ///
 /// Source: Cosserat, Laurent-Gengoux, Salnikov, arXiv 2303.15883; Cabrera, Martin de Diego, Vaquero, arXiv 2409.04342.

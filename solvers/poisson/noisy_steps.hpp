@@ -66,7 +66,7 @@ template <class Formula> class NoisyStep {
  private:
   Driven& system() { return step_.formula.chart.system; }
 
-  ImplicitStep<Formula> step_;
+  FormulaStep<Formula> step_;
   Weights strength_;
 };
 

@@ -89,12 +89,12 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
 template <class Sys, class Visit> void each_poisson_step(const Visit& visit) {
   namespace m = poisson_methods;
   visit(m::groupoid, [](const Sys& s) {
-    return ImplicitStep<GroupoidFormula<NaturalChart<Sys>>>(GroupoidFormula<NaturalChart<Sys>>(NaturalChart<Sys>(s)));
+    return FormulaStep<GroupoidFormula<NaturalChart<Sys>>>(GroupoidFormula<NaturalChart<Sys>>(NaturalChart<Sys>(s)));
   });
   const auto karasev = [&]<int Order>(const DeclaredMethod& method) {
     visit(method, [](const Sys& s) {
       using Formula = GroupoidFormula<KarasevChart<Sys>, Order>;
-      return ImplicitStep<Formula>(Formula(KarasevChart<Sys>(s)));
+      return FormulaStep<Formula>(Formula(KarasevChart<Sys>(s)));
     });
   };
   if constexpr (!std::is_same_v<NaturalChart<Sys>, KarasevChart<Sys>>) karasev.template operator()<2>(m::karasev);
@@ -102,11 +102,11 @@ template <class Sys, class Visit> void each_poisson_step(const Visit& visit) {
   karasev.template operator()<6>(m::hamilton_jacobi_6);
   if constexpr (SumOfForms<Sys>)
     visit(m::splitting, [](const Sys& s) { return SplitStep<FlowChart<Sys>>(FlowChart<Sys>(s)); });
-  visit(m::truncated, [](const Sys& s) { return ImplicitStep<TreeFormula<Sys, 3>>(TreeFormula<Sys, 3>(s)); });
-  const auto midpoint = [](const Sys& s) { return ImplicitStep<TreeFormula<Sys, 1>>(TreeFormula<Sys, 1>(s)); };
+  visit(m::truncated, [](const Sys& s) { return FormulaStep<TreeFormula<Sys, 3>>(TreeFormula<Sys, 3>(s)); });
+  const auto midpoint = [](const Sys& s) { return FormulaStep<TreeFormula<Sys, 1>>(TreeFormula<Sys, 1>(s)); };
   visit(m::midpoint, midpoint);
   if constexpr (casimir_count<Sys>() > 0)
-    visit(m::projected, [=](const Sys& s) { return ProjectedStep<ImplicitStep<TreeFormula<Sys, 1>>>(midpoint(s)); });
+    visit(m::projected, [=](const Sys& s) { return ProjectedStep<FormulaStep<TreeFormula<Sys, 1>>>(midpoint(s)); });
   visit(m::runge_kutta, [](const Sys& s) { return RungeKuttaStep<Sys>(s); });
 }
 

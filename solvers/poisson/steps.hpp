@@ -2,7 +2,7 @@
 /// One-step maps on Poisson manifolds, x -> Phi_h(x): implicit ones by Newton's method with a typed outcome, and
 /// explicit ones by splittings and Runge-Kutta.
 ///
-///     const ImplicitStep<GroupoidFormula<FrozenChart<LotkaVolterra>>> step;
+///     const FormulaStep<GroupoidFormula<FrozenChart<LotkaVolterra>>> step;
 ///     Vector<double, 2> end;
 ///     const StepReport report = step.take(Vector<double, 2>(2, 0.5), 0.1, end);
 ///     const Matrix<double, 2, 2> slope = step.slope(Vector<double, 2>(2, 0.5), 0.1);  // d Phi_h
@@ -23,14 +23,14 @@
 namespace lagroid {
 
 /// Solves a formula by Newton's method, with a matrix that is kept as long as the residual falls tenfold.
-template <class Formula> class ImplicitStep {
+template <class Formula> class FormulaStep {
  public:
   static constexpr int size = Formula::size;
   using X = Vector<double, size>;
   using Square = Matrix<double, size, size>;
   Formula formula;
 
-  explicit ImplicitStep(Formula of = Formula()) : formula(std::move(of)) {}
+  explicit FormulaStep(Formula of = Formula()) : formula(std::move(of)) {}
   static constexpr KeptStructure kept = Formula::kept;
   static constexpr int order = Formula::order;
   static constexpr bool symmetric = true;

@@ -18,6 +18,7 @@
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/noether.hpp>
+#include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
@@ -147,12 +148,6 @@ Eigen::MatrixXd differenced(const Sys& system, const State<typename Sys::Groupoi
                              width) /
                          std::max(1.0, std::abs(*all_parameters(system).members[std::size_t(j)]));
   return out;
-}
-
-inline double relative_defect(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected) {
-  const double size = std::max(1.0, expected.cwiseAbs().maxCoeff());
-  const double off = (found - expected).cwiseAbs().maxCoeff();
-  return std::isfinite(off) ? off / size : std::numeric_limits<double>::infinity();
 }
 
 /// Throws NotSampled where the run from there fails.

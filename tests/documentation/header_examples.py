@@ -17,7 +17,7 @@ root = pathlib.Path(__file__).resolve().parents[2]
 units = ["core", "groupoids", "solvers/galerkin", "solvers/boundary solvers/ensemble solvers/step solvers/integrators solvers/methods",
          "solvers/generating solvers/learning solvers/lie_group solvers/linear_algebra solvers/newton "
          "solvers/optimisation solvers/poisson solvers/testing solvers/status.hpp",
-         "solvers/control solvers/sensitivity", "systems", "run"]
+         "solvers/control solvers/extrapolation solvers/sensitivity", "systems", "run"]
 contexts_file = pathlib.Path(__file__).with_name("header_contexts.txt")
 always = ["<lagroid/systems/kepler.hpp>", "<gtest/gtest.h>", "<cmath>", "<iostream>"]
 

@@ -1,6 +1,7 @@
 // Sweeps on threads and ranks, interrupted and killed: the same bytes.
 #include "sweep.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstddef>
 #include <fstream>
@@ -72,6 +73,25 @@ TEST_F(Sweep, RanksLeaveTheSameBytes) {
   EXPECT_EQ(wrong.code, 2);
   const auto at = wrong.err.find("lagroid: ");
   EXPECT_EQ(at, wrong.err.rfind("lagroid: ")) << wrong.err;
+}
+
+TEST_F(Sweep, NoiseHasTheSameBitsOnAnyNumberOfRanks) {
+  if (const std::string why = without_ranks(); !why.empty()) GTEST_SKIP() << why;
+  const std::string paths = file("paths.toml", "[scene]\nfile = \"" + example("stochastic_top") +
+                                                   "\"\ntime.steps = 200\n[design]\nkind = \"grid\"\n[[vary]]\nkey = "
+                                                   "\"noise.path\"\nvalues = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n");
+  for (const int ranks : {1, 4}) {
+    const std::string name = "ranks" + std::to_string(ranks);
+    const Outcome r = run("sweep " + paths + " --threads 1 --out " + out(name), mpirun(ranks));
+    EXPECT_EQ(r.code, 0) << r.err;
+  }
+  expect_same("ranks1", "ranks4");
+  // They are other paths.
+  const Table table = members("ranks4");
+  const auto final =
+      std::find_if(table.begin(), table.end(), [](const auto& column) { return column.first.ends_with("M1"); });
+  ASSERT_NE(final, table.end());
+  EXPECT_NE(final->second.at(0), final->second.at(1));
 }
 
 #ifdef LAGROID_MANY_KILLS

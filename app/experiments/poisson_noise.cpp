@@ -1,0 +1,78 @@
+#include "poisson_noise.hpp"
+
+#include <lagroid/systems/poisson/noise_study.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lagroid::app {
+
+namespace {
+
+using X3 = Vector<double, 3>;
+const X3 start{0.8, 0.6, 1.1};
+
+NoiseRow row(std::string what, double promised, const Estimate& found) {
+  return {std::move(what), promised, found.value, found.error};
+}
+
+/// How far |M| goes from where it was, over so many steps.
+double drift_of_size(double temperature, long steps) {
+  const auto motion = make_poisson_integrator(
+      EulerTop{}, start, {.step = 0.05, .noise = {.strength = {0.5, 0.5, 0.5}, .seed = 1, .temperature = temperature}});
+  double largest = 0;
+  for (long k = 0; k < steps; ++k) {
+    if (!motion->advance().converged()) throw std::runtime_error("a step with noise did not converge");
+    const std::vector<double> m = motion->point();
+    largest = std::max(largest, std::abs(X3(m[0], m[1], m[2]).norm() - start.norm()));
+  }
+  return largest;
+}
+
+/// The mean of f in the measure that the thermostat has at h -> 0, from two step sizes.
+template <class F> Estimate thermostat_mean(double temperature, int paths, const F& f) {
+  const auto at = [&](double h, std::uint64_t seed) {
+    return time_mean(
+        [&](std::uint32_t path) {
+          return make_poisson_integrator(
+              EulerTop{}, start,
+              {.step = h, .noise = {.strength = {1, 1, 1}, .seed = seed, .path = path, .temperature = temperature}});
+        },
+        paths, std::lround(5000 / h), f);
+  };
+  const Estimate coarse = at(0.4, 5);
+  const Estimate fine = at(0.2, 6);
+  return {2 * fine.value - coarse.value, std::hypot(2 * fine.error, coarse.error)};
+}
+
+}  // namespace
+
+std::vector<NoiseRow> run_noise_study(int paths, const std::function<void(long, long)>& report) {
+  constexpr long parts = 4;
+  std::vector<NoiseRow> rows;
+  const NoiseOrders orders = noise_orders(paths, 1);
+  rows.push_back(row("strong order, the noise is the energy's", 1, orders.commuting));
+  rows.push_back(row("strong order, one noise", 1, orders.one));
+  rows.push_back(row("strong order, three noises that do not commute", 0.5, orders.several));
+  rows.push_back(row("weak order, three noises", 1, orders.weak));
+  report(1, parts);
+  constexpr long steps = 100'000;
+  for (const double temperature : {0.0, 0.5})
+    rows.push_back({temperature > 0 ? "change of |M| over 1e5 steps, with friction" : "change of |M| over 1e5 steps", 0,
+                    drift_of_size(temperature, steps), 0});
+  report(2, parts);
+  const EulerTop top;
+  const double temperature = 0.5;
+  const auto energy = [&](const auto& m) { return top.hamiltonian(X3(m[0], m[1], m[2])); };
+  const auto third = [](const auto& m) { return m[2] * m[2]; };
+  const int walks = std::max(10, paths / 2);
+  rows.push_back(row("mean energy of the thermostat", gibbs_mean(top, start.norm(), temperature, energy),
+                     thermostat_mean(temperature, walks, energy)));
+  report(3, parts);
+  rows.push_back(row("mean M3^2 of the thermostat", gibbs_mean(top, start.norm(), temperature, third),
+                     thermostat_mean(temperature, walks, third)));
+  report(4, parts);
+  return rows;
+}
+
+}  // namespace lagroid::app
