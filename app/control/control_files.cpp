@@ -84,8 +84,9 @@ std::string loop_text(const ControlResult& found) {
   const ControlReport& r = found.report;
   std::string out = fmt::format("{} on {}, in a closed loop that looks {} stages ahead: {}\n", found.problem,
                                 found.groupoid, loop.stages, to_string(r.status));
-  out += fmt::format("  samples          {} in {:.12g}; {} not converged in their iterations\n", loop.samples,
-                     found.times.back(), loop.not_converged);
+  out +=
+      fmt::format("  samples          {} in {:.12g}; {} not converged in their iterations, {} planned from nothing\n",
+                  loop.samples, found.times.back(), loop.not_converged, loop.restarts);
   out += fmt::format("  cost             {:.12g}\n", r.cost);
   if (loop.samples == 0) return out;
   out += fmt::format("  iterations       median {}, of 99.9 % at most {}, most {}\n", loop.iterations_of(50),
@@ -101,6 +102,7 @@ nlohmann::ordered_json loop_json(const LoopSummary& loop) {
   out["stages"] = loop.stages;
   out["samples"] = loop.samples;
   out["not_converged"] = loop.not_converged;
+  out["restarts"] = loop.restarts;
   out["iterations"] = nlohmann::ordered_json::object();
   for (const auto& [count, times] : loop.iterations) out["iterations"][std::to_string(count)] = times;
   for (const auto& [name, percent] : {std::pair("median", 50.0), std::pair("99", 99.0), std::pair("99.9", 99.9)})
@@ -144,12 +146,14 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   out["stages"] = found.control_rows.size();
   out["cost"] = r.cost;
   out["duration"] = found.times.back();
-  out["strict_minimum"] = r.is_strict_minimum;
-  out["stationarity"] = r.stationarity;
-  out["violation"] = r.violation;
-  out["complementarity"] = r.complementarity;
-  out["iterations"] = r.iterations;
-  out["costs"] = found.costs;
+  if (!found.loop) {  // of which these are not one plan's
+    out["strict_minimum"] = r.is_strict_minimum;
+    out["stationarity"] = r.stationarity;
+    out["violation"] = r.violation;
+    out["complementarity"] = r.complementarity;
+    out["iterations"] = r.iterations;
+    out["costs"] = found.costs;
+  }
   out["starts"] = nlohmann::ordered_json::object();
   for (const auto& [status, count] : found.outcomes) out["starts"][std::string(to_string(status))] = count;
   out["violated"] = nlohmann::ordered_json::array();

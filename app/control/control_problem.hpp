@@ -25,7 +25,8 @@ namespace lagroid::app {
 struct LoopSummary {
   long stages = 0;  ///< that each plan looks ahead
   long samples = 0;
-  long not_converged = 0;          ///< in the iterations that a sample is allowed
+  long not_converged = 0;          ///< in the iterations that a sample is allowed, and followed all the same
+  long restarts = 0;               ///< samples that were planned from nothing
   std::map<int, long> iterations;  ///< how often a sample took so many
   Latency latency;
 

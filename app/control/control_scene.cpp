@@ -13,7 +13,7 @@ const KeyOf<Number> duration_key{"duration", {positive}, "s", "T; where it is fr
 const KeyOf<Flag> free_key{"free", {}, "", "true: the duration is an unknown", false};
 const KeyOf<Whole> stages_key{"stages", {2, 1'000'000}, "", "N, arrows between the ends", 100L};
 const KeyOf<Whole> starts_key{
-    "starts", {1, 100'000}, "", "trajectories to start from: straight, then wound and bent", 10L};
+    "starts", {1, 100'000}, "", "trajectories to start from: straight, drifting, then wound and bent", 10L};
 const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of the starts", 1L};
 const KeyOf<Number> tolerance_key{"tolerance",
                                   {{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }}},

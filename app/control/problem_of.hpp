@@ -49,9 +49,12 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     ControlResult out;
     if (posed.scene.loop) {
       const State start = Eigen::Map<const State>(posed.scene.start.data());
-      Loop loop(posed, search(posed, keep_going));
+      const ControlSearch<Sys> found = search(posed, keep_going);
+      Loop loop(posed, found);
       out = close_loop(*this, loop, *posed.scene.loop, {start.begin(), start.end()}, keep_going);
       out.groupoid = G::name();
+      out.outcomes = found.outcomes;
+      out.iterations += found.iterations;
     } else {
       out = described(posed, search(posed, keep_going));
     }
@@ -108,20 +111,14 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
           end_(end_of(posed.scene)),
           state_(Eigen::Map<const State>(posed.scene.start.data())),
           usable_(posed.scene.loop.value_or(LoopScene()).usable),
-          loop_(posed.task, best_of(found).trajectory, options(posed.scene)),
+          loop_(posed.task, best_of(found), options(posed.scene)),
           report_(best_of(found).report) {
-      // Its multipliers are wanted as well.
       if (report_.converged()) report_ = loop_.begin();
     }
     const ControlReport& report() const override { return report_; }
     void advance(std::span<const double> state) override {
       state_ = Eigen::Map<const State>(state.data());
-      const ArrowOf<G> boundary = arrow(system_, state_, end_);
-      report_ = loop_.advance(boundary);
-      if (report_.converged() || loop_.is_usable(report_, usable_)) return;
-      const int in_vain = report_.iterations;
-      report_ = loop_.restart(boundary);
-      report_.iterations += in_vain;
+      report_ = loop_.follow(arrow(system_, state_, end_), usable_);
     }
     std::vector<double> control() const override { return {loop_.control().begin(), loop_.control().end()}; }
     double cost() const override { return system_.cost(plan().arrows.front(), loop_.control(), plan().step); }
@@ -131,6 +128,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     }
     double step() const override { return plan().step; }
     long stages() const override { return long(plan().arrows.size()); }
+    long restarts() const override { return loop_.restarts(); }
     const Latency& latency() const override { return loop_.latency(); }
 
    private:

@@ -35,9 +35,10 @@ ControlResult close_loop(const ControlProblem& problem, SceneLoop& loop, const L
     const ControlReport& report = loop.report();
     ++summary.samples;
     ++summary.iterations[report.iterations];
+    out.iterations += report.iterations;
     if (report.converged()) continue;
     ++summary.not_converged;
-    if (report.violation <= scene.usable) continue;
+    if (report.status != ControlStatus::not_finite && report.violation <= scene.usable) continue;
     out.report = report;
     out.report.message = fmt::format(
         "sample {}: its constraints are violated by {:.2g} after {} iterations; allow more of them "
@@ -45,6 +46,7 @@ ControlResult close_loop(const ControlProblem& problem, SceneLoop& loop, const L
         sample, report.violation, report.iterations);
   }
   out.report.cost = cost;
+  summary.restarts = loop.restarts();
   summary.latency = loop.latency();
   out.loop = std::move(summary);
   return out;
@@ -54,7 +56,7 @@ long LoopSummary::iterations_of(double percent) const {
   long below = 0;
   for (const auto& [count, times] : iterations) {
     below += times;
-    if (double(below) >= percent / 100 * double(samples)) return count;
+    if (double(below) >= percent * double(samples) / 100 - 1e-9) return count;
   }
   return 0;
 }

@@ -29,7 +29,8 @@ class SceneLoop {
   virtual std::vector<double> predicted() const = 0;  ///< the state at the next sample, by the plan
   virtual double step() const = 0;                    ///< from a sample to the next
   virtual long stages() const = 0;                    ///< that the plan looks ahead
-  virtual const Latency& latency() const = 0;
+  virtual long restarts() const = 0;                  ///< samples that were planned from nothing
+  virtual const Latency& latency() const = 0;         ///< of whole samples
 };
 
 /// [loop] of a scene.

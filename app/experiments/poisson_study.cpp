@@ -57,7 +57,11 @@ std::vector<double> end_of(const AnyPoissonSystem& system, const std::vector<dou
 double distance(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size()) return std::numeric_limits<double>::quiet_NaN();
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double off = std::abs(a[i] - b[i]);
+    if (std::isnan(off)) return off;
+    largest = std::max(largest, off);
+  }
   return largest;
 }
 
@@ -247,8 +251,9 @@ std::vector<PoissonWork> run_poisson_work(const std::function<void(long, long)>&
     const auto exact = end_of(*system, start.state, "hamilton-jacobi-6", 640);
     for (const DeclaredMethod* method : entry.methods)
       for (int steps = 10; steps <= 640; steps *= 2) {
-        const PoissonWork work = measured_work(entry, *system, start.state, *method, steps, exact);
-        if (std::isfinite(work.error) && work.error > 1e-13) out.push_back(work);
+        PoissonWork work = measured_work(entry, *system, start.state, *method, steps, exact);
+        work.error = std::max(work.error, 1e-16);  // of rounding, for logarithms
+        if (std::isfinite(work.error)) out.push_back(std::move(work));
       }
     report(long(i) + 1, long(systems_of_work.size()));
   }

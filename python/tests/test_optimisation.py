@@ -155,6 +155,26 @@ class Control(unittest.TestCase):
         with self.assertRaisesRegex(lagroid.SceneError, "run"):
             lagroid.control(EXAMPLES / "kepler.toml")
 
+    def test_a_loop_is_closed_by_a_motion_of_ones_own(self) -> None:
+        loop = lagroid.control_loop(EXAMPLES / "control/control_loop.toml", set={"horizon.stages": 20})
+        self.assertEqual((loop.status, len(loop.state_names), len(loop.control_names)), ("converged", 6, 3))
+        push = np.zeros(6)
+        for sample in range(30):
+            push[3] = 0.01 if sample == 5 else 0
+            control = loop.advance(loop.predicted + push)
+            self.assertEqual(loop.status, "converged")
+            self.assertLessEqual(loop.iterations, 20)
+            self.assertLessEqual(np.abs(control).max(), 0.6 + 1e-9)
+        self.assertLess(np.abs(loop.predicted - [0.39036, 1.9518001, 0.19518, 0, 0, 0]).max(), 0.02)
+        self.assertEqual(loop.step, 0.5)
+        self.assertGreaterEqual(loop.latency(99), loop.latency(50))
+        with self.assertRaisesRegex(ValueError, "6 numbers"):
+            loop.advance([0, 1])
+        with self.assertRaisesRegex(ValueError, "finite"):
+            loop.advance([np.nan] * 6)
+        with self.assertRaisesRegex(lagroid.SceneError, "free"):
+            lagroid.control_loop(EXAMPLES / "control/fastest_stop.toml")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,6 +1,7 @@
 #pragma once
 /// Optimal control from many starts: one start finds one local minimum, and which one is chance. The first start is the
-/// straight trajectory; the others wind about the loops of the groupoid and are bent by sine modes.
+/// straight trajectory, the second what the motion does by itself, bent toward the end; the others wind about the loops
+/// of the groupoid and are bent by sine modes.
 ///
 ///     const ControlSearch<DubinsCar> found = search_control(task, 100, {.starts = 12});
 ///     for (const auto& each : found.minima) std::cout << each.report.cost << '\n';  // cheapest first
@@ -9,6 +10,8 @@
 /// where none converged, the failure with the least violation. The same seed finds the same.
 
 #include <lagroid/core/capabilities/loops.hpp>
+#include <lagroid/core/matrices/scaling.hpp>
+#include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/solvers/control/solve_control.hpp>
 
 #include <algorithm>
@@ -18,6 +21,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -40,11 +44,72 @@ template <class Sys> struct ControlSearch {
   int iterations = 0;
 };
 
+/// What the motion does with controls at rest, or in the middle of their bounds, bent toward the end: node k is
+/// displaced by (k/N)^2 of what the last one is off. A trajectory to start from, where the straight one is far from any
+/// motion. None where the equations do not determine arrows, or have no solution on the way.
+template <class Sys>
+std::optional<ControlTrajectory<Sys>> drifting_trajectory(const ControlTask<Sys>& task, long stages) {
+  using G = typename Sys::GroupoidType;
+  if constexpr (Sys::equalities != G::dimension) {
+    return std::nullopt;
+  } else {
+    constexpr int n = G::dimension;
+    using J = Jet<double, n>;
+    const G& groupoid = task.system.groupoid;
+    ControlTrajectory<Sys> path = straight_trajectory(task, stages);
+    ArrowOf<G> reached = groupoid.unit(groupoid.source(task.boundary));
+    std::vector<ArrowOf<G>> nodes;
+    AlgebroidVector<G> v = AlgebroidVector<G>::Zero();
+    for (long k = 0; k < stages; ++k) {
+      ArrowOf<G> g = groupoid.tau(groupoid.target(reached), v);
+      const auto& u = path.controls[std::size_t(k)];
+      const Vector<J, Sys::controls> control = u.template cast<J>();
+      bool is_solved = false;
+      for (int i = 0; i < 20 && !is_solved; ++i) {
+        Vector<J, n> b;
+        for (int j = 0; j < n; ++j) b(j) = J::variable(0, j);
+        const Vector<J, n> zero = Vector<J, n>::Constant(J(0.0));
+        const Vector<J, n> phi =
+            task.system.constraint(groupoid.translate(zero, groupoid.template cast<J>(g), b), control, J(path.step));
+        Matrix<double, n, n> slope;
+        Vector<double, n> value;
+        for (int j = 0; j < n; ++j) {
+          value(j) = phi(j).value;
+          for (int l = 0; l < n; ++l) slope(j, l) = phi(j).gradient(l);
+        }
+        const Vector<double, n> by = -solve_equilibrated(slope, value);
+        if (!by.allFinite()) return std::nullopt;
+        g = groupoid.project(groupoid.extend(g, by));
+        is_solved = by.norm() <= 1e-9 * (1 + v.norm());
+      }
+      if (!is_solved) return std::nullopt;
+      v = groupoid.tau_inverse(g);
+      reached = groupoid.compose(reached, g);
+      nodes.push_back(reached);
+    }
+    const AlgebroidVector<G> off = groupoid.tau_inverse(groupoid.compose(groupoid.inverse(reached), task.boundary));
+    if (!off.allFinite()) return std::nullopt;
+    ArrowOf<G> before = groupoid.unit(groupoid.source(task.boundary));
+    for (long k = 0; k < stages; ++k) {
+      const auto at = std::size_t(k);
+      const double share = double(k + 1) / double(stages);
+      const ArrowOf<G> here =
+          k + 1 == stages ? task.boundary
+                          : groupoid.project(groupoid.extend(nodes[at], AlgebroidVector<G>(share * share * off)));
+      path.arrows[at] = groupoid.project(groupoid.compose(groupoid.inverse(before), here));
+      before = here;
+    }
+    return path;
+  }
+}
+
 /// Start `index`, the same whatever the number of starts.
 template <class Sys>
 ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, int index,
                                      const ControlSearchOptions& options = {}) {
   using G = typename Sys::GroupoidType;
+  if (index == 1)
+    if (const auto drifting = drifting_trajectory(task, stages)) return *drifting;
   ControlTrajectory<Sys> path = straight_trajectory(task, stages);
   if (index == 0) return path;
   const G& groupoid = task.system.groupoid;
@@ -61,7 +126,7 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
 
   // Of three starts in succession one winds forward about each loop, one backward and one not at all.
   Eigen::VectorXd turns = Eigen::VectorXd::Zero(loop_count(task.system));
-  for (int i = 0; i < turns.size(); ++i) turns(i) = std::array<int, 3>{1, -1, 0}[std::size_t((index - 1 + i) % 3)];
+  for (int i = 0; i < turns.size(); ++i) turns(i) = std::array<int, 3>{1, -1, 0}[std::size_t((index - 2 + i) % 3)];
 
   ArrowOf<G> reached = groupoid.unit(groupoid.source(task.boundary));
   ArrowOf<G> before = reached;

@@ -48,7 +48,7 @@ InteriorPoint::InteriorPoint(Transcription& transcription, ControlOptions option
       step_(sizes_),
       first_step_(sizes_),
       first_slack_step_(multipliers_) {
-  filter_.reserve(std::size_t(options.max_iterations) + 1);
+  filter_.reserve(1001);
 }
 
 // ---- values, gradients, errors
@@ -69,8 +69,9 @@ InteriorPoint::Merit InteriorPoint::merit(const StageValues& values, const Stage
 double InteriorPoint::largest_violation() const {
   double largest = 0;
   for (long k = 0; k < sizes_.stages; ++k) {
-    for (int i = 0; i < sizes_.equalities_of(k); ++i) largest = std::max(largest, std::abs(values_.equality[k][i]));
-    for (int i = 0; i < sizes_.inequality; ++i) largest = std::max(largest, values_.inequality[k][i]);
+    const auto take = [&](double x) { largest = std::isnan(x) ? HUGE_VAL : std::max(largest, x); };
+    for (int i = 0; i < sizes_.equalities_of(k); ++i) take(std::abs(values_.equality[k][i]));
+    for (int i = 0; i < sizes_.inequality; ++i) take(values_.inequality[k][i]);
   }
   return largest;
 }
@@ -155,16 +156,22 @@ void InteriorPoint::begin_again() {
   last_shift_ = 0;
   filter_.clear();
   transcription_.values(values_);
-  // Of an inequality that was active, s = mu / z; of another, its own distance.
+  // Of an inequality that was active, s = mu / z; of another, its own distance, but no less than at any start.
   for (std::size_t i = 0; i < slacks_.numbers().size(); ++i) {
     double& s = slacks_.numbers()[i];
     double& z = multipliers_.numbers()[i];
-    s = std::max(-values_.inequality.numbers()[i], barrier_ / std::max(z, barrier_));
+    s = std::max(-values_.inequality.numbers()[i],
+                 z > 0 ? std::min(barrier_ / z, options_.least_slack) : options_.least_slack);
     z = barrier_ / s;
   }
   const double violation = merit(values_, slacks_).violation;
   largest_allowed_ = 1e4 * std::max(1.0, violation);
   small_violation_ = 1e-4 * std::max(1.0, violation);
+}
+
+void InteriorPoint::take_multipliers(const StageRows& costates, const StageRows& of_inequalities) {
+  costates_ = costates;
+  multipliers_ = of_inequalities;
 }
 
 void InteriorPoint::move_on() {
@@ -451,6 +458,7 @@ void InteriorPoint::explain() {
 
 /// From where it begins, until it is converged or knows why not.
 void InteriorPoint::iterate(int most_iterations) {
+  most_iterations_ = most_iterations;
   if (!merit(values_, slacks_).finite()) {
     report_.status = ControlStatus::not_finite;
     return;
@@ -478,7 +486,6 @@ void InteriorPoint::iterate(int most_iterations) {
     }
     evaluate();
   }
-  if (error(0).largest() <= options_.tolerance) report_.status = ControlStatus::converged;
 }
 
 ControlReport InteriorPoint::solve() {
@@ -493,6 +500,8 @@ ControlReport InteriorPoint::solve() {
 ControlReport InteriorPoint::resume(int most_iterations) {
   begin_again();
   iterate(most_iterations);
+  if (report_.status == ControlStatus::not_converged && error(0).largest() <= options_.tolerance)
+    report_.status = ControlStatus::converged;  // by the last iteration that it is allowed
   describe();
   return report_;
 }

@@ -13,7 +13,7 @@
 ///
 /// Requires a trajectory whose ends are those of the problem; it need satisfy no constraint. Returns a ControlReport;
 /// where it is not `converged` the trajectory is the last iterate, and `worst` lists what is violated most. No
-/// allocation in an iteration but of the filter's entries. Nothing throws.
+/// allocation in an iteration but of the filter's entries beyond a thousand. Nothing throws.
 ///
 /// Waechter and Biegler, Math. Program. 106 (2006): filter, inertia correction, second-order corrections; the
 /// restoration is a primal-dual iteration on the smoothed sum of violations.
@@ -95,6 +95,8 @@ class InteriorPoint {
   ControlReport resume(int most_iterations);
   /// The multipliers of stage k + 1 become those of stage k, of a horizon that has moved on; the last stage keeps its.
   void move_on();
+  /// Those of a solution that is known, for `resume`.
+  void take_multipliers(const StageRows& costates, const StageRows& of_inequalities);
 
   /// The costates lambda of the equalities, and the multipliers z >= 0 of the inequalities, at the trajectory.
   const StageRows& costates() const { return costates_; }
@@ -171,6 +173,7 @@ class InteriorPoint {
   std::vector<Merit> filter_;
   double largest_allowed_ = 0;  // violation
   double small_violation_ = 0;
+  int most_iterations_ = 0;
   ControlReport report_;
 };
 

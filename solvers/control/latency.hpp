@@ -7,7 +7,7 @@
 ///     const double usual = latency.percentile(50);  // s
 ///
 /// Requires percentiles from 0 to 100. Returns the upper end of the class that holds it, the largest value itself for
-/// 100, and zero of no solves. Nothing throws.
+/// 100, and zero of no solves; what is beyond the ends counts as these. Nothing throws.
 
 #include <algorithm>
 #include <array>
@@ -28,8 +28,8 @@ class Latency {
   long count() const { return count_; }
   double longest() const { return longest_; }
   double percentile(double p) const {
-    if (p >= 100) return longest_;
-    const auto wanted = long(std::ceil(p / 100 * double(count_)));
+    if (!(p < 100)) return longest_;
+    const auto wanted = long(std::ceil(p * double(count_) / 100 - 1e-9));
     long below = 0;
     for (std::size_t i = 0; i < classes_.size(); ++i) {
       below += classes_[i];

@@ -66,7 +66,7 @@ bool InteriorPoint::restore() {
   set_all(multipliers_, 0.5);
   last_shift_ = 0;
   bool found = false;
-  while (report_.iterations < options_.max_iterations) {
+  while (report_.iterations < most_iterations_) {
     ++report_.iterations;
     evaluate();
     for (long k = 0; k < sizes_.stages; ++k) {

@@ -125,7 +125,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     if (!end_is_fixed_) tried_.boundary = product;
     tried_.path.step = now_.path.step * std::exp(fraction * by.duration);
   }
-  void accept() override { std::swap(now_, tried_); }
+  void accept() override { now_ = tried_; }
 
  private:
   static constexpr int n = Sys::dimension;

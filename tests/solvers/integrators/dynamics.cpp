@@ -85,6 +85,7 @@ TEST(BrokenDynamics, FrictionUnderConstraintsIsNotPoisson) {
 /// Steps that L generates are Poisson whatever a solver makes of them.
 laws::LawReport laws_of_long_steps(const laws::MakeStepSolver<Kepler>& make) {
   Kepler system;
+  system.quadrature = Quadrature::midpoint;  // by the trapezoid one iteration solves them
   system.h = 0.5;
   auto report = laws::dynamics_laws(system, draw_orbit, 1e-10, make);
   EXPECT_TRUE(report.law("the step is Poisson").holds()) << report;

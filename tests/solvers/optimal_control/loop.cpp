@@ -105,6 +105,7 @@ TEST(ControlLoops, RealTimeIterationsContract) {
   for (int k = 0; k < 100; ++k) {
     const ControlReport report = loop.advance(loop.followed());
     EXPECT_LE(report.iterations, 1);
+    EXPECT_LE(loop.control().cwiseAbs().maxCoeff(), 0.6 + 0.05) << k;
     violation = report.violation;
     EXPECT_TRUE(loop.is_usable(report, 0.1)) << k << ": " << violation;
   }
@@ -122,10 +123,35 @@ TEST(ControlLoops, WhatCannotBeIsTypedAndTheLoopStartsAnew) {
   ASSERT_TRUE(loop.begin().converged());
   ASSERT_TRUE(loop.advance(loop.followed()).converged());
   const ControlReport far = loop.advance(Line::arrow({50, 0}, {0, 0}));
+  EXPECT_LE(far.iterations, 60);
   EXPECT_FALSE(far.converged());
   EXPECT_FALSE(loop.is_usable(far, 1e-3));
   EXPECT_TRUE(loop.restart(Line::arrow({0.5, 0}, {0, 0})).converged());
   EXPECT_TRUE(loop.advance(loop.followed()).converged());
+  EXPECT_EQ(loop.restarts(), 0);
+  EXPECT_TRUE(loop.follow(Line::arrow({0.4, 0}, {0, 0}), 1e-3).converged());
+  const ControlReport none = loop.advance(Line::arrow({std::nan(""), 0}, {0, 0}));
+  EXPECT_FALSE(loop.is_usable(none, 1e9)) << to_string(none.status);
+}
+
+// Limits are those of a sample, restoration included; further iterations go on from where it stopped.
+TEST(ControlLoops, KeepTheirLimitOfIterations) {
+  for (const int most : {1, 2, 5}) {
+    ControlLoop<SatelliteTurn> loop(turn(), 20, {.iterations = most});
+    ASSERT_TRUE(loop.begin().converged());
+    Chance chance(0.2);
+    for (int k = 0; k < 10; ++k) EXPECT_LE(loop.advance(loop.followed(chance())).iterations, most);
+  }
+}
+TEST(ControlLoops, BeginWithAKnownSolution) {
+  const auto task = turn();
+  const auto known = solve_control(task, 30);
+  ASSERT_TRUE(known.report.converged());
+  ControlLoop<SatelliteTurn> loop(task, known);
+  const ControlReport first = loop.begin();
+  ASSERT_TRUE(first.converged());
+  EXPECT_LE(first.iterations, 6);
+  EXPECT_NEAR(first.cost, known.report.cost, 1e-7 * known.report.cost);
 }
 
 TEST(ControlLoops, RefuseWhatTheyCannotLookAheadFor) {
@@ -133,6 +159,10 @@ TEST(ControlLoops, RefuseWhatTheyCannotLookAheadFor) {
   task.duration_is_free = true;
   EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 20), std::invalid_argument);
   task.duration_is_free = false;
+  EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 1), std::invalid_argument);
+  task.free_end[3] = true;
+  EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 20), std::invalid_argument);
+  task.free_end[3] = false;
   task.lower = task.upper;
   EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 20), std::invalid_argument);
 }
