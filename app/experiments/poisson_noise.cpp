@@ -76,8 +76,9 @@ std::vector<NoiseRow> run_noise_study(int paths, const std::function<void(long, 
   report(1, parts);
   constexpr long steps = 100'000;
   for (const double temperature : {0.0, 0.5})
-    rows.push_back({temperature > 0 ? "change of |M| over 1e5 steps, with friction" : "change of |M| over 1e5 steps", 0,
-                    drift_of_size(temperature, steps), 0});
+    rows.push_back({temperature > 0 ? "change of the size of M over 1e5 steps, with friction"
+                                    : "change of the size of M over 1e5 steps",
+                    0, drift_of_size(temperature, steps), 0});
   report(2, parts);
   const EulerTop top;
   const double temperature = 0.5;
