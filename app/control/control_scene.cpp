@@ -9,17 +9,15 @@ namespace lagroid::app {
 
 namespace {
 
+const NumberRule a_tolerance{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }};
 const KeyOf<Number> duration_key{"duration", {positive}, "s", "T; where it is free, the first guess of it"};
 const KeyOf<Flag> free_key{"free", {}, "", "true: the duration is an unknown", false};
 const KeyOf<Whole> stages_key{"stages", {2, 1'000'000}, "", "N, arrows between the ends", 100L};
 const KeyOf<Whole> starts_key{
     "starts", {1, 100'000}, "", "trajectories to start from: straight, drifting, then wound and bent", 10L};
 const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of the starts", 1L};
-const KeyOf<Number> tolerance_key{"tolerance",
-                                  {{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }}},
-                                  "",
-                                  "on every part of the KKT residual",
-                                  ControlOptions().tolerance};
+const KeyOf<Number> tolerance_key{
+    "tolerance", {a_tolerance}, "", "on every part of the KKT residual", ControlOptions().tolerance};
 const KeyOf<Whole> iterations_key{
     "iterations", {1, 1'000'000}, "", "of each start, at most", long(ControlOptions().max_iterations)};
 
@@ -41,11 +39,8 @@ const KeyOf<Whole> loop_iterations_key{"iterations",
                                        "",
                                        "of a sample, at most; 1 is the real-time iteration",
                                        long(LoopScene().iterations)};
-const KeyOf<Number> loop_tolerance_key{"tolerance",
-                                       {{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }}},
-                                       "",
-                                       "on every part of a sample's KKT residual",
-                                       LoopScene().tolerance};
+const KeyOf<Number> loop_tolerance_key{
+    "tolerance", {a_tolerance}, "", "on every part of a sample's KKT residual", LoopScene().tolerance};
 const KeyOf<Number> usable_key{"usable",
                                {nonnegative},
                                "",

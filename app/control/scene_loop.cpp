@@ -1,6 +1,5 @@
 #include "scene_loop.hpp"
 
-#include <lagroid/run/reports/clock.hpp>
 #include <lagroid/solvers/poisson/wiener_path.hpp>
 
 #include <fmt/format.h>
@@ -38,7 +37,7 @@ ControlResult close_loop(const ControlProblem& problem, SceneLoop& loop, const L
     out.iterations += report.iterations;
     if (report.converged()) continue;
     ++summary.not_converged;
-    if (report.status != ControlStatus::not_finite && report.violation <= scene.usable) continue;
+    if (report.is_usable(scene.usable)) continue;
     out.report = report;
     out.report.message = fmt::format(
         "sample {}: its constraints are violated by {:.2g} after {} iterations; allow more of them "

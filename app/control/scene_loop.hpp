@@ -3,7 +3,7 @@
 /// sample, from where the last control has led and chance has pushed.
 ///
 ///     const auto loop = problem.loop(scene, watch);
-///     const ControlResult found = close_loop(problem, *loop, scene_of_loop, watch);
+///     const ControlResult found = close_loop(problem, *loop, scene_of_loop, start, watch);
 
 #include "control_problem.hpp"
 
@@ -11,7 +11,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 

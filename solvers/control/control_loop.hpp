@@ -14,8 +14,8 @@
 ///
 /// Requires what solve_control does, a duration that is not free, and an end at which the motion can rest for what the
 /// horizon moves beyond it. Where a solve does not converge in the iterations that it is allowed, the report says so,
-/// and the plan is the last iterate: `is_usable` says whether it satisfies its constraints to a tolerance of one's own.
-/// `restart` plans anew from the straight trajectory.
+/// and the plan is the last iterate: `ControlReport::is_usable` says whether it satisfies its constraints to a
+/// tolerance of one's own. `restart` plans anew from the straight trajectory.
 ///
 /// With `iterations` of one it is the real-time iteration of Diehl, Bock and Schloeder (SIAM J. Control Optim. 43,
 /// 2005): one Newton step a sample, whose errors contract from sample to sample.
@@ -91,7 +91,7 @@ template <class Sys> class ControlLoop {
       transcription_.move_on(boundary);
       solver_.move_on();
       ControlReport report = solver_.resume(options_.iterations);
-      if (report.converged() || is_usable(report, usable)) return report;
+      if (report.converged() || report.is_usable(usable)) return report;
       ++restarts_;
       const int in_vain = report.iterations;
       report = start_anew(boundary);
@@ -113,11 +113,6 @@ template <class Sys> class ControlLoop {
   const ControlTrajectory<Sys>& plan() const { return transcription_.trajectory(); }
   /// Of the calls of `advance`, `restart` and `follow`.
   const Latency& latency() const { return latency_; }
-
-  /// Whether a plan that did not converge satisfies its constraints so well that it may be followed.
-  static bool is_usable(const ControlReport& report, double violation) {
-    return report.status != ControlStatus::not_finite && report.violation <= violation;
-  }
 
  private:
   static const ControlLoopOptions& checked(const ControlLoopOptions& options, const ControlTask<Sys>& task,

@@ -83,6 +83,10 @@ struct ControlReport {
   std::string message;                     ///< where it is not converged: what to do
 
   bool converged() const { return status == ControlStatus::converged; }
+  /// Whether a trajectory that did not converge satisfies its constraints so well that it may be followed.
+  bool is_usable(double most_violated) const {
+    return status != ControlStatus::not_finite && violation <= most_violated;
+  }
 };
 
 class InteriorPoint {

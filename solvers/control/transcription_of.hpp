@@ -166,6 +166,23 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     return out;
   }
 
+  /// The stage's Lagrangian; place(jet, row) writes the first derivatives of each of its functions.
+  template <class J, class Place>
+  J lagrangian_of(const Functions<J>& f, long stage, const double* lambda, const double* z, const Place& place,
+                  StageDerivatives& out) const {
+    place(f.cost, out.gradient[stage]);
+    J lagrangian = f.cost;
+    for (int i = 0; i < all_equalities; ++i) {
+      place(f.equality(i), out.equality[stage] + i * d);
+      lagrangian += f.equality(i) * lambda[i];
+    }
+    for (int i = 0; i < Sys::inequalities; ++i) {
+      place(f.inequality(i), out.inequality[stage] + i * d);
+      lagrangian += f.inequality(i) * z[i];
+    }
+    return lagrangian;
+  }
+
   /// In one pass along the arrow's frame, pushed to its ends (second_derivatives.hpp).
   void along_frame(long stage, const double* lambda, const double* z, StageDerivatives& out) const requires framed {
     constexpr int f = arrow_dimension_of<G>();
@@ -193,16 +210,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       }
       for (int i = 0; i < others; ++i) row[2 * n + i] = gradient(f + i);
     };
-    push(at_jet.cost, out.gradient[stage]);
-    J lagrangian = at_jet.cost;
-    for (int i = 0; i < all_equalities; ++i) {
-      push(at_jet.equality(i), out.equality[stage] + i * d);
-      lagrangian += at_jet.equality(i) * lambda[i];
-    }
-    for (int i = 0; i < Sys::inequalities; ++i) {
-      push(at_jet.inequality(i), out.inequality[stage] + i * d);
-      lagrangian += at_jet.inequality(i) * z[i];
-    }
+    const J lagrangian = lagrangian_of(at_jet, stage, lambda, z, push, out);
 
     const Matrix<double, all, all> whole = lagrangian.hessian();
     const Matrix<double, f, f> hessian = whole.template topLeftCorner<f, f>();
@@ -254,16 +262,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     const ArrowOf<G, J> g = groupoid.translate(a, groupoid.template cast<J>(now_.path.arrows[at]), b);
     const Functions<J> f = functions<J>(g, u, step, stage);
     const auto place = [](const J& of, double* row) { Eigen::Map<Vector<double, d>>{row} = of.gradient(); };
-    place(f.cost, out.gradient[stage]);
-    J lagrangian = f.cost;
-    for (int i = 0; i < all_equalities; ++i) {
-      place(f.equality(i), out.equality[stage] + i * d);
-      lagrangian += f.equality(i) * lambda[i];
-    }
-    for (int i = 0; i < Sys::inequalities; ++i) {
-      place(f.inequality(i), out.inequality[stage] + i * d);
-      lagrangian += f.inequality(i) * z[i];
-    }
+    const J lagrangian = lagrangian_of(f, stage, lambda, z, place, out);
     Eigen::Map<Matrix<double, d, d>>{out.hessian[stage]} = lagrangian.hessian();
   }
 

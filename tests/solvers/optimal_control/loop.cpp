@@ -107,7 +107,7 @@ TEST(ControlLoops, RealTimeIterationsContract) {
     EXPECT_LE(report.iterations, 1);
     EXPECT_LE(loop.control().cwiseAbs().maxCoeff(), 0.6 + 0.05) << k;
     violation = report.violation;
-    EXPECT_TRUE(loop.is_usable(report, 0.1)) << k << ": " << violation;
+    EXPECT_TRUE(report.is_usable(0.1)) << k << ": " << violation;
   }
   EXPECT_LT(violation, 1e-6);
   EXPECT_LT(SatelliteTurn::GroupoidType().tau_inverse(loop.followed()).norm(), 0.05);
@@ -125,13 +125,13 @@ TEST(ControlLoops, WhatCannotBeIsTypedAndTheLoopStartsAnew) {
   const ControlReport far = loop.advance(Line::arrow({50, 0}, {0, 0}));
   EXPECT_LE(far.iterations, 60);
   EXPECT_FALSE(far.converged());
-  EXPECT_FALSE(loop.is_usable(far, 1e-3));
+  EXPECT_FALSE(far.is_usable(1e-3));
   EXPECT_TRUE(loop.restart(Line::arrow({0.5, 0}, {0, 0})).converged());
   EXPECT_TRUE(loop.advance(loop.followed()).converged());
   EXPECT_EQ(loop.restarts(), 0);
   EXPECT_TRUE(loop.follow(Line::arrow({0.4, 0}, {0, 0}), 1e-3).converged());
   const ControlReport none = loop.advance(Line::arrow({std::nan(""), 0}, {0, 0}));
-  EXPECT_FALSE(loop.is_usable(none, 1e9)) << to_string(none.status);
+  EXPECT_FALSE(none.is_usable(1e9)) << to_string(none.status);
 }
 
 // Limits are those of a sample, restoration included; further iterations go on from where it stopped.
