@@ -11,6 +11,8 @@
 ///     neither                       all methods, studies, sweeps, boundary values
 ///     LAGROID_WITH_LAWS defined     the laws: `check`
 ///
+/// Poisson systems are modules too (own_poisson.hpp).
+///
 /// Requires a system with a default constructor. Returns the exit code of the command; what goes wrong is one line on
 /// standard error.
 
@@ -43,9 +45,10 @@
 
 namespace lagroid {
 
-/// A system of a program, whatever its type.
+/// A system of a program, whatever its type: on a groupoid, or on a Poisson manifold.
 struct Module {
-  std::shared_ptr<const app::SystemModule> of;
+  std::shared_ptr<const app::SystemModule> of = nullptr;
+  std::shared_ptr<const app::PoissonEntry> bracket = nullptr;
 #if defined(LAGROID_WITH_LAWS)
   std::function<Certificate(const app::Section& scene, const app::CheckCommandOptions& options)> certify;
 #endif
@@ -59,16 +62,16 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
               std::type_identity_t<app::Dress<Sys>> dress = nullptr) {
   if (summary.empty()) summary = "a system on " + Sys::GroupoidType::name();
 #if defined(LAGROID_STEPS_ALONE)
-  return {std::make_shared<const app::StepsModule<Sys>>(std::move(name), std::move(summary), dress)};
+  return {.of = std::make_shared<const app::StepsModule<Sys>>(std::move(name), std::move(summary), dress)};
 #else
   const auto made =
       std::make_shared<const app::ModuleOf<Sys>>(app::any_module<Sys>(std::move(name), std::move(summary), dress));
 #if defined(LAGROID_WITH_LAWS)
-  return {made, [made](const app::Section& scene, const app::CheckCommandOptions& options) {
+  return {.of = made, .certify = [made](const app::Section& scene, const app::CheckCommandOptions& options) {
             return app::certify(made->prepare(scene, {.progress = !options.json}), options);
           }};
 #else
-  return {made};
+  return {.of = made};
 #endif
 #endif
 }
@@ -76,8 +79,11 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
 /// Serves a command line of lagroid for these systems: run, resume, view, plot, study, sweep, list, schema, cite and,
 /// where the program beside it with the laws is built, check. Returns the exit code.
 inline int program(int argc, char** argv, std::vector<Module> modules) {
-  std::vector<const app::SystemModule*> systems;
-  for (const Module& each : modules) systems.push_back(each.of.get());
+  app::OwnSystems systems;
+  for (const Module& each : modules) {
+    if (each.of) systems.systems.push_back(each.of.get());
+    if (each.bracket) systems.brackets.push_back(each.bracket.get());
+  }
 #if defined(LAGROID_WITH_LAWS)
   const auto ask = [&](const app::SystemModule& asked, const app::Section& scene, const app::CheckCommandOptions& how) {
     const auto is = [&](const Module& each) { return each.of.get() == &asked; };

@@ -240,15 +240,18 @@ int reproduce_poisson(const ReproduceOptions& options) {
     };
     found.rows = run_poisson_study(options.poisson_steps, part(0));
     found.work = run_poisson_work(part(1));
+    found.above = run_poisson_above();
+    found.period_count = options.poisson_periods;
+    if (found.period_count > 0) found.periods = run_periods(found.period_count);
     if (options.poisson_paths > 0) found.noise = run_noise_study(options.poisson_paths, part(2));
   }
   const std::vector<PoissonRow>& rows = found.rows;
   std::string note;
-  const auto files =
-      write_poisson_report(found, options.poisson_steps,
-                           fmt::format("./lagroid reproduce {} --steps {} --paths {} --out {}", poisson_name,
-                                       options.poisson_steps, options.poisson_paths, quoted(options.poisson_out)),
-                           options.poisson_out, note);
+  const auto files = write_poisson_report(
+      found, options.poisson_steps,
+      fmt::format("./lagroid reproduce {} --steps {} --paths {} --periods {} --out {}", poisson_name,
+                  options.poisson_steps, options.poisson_paths, options.poisson_periods, quoted(options.poisson_out)),
+      options.poisson_out, note);
   nlohmann::ordered_json result;
   result["status"] = "done";
   result["runs"] = rows.size();
@@ -378,6 +381,11 @@ void poisson_options(CLI::App& command, ReproduceOptions& options) {
   command.add_option("--paths", options.poisson_paths, "of noise, for each of 20 batches; 0 leaves noise out")
       ->capture_default_str()
       ->check(CLI::Range(0, 1'000'000));
+  command
+      .add_option("--periods", options.poisson_periods,
+                  "of predator and prey, beside the methods of odeint; 0 leaves them out")
+      ->capture_default_str()
+      ->check(CLI::Range(0L, 10'000'000L));
   command.add_option("--steps", options.poisson_steps, "of size 0.1, over which Casimirs and energy are watched")
       ->check(CLI::Range(10L, 100'000'000L))
       ->capture_default_str();

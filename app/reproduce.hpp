@@ -26,6 +26,7 @@ struct ReproduceOptions {
   std::string poisson_out = "out/poisson";
   long poisson_steps = 10000;
   int poisson_paths = 50;
+  long poisson_periods = 10000;
   std::string scaling_out = "out/sweep-scaling";
 };
 

@@ -42,6 +42,15 @@ sed -i 's/time.step/time.step/; s/return twice \* 0.5/return twice * 0.25/' spri
 "$lagroid" run spring_bob/spring_bob.cpp >/dev/null 2>&1 || fail "a change does not compile"
 [ "$(programs)" -eq 2 ] || fail "a change was not compiled"
 
+# The same of a Poisson bracket, with every method and its laws from one program each.
+"$lagroid" new bracket my_levels >new.log
+"$lagroid" run my_levels/my_levels.cpp --json >bracket.json 2>bracket.log || { cat bracket.log >&2; fail "the bracket does not run"; }
+grep -q '"status": "converged"' bracket.json || fail "the bracket's run did not converge"
+! grep -q BROKEN bracket.json || fail "the bracket's run breaks a promise"
+"$lagroid" run my_levels/my_levels.cpp my_levels/my_levels.toml --set time.method=hamilton-jacobi-4 --set time.steps=50 >methods.log || fail "the bracket has no other method"
+"$lagroid" run my_levels/my_levels.cpp list >list.log
+grep -q 'stretch' list.log || fail "the bracket's parameters are not listed"
+
 # What is wrong is told in a line, with an exit code, and leaves nothing.
 refused() { # refused CODE WORDS ARGUMENTS...
   local code=0
@@ -81,6 +90,11 @@ if [ -n "$whole" ]; then
     "$lagroid" run "on_$groupoid/on_$groupoid.cpp" >run.log 2>&1 || { cat run.log >&2; fail "the system on $groupoid does not run"; }
     ! grep -q BROKEN run.log || fail "the system on $groupoid breaks a promise"
   done
+  "$lagroid" run my_levels/my_levels.cpp study my_levels/my_levels.toml --out levels >/dev/null || fail "no study of the bracket"
+  "$lagroid" run my_levels/my_levels.cpp check my_levels/my_levels.toml >check.log 2>&1 || { cat check.log >&2; fail "the bracket's laws do not hold"; }
+  sed 's/{0, 2, -x(1)}/{0, 2, x(0)}/' my_levels/my_levels.cpp >no_bracket.cpp
+  ! "$lagroid" run no_bracket.cpp my_levels/my_levels.toml >check.log 2>&1 || fail "a bracket that is none runs"
+  grep -q Jacobi check.log || { cat check.log >&2; fail "the broken identity is not named"; }
   "$lagroid" new groupoid hills >/dev/null
   "$lagroid" run hills/on_hills.cpp >run.log 2>&1 || { cat run.log >&2; fail "the groupoid does not run"; }
   "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml >check.log 2>&1 || { cat check.log >&2; fail "the laws of the groupoid do not hold"; }

@@ -86,6 +86,44 @@ class Parts(unittest.TestCase):
                  for n in (40, 80)]
         self.assertLess(error[1], error[0] / 12)  # 16, of order four
 
+    def test_gradients_of_poisson_systems(self):
+        for scene, of, columns in (("lotka_volterra", "final", 6), ("kirchhoff", "final.state,final.Casimirs,node.20.energy", 16),
+                                   ("stochastic_top", "final.state,integral.energy", 6)):
+            for program in (bin_folder / "lagroid", of_part("poisson")):
+                told = run(program, "gradient", examples / f"{scene}.toml", "--set", "time.steps=40", "--of", of, "--json",
+                           "--check")
+                self.assertEqual(told.returncode, 0, told.stderr)
+                found = json.loads(told.stdout)
+                self.assertEqual(len(found["by"]), columns, scene)
+                self.assertGreater(found["digits_agreed"], 8, scene)
+        refused = {("--set", "time.method=projected-midpoint"): "steps of projected-midpoint have no derivative",
+                   ("--wrt", "parameters.mass"): "nothing of that name is differentiable here",
+                   ("--set", 'event=[{name = "e", when = "x - 1"}]'): "no derivatives through events"}
+        for words, why in refused.items():
+            told = run(of_part("poisson"), "gradient", examples / "three_species.toml", *words)
+            self.assertEqual(told.returncode, 2, told.stdout)
+            self.assertIn(why, told.stderr)
+
+    def test_parameters_of_poisson_systems_are_fitted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene, data = examples / "lotka_volterra.toml", pathlib.Path(folder) / "run"
+            short = ("--set", "time.steps=300", "--set", "output.every=10")
+            told = run(of_part("poisson"), "run", scene, *short, "--out", data)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            with open(data / "trajectory.csv") as file:
+                rows = list(csv.DictReader(file))
+            measured = data / "measured.csv"
+            with open(measured, "w") as file:
+                file.write("t,x,y\n" + "".join(f"{row['t']},{row['x']},{row['y']}\n" for row in rows))
+            told = run(of_part("poisson"), "fit", scene, measured, *short, "--set", "parameters.growth=1.1", "--set",
+                       "parameters.death=0.9", "--wrt", "parameters.growth,parameters.death", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            truth = json.loads(run(of_part("poisson"), "fit", scene, measured, *short, "--wrt", "parameters.growth",
+                                   "--json").stdout)
+            found = json.loads(told.stdout)
+            self.assertLess(found["cost"], 1e-20, told.stdout)
+            self.assertLess(truth["cost"], 1e-20)
+
     def test_gradients_go_through_events(self):
         kicked = ('event=[{name = "wall", when = "sin(q) - 0.3*cos(2*pi*t)", direction = "falling", kick = ["-0.4*p + 0.1*q^2"]},'
                   '{name = "turn", when = "p", direction = "rising"}]')

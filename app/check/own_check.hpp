@@ -1,13 +1,12 @@
 #pragma once
 /// `check` of a program of one's own (own_program.hpp).
 
-#include "../scenes/system_module.hpp"
+#include "../own/own_parts.hpp"
 #include "check_options.hpp"
 
 #include <lagroid/run/ledger/certificate.hpp>
 
 #include <functional>
-#include <vector>
 
 namespace lagroid::app {
 
@@ -16,6 +15,6 @@ using AskLaws =
     std::function<Certificate(const SystemModule& module, const Section& scene, const CheckCommandOptions& options)>;
 
 /// Serves a command line of `check` for the systems. Returns the exit code.
-int own_check_program(int argc, char** argv, std::vector<const SystemModule*> systems, AskLaws ask);
+int own_check_program(int argc, char** argv, OwnSystems systems, AskLaws ask);
 
 }  // namespace lagroid::app

@@ -1,9 +1,10 @@
 #include "poisson_study.hpp"
 
-#include "../poisson/poisson_entry.hpp"
+#include "../poisson/poisson_family.hpp"
 #include "../reading/kinds.hpp"
 
 #include <lagroid/run/files/output_folder.hpp>
+#include <lagroid/solvers/poisson/poisson_methods.hpp>
 #include <lagroid/solvers/status.hpp>
 
 #include <fmt/format.h>
@@ -23,6 +24,7 @@ namespace lagroid::app {
 namespace {
 
 constexpr double step_size = 0.1;
+constexpr long above_steps = 1000;
 
 struct Start {
   std::string_view system;
@@ -34,6 +36,9 @@ const std::vector<Start>& starts() {
                                       {keys::volterra_ring, {1, 0.5, 0.8, 1.3, 0.4}},
                                       {keys::euler_top, {0.8, 0.6, 1.1}},
                                       {keys::kirchhoff, {0.4, 0.2, -0.6, 0.7, -0.1, 0.5}},
+                                      {keys::heavy_top_bracket, {0, 0.1, 2, 0, 0.6, 0.8}},
+                                      {keys::body_in_space, {0.4, 0.6, 1.1, 1, 0, 0, 0, 0.6, -0.8, 0, 0.8, 0.6}},
+                                      {keys::spin_chain, {1, 0, 0, 0, 1, 0, 0.6, 0, 0.8}},
                                       {keys::toda_ring, {0.5, 0.7, 0.4, 0.3, -0.5, 0.2}},
                                       {keys::maxwell_bloch, {0.5, 1, -0.3}},
                                       {keys::sklyanin, {0.7, 0.4, -0.5, 0.6}},
@@ -42,14 +47,14 @@ const std::vector<Start>& starts() {
 }
 
 const PoissonEntry& entry_named(std::string_view name) {
-  const auto& all = poisson_entries();
+  const auto& all = library_brackets().entries();
   return *std::find_if(all.begin(), all.end(), [&](const PoissonEntry& each) { return each.name == name; });
 }
 
 /// Where the motion is after two units of time; empty where a step failed.
 std::vector<double> end_of(const AnyPoissonSystem& system, const std::vector<double>& start, std::string_view method,
-                           int steps) {
-  const auto motion = system.begin(start, {.method = std::string(method), .step = 2.0 / steps});
+                           int steps, double tolerance = 1e-12) {
+  const auto motion = system.begin(start, {.method = std::string(method), .step = 2.0 / steps, .tolerance = tolerance});
   for (int k = 0; k < steps; ++k)
     if (!motion->advance().converged()) return {};
   return motion->point();
@@ -74,9 +79,10 @@ PoissonRow measured_row(const PoissonEntry& entry, const AnyPoissonSystem& syste
   const double coarse = distance(end_of(system, start, method.name, 20), exact);
   const double fine = distance(end_of(system, start, method.name, 40), exact);
   constexpr double rounding = 1e-13;
-  row.order = fine > rounding ? std::log2(coarse / fine) : std::numeric_limits<double>::quiet_NaN();
+  row.order = fine > rounding && !poisson_methods::by_tolerance(method) ? std::log2(coarse / fine)
+                                                                        : std::numeric_limits<double>::quiet_NaN();
 
-  const auto motion = system.begin(start, {.method = std::string(method.name), .step = step_size});
+  const auto motion = system.begin(start, {.method = std::string(method.name), .step = step_size, .tolerance = 1e-12});
   row.defect = motion->poisson_defect();
   const auto first = system.measure(start);
   const auto begun = std::chrono::steady_clock::now();
@@ -105,11 +111,11 @@ PoissonRow measured_row(const PoissonEntry& entry, const AnyPoissonSystem& syste
 constexpr std::array<std::string_view, 3> systems_of_work{keys::lotka_volterra, keys::euler_top, keys::toda_ring};
 
 PoissonWork measured_work(const PoissonEntry& entry, const AnyPoissonSystem& system, const std::vector<double>& start,
-                          const DeclaredMethod& method, int steps, const std::vector<double>& exact) {
-  PoissonWork out{std::string(entry.name), std::string(method.name), steps, 0, std::numeric_limits<double>::infinity()};
+                          const DeclaredMethod& method, int steps, double tolerance, const std::vector<double>& exact) {
+  PoissonWork out{entry.name, std::string(method.name), steps, tolerance, 0, std::numeric_limits<double>::infinity()};
   for (int repeat = 0; repeat < 9; ++repeat) {
     const auto begun = std::chrono::steady_clock::now();
-    const auto end = end_of(system, start, method.name, steps);
+    const auto end = end_of(system, start, method.name, std::max(steps, 1), tolerance);
     const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - begun;
     out.microseconds = std::min(out.microseconds, spent.count());
     out.error = distance(end, exact);
@@ -142,7 +148,8 @@ std::string work_table(const std::vector<PoissonWork>& work) {
   std::string out =
       "\n## Work against error\n\n![work against error](work.svg)\n\nMicroseconds for 2 s at the largest step with "
       "that "
-      "error at most, of steps of 0.2 s and their halves; a dash where none had it.\n";
+      "error at most, of steps of 0.2 s and their halves, or at the largest of the tolerances 1e-3, 1e-4, ...; a dash "
+      "where none had it.\n";
   constexpr std::array errors{1e-3, 1e-6, 1e-9};
   for (const std::string_view system : systems_of_work) {
     out += fmt::format("\n| {} | 1e-3 | 1e-6 | 1e-9 |\n|---|---|---|---|\n", system);
@@ -214,6 +221,8 @@ std::string report_of(const PoissonFindings& found, long steps, const std::strin
                        row.ended.empty() ? number(row.energy_last) : row.ended, row.microseconds);
   }
   out += work_table(found.work);
+  if (!found.periods.empty()) out += periods_table(found.periods, found.period_count);
+  out += above_table(found.above, above_steps);
   if (!found.noise.empty()) out += noise_table(found.noise);
   return out;
 }
@@ -227,9 +236,10 @@ std::string csv_of(const std::vector<PoissonRow>& rows) {
 }
 
 std::string work_csv(const std::vector<PoissonWork>& work) {
-  std::string out = "system,method,steps,error,microseconds\n";
+  std::string out = "system,method,steps,tolerance,error,microseconds\n";
   for (const PoissonWork& each : work)
-    out += fmt::format("{},{},{},{},{}\n", each.system, each.method, each.steps, each.error, each.microseconds);
+    out += fmt::format("{},{},{},{},{},{}\n", each.system, each.method, each.steps, each.tolerance, each.error,
+                       each.microseconds);
   return out;
 }
 std::string noise_csv(const std::vector<NoiseRow>& rows) {
@@ -249,16 +259,24 @@ std::vector<PoissonWork> run_poisson_work(const std::function<void(long, long)>&
     const PoissonEntry& entry = entry_named(start.system);
     const auto system = entry.read(parse_scene(fmt::format("system = \"{}\"\n", entry.name), "poisson study", {}));
     const auto exact = end_of(*system, start.state, "hamilton-jacobi-6", 640);
-    for (const DeclaredMethod* method : entry.methods)
-      for (int steps = 10; steps <= 640; steps *= 2) {
-        PoissonWork work = measured_work(entry, *system, start.state, *method, steps, exact);
-        work.error = std::max(work.error, 1e-16);  // of rounding, for logarithms
-        if (std::isfinite(work.error)) out.push_back(std::move(work));
+    const auto add = [&](const DeclaredMethod& method, int steps, double tolerance) {
+      PoissonWork work = measured_work(entry, *system, start.state, method, steps, tolerance, exact);
+      work.error = std::max(work.error, 1e-16);  // of rounding, for logarithms
+      if (std::isfinite(work.error)) out.push_back(std::move(work));
+    };
+    for (const DeclaredMethod* method : entry.methods) {
+      if (poisson_methods::by_tolerance(*method)) {
+        for (double tolerance = 1e-3; tolerance > 1e-14; tolerance *= 0.1) add(*method, 0, tolerance);
+      } else {
+        for (int steps = 10; steps <= 640; steps *= 2) add(*method, steps, 0);
       }
+    }
     report(long(i) + 1, long(systems_of_work.size()));
   }
   return out;
 }
+
+std::vector<AboveRow> run_poisson_above() { return run_from_above(above_steps); }
 
 std::vector<PoissonRow> run_poisson_study(long steps, const std::function<void(long, long)>& report) {
   long all = 0;
@@ -280,8 +298,8 @@ std::string text_of(const PoissonRow& row) {
                      row.method, order_of(row), number(row.defect), casimirs_of(row));
 }
 
-const std::vector<const char*> poisson_report_files{"report.md", "poisson.csv", "work.csv", "noise.csv",
-                                                    "work.gp",   "work.svg",    "work.png"};
+const std::vector<const char*> poisson_report_files{"report.md", "poisson.csv", "work.csv", "above.csv", "periods.csv",
+                                                    "noise.csv", "work.gp",     "work.svg", "work.png"};
 
 std::vector<std::filesystem::path> write_poisson_report(const PoissonFindings& found, long steps,
                                                         const std::string& command, const std::filesystem::path& folder,
@@ -289,10 +307,13 @@ std::vector<std::filesystem::path> write_poisson_report(const PoissonFindings& f
   const auto data = [&](const std::filesystem::path& staging) {
     write_text(csv_of(found.rows), staging / "poisson.csv");
     write_text(work_csv(found.work), staging / "work.csv");
+    write_text(above_csv(found.above), staging / "above.csv");
+    write_text(periods_csv(found.periods), staging / "periods.csv");
     write_text(noise_csv(found.noise), staging / "noise.csv");
     write_text(work_script(found.work), staging / "work.gp");
     write_text(report_of(found, steps, command), staging / "report.md");
-    return std::vector<std::string>{"poisson.csv", "work.csv", "noise.csv", "work.gp", "report.md"};
+    return std::vector<std::string>{"poisson.csv", "work.csv", "above.csv", "periods.csv",
+                                    "noise.csv",   "work.gp",  "report.md"};
   };
   return write_and_draw(folder, poisson_report_files, data, {"work.gp", {"work.svg", "work.png"}}, note);
 }

@@ -1,7 +1,9 @@
 #pragma once
 /// What integrators on Poisson manifolds keep, and at which order they converge, measured on the library's systems.
 
+#include "poisson_above.hpp"
 #include "poisson_noise.hpp"
+#include "poisson_periods.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -30,16 +32,23 @@ std::vector<PoissonRow> run_poisson_study(long steps, const std::function<void(l
 struct PoissonWork {
   std::string system;
   std::string method;
-  int steps = 0;
+  int steps = 0;         ///< 0 of a method that goes by a tolerance
+  double tolerance = 0;  ///< of such a one
   double error = 0;
   double microseconds = 0;  ///< the whole run, the fastest of several
 };
 /// Of a few systems, every method.
 std::vector<PoissonWork> run_poisson_work(const std::function<void(long, long)>& report);
 
+/// Of four mechanical systems, both ways.
+std::vector<AboveRow> run_poisson_above();
+
 struct PoissonFindings {
   std::vector<PoissonRow> rows;
   std::vector<PoissonWork> work;
+  std::vector<AboveRow> above;
+  long period_count = 0;
+  std::vector<PeriodsRow> periods;  ///< over so many
   std::vector<NoiseRow> noise;
 };
 

@@ -44,10 +44,9 @@ template <class Found> int report(const SceneOptions& options, const Found& foun
 template <class Use>
 int with_subject(const SceneOptions& options, const std::vector<AskGradient>& subjects, const Use& use) {
   const Section scene = read_scene(options.scene, options.overrides);
-  const SystemModule& module = module_of_scene(scene);
   for (const AskGradient ask : subjects) {
     try {
-      const auto subject = ask(module, scene);
+      const auto subject = ask(scene);
       if (!subject) continue;
       return use(*subject);
     } catch (const GradientRefused& refusal) {
@@ -58,8 +57,9 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
       return refuse(options.json, exit_bad_input, "no_derivative", refusal.what());
     }
   }
-  return refuse(options.json, exit_bad_input, "no_derivative",
-                fmt::format("{}: there are no derivatives of runs of {}", options.scene, module.name()));
+  return refuse(
+      options.json, exit_bad_input, "no_derivative",
+      fmt::format("{}: there are no derivatives of runs of {}", options.scene, module_of_scene(scene).name()));
 }
 
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
@@ -164,7 +164,8 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
   app.add_option(
          "--of", options.of,
          "final.NAME, node.K.NAME, integral.NAME or, of events, event.NAME.K.COLUMN, separated by commas: "
-         "position, momentum, configuration, a column of them, the time t of an event; events: the times of all "
+         "position, momentum, configuration, of Poisson systems state, energy, Casimirs, a column of them, the time t "
+         "of an event; events: the times of all "
          "(default: all at the end)")
       ->delimiter(',')
       ->allow_extra_args(false);

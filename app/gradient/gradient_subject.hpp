@@ -4,7 +4,8 @@
 ///     const GradientSubject subject = ...;  // of a system's module (gradient_subject_of.hpp)
 ///     const auto motion = subject.begin({"mass"}, {});
 ///
-/// Errors of `begin`: WithoutDerivative later, at the first linearised step; std::invalid_argument for an unknown name.
+/// Errors of `begin`: WithoutDerivative then, or at the first linearised step; std::invalid_argument for an unknown
+/// name.
 
 #include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>

@@ -166,8 +166,9 @@ int begin(const NewOptions& options) {
     files.emplace_back(own_file, filled(templates::groupoid(), {{"class", own_class}, {"name", options.name}}));
   }
   const Words words = words_of_system(system, on);
-  files.emplace_back(system + ".cpp", filled(templates::system(), words));
-  files.emplace_back(system + ".toml", filled(templates::scene(), words));
+  const bool of_bracket = options.what == "bracket";
+  files.emplace_back(system + ".cpp", filled(of_bracket ? templates::bracket() : templates::system(), words));
+  files.emplace_back(system + ".toml", filled(of_bracket ? templates::bracket_scene() : templates::scene(), words));
   files.emplace_back("CMakeLists.txt", filled(templates::cmake(), words));
   write_folder(folder.has_parent_path() ? folder : fs::path(".") / folder, files);
   std::string report;
@@ -182,19 +183,22 @@ ProgramCommand new_command() {
   const auto options = std::make_shared<NewOptions>();
   return {"new",
           [=](CLI::App& program) {
-            CLI::App* command = program.add_subcommand("new", "begin a system or a groupoid of your own, in a folder");
+            CLI::App* command = program.add_subcommand(
+                "new", "begin a system, a groupoid or a Poisson bracket of your own, in a folder");
             std::vector<std::string> names;
             for (const Offered& each : offered) names.emplace_back(each.name);
-            for (const char* what : {"system", "groupoid"}) {
-              CLI::App* sub = command->add_subcommand(
-                  what, std::string(what) == "system" ? "a discrete Lagrangian" : "a groupoid, and a system on it");
+            const std::array<std::array<const char*, 2>, 3> kinds{{{"system", "a discrete Lagrangian"},
+                                                                   {"groupoid", "a groupoid, and a system on it"},
+                                                                   {"bracket", "a Poisson bracket with its energy"}}};
+            for (const auto& [what, about] : kinds) {
+              CLI::App* sub = command->add_subcommand(what, about);
               sub->add_option("name", options->name, "small letters, as in spring_pendulum")->required();
               sub->add_option("--out", options->folder, "the folder; its name otherwise");
               if (std::string(what) == "system")
                 sub->add_option("--groupoid", options->groupoid,
                                 "what it is on: " + fmt::format("{}", fmt::join(names, ", ")))
                     ->check(CLI::IsMember(names));
-              sub->callback([=] { options->what = what; });
+              sub->callback([options, kind = std::string(what)] { options->what = kind; });
             }
             command->require_subcommand(1);
             return command;

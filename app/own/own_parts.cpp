@@ -1,20 +1,48 @@
 #include "own_parts.hpp"
 
+#include "../command/command.hpp"
+#include "../poisson/poisson_family.hpp"
+#include "../poisson/poisson_node.hpp"
 #include "../program.hpp"
 #include "../sweep/sweep.hpp"
 
+#include <fmt/format.h>
 #include <boost/core/demangle.hpp>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace lagroid::app {
 
-int own_program(int argc, char** argv, std::vector<const SystemModule*> systems) {
-  return program(argc, argv, {{&systems_family(), &sweeps_family()}, std::move(systems), {sweep_command()}});
+std::string refusal_of(const OwnSystems& systems) {
+  std::set<std::string> names;
+  const auto add = [&](const std::string& name) { return names.insert(name).second; };
+  for (const SystemModule* each : systems.systems)
+    if (!add(each->name()))
+      return fmt::format("two systems of this program are called {}; give one another name", each->name());
+  for (const PoissonEntry* each : systems.brackets) {
+    if (!add(each->name))
+      return fmt::format("two systems of this program are called {}; give one another name", each->name);
+    std::set<std::string> columns{"t", "energy", "defect"};
+    for (std::size_t i = 0; i < each->casimirs.size(); ++i) columns.insert(casimir_column(i));
+    for (const std::string& label : each->labels)
+      if (!columns.insert(label).second)
+        return fmt::format("{}: two columns would be called {}; change its labels()", each->name, label);
+  }
+  return {};
+}
+
+int own_program(int argc, char** argv, OwnSystems systems) {
+  if (const std::string why = refusal_of(systems); !why.empty())
+    return refuse(asks_for_json(argc, argv), exit_internal_error, "invalid_program", why);
+  const PoissonFamily brackets(systems.brackets);
+  return program(argc, argv,
+                 {{&systems_family(), &brackets, &sweeps_family()}, std::move(systems.systems), {sweep_command()}});
 }
 
 int ask_for_all_methods() {

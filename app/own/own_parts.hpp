@@ -9,8 +9,17 @@
 
 namespace lagroid::app {
 
-/// Serves a command line for the systems: commands that all programs have, and sweeps.
-int own_program(int argc, char** argv, std::vector<const SystemModule*> systems);
+struct PoissonEntry;
+
+/// The systems of a program.
+struct OwnSystems {
+  std::vector<const SystemModule*> systems;   ///< on groupoids
+  std::vector<const PoissonEntry*> brackets;  ///< on Poisson manifolds
+};
+/// Why they cannot be in one program, in a line; empty where they can.
+std::string refusal_of(const OwnSystems& systems);
+/// Serves a command line for them: commands that all programs have, and sweeps.
+int own_program(int argc, char** argv, OwnSystems systems);
 
 /// A scene needs more than a program of steps alone has. (Not a std::exception: it is no error, and no handler of
 /// errors may catch it.)

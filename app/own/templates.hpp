@@ -9,5 +9,7 @@ std::string_view system();
 std::string_view groupoid();
 std::string_view cmake();
 std::string_view scene();
+std::string_view bracket();
+std::string_view bracket_scene();
 
 }  // namespace lagroid::app::templates

@@ -53,9 +53,10 @@ if(LAGROID_APP)
   # What programs of one's own are made of.
   install(TARGETS lagroid_commands lagroid_viewer EXPORT lagroid-commands-targets COMPONENT development)
   install(EXPORT lagroid-commands-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
-  install(FILES ${PROJECT_SOURCE_DIR}/app/own_program.hpp ${PROJECT_SOURCE_DIR}/app/program.hpp
+  install(FILES ${PROJECT_SOURCE_DIR}/app/own_poisson.hpp ${PROJECT_SOURCE_DIR}/app/own_program.hpp
+                ${PROJECT_SOURCE_DIR}/app/program.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app COMPONENT development)
-  foreach(folder own reading keys scenes reductions families command check)
+  foreach(folder own reading keys scenes reductions families command check poisson)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/app/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app
             COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "templates" EXCLUDE)
   endforeach()

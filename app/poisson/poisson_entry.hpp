@@ -7,10 +7,10 @@
 #include <lagroid/core/poisson/bracket_defects.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
 #include <lagroid/solvers/poisson/poisson_integrator.hpp>
+#include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace lagroid::app {
@@ -21,6 +21,11 @@ struct MeasuredFunction {
   double size = 0;
 };
 
+struct NamedNumber {
+  std::string name;
+  double value;
+};
+
 /// A system with the parameters of its scene.
 class AnyPoissonSystem {
  public:
@@ -29,15 +34,21 @@ class AnyPoissonSystem {
                                                    const PoissonOptions& options) const = 0;
   /// The energy, and the Casimirs after it.
   virtual std::vector<MeasuredFunction> measure(const std::vector<double>& x) const = 0;
+  /// The same, a row each, with derivatives by x and by these parameters. Throws as PoissonIntegrator::slope.
+  virtual NodeValues differentiate(const std::vector<double>& x, const std::vector<std::string>& parameters) const = 0;
+  /// Its parameters that are numbers.
+  virtual std::vector<NamedNumber> numbers() const = 0;
+  /// The system with one of these changed.
+  virtual std::unique_ptr<AnyPoissonSystem> changed(const std::string& name, double by) const = 0;
   virtual BracketDefect bracket_defect(const std::vector<double>& x) const = 0;
   /// Why a motion cannot start at x; empty where it can.
   virtual std::string refusal(const std::vector<double>& x) const = 0;
 };
 
 struct PoissonEntry {
-  std::string_view name;
-  std::string_view summary;
-  std::string_view bracket;
+  std::string name;
+  std::string summary;
+  std::string bracket;
   std::vector<std::string> casimirs;  ///< what they are called
   std::vector<std::string> labels;    ///< of the state
   std::vector<std::string> noises;    ///< its noise Hamiltonians
@@ -46,10 +57,5 @@ struct PoissonEntry {
   /// Reads [parameters] of a scene.
   std::unique_ptr<AnyPoissonSystem> (*read)(const Section& scene);
 };
-
-/// In the order in which they are listed to users.
-const std::vector<PoissonEntry>& poisson_entries();
-/// The one that the scene names; null where it names none of these.
-const PoissonEntry* poisson_entry_of(const Section& scene);
 
 }  // namespace lagroid::app

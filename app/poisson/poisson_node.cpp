@@ -14,9 +14,9 @@ namespace {
 
 constexpr const char* defect_name = "Poisson defect";
 
-std::string casimir_column(std::size_t i) { return fmt::format("C{}", i + 1); }
-
 }  // namespace
+
+std::string casimir_column(std::size_t i) { return fmt::format("C{}", i + 1); }
 
 PoissonNode::PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& system, const PoissonIntegrator& method,
                          long every, bool driven)
@@ -30,7 +30,8 @@ PoissonNode::PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& syst
     watched_.push_back({name, {column}, promise, false, SizeOf::terms, promised});
     fields_.push_back({.columns = {column, {column}, "1", meaning, false, {}}});
   };
-  watch("energy", "energy", Promise::bounded, kept.bracket == 0 && !driven, "H");
+  watch("energy", "energy", kept.energy ? Promise::conserved : Promise::bounded,
+        (kept.energy || kept.bracket == 0) && !driven, "H");
   for (std::size_t i = 0; i < entry.casimirs.size(); ++i)
     watch("Casimir " + entry.casimirs[i], casimir_column(i), Promise::conserved, kept.casimirs == 0, "Casimir");
   if (has_defect_)

@@ -6,6 +6,7 @@
 #include <lagroid/run/motion/observables.hpp>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace lagroid::app {
@@ -59,6 +60,8 @@ class PoissonNode final : public Observables {
   mutable std::optional<double> defect_;  ///< where it was needed: it costs more than the step
 };
 
+/// The column of the i-th Casimir.
+std::string casimir_column(std::size_t i);
 /// Adds shapes, panels and conventions.
 void describe_poisson(const PoissonEntry& entry, RunResult& result);
 

@@ -24,8 +24,19 @@ const KeyOf<Number> temperature_key{"temperature",
                                     {},
                                     "none, and no friction"};
 
+const KeyOf<Flag> project_key{
+    "project",
+    {},
+    "",
+    "whether each step ends on the Casimirs of the start, from which rounding walks away otherwise",
+    false};
+
 KeyOf<Number> strength_key(const std::string& name) {
-  return {name, {nonnegative}, "1/sqrt(s)", fmt::format("of the noise along the field of {}", name), 0.0};
+  return {name,
+          {nonnegative},
+          "",
+          fmt::format("of the noise along the field of {0}; with {0} and sqrt(s) an action", name),
+          0.0};
 }
 
 }  // namespace
@@ -36,19 +47,17 @@ std::vector<Key> noise_keys(const PoissonEntry& entry) {
   for (const std::string& name : entry.noises) strength.keys.push_back(strength_key(name));
   return {optional_table(noise_word,
                          {{KeyOf<Table>{strength_word, strength, "", "by the names of the noise Hamiltonians"},
-                           seed_key, path_key, temperature_key}},
+                           seed_key, path_key, temperature_key, project_key}},
                          "what drives the system")};
 }
 
 NoiseOptions read_noise(const Section& scene, const PoissonEntry& entry) {
   NoiseOptions out;
   if (!scene.has(noise_word)) return out;
-  if (entry.noises.empty()) {
-    std::vector<std::string_view> others;
-    for (const PoissonEntry& each : poisson_entries())
-      if (!each.noises.empty()) others.push_back(each.name);
-    scene.fail(noise_word, fmt::format("{} has no noise Hamiltonians; {} have", entry.name, fmt::join(others, ", ")));
-  }
+  if (entry.noises.empty())
+    scene.fail(noise_word, fmt::format("{} has no noise Hamiltonians, along whose fields it could be driven; leave "
+                                       "[noise] out",
+                                       entry.name));
   const std::string names = fmt::format("one or more of {}", fmt::join(entry.noises, ", "));
   const Section noise = scene.section(noise_word, "strength");
   const Section strength = noise.section(strength_word, names);
@@ -56,6 +65,7 @@ NoiseOptions read_noise(const Section& scene, const PoissonEntry& entry) {
   out.seed = std::uint64_t(read_key(noise, seed_key));
   out.path = std::uint32_t(read_key(noise, path_key));
   out.temperature = read_key_or(noise, temperature_key, 0);
+  out.project = read_key(noise, project_key);
   return out;
 }
 
@@ -72,9 +82,10 @@ std::string noise_note(const NoiseOptions& noise, const PoissonEntry& entry) {
   for (std::size_t k = 0; k < noise.strength.size(); ++k)
     if (noise.strength[k] > 0)
       along += fmt::format("{}{} ({:g})", along.empty() ? "" : ", ", entry.noises[k], noise.strength[k]);
-  return fmt::format(
-      "noise along {}, path {} of seed {}{}", along.empty() ? "nothing" : along, noise.path, noise.seed,
-      noise.temperature > 0 ? fmt::format("; friction for the temperature {:g}", noise.temperature) : "");
+  return fmt::format("noise along {}, path {} of seed {}{}{}", along.empty() ? "nothing" : along, noise.path,
+                     noise.seed,
+                     noise.temperature > 0 ? fmt::format("; friction for the temperature {:g}", noise.temperature) : "",
+                     noise.project ? "; each step ends on the Casimirs of the start" : "");
 }
 
 }  // namespace lagroid::app

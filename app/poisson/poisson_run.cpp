@@ -5,6 +5,9 @@
 #include "poisson_node.hpp"
 #include "poisson_noise.hpp"
 
+#include <lagroid/run/interrupt.hpp>
+#include <lagroid/solvers/poisson/poisson_methods.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,8 +20,18 @@ namespace lagroid::app {
 namespace {
 
 /// Why a step failed, and what to do.
-std::string poisson_failure(const StepReport& report, long step, double time) {
+std::string poisson_failure(const StepReport& report, long step, double time, bool by_tolerance) {
   const std::string where = fmt::format("step {} (from t = {:.6g})", step, time);
+  if (by_tolerance) {
+    if (report.status == SolveStatus::no_step)
+      return fmt::format("{}: no step is small enough for the tolerance; use a larger time.tolerance", where);
+    if (report.status == SolveStatus::not_converged)
+      return fmt::format(
+          "{}: too many steps to the next node, or interrupted; use a larger time.tolerance or a smaller "
+          "time.step",
+          where);
+    return fmt::format("{}: the motion left the domain of its energy, or a number overflowed", where);
+  }
   switch (report.status) {
     case SolveStatus::left_domain:
       return fmt::format(
@@ -48,7 +61,7 @@ class PoissonMotion final : public Motion {
         stages_(integrator_->traits().stages),
         node_(entry, *system_, *integrator_, every, options_.noise.present()) {}
 
-  std::string name() const override { return std::string(entry_.name); }
+  std::string name() const override { return entry_.name; }
   MethodTraits traits() const override { return integrator_->traits(); }
 
   StepReport advance() override {
@@ -57,7 +70,7 @@ class PoissonMotion final : public Motion {
     return report;
   }
   std::string failure(const StepReport& report, long step) const override {
-    return poisson_failure(report, step, time());
+    return poisson_failure(report, step, time(), by_tolerance());
   }
   long evaluations(const StepReport& report) const override {
     return stages_ > 0 ? stages_ : std::max(report.iterations, 1);
@@ -71,7 +84,9 @@ class PoissonMotion final : public Motion {
     return node_;
   }
   std::string why_not_cut() const override {
-    return options_.noise.present() ? "the path of the noise is not known inside of a step" : "";
+    return options_.noise.present() ? "the path of the noise is not known inside of a step"
+           : by_tolerance()         ? "steps by a tolerance end at nodes; take another time.method"
+                                    : "";
   }
   void keep_node() override {
     kept_ = integrator_->point();
@@ -107,13 +122,14 @@ class PoissonMotion final : public Motion {
   void describe(RunResult& result) const override {
     const KeptStructure kept = integrator_->kept();
     const auto words = [](int power) {
-      return power == 0   ? std::string("exactly")
-             : power == 1 ? std::string("up to h in a step")
-                          : fmt::format("up to h^{} in a step", power);
+      return power == KeptStructure::to_the_tolerance ? std::string("up to the tolerance")
+             : power == 0                             ? std::string("exactly")
+             : power == 1                             ? std::string("up to h in a step")
+                                                      : fmt::format("up to h^{} in a step", power);
     };
     if (options_.noise.present()) result.notes.push_back(noise_note(options_.noise, entry_));
-    result.notes.push_back(
-        fmt::format("the bracket is kept {}, Casimirs {}", words(kept.bracket), words(kept.casimirs)));
+    result.notes.push_back(fmt::format("the bracket is kept {}, Casimirs{} {}", words(kept.bracket),
+                                       kept.energy ? " and energy" : "", words(kept.casimirs)));
     describe_poisson(entry_, result);
   }
   void serialize(NumberArchive& archive) override {
@@ -122,6 +138,7 @@ class PoissonMotion final : public Motion {
   }
 
  private:
+  bool by_tolerance() const { return integrator_->kept().bracket == KeptStructure::to_the_tolerance; }
   bool go_within(double share) {
     PoissonOptions part = options_;
     const double size = share * rest_;
@@ -164,6 +181,13 @@ std::vector<Method> methods_of(const PoissonEntry& entry) {
     std::vector<Method> made;
     if (each->other_orders == OtherOrders::composed_steps) {
       made = composed_methods(each->name, compositions::all);
+    } else if (poisson_methods::by_tolerance(*each)) {
+      for (const char* tolerance : {"1e-6", "1e-9", "1e-12"})
+        made.push_back({fmt::format("{}/{}", each->name, tolerance),
+                        each->order,
+                        each->stages,
+                        false,
+                        {fmt::format("time.method={}", each->name), fmt::format("time.tolerance={}", tolerance)}});
     } else {
       made.push_back(
           {std::string(each->name), each->order, each->stages, true, {fmt::format("time.method={}", each->name)}});
@@ -182,8 +206,8 @@ Table poisson_start_table(const PoissonEntry& entry) { return {{state_key(entry)
 
 Table poisson_time_table(const PoissonEntry& entry) {
   Table table{grid_keys()};
-  table.keys.insert(table.keys.end(),
-                    {method_key(entry), time_keys::order(), time_keys::composition(compositions::all)});
+  table.keys.insert(table.keys.end(), {method_key(entry), time_keys::order(), time_keys::composition(compositions::all),
+                                       time_keys::tolerance});
   return table;
 }
 
@@ -195,6 +219,8 @@ ReadMethod read_poisson_method(const Section& time, const PoissonEntry& entry) {
   if (declared.other_orders == OtherOrders::composed_steps)
     return {&declared, read_composition(time, compositions::all)};
   if (time.has("composition")) time.fail("composition", fmt::format("is of steps of order two, not of {}", name));
+  if (time.has("order") && poisson_methods::by_tolerance(declared))
+    time.fail("order", fmt::format("of {} follows its tolerance; leave it out", name));
   if (time.has("order") && read_key(time, time_keys::order()) != declared.order)
     time.fail("order", fmt::format("{} is of order {}", name, declared.order));
   return {&declared, compositions::single};
@@ -213,10 +239,16 @@ PoissonScene read_poisson(const PoissonEntry& entry, const Section& scene, const
   const ReadMethod method = read_poisson_method(time, entry);
   read.options.method = method.declared->name;
   read.options.composition = method.composition;
+  if (const auto tolerance = read_tolerance(time, poisson_methods::by_tolerance(*method.declared))) {
+    read.options.tolerance = *tolerance;
+    read.options.stop = &InterruptGuard::interrupted;
+    if (!(read.options.step > 0))
+      time.fail("step", "is the distance of nodes, to which steps by a tolerance go forward");
+  }
   read.options.noise = read_noise(scene, entry);
   if (read.options.noise.present()) refuse_for_noise(time, *method.declared, method.composition);
   out.extent = read_extent(scene, context);
-  scene.choice("system", {std::string(entry.name)});
+  scene.choice("system", {entry.name});
   scene.finish();
   out.methods = methods_of(entry);
   out.motion = std::make_unique<PoissonMotion>(entry, read, out.extent.every);

@@ -23,12 +23,16 @@ inline constexpr std::string_view three_species = "three_species";
 inline constexpr std::string_view volterra_ring = "volterra_ring";
 inline constexpr std::string_view euler_top = "euler_top";
 inline constexpr std::string_view kirchhoff = "kirchhoff";
+inline constexpr std::string_view heavy_top_bracket = "heavy_top_bracket";
+inline constexpr std::string_view body_in_space = "body_in_space";
+inline constexpr std::string_view spin_chain = "spin_chain";
 inline constexpr std::string_view toda = "toda";
 inline constexpr std::string_view toda_ring = "toda_ring";
 inline constexpr std::string_view maxwell_bloch = "maxwell_bloch";
 inline constexpr std::string_view sklyanin = "sklyanin";
 inline constexpr std::string_view magnetic_particle = "magnetic_particle";
-inline constexpr std::array of_brackets{lotka_volterra, three_species, volterra_ring, euler_top, kirchhoff,
-                                        toda,           toda_ring,     maxwell_bloch, sklyanin,  magnetic_particle};
+inline constexpr std::array of_brackets{lotka_volterra,    three_species, volterra_ring,    euler_top, kirchhoff,
+                                        heavy_top_bracket, body_in_space, spin_chain,       toda,      toda_ring,
+                                        maxwell_bloch,     sklyanin,      magnetic_particle};
 
 }  // namespace lagroid::app::keys

@@ -59,6 +59,21 @@ namespace {
 
 std::string read_mode_word(const Section& time) { return read_key(time, time_keys::mode()); }
 
+}  // namespace
+
+std::optional<double> read_tolerance(const Section& time, bool by_tolerance) {
+  if (by_tolerance) {
+    if (!time.has("tolerance"))
+      time.fail("method", "takes its order and its steps from a tolerance: add tolerance = 1e-9");
+    return read_key(time, time_keys::tolerance);
+  }
+  if (time.has("tolerance"))
+    time.fail("tolerance", fmt::format("goes with method = \"{}\"", extrapolation_method.name));
+  return {};
+}
+
+namespace {
+
 /// What a system can do, with the words for what it cannot.
 struct Able {
   const Capabilities& capabilities;
@@ -89,13 +104,7 @@ void read_options(const Section& time, const IntegrationMethod& method, const Ab
                              ? fmt::format("of \"{}\" follows its tolerance; leave it out", method.name)
                              : fmt::format("of \"{}\" is {}", method.name, method.order));
   }
-  if (method.by_tolerance()) {
-    if (!time.has("tolerance"))
-      time.fail("method", "takes its order and its steps from a tolerance: add tolerance = 1e-9");
-    options.tolerance = read_key(time, time_keys::tolerance);
-  } else if (time.has("tolerance")) {
-    time.fail("tolerance", fmt::format("goes with method = \"{}\"", extrapolation_method.name));
-  }
+  if (const auto tolerance = read_tolerance(time, method.by_tolerance())) options.tolerance = *tolerance;
   if (options.mode == TimeMode::adaptive) {
     options.without_root = choice_of(without_root_words, read_key(time, time_keys::without_root()));
     if (options.without_root == WithoutRoot::controlled)

@@ -22,6 +22,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,6 +74,8 @@ void refuse_to_reduce(const Section& scene, std::string_view why);
 long read_every(const Section& scene);
 /// Where the sizes of steps vary.
 void refuse_duration(const Section& time);
+/// time.tolerance of a method that goes by one; throws SceneError where it is missing, or is given to another method.
+std::optional<double> read_tolerance(const Section& time, bool by_tolerance);
 
 /// [[event]]: what is watched for.
 std::vector<Event> read_events(const Section& scene);

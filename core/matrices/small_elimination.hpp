@@ -7,8 +7,8 @@
 ///     Vector<double, 2> b(4, 3);
 ///     const double determinant = eliminate(a, b);  // -2; b is now (3, 2)
 ///
-/// Requires entries that are finite. On return `b` is the solution and `a` is spent; where the determinant is zero, `b`
-/// is not to be used. Nothing throws.
+/// Requires entries that are finite; `b` of any number of columns. On return `b` is the solution and `a` is spent;
+/// where the determinant is zero, `b` is not to be used. Nothing throws.
 
 #include <lagroid/core/types.hpp>
 
@@ -18,6 +18,7 @@
 namespace lagroid {
 
 template <class S, int N, int Columns> double eliminate(Matrix<S, N, N>& a, Matrix<S, N, Columns>& b) {
+  const int columns = int(b.cols());
   double determinant = 1;
   for (int k = 0; k < N; ++k) {
     int pivot = k;
@@ -28,16 +29,16 @@ template <class S, int N, int Columns> double eliminate(Matrix<S, N, N>& a, Matr
     if (size == 0) return 0;
     if (pivot != k) {
       for (int j = k; j < N; ++j) std::swap(a(k, j), a(pivot, j));
-      for (int j = 0; j < Columns; ++j) std::swap(b(k, j), b(pivot, j));
+      for (int j = 0; j < columns; ++j) std::swap(b(k, j), b(pivot, j));
     }
     for (int i = k + 1; i < N; ++i) {
       const S factor = a(i, k) / a(k, k);
       for (int j = k + 1; j < N; ++j) a(i, j) -= factor * a(k, j);
-      for (int j = 0; j < Columns; ++j) b(i, j) -= factor * b(k, j);
+      for (int j = 0; j < columns; ++j) b(i, j) -= factor * b(k, j);
     }
   }
   for (int k = N; k-- > 0;)
-    for (int j = 0; j < Columns; ++j) {
+    for (int j = 0; j < columns; ++j) {
       S sum = b(k, j);
       for (int i = k + 1; i < N; ++i) sum -= a(k, i) * b(i, j);
       b(k, j) = sum / a(k, k);

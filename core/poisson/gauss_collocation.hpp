@@ -88,7 +88,8 @@ template <int Nodes> struct GaussNodes {
   }
 };
 
-template <class S, int N> struct GaussArc {
+/// Of any way to it.
+template <class S, int N> struct FlowArc {
   Vector<S, N> end;
   Vector<S, N> mean;
   bool to_round_off = false;
@@ -111,6 +112,9 @@ template <class S> double largest_number(const S& x) {
   } else if constexpr (requires { x.derivative; }) {
     raise(largest, largest_number(x.value));
     raise(largest, largest_number(x.derivative));
+  } else if constexpr (requires { S::directions; }) {
+    raise(largest, largest_number(x.value));
+    for (int i = 0; i < S::directions; ++i) raise(largest, std::abs(x.tangent(i)));
   } else if constexpr (requires { x.mixed(); }) {
     raise(largest, largest_number(x.value));
     for (const double each :
@@ -124,7 +128,7 @@ template <class S> double largest_number(const S& x) {
 }
 
 /// One part of length `length`. False where the nodes do not resolve it, value or derivative.
-template <class S, int N, class F> bool gauss_part(const F& f, double length, GaussArc<S, N>& arc) {
+template <class S, int N, class F> bool gauss_part(const F& f, double length, FlowArc<S, N>& arc) {
   constexpr int most_passes = 60;
   constexpr double resolved = 1e-8;  // of the coefficients that come next: the end's error is about their square
   constexpr double rounding = 4e-16;
@@ -183,20 +187,26 @@ template <class S, int N, class F> bool gauss_part(const F& f, double length, Ga
   return true;
 }
 
-}  // namespace detail
-
-template <class S, int N, class F> GaussArc<S, N> gauss_arc(const F& f, const Vector<S, N>& start) {
+/// part(length, arc) takes the arc further; the unit is cut into more parts until all of them can be taken.
+template <class S, int N, class Part> FlowArc<S, N> arc_in_parts(const Vector<S, N>& start, const Part& part) {
   constexpr int most_parts = 64;
-  GaussArc<S, N> arc;
+  FlowArc<S, N> arc;
   for (int parts = 1; parts <= most_parts; parts *= 2) {
     arc.end = start;
     for (int c = 0; c < N; ++c) arc.mean(c) = S(0.0);
     int done = 0;
-    while (done < parts && detail::gauss_part(f, 1.0 / parts, arc)) ++done;
+    while (done < parts && part(1.0 / parts, arc)) ++done;
     arc.to_round_off = done == parts;
     if (arc.to_round_off) break;
   }
   return arc;
+}
+
+}  // namespace detail
+
+template <class S, int N, class F> FlowArc<S, N> gauss_arc(const F& f, const Vector<S, N>& start) {
+  return detail::arc_in_parts<S, N>(
+      start, [&](double length, FlowArc<S, N>& arc) { return detail::gauss_part(f, length, arc); });
 }
 
 }  // namespace lagroid

@@ -18,18 +18,24 @@
 /// Requires an antisymmetric pi that satisfies the Jacobi identity (laws::poisson_laws asks both), smooth where the
 /// motion goes. A system may also have
 ///
-///     template <class S> Vector<S, K> casimirs(const Vector<S, N>& x) const     functions that commute with all others
-///     static std::array<std::string, N> labels()                                what the numbers are called
-///     bool contains(const Vector<double, N>& x) const                           where pi and H are smooth
-///     static constexpr int parts = F;                                           H = sum_i H_i(<l_i, x>), F terms:
-///     template <class S> S part(int i, const S& s) const                        H_i, in place of `hamiltonian`
-///     Vector<double, N> form(int i) const                                       l_i; the i-th axis unless it is
-///     written
-///     static constexpr std::array<std::string_view, K> noise_names              what its noise Hamiltonians are called
-///     template <class S> S noise(int k, const Vector<S, N>& x) const            H_k, along whose fields it may be
-///     driven
+///     template <class S> Vector<S, K> casimirs(const Vector<S, N>& x) const  they commute with all functions
+///     static std::array<std::string, N> labels()                             what the numbers are called
+///     bool contains(const Vector<double, N>& x) const                        where pi and H are smooth
+///     std::string refusal(const Vector<double, N>& x) const                  why x is no start, "" where it is one
+///     static constexpr int parts = F;                                        H = sum_i H_i(<l_i, x>), F terms:
+///     template <class S> S part(int i, const S& s) const                     H_i, in place of `hamiltonian`
+///     template <class S> S part_slope(int i, const S& s) const               H_i', where it costs less
+///     Vector<double, N> form(int i) const                                    l_i; else the i-th axis
+///     static constexpr std::array<std::string_view, K> noise_names           of its noise Hamiltonians:
+///     template <class S> S noise(int k, const Vector<S, N>& x) const         H_k, which drive it along their fields
+///     static constexpr bool linear_bracket = true;                           pi(x) is linear in x
+///     static constexpr bool in_lanes = true;                                 its formulas hold over Batch
+///     static constexpr double rotation_sign                                  pi(x) p = s x x p, three by three
+///     static constexpr int turned_vectors                                    rotations that turn so many vectors
+///     template <class S = double> Matrix<.., N, N> log_coefficients() const  {x_i, x_j} = c_ij x_i x_j
 ///
-/// and parameters as other systems declare them (core/parameter.hpp). Returns derivatives that are exact, by jets.
+/// and parameters as other systems declare them (core/parameter.hpp), which formulas read by `varied` where derivatives
+/// by them are wanted (core/scalars/varied.hpp). Returns derivatives that are exact, by jets.
 /// Nothing throws.
 ///
 /// Source: Weinstein, The local structure of Poisson manifolds, 1983.
@@ -37,6 +43,7 @@
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/core/scalars/second_jet.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <array>
@@ -48,6 +55,8 @@
 
 namespace lagroid {
 
+template <class Derived, int N> struct PoissonSystem;
+
 /// A bivector is there, for numbers.
 template <class Sys>
 concept PoissonStructure = requires(const Sys& system, const Vector<double, Sys::dimension>& x) {
@@ -57,11 +66,25 @@ template <class Sys>
 concept HasCasimirs = requires(const Sys& system, const Vector<double, Sys::dimension>& x) {
   system.casimirs(x)(0);
 };
+/// Its bivector is a linear function of x.
+template <class Sys>
+concept HasLinearBracket = requires {
+  requires Sys::linear_bracket;
+};
 /// The energy is a sum of functions of linear forms.
 template <class Sys>
 concept SumOfForms = requires(const Sys& system) {
   { Sys::parts } -> std::convertible_to<int>;
   { system.part(0, 1.0) } -> std::convertible_to<double>;
+};
+namespace detail {
+/// Takes the forms that a system has from its base.
+template <class Derived, int N> void inherited(Vector<double, N> (PoissonSystem<Derived, N>::*form)(int) const);
+}  // namespace detail
+/// Those forms are the coordinates themselves: the system writes no others.
+template <class Sys>
+concept HasAxesAsForms = requires {
+  detail::inherited(&Sys::form);
 };
 /// Noise may drive it, along the Hamiltonian fields of functions of its own.
 template <class Sys>
@@ -75,6 +98,16 @@ template <class Sys> constexpr int noise_count() {
     return int(Sys::noise_names.size());
   } else {
     return 0;
+  }
+}
+
+/// c of a bracket {x_i, x_j} = c_ij x_i x_j; over the scalar of parameters in a formula over S, where it depends on
+/// these.
+template <class S, class Sys> auto log_coefficients_of(const Sys& system) {
+  if constexpr (requires { system.template log_coefficients<S>(); }) {
+    return system.template log_coefficients<S>();
+  } else {
+    return system.log_coefficients();
   }
 }
 

@@ -10,11 +10,13 @@
 ///     }
 ///
 /// Requires of `varied` a member itself, not a copy: it is known by its place. Returns the member, a plain number,
-/// unless S is a Varied, or a jet of such; then the member with the directions in which a VariedMembers that lives on
-/// this thread varies it. A step is compiled without any of it. Nothing throws.
+/// unless S is a Varied, a jet of such or nested over one; then the member with the directions in which a VariedMembers
+/// that lives on this thread varies it. A step is compiled without any of it. Nothing throws.
 
+#include <lagroid/core/scalars/dual.hpp>
 #include <lagroid/core/scalars/hyper_dual.hpp>
 #include <lagroid/core/scalars/jet.hpp>
+#include <lagroid/core/scalars/series.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <span>
@@ -112,11 +114,37 @@ template <class S> struct ParameterScalar { using Type = double; };
 template <int K> struct ParameterScalar<Varied<K>> { using Type = Varied<K>; };
 template <int K, int N> struct ParameterScalar<Jet<Varied<K>, N>> { using Type = Varied<K>; };
 template <int K, int L, int R> struct ParameterScalar<HyperDual<Varied<K>, L, R>> { using Type = Varied<K>; };
+/// Scalars that nest to any depth mix with no other: what is varied in them is a constant of the whole.
+template <class S, class Inner>
+using NestedParameter = std::conditional_t<std::is_same_v<typename ParameterScalar<Inner>::Type, double>, double, S>;
+template <class T> struct ParameterScalar<Dual<T>> { using Type = NestedParameter<Dual<T>, T>; };
+template <class T, int K> struct ParameterScalar<Series<T, K>> { using Type = NestedParameter<Series<T, K>, T>; };
 
-template <int K> Varied<K> varied_member(const double& member) {
-  const int direction = VariedMembers::direction_of(member);
-  return 0 <= direction && direction < K ? Varied<K>::variable(member, direction) : Varied<K>(member);
-}
+/// A member as a number with derivatives, P a ParameterScalar.
+template <class P> struct VariedMember;
+template <int K> struct VariedMember<Varied<K>> {
+  static Varied<K> of(const double& member) {
+    const int direction = VariedMembers::direction_of(member);
+    return 0 <= direction && direction < K ? Varied<K>::variable(member, direction) : Varied<K>(member);
+  }
+};
+/// Of a jet or a hyper-dual number over a Varied.
+template <class S> struct VariedValue {
+  static S of(const double& member) {
+    S out(0.0);
+    out.value = VariedMember<decltype(out.value)>::of(member);
+    return out;
+  }
+};
+template <int K, int N> struct VariedMember<Jet<Varied<K>, N>> : VariedValue<Jet<Varied<K>, N>> {};
+template <int K, int L, int R>
+struct VariedMember<HyperDual<Varied<K>, L, R>> : VariedValue<HyperDual<Varied<K>, L, R>> {};
+template <class T> struct VariedMember<Dual<T>> {
+  static Dual<T> of(const double& member) { return Dual<T>(VariedMember<T>::of(member)); }
+};
+template <class T, int K> struct VariedMember<Series<T, K>> {
+  static Series<T, K> of(const double& member) { return Series<T, K>(VariedMember<T>::of(member)); }
+};
 
 }  // namespace detail
 
@@ -127,7 +155,7 @@ template <class S> LAGROID_INLINE inline ParameterScalar<S> varied(const double&
   if constexpr (std::is_same_v<ParameterScalar<S>, double>) {
     return member;
   } else {
-    return detail::varied_member<ParameterScalar<S>::directions>(member);
+    return detail::VariedMember<ParameterScalar<S>>::of(member);
   }
 }
 template <class S> double varied(double&& copy) = delete;

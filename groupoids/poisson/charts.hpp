@@ -23,33 +23,27 @@
 
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/matrices/small_elimination.hpp>
-#include <lagroid/core/poisson/gauss_collocation.hpp>
+#include <lagroid/core/poisson/linear_arc.hpp>
 #include <lagroid/core/poisson/poisson_system.hpp>
-#include <lagroid/core/scalars/special_functions.hpp>
-#include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/groupoids/poisson/rotation_charts.hpp>
 
 #include <string>
 #include <utility>
 
 namespace lagroid {
 
-/// An arrow's middle, where its momentum is a covector, and its target.
-template <class S, int N> struct ChartArc {
-  Vector<S, N> middle;
-  Vector<S, N> end;
-  bool known = true;
-};
-
-/// Base of charts whose coordinate is the momentum itself.
-template <class Sys> struct MomentumChart {
-  static constexpr int size = Sys::dimension;
-  Sys system;
-
-  explicit MomentumChart(Sys of = {}) : system(std::move(of)) {}
-  template <class S> Matrix<S, size, size> bivector(const Vector<S, size>& x) const { return system.bivector(x); }
-  template <class S> Vector<S, size> momentum(const Vector<S, size>&, const Vector<S, size>& u) const { return u; }
-  template <class S> Vector<S, size> coordinate(const Vector<S, size>&, const Vector<S, size>& p) const { return p; }
-};
+/// X' = pi(X) p over a unit of time, and its mean.
+template <class Sys, class S, int N>
+ChartArc<S, N> frozen_arc(const Sys& system, const Vector<S, N>& x, const Vector<S, N>& p) {
+  const auto field = [&](const Vector<S, N>& at) { return system.field(at, p); };
+  FlowArc<S, N> arc;
+  if constexpr (HasLinearBracket<Sys>) {
+    arc = linear_arc(field, x);
+  } else {
+    arc = gauss_arc(field, x);
+  }
+  return {arc.mean, arc.end, arc.to_round_off};
+}
 
 /// Karasev's chart, to round-off: (x, p) -> (int_0^1 X_t dt, X_1), X' = pi(X) p, X_0 = x. These are exponential
 /// coordinates: (x, t p) are the arrows along the flow of the linear function <p, .>.
@@ -58,8 +52,7 @@ template <class Sys> struct FrozenChart : MomentumChart<Sys> {
   using Base::Base, Base::size;
 
   template <class S> ChartArc<S, size> from(const Vector<S, size>& x, const Vector<S, size>& p) const {
-    const auto arc = gauss_arc([&](const Vector<S, size>& at) { return this->system.field(at, p); }, x);
-    return {arc.mean, arc.end, arc.to_round_off};
+    return frozen_arc(this->system, x, p);
   }
   /// (x, u) (beta, v) is where the flow of the Hamiltonian <v, beta> leads in a unit of time from (x, u); it leaves the
   /// source alone: u' = (dM/dx)^{-T} (dX_1/dx)^T v.
@@ -89,17 +82,29 @@ template <class Sys> struct FrozenChart : MomentumChart<Sys> {
 template <class Sys> struct LogCanonicalChart : MomentumChart<Sys> {
   using Base = MomentumChart<Sys>;
   using Base::size;
-  Matrix<double, size, size> c;
 
-  explicit LogCanonicalChart(Sys of = {}) : Base(std::move(of)), c(this->system.log_coefficients()) {}
+  explicit LogCanonicalChart(Sys of = {}) : Base(std::move(of)), numbers_(log_coefficients_of<double>(this->system)) {}
 
+  /// c_ij, with its derivatives by parameters where a formula over S has such.
+  template <class S> decltype(auto) coefficients() const {
+    if constexpr (std::is_same_v<ParameterScalar<S>, double>) {
+      return (numbers_);
+    } else {
+      return log_coefficients_of<S>(this->system);
+    }
+  }
+  /// Whether a coefficient does anything: one that is zero may have derivatives.
+  template <class S, class C> static bool matters(const C& c) {
+    return !std::is_same_v<ParameterScalar<S>, double> || value_of(c) != 0;
+  }
   template <class S> ChartArc<S, size> from(const Vector<S, size>& x, const Vector<S, size>& u) const {
     using std::exp;
+    const auto& c = coefficients<S>();
     ChartArc<S, size> arc;
     for (int i = 0; i < size; ++i) {
       S sum(0.0);
       for (int j = 0; j < size; ++j)
-        if (c(i, j) != 0) sum += u(j) * (0.5 * c(i, j));
+        if (matters<S>(c(i, j))) sum += u(j) * (c(i, j) * 0.5);
       const S half = exp(sum);
       arc.middle(i) = x(i) * half;
       arc.end(i) = arc.middle(i) * half;
@@ -121,110 +126,43 @@ template <class Sys> struct LogCanonicalChart : MomentumChart<Sys> {
     return u + v;
   }
   static std::string name() { return "symplectic groupoid of a log-canonical bracket"; }
-};
-
-/// Of pi(x) p = s x x p on R^3, the dual of so(3), s = Sys::rotation_sign: Karasev's chart in closed form,
-/// beta = exp(-s p) x. Folds at |p| = 2 pi.
-template <class Sys> struct RotationChart : MomentumChart<Sys> {
-  using Base = MomentumChart<Sys>;
-  using Base::Base, Base::size;
-  static_assert(size == 3);
-
-  template <class S> ChartArc<S, 3> from(const Vector<S, 3>& x, const Vector<S, 3>& p) const {
-    const Vector<S, 3> first = turned(p, x);
-    const Vector<S, 3> second = turned(p, first);
-    const S square = p(0) * p(0) + p(1) * p(1) + p(2) * p(2);
-    const S c1 = stumpff<1>(square);
-    const S c2 = stumpff<2>(square);
-    const S c3 = stumpff<3>(square);
-    ChartArc<S, 3> arc;
-    for (int i = 0; i < 3; ++i) {
-      arc.middle(i) = x(i) + c2 * first(i) + c3 * second(i);
-      arc.end(i) = x(i) + c1 * first(i) + c2 * second(i);
-    }
-    return arc;
-  }
-  template <class S> Vector<S, 3> product(const Vector<S, 3>&, const Vector<S, 3>& u, const Vector<S, 3>& v) const {
-    const Matrix<S, 3, 3> turn = SO3::exp(Vector<S, 3>(v * S(-sign))) * SO3::exp(Vector<S, 3>(u * S(-sign)));
-    return SO3::log(turn) * S(-sign);
-  }
-  static std::string name() { return "symplectic groupoid of so(3)*"; }
 
  private:
-  static constexpr double sign = Sys::rotation_sign;
-  /// -s p x y.
-  template <class S> static Vector<S, 3> turned(const Vector<S, 3>& p, const Vector<S, 3>& y) {
-    Vector<S, 3> out;
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      const int k = (i + 2) % 3;
-      out(i) = (p(k) * y(j) - p(j) * y(k)) * sign;
-    }
-    return out;
-  }
+  Matrix<double, size, size> numbers_;
 };
 
-/// The same groupoid by Cayley's transform, a = s / 2: alpha = (I + a p^ + a^2 p p^T) middle, beta the same of -p.
-/// Rational, and it never folds: the determinant of d alpha is (1 + |p|^2 / 4)^2.
-template <class Sys> struct CayleyChart : MomentumChart<Sys> {
-  using Base = MomentumChart<Sys>;
-  using Base::Base, Base::size;
-  static_assert(size == 3);
+namespace detail {
 
-  template <class S> ChartArc<S, 3> from(const Vector<S, 3>& x, const Vector<S, 3>& p) const {
-    ChartArc<S, 3> arc;
-    const S scale = 1.0 / (1.0 + (p(0) * p(0) + p(1) * p(1) + p(2) * p(2)) * (a * a));
-    for (int i = 0; i < 3; ++i) arc.middle(i) = (x(i) - cross_entry(p, x, i) * a) * scale;
-    const S along = (p(0) * arc.middle(0) + p(1) * arc.middle(1) + p(2) * arc.middle(2)) * (a * a);
-    for (int i = 0; i < 3; ++i) arc.end(i) = arc.middle(i) - cross_entry(p, arc.middle, i) * a + p(i) * along;
-    return arc;
-  }
-  template <class S> Vector<S, 3> product(const Vector<S, 3>&, const Vector<S, 3>& u, const Vector<S, 3>& v) const {
-    const S scale = 1.0 / (1.0 - (u(0) * v(0) + u(1) * v(1) + u(2) * v(2)) * (a * a));
-    Vector<S, 3> out;
-    for (int i = 0; i < 3; ++i) out(i) = (u(i) + v(i) - cross_entry(v, u, i) * a) * scale;
-    return out;
-  }
-  static std::string name() { return "symplectic groupoid of so(3)*, by Cayley's transform"; }
-
- private:
-  static constexpr double a = 0.5 * Sys::rotation_sign;
-  template <class S> static S cross_entry(const Vector<S, 3>& p, const Vector<S, 3>& y, int i) {
-    const int j = (i + 1) % 3;
-    const int k = (i + 2) % 3;
-    return p(j) * y(k) - p(k) * y(j);
-  }
-};
-
-/// Where the flow of rate <form, .> leads in a unit of time: by a chart that is exponential, its `from`.
-template <class Chart, class S, int N>
-ChartArc<S, N> linear_flow(const Chart& chart, const Vector<S, N>& x, const S& rate, const Vector<double, N>& form) {
+/// x to the end of the arc of the momentum rate * form.
+template <class S, int N, class Arc>
+bool move_along(Vector<S, N>& x, const S& rate, const Vector<double, N>& form, const Arc& arc_of) {
   Vector<S, N> p;
-  for (int i = 0; i < N; ++i) p(i) = rate * form(i);
-  return chart.from(x, p);
+  for (int j = 0; j < N; ++j) p(j) = rate * form(j);
+  const auto arc = arc_of(p);
+  x = arc.end;
+  return arc.known;
 }
-/// Of populations along one axis i in closed form: x_i stays and x_j' = c_ji x_i p_i x_j.
+
+}  // namespace detail
+
+/// Takes x to where the flow of rate H_i leads in a unit of time, H_i = <l_i, .> the i-th form of a system; false where
+/// that is not known to round-off. By a chart that is exponential.
+template <class Chart, class S, int N> bool flow_of_form(const Chart& chart, int i, const S& rate, Vector<S, N>& x) {
+  return detail::move_along(x, rate, chart.system.form(i), [&](const auto& p) { return chart.from(x, p); });
+}
+/// Of populations along the axis i in closed form: x_i stays and x_j' = c_ji x_i x_j.
 template <class Sys, class S, int N>
-ChartArc<S, N> linear_flow(const LogCanonicalChart<Sys>& chart, const Vector<S, N>& x, const S& rate,
-                           const Vector<double, N>& form) {
+bool flow_of_form(const LogCanonicalChart<Sys>& chart, int i, const S& rate, Vector<S, N>& x) {
   using std::exp;
-  int axis = -1;
-  int entries = 0;
-  for (int i = 0; i < N; ++i)
-    if (form(i) != 0) {
-      axis = i;
-      ++entries;
-    }
-  if (entries != 1) return linear_flow(FrozenChart<Sys>(chart.system), x, rate, form);
-  const S u = x(axis) * rate * form(axis);
-  ChartArc<S, N> arc{x, x};
+  using Chart = LogCanonicalChart<Sys>;
+  if constexpr (!HasAxesAsForms<Sys>)
+    return detail::move_along(x, rate, chart.system.form(i),
+                              [&](const auto& p) { return frozen_arc(chart.system, x, p); });
+  const auto& c = chart.template coefficients<S>();
+  const S u = x(i) * rate;
   for (int j = 0; j < N; ++j)
-    if (const double c = chart.c(j, axis); c != 0) {
-      const S half = exp(u * (0.5 * c));
-      arc.middle(j) = x(j) * half;
-      arc.end(j) = arc.middle(j) * half;
-    }
-  return arc;
+    if (Chart::template matters<S>(c(j, i))) x(j) = x(j) * exp(u * c(j, i));
+  return true;
 }
 
 namespace detail {
@@ -232,6 +170,8 @@ namespace detail {
 template <class Sys> auto karasev_chart(const Sys& system) {
   if constexpr (requires { Sys::rotation_sign; }) {
     return RotationChart<Sys>(system);
+  } else if constexpr (requires { Sys::turned_vectors; }) {
+    return SemidirectChart<Sys, RotationArcs>(system);
   } else {
     return FrozenChart<Sys>(system);
   }
@@ -241,6 +181,8 @@ template <class Sys> auto natural_chart(const Sys& system) {
     return LogCanonicalChart<Sys>(system);
   } else if constexpr (requires { Sys::rotation_sign; }) {
     return CayleyChart<Sys>(system);
+  } else if constexpr (requires { Sys::turned_vectors; }) {
+    return SemidirectChart<Sys, CayleyArcs>(system);
   } else {
     return FrozenChart<Sys>(system);
   }

@@ -253,7 +253,7 @@ EventWatch::Goes EventWatch::look_into_rest(std::vector<Found>& found) {
       looking_for_ = each->event;
       if (!happens(*each) && ending == nullptr) ending = &*each;
     }
-    const bool is_changed = change({first, last});
+    const bool is_changed = change(Group(&*first, std::size_t(last - first)));
     if (ending != nullptr) {
       end_ = &within(is_changed ? 0 : ending->share);
       return Goes::ended;

@@ -73,6 +73,7 @@ template <HomogeneousSpace M> class ExtrapolationStep {
     const auto largest = [](const auto& x) { return x.cwiseAbs().maxCoeff(); };
     const auto verdict = order_.judge(h, largest(sums_.col(1)), largest(sums_.col(2)), largest(next));
     if (verdict.accepted) project(next);
+    if (!next.allFinite()) return {false, false, 0.2 * h, evaluations};  // nothing of M is near
     return {verdict.accepted, true, verdict.next, evaluations};
   }
 
@@ -95,31 +96,42 @@ template <HomogeneousSpace M> class ExtrapolationStep {
   /// The rows of the table, whose ends are then columns of ends_. Each step of a lane is (a, b) <- (b, exp(2 h F(b))
   /// a), the first from a = b = z by half of that.
   template <class F> void advance(F& field, double t, double h, const Table& table, const Point& z) {
-    for (Eigen::Index i = 0; i < z.size(); ++i) later_.data()[i] = earlier_.data()[i] = S(z.data()[i]);
+    if constexpr (Point::SizeAtCompileTime != Eigen::Dynamic && Point::SizeAtCompileTime <= 4) {
+      typename M::Point earlier, later;  // which stay in registers
+      Algebra slope;
+      advance_from(field, t, h, table, z, earlier, later, slope);
+    } else {
+      advance_from(field, t, h, table, z, earlier_, later_, slope_);
+    }
+  }
+  template <class F>
+  void advance_from(F& field, double t, double h, const Table& table, const Point& z, typename M::Point& earlier,
+                    typename M::Point& later, Algebra& slope) {
+    for (Eigen::Index i = 0; i < z.size(); ++i) later.data()[i] = earlier.data()[i] = S(z.data()[i]);
     for (const Table::Slot& slot : table.slots) {
-      field(L::load(slot.time) * h + t, later_, slope_);
-      move(L::load(slot.step) * h, slot);
-      earlier_.swap(later_);
+      field(L::load(slot.time) * h + t, later, slope);
+      move(L::load(slot.step) * h, slot, slope, earlier);
+      earlier.swap(later);
       for (const Table::End& end : slot.ends)
-        for (Eigen::Index i = 0; i < z.size(); ++i) ends_(i, end.row - 1) = L::get(later_.data()[i], end.lane);
+        for (Eigen::Index i = 0; i < z.size(); ++i) ends_(i, end.row - 1) = L::get(later.data()[i], end.lane);
       if (slot.others.empty()) continue;
       for (Eigen::Index i = 0; i < z.size(); ++i) {
         const S start(z.data()[i]);
-        later_.data()[i] = L::choose(slot.others, start, later_.data()[i]);
-        earlier_.data()[i] = L::choose(slot.others, start, earlier_.data()[i]);
+        later.data()[i] = L::choose(slot.others, start, later.data()[i]);
+        earlier.data()[i] = L::choose(slot.others, start, earlier.data()[i]);
       }
     }
   }
   /// By 2 h, at the beginning of a row by h.
-  void move(const S& h, const Table::Slot& slot) {
-    if constexpr (requires { space_.leap(h, slope_, earlier_); }) {
+  void move(const S& h, const Table::Slot& slot, Algebra& slope, typename M::Point& z) {
+    if constexpr (requires { space_.leap(h, slope, z); }) {
       if (slot.begins)
-        space_.leap(h, L::load(slot.first), slope_, earlier_);
+        space_.leap(h, L::load(slot.first), slope, z);
       else
-        space_.leap(h, slope_, earlier_);
+        space_.leap(h, slope, z);
     } else {
-      slope_ *= h * (2.0 - L::load(slot.first));
-      space_.act(slope_, earlier_);
+      slope *= h * (2.0 - L::load(slot.first));
+      space_.act(slope, z);
     }
   }
 
@@ -155,8 +167,8 @@ template <HomogeneousSpace M> class ExtrapolationStep {
   ExtrapolationOrder order_;
   typename M::Point earlier_, later_;
   Algebra slope_;
-  Eigen::Matrix<double, Eigen::Dynamic, Table::most_rows> ends_;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> sums_;  ///< of them, by the weights
+  Eigen::Matrix<double, Point::SizeAtCompileTime, Table::most_rows> ends_;
+  Eigen::Matrix<double, Point::SizeAtCompileTime, 3> sums_;  ///< of them, by the weights
 };
 
 /// Steps by extrapolation under a tolerance.

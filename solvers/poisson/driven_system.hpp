@@ -89,12 +89,12 @@ template <class Sys> struct DrivenSystem : Sys {
     for (int k = 0; k < sources; ++k) {
       if (rates(k) == 0 && friction(k) == 0) continue;
       const Vector<S, n> slope = of(k);
-      S weight(rates(k));
+      S factor(rates(k));
       if (friction(k) != 0) {
         const Vector<S, n> field = this->field(x, slope);
-        for (int i = 0; i < n; ++i) weight -= energy(i) * field(i) * friction(k);
+        for (int i = 0; i < n; ++i) factor -= energy(i) * field(i) * friction(k);
       }
-      for (int i = 0; i < n; ++i) p(i) += slope(i) * weight;
+      for (int i = 0; i < n; ++i) p(i) += slope(i) * factor;
     }
     return p;
   }

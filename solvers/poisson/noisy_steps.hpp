@@ -13,13 +13,16 @@
 /// Source: as driven_system.hpp.
 
 #include <lagroid/solvers/poisson/driven_system.hpp>
+#include <lagroid/solvers/poisson/levels.hpp>
 #include <lagroid/solvers/poisson/poisson_integrator.hpp>
 #include <lagroid/solvers/poisson/poisson_methods.hpp>
+#include <lagroid/solvers/poisson/step_slopes.hpp>
 #include <lagroid/solvers/poisson/steps.hpp>
 #include <lagroid/solvers/poisson/wiener_path.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -54,17 +57,20 @@ template <class Formula> class NoisyStep {
 
   /// Strengths s_k; friction for the temperature, unless it is 0.
   NoisyStep(const Formula& formula, const Weights& strength, double temperature) : step_(formula), strength_(strength) {
-    if (temperature > 0) system().friction = strength.cwiseProduct(strength) / (2 * temperature);
+    if (temperature > 0) driven().friction = strength.cwiseProduct(strength) / (2 * temperature);
   }
   StepReport take(const X& x, double h, const Weights& dw, X& end) {
-    system().rates = strength_.cwiseProduct(dw) / h;
+    driven().rates = strength_.cwiseProduct(dw) / h;
     return step_.take(x, h, end);
   }
+  const Driven& system() const { return step_.system(); }
   /// The derivative of the step taken last, or of another from x with its increments.
-  Matrix<double, size, size> slope(const X& x, double h) const { return step_.slope(x, h); }
+  StepSlope<size> slope(const X& x, double h, std::span<const double* const> members = {}) const {
+    return step_.slope(x, h, members);
+  }
 
  private:
-  Driven& system() { return step_.formula.chart.system; }
+  Driven& driven() { return step_.formula.chart.system; }
 
   FormulaStep<Formula> step_;
   Weights strength_;
@@ -77,19 +83,25 @@ template <class Sys, class Formula> class NoisyPoissonSteps final : public Poiss
   using X = Vector<double, Sys::dimension>;
   using Weights = typename NoisyStep<Formula>::Weights;
 
-  NoisyPoissonSteps(const Sys& system, const NoisyStep<Formula>& step, const DeclaredMethod& method, const X& start,
+  using Make = std::function<NoisyStep<Formula>(const Sys&)>;
+
+  NoisyPoissonSteps(const Sys& system, Make make, const DeclaredMethod& method, const X& start,
                     const PoissonOptions& options)
       : system_(system),
-        step_(step),
+        make_(std::move(make)),
+        step_(make_(system)),
         name_(method.name),
         wiener_{options.noise.seed, options.noise.path},
         h_(options.step),
         thermostat_(options.noise.temperature > 0),
-        x_(start) {}
+        x_(start),
+        levels_(system, start),
+        project_(options.noise.project) {}
 
   StepReport advance() override {
     X end;
-    const StepReport report = step_.take(x_, h_, increments(), end);
+    StepReport report = step_.take(x_, h_, increments(), end);
+    if (report.converged() && project_ && !levels_.project(system_, end)) report.status = SolveStatus::left_domain;
     if (report.converged()) {
       x_ = end;
       ++index_;
@@ -97,20 +109,37 @@ template <class Sys, class Formula> class NoisyPoissonSteps final : public Poiss
     return report;
   }
   std::vector<double> point() const override { return {x_.data(), x_.data() + x_.size()}; }
-  void go_on_from(const std::vector<double>& point) override { x_ = Eigen::Map<const X>(point.data()); }
+  void go_on_from(const std::vector<double>& point) override {
+    x_ = Eigen::Map<const X>(point.data());
+    levels_ = Levels<Sys, false>(system_, x_);
+  }
   double time() const override { return double(index_) * h_; }
   MethodTraits traits() const override { return {name_, 1, false, !thermostat_ && Formula::kept.bracket == 0, false}; }
   KeptStructure kept() const override {
     return {thermostat_ ? 1 : std::min(Formula::kept.bracket, noisy_power),
             std::min(Formula::kept.casimirs, noisy_power)};
   }
+  Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const override {
+    X end;
+    const auto taken = [&](const Sys& system) {  // by which it knows its increments
+      NoisyStep<Formula> step = make_(system);
+      if (!step.take(x_, h_, increments(), end).converged()) end.setConstant(std::numeric_limits<double>::quiet_NaN());
+      return step;
+    };
+    return slope_by_parameters(
+        system_, parameters, taken, [&](const NoisyStep<Formula>&) { return end; },
+        [&](const NoisyStep<Formula>& step, const auto& members) { return step.slope(x_, h_, members); }, checked_);
+  }
   double poisson_defect() const override {
     NoisyStep<Formula> next = step_;
     X end;
     if (!next.take(x_, h_, increments(), end).converged()) return std::numeric_limits<double>::quiet_NaN();
-    return bracket_change(system_, x_, end, next.slope(x_, h_));
+    return bracket_change(system_, x_, end, Matrix<double, Sys::dimension, Sys::dimension>(next.slope(x_, h_)));
   }
-  void serialize(NumberArchive& archive) override { archive(x_, index_); }
+  void serialize(NumberArchive& archive) override {
+    archive(x_, index_);
+    levels_.serialize(archive);
+  }
 
  private:
   /// What is wrong by h^3 in a step is by (sqrt h)^3 where noise moves it; the same of other odd powers.
@@ -118,13 +147,17 @@ template <class Sys, class Formula> class NoisyPoissonSteps final : public Poiss
   Weights increments() const { return wiener_.increments<int(Weights::SizeAtCompileTime)>(index_, h_); }
 
   Sys system_;
+  Make make_;
   NoisyStep<Formula> step_;
   std::string name_;
   WienerPath wiener_;
   double h_;
   bool thermostat_;
   X x_;
+  Levels<Sys, false> levels_;
+  bool project_;
   long index_ = 0;
+  mutable std::vector<std::string> checked_;  ///< parameters whose slopes were compared
 };
 
 /// What is wrong with the options.
@@ -154,21 +187,24 @@ std::unique_ptr<PoissonIntegrator> make_noisy_steps(const Sys& system, const Vec
   std::unique_ptr<PoissonIntegrator> made;
   if constexpr (noise_count<Sys>() > 0) {
     using Driven = DrivenSystem<Sys>;
-    const auto offer = [&](const DeclaredMethod& method, const auto& formula) {
-      using Formula = std::remove_cvref_t<decltype(formula)>;
+    const auto offer = [&]<class Formula>(const DeclaredMethod& method, Formula (*formula)(const Driven&)) {
       if (method.name != options.method) return;
       const typename Driven::Weights strength =
           Eigen::Map<const typename Driven::Weights>(options.noise.strength.data());
-      const NoisyStep<Formula> step(formula, strength, options.noise.temperature);
-      made = std::make_unique<NoisyPoissonSteps<Sys, Formula>>(system, step, method, start, options);
+      const auto make = [formula, strength, temperature = options.noise.temperature](const Sys& of) {
+        return NoisyStep<Formula>(formula(Driven(of)), strength, temperature);
+      };
+      made = std::make_unique<NoisyPoissonSteps<Sys, Formula>>(system, make, method, start, options);
     };
-    const Driven driven(system);
     using Natural = NaturalChart<Driven>;
     using Karasev = KarasevChart<Driven>;
-    offer(poisson_methods::groupoid, GroupoidFormula<Natural>(Natural(driven)));
+    offer(
+        poisson_methods::groupoid, +[](const Driven& of) { return GroupoidFormula<Natural>(Natural(of)); });
     if constexpr (!std::is_same_v<Natural, Karasev>)
-      offer(poisson_methods::karasev, GroupoidFormula<Karasev>(Karasev(driven)));
-    offer(poisson_methods::midpoint, TreeFormula<Driven, 1>(driven));
+      offer(
+          poisson_methods::karasev, +[](const Driven& of) { return GroupoidFormula<Karasev>(Karasev(of)); });
+    offer(
+        poisson_methods::midpoint, +[](const Driven& of) { return TreeFormula<Driven, 1>(of); });
   }
   return made;
 }

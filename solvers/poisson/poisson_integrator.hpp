@@ -19,6 +19,7 @@
 #include <lagroid/solvers/step/step_solver.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -32,6 +33,7 @@ struct NoiseOptions {
   std::uint64_t seed = 1;
   std::uint32_t path = 0;  ///< which of the seed's
   double temperature = 0;  ///< of the thermostat, whose friction comes with the noise; 0: there is none
+  bool project = false;    ///< after each step to the Casimirs of the start, from which rounding walks away otherwise
 
   bool present() const { return !strength.empty(); }
 };
@@ -41,6 +43,8 @@ struct PoissonOptions {
   double step = 0.01;
   Composition composition = compositions::single;  ///< of a step of order two
   NoiseOptions noise = {};
+  double tolerance = 1e-9;               ///< of steps that go by one
+  std::function<bool()> stop = nullptr;  ///< called before each of these; true ends the advance, unconverged
 };
 
 /// A trajectory in the making. A step that does not converge leaves everything as it was.
@@ -54,6 +58,11 @@ class PoissonIntegrator {
   virtual double time() const = 0;
   virtual MethodTraits traits() const = 0;
   virtual KeptStructure kept() const = 0;
+  /// D Phi at the present point, Phi the next step: columns by the point, and then by these parameters of the system,
+  /// with noise on its path. Not numbers where the step does not converge. Throws std::invalid_argument for a name that
+  /// is no parameter, or a method that has no derivative; WithoutDerivative for a parameter that the system reads as a
+  /// plain number.
+  virtual Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const = 0;
   /// The largest entry of D pi D^T - pi(Phi) over the largest of pi(Phi), Phi the next step and D its derivative; not a
   /// number where the method has no derivative.
   virtual double poisson_defect() const = 0;

@@ -7,13 +7,17 @@
 
 #include <lagroid/solvers/integrators/composed_step.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
+#include <lagroid/solvers/poisson/extrapolated_steps.hpp>
 #include <lagroid/solvers/poisson/noisy_steps.hpp>
 #include <lagroid/solvers/poisson/poisson_integrator.hpp>
 #include <lagroid/solvers/poisson/poisson_methods.hpp>
+#include <lagroid/solvers/poisson/step_slopes.hpp>
 #include <lagroid/solvers/poisson/steps.hpp>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -27,21 +31,29 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
  public:
   using X = Vector<double, Sys::dimension>;
 
-  PoissonSteps(const Sys& system, Step step, const DeclaredMethod& method, const X& start,
+  PoissonSteps(const Sys& system, std::function<Step(const Sys&)> make, const DeclaredMethod& method, const X& start,
                const PoissonOptions& options)
-      : system_(system), step_(std::move(step)), method_(method), options_(options), x_(start) {}
+      : system_(system), make_(std::move(make)), step_(make_(system)), method_(method), options_(options), x_(start) {
+    for (const double gamma : options.composition.coefficients) sizes_.push_back(gamma * options.step);
+  }
 
   StepReport advance() override {
     const X before = x_;
-    const StepReport report = step_by_stages(
-        options_.composition.coefficients,
-        [&](double gamma) {
-          X end;
-          const StepReport found = step_.take(x_, gamma * options_.step, end);
-          if (found.converged()) x_ = end;
-          return found;
-        },
-        [&] { x_ = before; });
+    StepReport report;
+    if constexpr (requires { step_.take(before, sizes_, x_); }) {
+      report = step_.take(before, sizes_, x_);
+      if (!report.converged()) x_ = before;
+    } else {
+      report = step_by_stages(
+          sizes_,
+          [&](double h) {
+            X end;
+            const StepReport found = step_.take(x_, h, end);
+            if (found.converged()) x_ = end;
+            return found;
+          },
+          [&] { x_ = before; });
+    }
     if (report.converged()) ++index_;
     return report;
   }
@@ -58,34 +70,61 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
             Step::explicit_step ? options_.composition.stages() * method_.stages : 0};
   }
   KeptStructure kept() const override { return Step::kept; }
-  double poisson_defect() const override {
-    if constexpr (requires { step_.slope(x_, 0.0); }) {
-      X x = x_;
-      Matrix<double, Sys::dimension, Sys::dimension> slope = decltype(slope)::Identity();
-      for (const double gamma : options_.composition.coefficients) {
-        X end;
-        const double h = gamma * options_.step;
-        if (!step_.take(x, h, end).converged()) return std::numeric_limits<double>::quiet_NaN();
-        slope = (step_.slope(x, h) * slope).eval();
-        x = end;
-      }
-      return bracket_change(system_, x_, x, slope);
+  Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const override {
+    if constexpr (has_slope) {
+      return slope_by_parameters(
+          system_, parameters, make_, [&](const Step& step) { return along_stages(step, {}).first; },
+          [&](const Step& step, const auto& members) { return along_stages(step, members).second; }, checked_);
     } else {
-      return std::numeric_limits<double>::quiet_NaN();
+      throw std::invalid_argument("steps of " + std::string(method_.name) + " have no derivative");
     }
+  }
+  double poisson_defect() const override {
+    if constexpr (has_slope) {
+      const auto [end, slope] = along_stages(step_, {});
+      if (end.allFinite())
+        return bracket_change(system_, x_, end, Matrix<double, Sys::dimension, Sys::dimension>(slope));
+    }
+    return std::numeric_limits<double>::quiet_NaN();
   }
   void serialize(NumberArchive& archive) override { archive(x_, index_); }
 
  private:
+  static constexpr bool has_slope = requires(const Step& step, const X& x) { step.slope(x, 0.0); };
+
+  /// The end of the next step, and its derivative: the product of those of its stages.
+  std::pair<X, StepSlope<Sys::dimension>> along_stages(const Step& step, std::span<const double* const> members) const {
+    constexpr int n = Sys::dimension;
+    const auto others = Eigen::Index(members.size());
+    std::pair<X, StepSlope<n>> out{x_, StepSlope<n>::Identity(n, n + others)};
+    auto& [x, slope] = out;
+    for (const double h : sizes_) {
+      const StepSlope<n> stage = step.slope(x, h, members);
+      slope = (stage.leftCols(n) * slope).eval();
+      slope.rightCols(others) += stage.rightCols(others);
+      const X before = x;
+      if (!step.take(before, h, x).converged()) {
+        x.setConstant(std::numeric_limits<double>::quiet_NaN());
+        slope = unknown_slope<n>(int(n + others));
+        break;
+      }
+    }
+    return out;
+  }
+
   Sys system_;
+  std::function<Step(const Sys&)> make_;
   Step step_;
   DeclaredMethod method_;
   PoissonOptions options_;
+  std::vector<double> sizes_;  ///< of its stages
   X x_;
   long index_ = 0;
+  mutable std::vector<std::string> checked_;  ///< parameters whose slopes were compared
 };
 
-/// Calls visit(method, make) for each method that the system has; make(system) is its step.
+/// Calls visit(method, make) for each method that the system has; make(system) is its step, null where it has none of
+/// one size.
 template <class Sys, class Visit> void each_poisson_step(const Visit& visit) {
   namespace m = poisson_methods;
   visit(m::groupoid, [](const Sys& s) {
@@ -102,6 +141,7 @@ template <class Sys, class Visit> void each_poisson_step(const Visit& visit) {
   karasev.template operator()<6>(m::hamilton_jacobi_6);
   if constexpr (SumOfForms<Sys>)
     visit(m::splitting, [](const Sys& s) { return SplitStep<FlowChart<Sys>>(FlowChart<Sys>(s)); });
+  visit(m::extrapolation, nullptr);
   visit(m::truncated, [](const Sys& s) { return FormulaStep<TreeFormula<Sys, 3>>(TreeFormula<Sys, 3>(s)); });
   const auto midpoint = [](const Sys& s) { return FormulaStep<TreeFormula<Sys, 1>>(TreeFormula<Sys, 1>(s)); };
   visit(m::midpoint, midpoint);
@@ -134,8 +174,11 @@ std::unique_ptr<PoissonIntegrator> make_poisson_integrator(const Sys& system,
     if (method.name != options.method) return;
     if (options.composition.stages() > 1 && method.other_orders != OtherOrders::composed_steps)
       throw std::invalid_argument("steps of " + options.method + " are not composed");
-    auto step = make(system);
-    made = std::make_unique<detail::PoissonSteps<Sys, decltype(step)>>(system, std::move(step), method, start, options);
+    if constexpr (std::is_null_pointer_v<std::remove_cvref_t<decltype(make)>>) {
+      made = std::make_unique<detail::ExtrapolatedPoissonSteps<Sys>>(system, start, options);
+    } else {
+      made = std::make_unique<detail::PoissonSteps<Sys, decltype(make(system))>>(system, make, method, start, options);
+    }
   });
   if (!made) throw std::invalid_argument("this system has no method \"" + options.method + "\"");
   return made;

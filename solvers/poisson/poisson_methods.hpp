@@ -37,8 +37,13 @@ inline constexpr DeclaredMethod midpoint{
 inline constexpr DeclaredMethod projected{.name = "projected-midpoint", .to_compare = true};
 inline constexpr DeclaredMethod runge_kutta{.name = "runge-kutta", .order = 4, .stages = 4, .to_compare = true};
 
-inline constexpr std::array all{groupoid,  karasev,  hamilton_jacobi_4, hamilton_jacobi_6, splitting,
-                                truncated, midpoint, projected,         runge_kutta};
+/// Explicit, projected to energy and Casimirs, by a tolerance.
+inline constexpr DeclaredMethod extrapolation = extrapolation_method;
+
+inline constexpr std::array all{groupoid,      karasev,   hamilton_jacobi_4, hamilton_jacobi_6, splitting,
+                                extrapolation, truncated, midpoint,          projected,         runge_kutta};
+
+constexpr bool by_tolerance(const DeclaredMethod& method) { return method.name == extrapolation.name; }
 
 /// Whether its steps may be driven by noise, whatever system it is of.
 constexpr bool takes_noise(const DeclaredMethod& method) {

@@ -5,12 +5,16 @@
 ///     const FormulaStep<GroupoidFormula<FrozenChart<LotkaVolterra>>> step;
 ///     Vector<double, 2> end;
 ///     const StepReport report = step.take(Vector<double, 2>(2, 0.5), 0.1, end);
-///     const Matrix<double, 2, 2> slope = step.slope(Vector<double, 2>(2, 0.5), 0.1);  // d Phi_h
+///     const auto slope = step.slope(Vector<double, 2>(2, 0.5), 0.1);  // d Phi_h, by x
+///
+/// `slope(x, h, members)` has after the columns by x those by members of the very system that the step has
+/// (`system()`); its formulas read them by `varied`. Not a number where there is no step.
 ///
 /// Outcomes: `left_domain` where a flow is not known to round-off any more or the energy's domain ends, `singular` at a
 /// fold, where the determinant of the step's equations has passed zero, `not_converged`, `not_finite`. Nothing is
-/// allocated in a step, nothing throws.
+/// allocated in a step, though in a slope; nothing throws.
 
+#include <lagroid/core/derivatives/varied_directions.hpp>
 #include <lagroid/solvers/poisson/formulas.hpp>
 #include <lagroid/solvers/status.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
@@ -21,6 +25,14 @@
 #include <utility>
 
 namespace lagroid {
+
+/// A derivative of a step: columns by the point, and then by members.
+template <int N> using StepSlope = Matrix<double, N, Eigen::Dynamic>;
+
+/// That of a step that is not there.
+template <int N> StepSlope<N> unknown_slope(int columns) {
+  return StepSlope<N>::Constant(N, columns, std::numeric_limits<double>::quiet_NaN());
+}
 
 /// Solves a formula by Newton's method, with a matrix that is kept as long as the residual falls tenfold.
 template <class Formula> class FormulaStep {
@@ -40,29 +52,29 @@ template <class Formula> class FormulaStep {
     X u;
     return solve(x, h, u, end);
   }
-  /// d Phi_h(x), by the implicit function theorem; not a number where there is no step.
-  Square slope(const X& x, double h) const {
+  const auto& system() const { return formula.system(); }
+  /// By the implicit function theorem.
+  StepSlope<size> slope(const X& x, double h, std::span<const double* const> members = {}) const {
+    const int others = size + int(members.size());
+    StepSlope<size> residual(size, size + others);  // by u, x and members
+    StepSlope<size> reached(size, size + others);
     X u;
     X end;
-    Square of_u;
-    Square of_x;
-    Square end_of_u;
-    Square end_of_x;
-    if (!solve(x, h, u, end).converged()) return Square::Constant(std::numeric_limits<double>::quiet_NaN());
-    for (int k = 0; k < size; ++k) {
-      const X unit = X::Unit(k);
-      const X zero = X::Zero();
-      const auto by_u = formula.at(moved_along(x, zero), h, moved_along(u, unit));
-      const auto by_x = formula.at(moved_along(x, unit), h, moved_along(u, zero));
-      for (int i = 0; i < size; ++i) {
-        of_u(i, k) = by_u.residual(i).derivative;
-        of_x(i, k) = by_x.residual(i).derivative;
-        end_of_u(i, k) = by_u.end(i).derivative;
-        end_of_x(i, k) = by_x.end(i).derivative;
-      }
-    }
-    eliminate(of_u, of_x);
-    return end_of_x - end_of_u * of_x;
+    bool known = solve(x, h, u, end).converged();
+    if (!known) return unknown_slope<size>(others);
+    detail::for_directions(size + others, [&](int first) {
+      const VariedMembers varying(members, 2 * size - first);
+      const auto at = formula.at(detail::varied_along(x, size - first), h, detail::varied_along(u, -first));
+      known = known && at.known;
+      if (!known) return;
+      detail::put_tangents(at.residual, first, residual);
+      detail::put_tangents(at.end, first, reached);
+    });
+    if (!known) return unknown_slope<size>(others);
+    Square of_u = residual.leftCols(size);
+    StepSlope<size> u_by_others = residual.rightCols(others);
+    eliminate(of_u, u_by_others);
+    return reached.rightCols(others) - reached.leftCols(size) * u_by_others;
   }
 
  private:
@@ -121,13 +133,14 @@ template <class Step> class ProjectedStep {
   Step step;
 
   explicit ProjectedStep(Step of = Step()) : step(std::move(of)) {}
+  const auto& system() const { return step.system(); }
   static constexpr KeptStructure kept{Step::kept.bracket, 0};
   static constexpr int order = Step::order;
   static constexpr bool symmetric = false;
   static constexpr bool explicit_step = false;
 
   StepReport take(const X& x, double h, X& end) const {
-    const auto& system = step.formula.system();
+    const auto& system = this->system();
     using Sys = std::remove_cvref_t<decltype(system)>;
     StepReport report = step.take(x, h, end);
     if constexpr (casimir_count<Sys>() > 0) {
@@ -168,33 +181,55 @@ template <class Chart> class SplitStep {
   static constexpr bool symmetric = true;
   static constexpr bool explicit_step = true;
 
-  StepReport take(const X& x, double h, X& end) const {
+  StepReport take(const X& x, double h, X& end) const { return take(x, std::span(&h, 1), end); }
+  /// Steps of these sizes, one after another: where one ends and the next begins the same part moves x.
+  StepReport take(const X& x, std::span<const double> sizes, X& end) const {
     bool known = true;
-    end = map(x, h, known);
+    end = map(x, sizes, known);
     const bool good = known && end.allFinite();
     return {good ? SolveStatus::converged : known ? SolveStatus::not_finite : SolveStatus::left_domain, 1, 0, 0};
   }
-  Matrix<double, size, size> slope(const X& x, double h) const {
+  const auto& system() const { return chart.system; }
+  StepSlope<size> slope(const X& x, double h, std::span<const double* const> members = {}) const {
     bool known = true;
-    return jacobian_of<size>([&](const auto& y) { return map(y, h, known); }, x);
+    const StepSlope<size> found =
+        varied_jacobian<size>([&](const auto& y) { return map(y, std::span(&h, 1), known); }, x, members);
+    return known ? found : unknown_slope<size>(int(found.cols()));
   }
 
  private:
-  template <class S> Vector<S, size> map(Vector<S, size> x, double h, bool& known) const {
-    const auto& system = chart.system;
-    constexpr int parts = std::remove_cvref_t<decltype(system)>::parts;
-    for (int stage = 0; stage < 2 * parts - 1; ++stage) {
-      const int i = stage < parts ? stage : 2 * parts - 2 - stage;
-      const X form = system.form(i);
-      S along(0.0);
+  template <class S> Vector<S, size> map(Vector<S, size> x, std::span<const double> sizes, bool& known) const {
+    constexpr int last = std::remove_cvref_t<decltype(chart.system)>::parts - 1;
+    const auto flow = [&](int i, double time) {
+      known = flow_of_form(chart, i, S(part_slope(i, x) * time), x) && known;
+    };
+    double first = 0;  // how long the part that steps begin and end with has to move x
+    for (const double h : sizes) {
+      if (last > 0) flow(0, first + 0.5 * h);
+      for (int i = 1; i < last; ++i) flow(i, 0.5 * h);
+      flow(last, h);
+      for (int i = last; --i > 0;) flow(i, 0.5 * h);
+      first = 0.5 * h;
+    }
+    if (last > 0) flow(0, first);
+    return x;
+  }
+  /// H_i' at <l_i, x>.
+  template <class S> S part_slope(int i, const Vector<S, size>& x) const {
+    const auto& of = chart.system;
+    S along(0.0);
+    if constexpr (HasAxesAsForms<std::remove_cvref_t<decltype(of)>>) {
+      along = x(i);
+    } else {
+      const X form = of.form(i);
       for (int j = 0; j < size; ++j)
         if (form(j) != 0) along += x(j) * form(j);
-      const S rate = system.part(i, Dual<S>(along, S(1.0))).derivative * (i == parts - 1 ? h : 0.5 * h);
-      const auto arc = linear_flow(chart, x, rate, form);
-      known = known && arc.known;
-      x = arc.end;
     }
-    return x;
+    if constexpr (requires { of.part_slope(i, along); }) {
+      return of.part_slope(i, along);
+    } else {
+      return of.part(i, Dual<S>(along, S(1.0))).derivative;
+    }
   }
 };
 
@@ -203,9 +238,8 @@ template <class Sys> class RungeKuttaStep {
  public:
   static constexpr int size = Sys::dimension;
   using X = Vector<double, size>;
-  Sys system;
 
-  explicit RungeKuttaStep(Sys of = {}) : system(std::move(of)) {}
+  explicit RungeKuttaStep(Sys of = {}) : system_(std::move(of)) {}
   static constexpr KeptStructure kept{5, 5};
   static constexpr int order = 4;
   static constexpr bool symmetric = false;
@@ -215,18 +249,21 @@ template <class Sys> class RungeKuttaStep {
     end = map(x, h);
     return {end.allFinite() ? SolveStatus::converged : SolveStatus::not_finite, 1, 0, 0};
   }
-  Matrix<double, size, size> slope(const X& x, double h) const {
-    return jacobian_of<size>([&](const auto& y) { return map(y, h); }, x);
+  const Sys& system() const { return system_; }
+  StepSlope<size> slope(const X& x, double h, std::span<const double* const> members = {}) const {
+    return varied_jacobian<size>([&](const auto& y) { return map(y, h); }, x, members);
   }
 
  private:
   template <class S> Vector<S, size> map(const Vector<S, size>& x, double h) const {
-    const Vector<S, size> k1 = system.velocity(x);
-    const Vector<S, size> k2 = system.velocity(Vector<S, size>(x + k1 * S(0.5 * h)));
-    const Vector<S, size> k3 = system.velocity(Vector<S, size>(x + k2 * S(0.5 * h)));
-    const Vector<S, size> k4 = system.velocity(Vector<S, size>(x + k3 * S(h)));
+    const Vector<S, size> k1 = system_.velocity(x);
+    const Vector<S, size> k2 = system_.velocity(Vector<S, size>(x + k1 * S(0.5 * h)));
+    const Vector<S, size> k3 = system_.velocity(Vector<S, size>(x + k2 * S(0.5 * h)));
+    const Vector<S, size> k4 = system_.velocity(Vector<S, size>(x + k3 * S(h)));
     return x + (k1 + k2 * S(2.0) + k3 * S(2.0) + k4) * S(h / 6);
   }
+
+  Sys system_;
 };
 
 }  // namespace lagroid

@@ -14,35 +14,13 @@
 /// [G] Def. 3.3
 
 #include <lagroid/core/derivatives/two_sided.hpp>
-#include <lagroid/core/scalars/varied.hpp>
+#include <lagroid/core/derivatives/varied_directions.hpp>
 #include <lagroid/solvers/sensitivity/linear_step.hpp>
 
 #include <algorithm>
 #include <span>
 
 namespace lagroid {
-
-/// How many directions one evaluation takes.
-inline constexpr int varied_at_once = 4;
-using VariedNumber = Varied<varied_at_once>;
-
-namespace detail {
-
-/// x with component `first + i` of the directions along component i of it.
-template <int N> Vector<VariedNumber, N> varied_along(const Vector<double, N>& x, int first) {
-  Vector<VariedNumber, N> out;
-  for (int i = 0; i < N; ++i)
-    out(i) =
-        0 <= first + i && first + i < varied_at_once ? VariedNumber::variable(x(i), first + i) : VariedNumber(x(i));
-  return out;
-}
-
-/// Visits the directions, as many at a time as a number has: visit(first) evaluates those from `first` on.
-template <class Visit> void for_directions(int count, const Visit& visit) {
-  for (int first = 0; first < count; first += varied_at_once) visit(first);
-}
-
-}  // namespace detail
 
 /// The gradients at a step along v, w, lambda and the members, in this order: put(direction, d_source, d_target,
 /// d_constraint).

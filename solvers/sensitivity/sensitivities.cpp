@@ -35,19 +35,4 @@ RunGradient gradient_of_run(const Propagated& start, int states, std::vector<std
   return out;
 }
 
-namespace detail {
-
-void require_derivative(const std::string& name, const Eigen::VectorXd& derivative, const Eigen::VectorXd& coarse,
-                        const Eigen::VectorXd& fine, double rounding) {
-  const double uncertain = 10 * (coarse - fine).norm() + 100 * std::numeric_limits<double>::epsilon() * rounding;
-  const double size = std::max(derivative.norm(), fine.norm());
-  if ((derivative - fine).norm() <= 1e-3 * size + uncertain || !std::isfinite(uncertain)) return;
-  throw WithoutDerivative(
-      fmt::format("parameter {} carries no derivative: the system reads it as a plain number; its formulas must read "
-                  "it by varied<S>(...) (core/scalars/varied.hpp)",
-                  name));
-}
-
-}  // namespace detail
-
 }  // namespace lagroid

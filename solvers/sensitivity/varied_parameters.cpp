@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace lagroid::detail {
@@ -28,6 +30,17 @@ ParameterPlaces chosen_places(const ParameterPlaces& all, const std::vector<std:
         fmt::format("there is no parameter {} that is a number; there are {}", name, fmt::join(all.names, ", ")));
   }
   return out;
+}
+
+void require_derivative(const std::string& name, const Eigen::VectorXd& derivative, const Eigen::VectorXd& coarse,
+                        const Eigen::VectorXd& fine, double rounding) {
+  const double uncertain = 10 * (coarse - fine).norm() + 100 * std::numeric_limits<double>::epsilon() * rounding;
+  const double size = std::max(derivative.norm(), fine.norm());
+  if ((derivative - fine).norm() <= 1e-3 * size + uncertain || !std::isfinite(uncertain)) return;
+  throw WithoutDerivative(
+      fmt::format("parameter {} carries no derivative: the system reads it as a plain number; its formulas must read "
+                  "it by varied<S>(...) (core/scalars/varied.hpp)",
+                  name));
 }
 
 }  // namespace lagroid::detail

@@ -26,11 +26,6 @@
 
 namespace lagroid {
 
-/// A parameter that a system reads as a plain number somewhere, so that its derivatives would be wrong.
-class WithoutDerivative : public std::invalid_argument {
-  using std::invalid_argument::invalid_argument;
-};
-
 using VariedVector = Eigen::Matrix<VariedNumber, Eigen::Dynamic, 1>;
 
 namespace detail {
@@ -68,11 +63,6 @@ NodeValues values_at(const Sys& system, const ParameterPlaces& places, const Tra
   });
   return out;
 }
-
-/// Throws WithoutDerivative unless derivatives by a member are near its differences: `coarse` and `fine`, of twice the
-/// width of the fine ones.
-void require_derivative(const std::string& name, const Eigen::VectorXd& derivative, const Eigen::VectorXd& coarse,
-                        const Eigen::VectorXd& fine, double rounding);
 
 /// The derivatives of the step equations by a member of the system, in this column of the linearised step, beside
 /// differences of what a step computes.

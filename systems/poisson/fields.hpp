@@ -43,7 +43,7 @@ struct Sklyanin : PoissonSystem<Sklyanin, 4> {
   static std::array<std::string, 4> labels() { return {"S0", "S1", "S2", "S3"}; }
 
   template <class S> Matrix<S, 4, 4> bivector(const Vector<S, 4>& s) const {
-    const Vector<double, 3>& j = couplings;
+    const auto& j = varied<S>(couplings);
     return skew<S, 4>({{0, 1, s(2) * s(3) * (j(2) - j(1))},
                        {0, 2, s(1) * s(3) * (j(0) - j(2))},
                        {0, 3, s(1) * s(2) * (j(1) - j(0))},
@@ -52,13 +52,15 @@ struct Sklyanin : PoissonSystem<Sklyanin, 4> {
                        {2, 3, s(0) * s(1) * -1.0}});
   }
   static constexpr int parts = 3;
-  template <class S> S part(int i, const S& s) const { return i == 2 ? S(s * s * (0.5 * alpha(2))) : S(s * alpha(i)); }
+  template <class S> S part(int i, const S& s) const {
+    return i == 2 ? S(s * s * (varied<S>(alpha(2)) * 0.5)) : S(s * varied<S>(alpha(i)));
+  }
   template <class S> Vector<S, 2> casimirs(const Vector<S, 4>& s) const {
     S first(0.0);
     S second = s(0) * s(0);
     for (int i = 0; i < 3; ++i) {
       first += s(i + 1) * s(i + 1);
-      second += s(i + 1) * s(i + 1) * couplings(i);
+      second += s(i + 1) * s(i + 1) * varied<S>(couplings(i));
     }
     return Vector<S, 2>(first * 0.5, second * 0.5);
   }
@@ -79,7 +81,9 @@ struct MagneticParticle : PoissonSystem<MagneticParticle, 6> {
         {{0, 3, S(1.0)}, {1, 4, S(1.0)}, {2, 5, S(1.0)}, {3, 4, x(0) + 1.0}, {3, 5, -x(2)}, {4, 5, x(1)}});
   }
   static constexpr int parts = 6;
-  template <class S> S part(int i, const S& s) const { return s * s * (i < 3 ? 0.5 * stiffness : 0.5); }
+  template <class S> S part(int i, const S& s) const {
+    return i < 3 ? S(s * s * (varied<S>(stiffness) * 0.5)) : S(s * s * 0.5);
+  }
 
   /// Positions, whose fields are forces.
   static constexpr std::array<std::string_view, 3> noise_names{"x1", "x2", "x3"};

@@ -28,6 +28,7 @@ template <class Derived, int K, int Springs> struct Toda : PoissonSystem<Derived
     return out;
   }
   /// {a_i, b_i} = -a_i, {a_i, b_{i+1}} = a_i.
+  static constexpr bool linear_bracket = true;
   template <class S> Matrix<S, dimension, dimension> bivector(const Vector<S, dimension>& x) const {
     Matrix<S, dimension, dimension> pi;
     for (int i = 0; i < dimension; ++i)

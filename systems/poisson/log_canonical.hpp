@@ -8,7 +8,8 @@
 ///       template <class S> S hamiltonian(const Vector<S, 2>& x) const { return log(x(0) * x(1)) - x(0) - x(1); }
 ///     };
 ///
-/// Requires an antisymmetric c; any is a Poisson bracket. Returns as PoissonSystem. Nothing throws.
+/// Requires an antisymmetric c, that of a template on the scalar where it depends on parameters; any is a Poisson
+/// bracket. Returns as PoissonSystem. Nothing throws.
 
 #include <lagroid/core/poisson/poisson_system.hpp>
 
@@ -16,7 +17,7 @@ namespace lagroid {
 
 template <class Derived, int N> struct LogCanonicalSystem : PoissonSystem<Derived, N> {
   template <class S> Matrix<S, N, N> bivector(const Vector<S, N>& x) const {
-    const Matrix<double, N, N> c = static_cast<const Derived&>(*this).log_coefficients();
+    const auto c = log_coefficients_of<S>(static_cast<const Derived&>(*this));
     Matrix<S, N, N> pi;
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) pi(i, j) = x(i) * x(j) * c(i, j);

@@ -40,7 +40,16 @@ struct LotkaVolterra : LogCanonicalSystem<LotkaVolterra, 2> {
   static constexpr int parts = 2;
   template <class S> S part(int i, const S& x) const {
     using std::log;
-    return i == 0 ? S(log(x) * death - x * gain) : S(log(x) * growth - x * predation);
+    return i == 0 ? S(log(x) * varied<S>(death) - x * varied<S>(gain))
+                  : S(log(x) * varied<S>(growth) - x * varied<S>(predation));
+  }
+  template <class S> Vector<S, 2> velocity(const Vector<S, 2>& x) const {
+    return {x(0) * (varied<S>(growth) - x(1) * varied<S>(predation)),
+            x(1) * (x(0) * varied<S>(gain) - varied<S>(death))};
+  }
+  static constexpr bool in_lanes = true;
+  template <class S> S part_slope(int i, const S& x) const {
+    return i == 0 ? S(varied<S>(death) / x - varied<S>(gain)) : S(varied<S>(growth) / x - varied<S>(predation));
   }
 
   /// ln y and ln x, which make growth and death uncertain.
@@ -68,19 +77,23 @@ struct ThreeSpecies : LogCanonicalSystem<ThreeSpecies, 3> {
         parameter("mu", &ThreeSpecies::mu, "1/s", "growth of x2, alone; x3's is mu b - lambda a b"));
   }
 
-  Matrix<double, 3, 3> log_coefficients() const {
-    const double c = -1 / (a * b);
-    return skew<double, 3>({{0, 1, c}, {0, 2, b * c}, {1, 2, -1.0}});
+  template <class S = double> Matrix<ParameterScalar<S>, 3, 3> log_coefficients() const {
+    using P = ParameterScalar<S>;
+    const P c = -1.0 / (varied<S>(a) * varied<S>(b));
+    return skew<P, 3>({{0, 1, c}, {0, 2, varied<S>(b) * c}, {1, 2, P(-1.0)}});
   }
   static constexpr int parts = 3;
   template <class S> S part(int i, const S& x) const {
     using std::log;
-    if (i == 0) return x * (a * b);
-    return i == 1 ? S(x + log(x) * (mu * b - lambda * a * b)) : S(x * (-a) - log(x) * mu);
+    const auto ab = varied<S>(a) * varied<S>(b);
+    if (i == 0) return x * ab;
+    return i == 1 ? S(x + log(x) * (varied<S>(mu) * varied<S>(b) - varied<S>(lambda) * ab))
+                  : S(-x * varied<S>(a) - log(x) * varied<S>(mu));
   }
   template <class S> Vector<S, 1> casimirs(const Vector<S, 3>& x) const {
     using std::log;
-    return Vector<S, 1>(log(x(0)) * (a * b) - log(x(1)) * b + log(x(2)));
+    const auto& of_x2 = varied<S>(b);
+    return Vector<S, 1>(log(x(0)) * (varied<S>(a) * of_x2) - log(x(1)) * of_x2 + log(x(2)));
   }
 };
 
@@ -88,11 +101,9 @@ struct ThreeSpecies : LogCanonicalSystem<ThreeSpecies, 3> {
 template <int N> struct VolterraRing : LogCanonicalSystem<VolterraRing<N>, N> {
   static_assert(N >= 3 && N % 2 == 1);
   Matrix<double, N, N> log_coefficients() const {
-    Matrix<double, N, N> c = Matrix<double, N, N>::Zero();
-    for (int i = 0; i < N; ++i) {
-      c(i, (i + 1) % N) += 1;
-      c((i + 1) % N, i) -= 1;
-    }
+    Matrix<double, N, N> c;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) c(i, j) = (j == (i + 1) % N) - (i == (j + 1) % N);
     return c;
   }
   static constexpr int parts = N;

@@ -33,7 +33,7 @@ struct EulerTop : PoissonSystem<EulerTop, 3> {
     return skew<S, 3>({{0, 1, -m(2)}, {0, 2, m(1)}, {1, 2, -m(0)}});
   }
   static constexpr int parts = 3;
-  template <class S> S part(int i, const S& m) const { return m * m * (0.5 / inertia(i)); }
+  template <class S> S part(int i, const S& m) const { return m * m * (0.5 / varied<S>(inertia(i))); }
   template <class S> Vector<S, 1> casimirs(const Vector<S, 3>& m) const {
     return Vector<S, 1>((m(0) * m(0) + m(1) * m(1) + m(2) * m(2)) * 0.5);
   }
@@ -63,6 +63,7 @@ struct Kirchhoff : PoissonSystem<Kirchhoff, 6> {
   }
   static std::array<std::string, 6> labels() { return {"M1", "M2", "M3", "p1", "p2", "p3"}; }
 
+  static constexpr bool linear_bracket = true;
   template <class S> Matrix<S, 6, 6> bivector(const Vector<S, 6>& x) const {
     Matrix<S, 6, 6> pi;
     for (int i = 0; i < 6; ++i)
@@ -77,7 +78,7 @@ struct Kirchhoff : PoissonSystem<Kirchhoff, 6> {
       set(i, j, -x(k));
       set(i, 3 + j, -x(3 + k));
       set(3 + i, j, -x(3 + k));
-      set(3 + i, 3 + j, x(k) * (-kappa));
+      set(3 + i, 3 + j, -x(k) * varied<S>(kappa));
     }
     return pi;
   }
@@ -94,14 +95,15 @@ struct Kirchhoff : PoissonSystem<Kirchhoff, 6> {
   }
   template <class S> S part(int i, const S& s) const {
     const int axis = i % 3;
-    const double weight = i < 3 ? a(axis) - b(axis) : i < 6 ? c(axis) - b(axis) : b(axis);
-    return s * s * (0.5 * weight);
+    const auto along = varied<S>(b(axis));
+    if (i >= 6) return s * s * (along * 0.5);
+    return s * s * ((varied<S>(i < 3 ? a(axis) : c(axis)) - along) * 0.5);
   }
   template <class S> Vector<S, 2> casimirs(const Vector<S, 6>& x) const {
     S square(0.0);
     S product(0.0);
     for (int i = 0; i < 3; ++i) {
-      square += x(3 + i) * x(3 + i) + x(i) * x(i) * kappa;
+      square += x(3 + i) * x(3 + i) + x(i) * x(i) * varied<S>(kappa);
       product += x(i) * x(3 + i);
     }
     return Vector<S, 2>(square, product);

@@ -78,7 +78,7 @@ TEST_F(CommandLine, NoiseThatCannotBeIsRefusedInOneLine) {
   refused(top + "--set noise.seed=0.5", "noise.seed");
   refused(top + "--set time.method=hamilton-jacobi-4", "does not go with [noise]");
   refused(top + "--set time.order=4", "are not composed");
-  refused("run " + example("sklyanin") + " --set noise.seed=1", "has no noise Hamiltonians; lotka_volterra, euler_top");
+  refused("run " + example("sklyanin") + " --set noise.seed=1", "has no noise Hamiltonians, along whose fields");
   refused("run " + example("lotka_volterra") + " --set noise.seed=1", "missing key \"strength\"");
   refused("study " + example("stochastic_top"), "no two of them have an error to compare");
 }

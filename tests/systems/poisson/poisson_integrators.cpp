@@ -1,5 +1,5 @@
 // Integrators on Poisson manifolds against recorded motions: orders, what is kept, outcomes, no allocation.
-#include "../support/allocation_counter.hpp"
+#include "../../support/allocation_counter.hpp"
 #include "poisson_recorded.hpp"
 
 #include <lagroid/solvers/poisson/poisson_methods.hpp>

@@ -1,5 +1,5 @@
 // Noise on Poisson manifolds: orders, what is kept path by path, the thermostat's measure, streams.
-#include "../support/allocation_counter.hpp"
+#include "../../support/allocation_counter.hpp"
 #include "noise_runs.hpp"
 
 #include <lagroid/systems/poisson/fields.hpp>

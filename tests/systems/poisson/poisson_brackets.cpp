@@ -1,11 +1,13 @@
 // Brackets of Poisson systems: antisymmetry, the Jacobi identity, Casimirs, and subjects that fail each.
-#include "../support/broken.hpp"
+#include "../../support/broken.hpp"
 
 #include <lagroid/core/testing/poisson_laws.hpp>
 #include <lagroid/systems/poisson/fields.hpp>
 #include <lagroid/systems/poisson/lattices.hpp>
 #include <lagroid/systems/poisson/lotka_volterra.hpp>
 #include <lagroid/systems/poisson/rotations.hpp>
+#include <lagroid/systems/poisson/spins.hpp>
+#include <lagroid/systems/poisson/tops.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -38,7 +40,8 @@ TEST(PoissonBrackets, ThoseOfTheSystemsAreThat) {
                }()),
         report<OpenToda<3>>("Toda row of 3"), report<OpenToda<4>>("Toda row of 4"),
         report<PeriodicToda<3>>("Toda ring"), report<MaxwellBloch>("Maxwell-Bloch"), report<Sklyanin>("Sklyanin"),
-        report<MagneticParticle>("magnetic")})
+        report<MagneticParticle>("magnetic"), report<HeavyTopBracket>("heavy top"),
+        report<BodyInSpace>("body in space"), report<SpinChain<3>>("spins")})
     EXPECT_TRUE(each.holds()) << each;
 }
 

@@ -1,5 +1,5 @@
 // Laws of steps on Poisson manifolds hold for every method, and not for methods that promise more than they keep.
-#include "../support/broken.hpp"
+#include "../../support/broken.hpp"
 
 #include <lagroid/core/testing/sampling.hpp>
 #include <lagroid/solvers/testing/poisson_step_laws.hpp>
@@ -22,6 +22,9 @@ template <class Sys> laws::PoissonSubject subject_of(const char* name, std::vect
       name, {.method = method, .step = 0.1}, std::move(start), [=](const auto& x, const auto& by) {
         return make_poisson_integrator(Sys{}, at(x), by);
       }};
+  subject.energy = [=](const auto& x) {
+    return std::vector<std::pair<double, double>>{{Sys{}.hamiltonian(at(x)), 5.0}};
+  };
   if constexpr (casimir_count<Sys>() > 0) {
     subject.casimirs = [=](const auto& x) {
       return std::vector<std::pair<double, double>>{{Sys{}.casimirs(at(x))(0), 1.0}};
@@ -72,6 +75,7 @@ class Boaster final : public PoissonIntegrator {
     return traits;
   }
   KeptStructure kept() const override { return kept_; }
+  Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const override { return made_->slope(parameters); }
   double poisson_defect() const override { return made_->poisson_defect(); }
   void serialize(NumberArchive& archive) override { made_->serialize(archive); }
 
@@ -104,6 +108,13 @@ TEST(BrokenPoissonStep, RungeKuttaThatClaimsToBeSymmetricAndNearerToAPoissonMap)
   const auto found = report_of_boaster("runge-kutta", {7, 7}, 4);
   EXPECT_TRUE(laws::seen_broken(found.law("the Poisson defect falls as declared"))) << found;
   EXPECT_TRUE(laws::seen_broken(found.law("steps return to where they began"))) << found;
+}
+
+TEST(BrokenPoissonStep, AMethodThatClaimsToKeepTheEnergy) {
+  const laws::Sampling few(10, 9);
+  const auto found = report_of_boaster("symplectic-groupoid", {.energy = true}, 2);
+  EXPECT_TRUE(laws::seen_broken(found.law("steps keep the energy"))) << found;
+  EXPECT_TRUE(found.law("steps keep Casimirs").holds()) << found;
 }
 
 }  // namespace
