@@ -27,7 +27,7 @@
 #endif
 #if defined(LAGROID_WITH_LAWS)
 #include "check/certify_system.hpp"
-#include "check/own_check.hpp"
+#include "own/own_check.hpp"
 
 #include <lagroid/solvers/testing/reduced_certificate.hpp>
 #endif

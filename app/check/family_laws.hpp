@@ -7,14 +7,19 @@
 /// Errors: SceneError for a scene that is no motion and no path.
 
 #include "../families/family.hpp"
-#include "own_check.hpp"
+#include "check_options.hpp"
 
 #include <lagroid/run/ledger/certificate.hpp>
 
+#include <functional>
 #include <utility>
 #include <vector>
 
 namespace lagroid::app {
+
+/// Tests the laws of the system of a module, along the run of a scene.
+using AskLaws =
+    std::function<Certificate(const SystemModule& module, const Section& scene, const CheckCommandOptions& options)>;
 
 class FamilyLaws {
  public:

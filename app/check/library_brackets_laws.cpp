@@ -1,4 +1,4 @@
-#include "../check/poisson_laws.hpp"
+#include "poisson_laws.hpp"
 
 namespace lagroid::app {
 
