@@ -132,7 +132,8 @@ inline LawReport poisson_step_laws(const PoissonSubject& subject) {
       const auto after = values(detail::integrated(*begun(x, h), 20));
       double largest = 0;
       for (std::size_t i = 0; i < before.size(); ++i)
-        largest = worst({largest, std::abs(after[i].first - before[i].first) / std::max(before[i].second, 1e-300)});
+        largest = worst({largest, std::abs(after[i].first - before[i].first) /
+                                      std::max({before[i].second, after[i].second, 1e-300})});
       return largest;
     });
   };

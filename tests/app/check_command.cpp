@@ -9,9 +9,10 @@
 
 namespace {
 
-constexpr std::array at_once{"pendulum_chain", "learned_hamiltonian", "lotka_volterra", "three_species",
-                             "volterra_ring",  "euler_top",           "kirchhoff",      "toda",
-                             "toda_ring",      "maxwell_bloch",       "sklyanin",       "magnetic_particle"};
+constexpr std::array at_once{"pendulum_chain",    "learned_hamiltonian", "lotka_volterra", "three_species",
+                             "volterra_ring",     "euler_top",           "kirchhoff",      "toda",
+                             "toda_ring",         "maxwell_bloch",       "sklyanin",       "magnetic_particle",
+                             "heavy_top_bracket", "body_in_space",       "spin_chain"};
 
 TEST_F(CommandLine, EveryExampleIsCertified) {
   for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
