@@ -7,7 +7,8 @@
 /// stochastic equation of Landau, Lifshitz and Gilbert.
 ///
 ///     const SpinChain<3> chain;
-///     const double energy = chain.hamiltonian(Vector<double, 9>::Unit(2));
+///     const Vector<double, 9> first_up = Vector<double, 9>::Unit(2);
+///     const double energy = chain.hamiltonian(first_up);
 ///
 /// Returns as PoissonSystem. Nothing throws.
 ///
