@@ -34,27 +34,14 @@ template <class Sys> class PoissonSystemOf final : public AnyPoissonSystem {
   std::vector<MeasuredFunction> measure(const std::vector<double>& x) const override {
     Vector<J, n> at;
     for (int i = 0; i < n; ++i) at(i) = J::variable(x[std::size_t(i)], i);
-    std::vector<MeasuredFunction> out{measured(system_.hamiltonian(at), x)};
-    if constexpr (casimir_count<Sys>() > 0) {
-      const auto casimirs = system_.casimirs(at);
-      for (int c = 0; c < casimirs.size(); ++c) out.push_back(measured(casimirs(c), x));
-    }
+    std::vector<MeasuredFunction> out;
+    for (const J& each : functions_at(at)) out.push_back(measured(each, x));
     return out;
   }
   NodeValues differentiate(const std::vector<double>& x, const std::vector<std::string>& parameters) const override {
-    constexpr int rows = 1 + casimir_count<Sys>();
-    const auto measured_at = [&](const auto& at) {
-      using S = typename std::remove_cvref_t<decltype(at)>::Scalar;
-      Vector<S, rows> all;
-      all(0) = system_.hamiltonian(at);
-      if constexpr (rows > 1) {
-        const auto casimirs = system_.casimirs(at);
-        for (int c = 0; c + 1 < rows; ++c) all(c + 1) = casimirs(c);
-      }
-      return all;
-    };
+    const auto functions = [&](const auto& at) { return functions_at(at); };
     const ParameterPlaces places = places_of_parameters(system_, parameters);
-    return {measured_at(point(x)), varied_jacobian<rows>(measured_at, point(x), places.members)};
+    return {functions_at(point(x)), varied_jacobian<rows>(functions, point(x), places.members)};
   }
   std::vector<NamedNumber> numbers() const override {
     std::vector<NamedNumber> all;
@@ -86,6 +73,17 @@ template <class Sys> class PoissonSystemOf final : public AnyPoissonSystem {
   }
 
  private:
+  static constexpr int rows = 1 + casimir_count<Sys>();
+  /// Energy and Casimirs.
+  template <class S> Vector<S, rows> functions_at(const Vector<S, n>& at) const {
+    Vector<S, rows> all;
+    all(0) = system_.hamiltonian(at);
+    if constexpr (rows > 1) {
+      const auto casimirs = system_.casimirs(at);
+      for (int c = 0; c + 1 < rows; ++c) all(c + 1) = casimirs(c);
+    }
+    return all;
+  }
   std::string refused_by_the_system(const X& x) const {
     if constexpr (requires { system_.refusal(x); }) {
       return system_.refusal(x);

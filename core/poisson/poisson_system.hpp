@@ -117,15 +117,17 @@ template <class S> struct SkewEntry {
   int column;
   S value;
 };
+/// Writes an entry, and the one across the diagonal.
+template <class S, int N> void set_skew(Matrix<S, N, N>& matrix, int row, int column, const S& value) {
+  matrix(row, column) = value;
+  matrix(column, row) = -value;
+}
 /// The antisymmetric matrix with these entries, and zeros elsewhere.
 template <class S, int N> Matrix<S, N, N> skew(std::initializer_list<SkewEntry<S>> entries) {
   Matrix<S, N, N> out;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) out(i, j) = S(0.0);
-  for (const SkewEntry<S>& e : entries) {
-    out(e.row, e.column) = e.value;
-    out(e.column, e.row) = -e.value;
-  }
+  for (const SkewEntry<S>& e : entries) set_skew(out, e.row, e.column, e.value);
   return out;
 }
 

@@ -5,9 +5,9 @@
 ///     x = (M, gamma_1, ..., gamma_K):    {M_i, M_j} = -eps_ijk M_k,  {M_i, gamma_j} = -eps_ijk gamma_k,
 ///     pi(x) p = (M x xi + sum_a gamma_a x v_a, gamma_a x xi),    p = (xi, v_1, ..., v_K):
 ///
-/// se(3)* for K = 1, and for K = 3 with the rows of an attitude as vectors T*SO(3), in which the attitude is one of the
-/// leaves of the bracket. With e^2 = 0, (gamma + e M)' = (gamma + e M) x (xi + e v): one vector is so(3)* over dual
-/// numbers, and several add up, since an arc is linear in x and in v.
+/// se(3)* for K = 1; for K = 3, with the rows of an attitude as vectors, T*SO(3) is one of the leaves. With e^2 = 0,
+/// (gamma + e M)' = (gamma + e M) x (xi + e v): one vector is so(3)* over dual numbers, and several add up, since an
+/// arc is linear in x and in v.
 ///
 ///     const RotationChart<EulerTop> chart{EulerTop{}};
 ///     const auto arc = chart.from(Vector<double, 3>(0.8, 0.6, 1.1), Vector<double, 3>(0.1, 0, -0.2));

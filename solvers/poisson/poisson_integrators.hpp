@@ -38,22 +38,7 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
   }
 
   StepReport advance() override {
-    const X before = x_;
-    StepReport report;
-    if constexpr (requires { step_.take(before, sizes_, x_); }) {
-      report = step_.take(before, sizes_, x_);
-      if (!report.converged()) x_ = before;
-    } else {
-      report = step_by_stages(
-          sizes_,
-          [&](double h) {
-            X end;
-            const StepReport found = step_.take(x_, h, end);
-            if (found.converged()) x_ = end;
-            return found;
-          },
-          [&] { x_ = before; });
-    }
+    const StepReport report = take_stages(step_, x_);
     if (report.converged()) ++index_;
     return report;
   }
@@ -73,7 +58,12 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
   Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const override {
     if constexpr (has_slope) {
       return slope_by_parameters(
-          system_, parameters, make_, [&](const Step& step) { return along_stages(step, {}).first; },
+          system_, parameters, make_,
+          [&](const Step& step) {
+            X end = x_;
+            if (!take_stages(step, end).converged()) end.setConstant(std::numeric_limits<double>::quiet_NaN());
+            return end;
+          },
           [&](const Step& step, const auto& members) { return along_stages(step, members).second; }, checked_);
     } else {
       throw std::invalid_argument("steps of " + std::string(method_.name) + " have no derivative");
@@ -92,6 +82,25 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
  private:
   static constexpr bool has_slope = requires(const Step& step, const X& x) { step.slope(x, 0.0); };
 
+  /// x to where a step leads; unless it converges, x stays.
+  StepReport take_stages(const Step& step, X& x) const {
+    const X before = x;
+    X end;
+    if constexpr (requires { step.take(before, sizes_, end); }) {
+      const StepReport report = step.take(before, sizes_, end);
+      if (report.converged()) x = end;
+      return report;
+    } else {
+      return step_by_stages(
+          sizes_,
+          [&](double h) {
+            const StepReport found = step.take(x, h, end);
+            if (found.converged()) x = end;
+            return found;
+          },
+          [&] { x = before; });
+    }
+  }
   /// The end of the next step, and its derivative: the product of those of its stages.
   std::pair<X, StepSlope<Sys::dimension>> along_stages(const Step& step, std::span<const double* const> members) const {
     constexpr int n = Sys::dimension;

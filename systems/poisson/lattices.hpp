@@ -30,16 +30,10 @@ template <class Derived, int K, int Springs> struct Toda : PoissonSystem<Derived
   /// {a_i, b_i} = -a_i, {a_i, b_{i+1}} = a_i.
   static constexpr bool linear_bracket = true;
   template <class S> Matrix<S, dimension, dimension> bivector(const Vector<S, dimension>& x) const {
-    Matrix<S, dimension, dimension> pi;
-    for (int i = 0; i < dimension; ++i)
-      for (int j = 0; j < dimension; ++j) pi(i, j) = S(0.0);
+    auto pi = skew<S, dimension>({});
     for (int i = 0; i < Springs; ++i) {
-      const int left = Springs + i;
-      const int right = Springs + (i + 1) % K;
-      pi(i, left) = -x(i);
-      pi(left, i) = x(i);
-      pi(i, right) = x(i);
-      pi(right, i) = -x(i);
+      set_skew<S>(pi, i, Springs + i, -x(i));
+      set_skew<S>(pi, i, Springs + (i + 1) % K, x(i));
     }
     return pi;
   }

@@ -65,20 +65,14 @@ struct Kirchhoff : PoissonSystem<Kirchhoff, 6> {
 
   static constexpr bool linear_bracket = true;
   template <class S> Matrix<S, 6, 6> bivector(const Vector<S, 6>& x) const {
-    Matrix<S, 6, 6> pi;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) pi(i, j) = S(0.0);
+    auto pi = skew<S, 6>({});
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       const int k = (i + 2) % 3;
-      const auto set = [&](int row, int column, const S& value) {
-        pi(row, column) = value;
-        pi(column, row) = -value;
-      };
-      set(i, j, -x(k));
-      set(i, 3 + j, -x(3 + k));
-      set(3 + i, j, -x(3 + k));
-      set(3 + i, 3 + j, -x(k) * varied<S>(kappa));
+      set_skew<S>(pi, i, j, -x(k));
+      set_skew<S>(pi, i, 3 + j, -x(3 + k));
+      set_skew<S>(pi, 3 + i, j, -x(3 + k));
+      set_skew<S>(pi, 3 + i, 3 + j, -x(k) * varied<S>(kappa));
     }
     return pi;
   }

@@ -41,15 +41,9 @@ template <int K> struct SpinChain : PoissonSystem<SpinChain<K>, 3 * K> {
   /// S' = S x dH/dS: K symplectic groupoids of SO(3).
   static constexpr double rotation_sign = 1;
   template <class S> Matrix<S, n, n> bivector(const Vector<S, n>& x) const {
-    Matrix<S, n, n> pi;
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) pi(i, j) = S(0.0);
+    auto pi = skew<S, n>({});
     for (int a = 0; a < n; a += 3)
-      for (int i = 0; i < 3; ++i) {
-        const int j = a + (i + 1) % 3;
-        pi(a + i, j) = -x(a + (i + 2) % 3);
-        pi(j, a + i) = x(a + (i + 2) % 3);
-      }
+      for (int i = 0; i < 3; ++i) set_skew<S>(pi, a + i, a + (i + 1) % 3, -x(a + (i + 2) % 3));
     return pi;
   }
   template <class S> S hamiltonian(const Vector<S, n>& x) const {

@@ -39,20 +39,14 @@ template <class Derived, int K> struct TopBracket : PoissonSystem<Derived, 3 + 3
   /// Its symplectic groupoid is that of SO(3) and K vectors that it turns (groupoids/poisson/rotation_charts.hpp).
   static constexpr int turned_vectors = K;
   template <class S> Matrix<S, n, n> bivector(const Vector<S, n>& x) const {
-    Matrix<S, n, n> pi;
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) pi(i, j) = S(0.0);
+    auto pi = skew<S, n>({});
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       const int k = (i + 2) % 3;
-      const auto set = [&](int row, int column, const S& value) {
-        pi(row, column) = value;
-        pi(column, row) = -value;
-      };
-      set(i, j, -x(k));
+      set_skew<S>(pi, i, j, -x(k));
       for (int a = 3; a < n; a += 3) {
-        set(i, a + j, -x(a + k));
-        set(i, a + k, x(a + j));
+        set_skew<S>(pi, i, a + j, -x(a + k));
+        set_skew<S>(pi, i, a + k, x(a + j));
       }
     }
     return pi;

@@ -4,7 +4,6 @@
 #include <lagroid/systems/poisson/lotka_volterra.hpp>
 #include <lagroid/systems/poisson/rotations.hpp>
 #include <lagroid/systems/poisson/spins.hpp>
-#include <lagroid/systems/poisson/tops.hpp>
 
 namespace lagroid {
 namespace {
@@ -18,15 +17,6 @@ TEST(SymplecticGroupoid, OfRotationsByCayleysTransform) {
 }
 
 TEST(SymplecticGroupoid, OfSpins) { expect_all_laws(SymplecticGroupoid<CayleyChart<SpinChain<2>>>()); }
-
-TEST(SymplecticGroupoid, OfRotationsThatTurnAVector) {
-  expect_all_laws(SymplecticGroupoid<SemidirectChart<HeavyTopBracket, RotationArcs>>());
-  expect_all_laws(SymplecticGroupoid<SemidirectChart<HeavyTopBracket, CayleyArcs>>());
-}
-
-TEST(SymplecticGroupoid, OfRotationsThatTurnThreeVectors) {
-  expect_all_laws(SymplecticGroupoid<SemidirectChart<BodyInSpace, CayleyArcs>>());
-}
 
 TEST(SymplecticGroupoid, OfPopulations) { expect_all_laws(SymplecticGroupoid<LogCanonicalChart<ThreeSpecies>>()); }
 

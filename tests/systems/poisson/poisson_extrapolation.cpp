@@ -14,6 +14,13 @@
 #include <vector>
 
 namespace lagroid {
+
+// Those are in the library; here are only the test's own.
+LAGROID_POISSON_INTEGRATORS(extern template, HeavyTopBracket);
+LAGROID_POISSON_INTEGRATORS(extern template, LotkaVolterra);
+LAGROID_POISSON_INTEGRATORS(extern template, Sklyanin);
+LAGROID_POISSON_INTEGRATORS(extern template, ThreeSpecies);
+
 namespace {
 
 constexpr double period = 6.8170540474472894;  // of LotkaVolterra from (2, 1/2)

@@ -15,6 +15,14 @@
 #include <vector>
 
 namespace lagroid {
+
+// Those are in the library; here are only the test's own.
+LAGROID_POISSON_INTEGRATORS(extern template, EulerTop);
+LAGROID_POISSON_INTEGRATORS(extern template, Kirchhoff);
+LAGROID_POISSON_INTEGRATORS(extern template, LotkaVolterra);
+LAGROID_POISSON_INTEGRATORS(extern template, Sklyanin);
+LAGROID_POISSON_INTEGRATORS(extern template, ThreeSpecies);
+
 namespace {
 
 template <class Sys> std::vector<std::string> all_names() {
