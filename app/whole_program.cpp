@@ -31,8 +31,8 @@ ProgramCommand command_of_scenes(const char* name, const char* what, void (*add)
 }  // namespace
 
 ProgramParts whole_program() {
-  return {{&systems_family(), &spheres_family(), &poisson_family(), &bodies_family(), &optimisation_family(),
-           &control_family(), &sweeps_family()},
+  return {{&systems_family(), &spheres_family(), &poisson_family(), &formula_family(), &bodies_family(),
+           &optimisation_family(), &control_family(), &sweeps_family()},
           library_systems(),
           {new_command(), sweep_command(),
            command_of_scenes("optimize", "minimise a function on a manifold (see docs/optimisation.md)",

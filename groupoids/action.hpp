@@ -17,6 +17,7 @@
 #include <lagroid/core/continuous/curve_point.hpp>
 #include <lagroid/core/derivatives/directional.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace lagroid {
@@ -83,8 +84,7 @@ template <class Group, class Space> struct Action : LieGroupoid<Action<Group, Sp
     return group.bracket(Vector<S, 0>(), x, y);
   }
   /// The velocity is that of the group's curve.
-  static constexpr RetractionKind retraction_kind =
-      retraction_kind_of<Group>() == RetractionKind::any ? RetractionKind::any : RetractionKind::exponential;
+  static constexpr RetractionKind retraction_kind = std::min(retraction_kind_of<Group>(), RetractionKind::exponential);
   template <class S>
   Vector<S, rank> chart_velocity(const Vector<S, object_size>&, const Vector<S, rank>& x,
                                  const Vector<S, rank>& rate) const requires HasChartVelocity<Group> {

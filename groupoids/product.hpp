@@ -12,8 +12,10 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/capabilities/loops.hpp>
+#include <lagroid/core/continuous/curve_point.hpp>
 #include <lagroid/core/derivatives/arrow_frame.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <tuple>
@@ -31,6 +33,8 @@ template <class... Gs> struct Product : LieGroupoid<Product<Gs...>, (Gs::dimensi
   static constexpr int object_size = (Gs::object_coordinate_count() + ...);
   static constexpr std::size_t factors = sizeof...(Gs);
   static constexpr int rank = (Gs::dimension + ...);
+
+  static constexpr RetractionKind retraction_kind = std::min({retraction_kind_of<Gs>()...});
 
   [[no_unique_address]] std::tuple<Gs...> factor;
 

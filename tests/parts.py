@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What `./lagroid` builds for a scene, and that it does what the whole program does: parts.py BIN EXAMPLES.
 
-BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres, parts/poisson
-and parts/files.
+BIN holds lagroid, lagroid-part and parts/pendulum, parts/bodies, parts/spheres, parts/poisson,
+parts/formula and parts/files.
 """
 import csv
 import json
@@ -16,7 +16,7 @@ import tempfile
 import unittest
 
 bin_folder, examples = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-built = ("pendulum", "bodies", "spheres", "poisson", "files")
+built = ("pendulum", "bodies", "spheres", "poisson", "formula", "files")
 
 
 def run(program, *words):
@@ -44,8 +44,8 @@ class Parts(unittest.TestCase):
         found = {scene: part_of("run", scene) for scene in sorted(examples.rglob("*.toml"))}
         self.assertGreater(len(found), 40)
         for scene, part in found.items():
-            self.assertTrue(part in listed or part in ("bodies", "spheres", "poisson", "whole"), f"{scene}: {part}")
-        self.assertEqual({"pendulum", "bodies", "spheres", "poisson", "whole"} - set(found.values()), set())
+            self.assertTrue(part in listed or part in ("bodies", "spheres", "poisson", "formula", "whole"), f"{scene}: {part}")
+        self.assertEqual({"pendulum", "bodies", "spheres", "poisson", "formula", "whole"} - set(found.values()), set())
 
     def test_they_give_what_the_whole_gives(self):
         for scene in sorted(examples.glob("*.toml")):
@@ -56,6 +56,15 @@ class Parts(unittest.TestCase):
             whole, alone = run(bin_folder / "lagroid", *words), run(of_part(part), *words)
             self.assertEqual(whole.returncode, alone.returncode, f"{scene}: {alone.stderr}")
             self.assertEqual(without_times(whole.stdout), without_times(alone.stdout), str(scene))
+
+    def test_a_part_has_the_laws_of_its_scenes(self):
+        for scene in ("elastic_pendulum", "bob_on_a_sphere", "driven_oscillator", "kepler_hamiltonian"):
+            told = run(of_part("formula"), "check", examples / f"{scene}.toml", "--samples", "5", "--json")
+            self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+            found = json.loads(told.stdout)
+            self.assertGreater(sum(len(suite["laws"]) for suite in found["suites"]), 2, scene)
+        told = run(of_part("formula"), "check", examples / "elastic_pendulum.toml", "--set", "time.step=5")
+        self.assertNotEqual(told.returncode, 0, "steps that do not converge cannot be judged")
 
     def test_gradients_are_those_of_the_run(self):
         scene = ("gradient", examples / "pendulum.toml", "--set", "time.steps=50")

@@ -52,6 +52,8 @@ const FamilyLaws& systems_laws();
 const FamilyLaws& spheres_laws();
 /// Of the bracket and the step of a scene of a Poisson system, beside where it starts.
 const FamilyLaws& poisson_laws();
+/// Of the step of a scene that holds its formulas, beside where it starts.
+const FamilyLaws& formula_laws();
 /// Of the step of a scene of bodies, where it starts.
 const FamilyLaws& bodies_laws();
 

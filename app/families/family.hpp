@@ -70,6 +70,8 @@ void require_command(const Section& scene, std::string_view command);
 const SceneFamily& bodies_family();
 /// Scenes on (T*S^2)^k, learned Hamiltonians among them.
 const SceneFamily& spheres_family();
+/// Scenes that hold the formulas of their system.
+const SceneFamily& formula_family();
 /// Scenes of Poisson systems.
 const SceneFamily& poisson_family();
 /// Initial and boundary values of systems whose groupoid is a type.

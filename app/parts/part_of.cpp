@@ -31,9 +31,14 @@ std::string part_of(const Section& scene) {
   names.insert(names.end(), keys::on_spheres.begin(), keys::on_spheres.end());
   const std::size_t before_brackets = names.size();
   names.insert(names.end(), keys::of_brackets.begin(), keys::of_brackets.end());
+  const std::size_t before_formulas = names.size();
+  for (const std::string_view each : {keys::lagrangian, keys::hamiltonian}) names.emplace_back(each);
   const std::string name = scene.choice(keys::system, names);
   const auto found = std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
-  return found < of_types ? name : found < before_brackets ? "spheres" : "poisson";
+  return found < of_types          ? name
+         : found < before_brackets ? "spheres"
+         : found < before_formulas ? "poisson"
+                                   : "formula";
 }
 
 }  // namespace

@@ -12,6 +12,10 @@ inline constexpr std::string_view optimisation = "problem";
 inline constexpr std::string_view control = "control";
 inline constexpr std::string_view sweep = "scene";
 
+/// The values of `system` for scenes that hold the formulas of one.
+inline constexpr std::string_view lagrangian = "lagrangian";
+inline constexpr std::string_view hamiltonian = "hamiltonian";
+
 /// The values of `system` for scenes on (T*S^2)^k.
 inline constexpr std::string_view pendulum_chain = "pendulum_chain";
 inline constexpr std::string_view learned_hamiltonian = "learned_hamiltonian";

@@ -20,9 +20,10 @@
 
 namespace lagroid {
 
-/// What is known of the curves t -> tau(q, t v).
+/// What is known of the curves t -> tau(q, t v); each holds of those after it too.
 enum class RetractionKind {
   any,          ///< nothing
+  symmetric,    ///< tau(q, v)^{-1} = tau(q', -v), and from there tau is exponential up to terms of third order
   exponential,  ///< they are motions of constant velocity
   translation   ///< and the chart's coordinates are those of an abelian group: x and y after one another make x + y
 };

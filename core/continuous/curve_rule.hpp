@@ -10,8 +10,8 @@
 ///     const auto& rule = CurveRule<2, CurveQuadrature::gauss>::rule();
 ///     const double length = rule.weight[0] + rule.weight[1];  // 1
 ///
-/// Requires degrees from one to five. Gauss's s points are exact for degree 2 s - 1, and so are Lobatto's s + 1, the
-/// ends among them. Nothing throws.
+/// Requires a degree of at least one, and two of `lobatto_pair`. Gauss's s points are exact for degree 2 s - 1, and so
+/// are Lobatto's s + 1, the ends among them. Nothing throws.
 ///
 /// Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, 2006, II.1; Abramowitz and Stegun, 25.4.32.
 
@@ -20,51 +20,54 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <utility>
 
 namespace lagroid {
 
-/// The points at which a curve is looked at.
-enum class CurveQuadrature { gauss, lobatto };
+/// The points at which a curve of degree s is looked at: the s of Gauss, the s + 1 of Lobatto, or s of Lobatto, which
+/// make the curve that of the pair Lobatto IIIA-IIIB.
+enum class CurveQuadrature { gauss, lobatto, lobatto_pair };
 
 /// Lobatto's nodes of degree s: the s + 1 points of [0, 1] where P_s' vanishes, and the ends, with their weights.
 template <int Degree> struct LobattoNodes {
-  static_assert(Degree >= 1 && Degree <= 5);
+  static_assert(Degree >= 1);
   std::array<double, std::size_t(Degree + 1)> node;
   std::array<double, std::size_t(Degree + 1)> weight;
 
   LobattoNodes() {
-    if constexpr (Degree == 1) {
-      node = {0, 1};
-      weight = {0.5, 0.5};
-    } else if constexpr (Degree == 2) {
-      node = {0, 0.5, 1};
-      weight = {1.0 / 6, 2.0 / 3, 1.0 / 6};
-    } else if constexpr (Degree == 3) {
-      const double r = std::sqrt(5.0) / 10;
-      node = {0, 0.5 - r, 0.5 + r, 1};
-      weight = {1.0 / 12, 5.0 / 12, 5.0 / 12, 1.0 / 12};
-    } else if constexpr (Degree == 4) {
-      const double r = std::sqrt(21.0) / 14;
-      node = {0, 0.5 - r, 0.5, 0.5 + r, 1};
-      weight = {1.0 / 20, 49.0 / 180, 16.0 / 45, 49.0 / 180, 1.0 / 20};
-    } else {
-      const double root = std::sqrt(7.0);
-      const double near = std::sqrt((7 - 2 * root) / 21) / 2;
-      const double far = std::sqrt((7 + 2 * root) / 21) / 2;
-      node = {0, 0.5 - far, 0.5 - near, 0.5 + near, 0.5 + far, 1};
-      weight = {1.0 / 30, (14 - root) / 60, (14 + root) / 60, (14 + root) / 60, (14 - root) / 60, 1.0 / 30};
+    for (int i = 0; i <= Degree; ++i) {
+      long double z = i == Degree ? 1 : -std::cos(std::numbers::pi_v<long double> * i / Degree);
+      for (int pass = 0; pass < 20 && i > 0 && i < Degree; ++pass) {
+        const auto [p, slope] = legendre(z);
+        z -= slope * (1 - z * z) / (2 * z * slope - Degree * (Degree + 1) * p);  // P'' by Legendre's equation
+      }
+      const long double p = legendre(z)[0];
+      node[std::size_t(i)] = double((1 + z) / 2);
+      weight[std::size_t(i)] = double(1 / (Degree * (Degree + 1) * p * p));
     }
+  }
+
+ private:
+  /// P_s(z) and P_s'(z), -1 < z < 1; at the ends P_s alone.
+  static std::array<long double, 2> legendre(long double z) {
+    long double before = 1, p = z;
+    for (int m = 1; m < Degree; ++m) {
+      const long double next = ((2 * m + 1) * z * p - m * before) / (m + 1);
+      before = std::exchange(p, next);
+    }
+    return {p, Degree * (before - z * p) / (1 - z * z)};
   }
 };
 
 /// The points and weights of a quadrature, and there the values and derivatives of the polynomials of degree s that
 /// are one at one of Lobatto's nodes and zero at the others.
 template <int Degree, CurveQuadrature Kind = CurveQuadrature::lobatto> struct CurveRule {
-  static constexpr int nodes = Degree + 1;                                        ///< of the curve
-  static constexpr int points = Kind == CurveQuadrature::gauss ? Degree : nodes;  ///< of the quadrature
-  std::array<double, std::size_t(nodes)> curve_node;                              ///< d_j
-  std::array<double, std::size_t(points)> node;                                   ///< c_i
-  std::array<double, std::size_t(points)> weight;                                 ///< b_i
+  static constexpr int nodes = Degree + 1;                                               ///< of the curve
+  static constexpr int points = Kind == CurveQuadrature::lobatto ? Degree + 1 : Degree;  ///< of the quadrature
+  std::array<double, std::size_t(nodes)> curve_node;                                     ///< d_j
+  std::array<double, std::size_t(points)> node;                                          ///< c_i
+  std::array<double, std::size_t(points)> weight;                                        ///< b_i
   std::array<std::array<double, std::size_t(nodes)>, std::size_t(points)> value;  ///< [i][j]: of polynomial j at c_i
   std::array<std::array<double, std::size_t(nodes)>, std::size_t(points)> derivative;  ///< [i][j]
 
@@ -76,8 +79,9 @@ template <int Degree, CurveQuadrature Kind = CurveQuadrature::lobatto> struct Cu
       node = gauss.node;
       weight = gauss.weight;
     } else {
-      node = lobatto.node;
-      weight = lobatto.weight;
+      const LobattoNodes<points - 1> ends_among_them;
+      node = ends_among_them.node;
+      weight = ends_among_them.weight;
     }
     for (std::size_t i = 0; i < std::size_t(points); ++i) {
       double sum = 0;  // of the derivatives: that of the constant one is zero

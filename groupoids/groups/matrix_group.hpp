@@ -110,7 +110,7 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
 
   /// dtau_x rate: the body velocity of the curves of the chart.
   static constexpr RetractionKind retraction_kind =
-      Tau == Retraction::exponential ? RetractionKind::exponential : RetractionKind::any;
+      Tau == Retraction::exponential ? RetractionKind::exponential : RetractionKind::symmetric;
   template <class S>
   static Algebra<S> chart_velocity(const Vector<S, 0>&, const Algebra<S>& x, const Algebra<S>& rate) {
     Matrix<S, Dimension, Dimension> d;

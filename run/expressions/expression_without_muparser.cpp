@@ -1,4 +1,5 @@
 #include <lagroid/run/expressions/expression.hpp>
+#include <lagroid/run/expressions/formula_graph.hpp>
 
 #include <stdexcept>
 
@@ -10,3 +11,11 @@ std::unique_ptr<Expression> parse_any_expression(const std::string&, const std::
 }
 
 }  // namespace lagroid::detail
+
+namespace lagroid {
+
+FormulaGraph::Node FormulaGraph::read(const std::string&, const std::vector<std::string>&) {
+  throw std::invalid_argument("this build has no muparser (libmuparser-dev), which reads formulas");
+}
+
+}  // namespace lagroid

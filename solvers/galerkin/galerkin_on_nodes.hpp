@@ -30,60 +30,28 @@
 #include <lagroid/solvers/galerkin/inner_nodes.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 
-#include <string>
-#include <utility>
-
 namespace lagroid {
 
 /// Of order 2 Degree. Multipliers: those of psi at the first point of Gauss, then at the second, ...; each is that of
 /// the continuous problem there.
 template <class L, int Degree>
-struct GalerkinOnNodes
-    : System<GalerkinOnNodes<L, Degree>, typename WithInnerNodes<typename L::GroupoidType, Degree>::Extended,
-             L::arrow_constraints * Degree>,
-      L,
-      WithInnerNodes<typename L::GroupoidType, Degree> {
-  static_assert(L::object_constraints == 0,
-                "a curve with inner nodes would leave the objects that are allowed: for higher order with object "
-                "constraints compose steps of Trapezoidal");
-  using BaseGroupoid = typename L::GroupoidType;
-  using Nodes = WithInnerNodes<BaseGroupoid, Degree>;
-  using GroupoidType = typename Nodes::Extended;
-  using Base = System<GalerkinOnNodes, GroupoidType, L::arrow_constraints * Degree>;
-  using MembersVary = void;  // constraint, where there are any
-  using Continuous = L;
+struct GalerkinOnNodes : DiscretisedOnNodes<GalerkinOnNodes<L, Degree>, L, Degree, L::arrow_constraints * Degree> {
+  using OnNodes = DiscretisedOnNodes<GalerkinOnNodes, L, Degree, L::arrow_constraints * Degree>;
+  using OnNodes::arrow_constraints, OnNodes::base, OnNodes::constraint, OnNodes::continuous, OnNodes::h,
+      OnNodes::lagrangian, OnNodes::n, OnNodes::OnNodes;
   using Action = CurveAction<L, Degree, CurveQuadrature::gauss>;
-  template <class S> using Arrow = typename Base::template Arrow<S>;
-  template <class S> using Object = typename Base::template Object<S>;
-  template <class A> using ScalarOf = ArrowScalar<GroupoidType, A>;
-  static constexpr int n = L::dimension;
-  static constexpr int inner = Nodes::inner;
+  template <class A> using ScalarOf = typename OnNodes::template ScalarOf<A>;
   static constexpr int each = L::arrow_constraints;
-  static constexpr int dimension = Base::dimension;
-  static constexpr int arrow_constraints = Base::arrow_constraints;
-  static constexpr int object_constraints = 0;
-  static constexpr int constraints = Base::constraints;
-
-  double h = 0.01;
-
-  explicit GalerkinOnNodes(L continuous = {}, double step = 0.01) : L(std::move(continuous)), h(step) {
-    require_continuous<L>();
-  }
 
   static MethodTraits traits() {
-    return {Action::name(), 2 * Degree, retraction_kind_of<BaseGroupoid>() == RetractionKind::translation, true, false};
+    return {Action::name(), 2 * Degree, retraction_kind_of<typename L::GroupoidType>() == RetractionKind::translation,
+            true, false};
   }
-  const L& continuous() const { return *this; }
-  /// The groupoid of L.
-  const BaseGroupoid& base() const { return std::get<0>(this->groupoid.factor); }
-
   template <class A, class T> ScalarOf<A> lagrangian(const A& g, const T& step) const {
     using S = ScalarOf<A>;
     const auto& [arrow, between] = g;
     return action().value(base().source(arrow), Vector<S, n>(base().tau_inverse(arrow)), between, S(step));
   }
-  template <class A> ScalarOf<A> lagrangian(const A& g) const { return lagrangian(g, h); }
-
   template <class A, class T>
   Vector<ScalarOf<A>, arrow_constraints> constraint(const A& g, const T& step) const requires(each > 0) {
     using S = ScalarOf<A>;
@@ -98,20 +66,10 @@ struct GalerkinOnNodes
     }
     return phi;
   }
-  template <class A> Vector<ScalarOf<A>, arrow_constraints> constraint(const A& g) const requires(each > 0) {
-    return constraint(g, h);
-  }
-
-  /// E = <mu, xi> - l(q, xi) at mu = dl/dxi + <lambda, dpsi/dxi>: the energy of the continuous system.
-  double energy(const State<GroupoidType>& s) const {
-    const State<BaseGroupoid> z = Nodes::reduced(s);
-    const auto [xi, lambda] = velocity_of(continuous(), base(), z);
-    return z.momentum.dot(xi) - this->l(z.object, xi);
-  }
 
   /// Nodes on a straight line to tau(q, h xi).
-  Step<GalerkinOnNodes> first_guess(const State<GroupoidType>& s) const {
-    const State<BaseGroupoid> z = Nodes::reduced(s);
+  Step<GalerkinOnNodes> first_guess(const State<typename OnNodes::GroupoidType>& s) const {
+    const State<typename L::GroupoidType> z = OnNodes::reduced(s);
     const auto [xi, lambda] = velocity_of(continuous(), base(), z);
     Vector<double, n> end = Vector<double, n>::Zero();
     if (xi.allFinite()) end = h * xi;

@@ -79,6 +79,28 @@ struct Area : ContinuousLagrangian<Pair<3>, 1> {
   }
 };
 
+/// A bead on the unit sphere under gravity: |v|^2 / 2 - z, |q|^2 = 1.
+struct Bead : ContinuousLagrangian<Pair<3>, 0, 1> {
+  template <class S> S l(const Vector<S, 3>& q, const Vector<S, 3>& v) const {
+    return (v(0) * v(0) + v(1) * v(1) + v(2) * v(2)) * 0.5 - q(2);
+  }
+  template <class S> Vector<S, 1> object_constraint(const Vector<S, 3>& q) const {
+    return Vector<S, 1>((q(0) * q(0) + q(1) * q(1) + q(2) * q(2) - 1.0) * 0.5);
+  }
+};
+inline const State<Pair<3>> bead_start{{0.6, 0, -0.8}, {0, 0.7, 0}};
+/// Where the bead is: q'' = -e3 + (q_3 - |v|^2) q.
+inline Vector<double, 3> bead_end(double t) {
+  const auto rates = [](const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
+    dy.head<3>() = y.tail<3>();
+    dy.tail<3>() = (y(2) - y.tail<3>().squaredNorm()) * y.head<3>();
+    dy(5) -= 1;
+  };
+  Eigen::VectorXd y(6);
+  y << bead_start.object, bead_start.momentum;
+  return integrate_reference(rates, y, t).head<3>();
+}
+
 /// Euler's elastica: w^2 / 2 on SE(2), v1 = 1, v2 = 0.
 struct Elastica : ContinuousLagrangian<SE2, 2> {
   template <class S> S l(const Vector<S, 0>&, const Vector<S, 3>& xi) const { return xi(0) * xi(0) * 0.5; }

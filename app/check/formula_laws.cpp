@@ -1,0 +1,127 @@
+#include "family_laws.hpp"
+
+#include "../formula/formula_scene.hpp"
+
+#include <lagroid/solvers/testing/sized_step_laws.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace {
+
+/// A step with its composition, as a motion takes them.
+class Composed final : public SizedStep {
+ public:
+  explicit Composed(FormulaMethod method) : method_(std::move(method)) {}
+  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override {
+    Eigen::VectorXd q1 = q, p1 = p;
+    StepReport report;
+    for (const double gamma : method_.composition.coefficients) {
+      report = method_.step->take(q1, p1, t, gamma * h);
+      if (!report.converged()) return report;
+      t += gamma * h;
+    }
+    q = q1;
+    p = p1;
+    return report;
+  }
+  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override {
+    method_.step->find_velocity(q, p, t, out);
+  }
+
+ private:
+  FormulaMethod method_;
+};
+
+/// C and its derivatives, a row each.
+Eigen::MatrixXd constraint_rows(const FormulaSystem& system, const Eigen::VectorXd& q) {
+  std::vector<double> numbers(system.constraint_numbers());
+  system.constraint(q.data(), numbers.data());
+  const std::size_t count = system.constraint_count();
+  Eigen::MatrixXd out(Eigen::Index(count), 1 + q.size());
+  for (std::size_t a = 0; a < count; ++a)
+    out.row(Eigen::Index(a)) =
+        Eigen::Map<const Eigen::RowVectorXd>(numbers.data() + a * (numbers.size() / count), 1 + q.size());
+  return out;
+}
+
+/// That what is declared a symmetry is one, and that steps keep the momenta of affine ones.
+laws::LawReport symmetry_laws(const laws::SizedStepSubject& subject, const FormulaSystem& system, bool by_velocity) {
+  laws::LawReport report{subject.name + ", symmetries", {}};
+  const auto step = subject.make();
+  for (std::size_t i = 0; i < system.symmetries().size(); ++i) {
+    const ReadSymmetry& symmetry = system.symmetries()[i];
+    report.laws.push_back(laws::check_law(symmetry.name + " is that of a symmetry", 1e-10, [&] {
+      const auto z = laws::detail::drawn(subject, *step);
+      TangentState tangent;
+      step->find_velocity(z.q, z.p, subject.time, tangent);
+      return system.symmetry_defect(i, subject.time, z.q.data(),
+                                    (by_velocity ? tangent.velocity : tangent.momentum).data());
+    }));
+    if (!symmetry.affine) continue;
+    report.laws.push_back(laws::check_law("a step keeps " + symmetry.name, 1e-11, [&] {
+      const auto momentum = [&](const auto& z) {
+        const std::size_t n = std::size_t(z.q.size());
+        std::vector<double> fields(system.symmetries().size() * n);
+        system.fields(z.q.data(), fields.data());
+        return z.p.dot(Eigen::Map<const Eigen::VectorXd>(fields.data() + i * n, z.q.size()));
+      };
+      const auto z = laws::detail::drawn(subject, *step);
+      const auto next = laws::detail::stepped(subject, *step, z, subject.step, subject.time);
+      return std::abs(momentum(next) - momentum(z)) / (1 + std::abs(momentum(z)));
+    }));
+  }
+  return report;
+}
+
+class FormulaLaws final : public FamilyLaws {
+ public:
+  const SceneFamily& family() const override { return formula_family(); }
+  Certificate certify(const Section& scene, const CheckCommandOptions& options) const override {
+    const FormulaToCheck asked = read_formula(scene, {}).to_check;
+    const FormulaSystem& system = *asked.system;
+    laws::SizedStepSubject subject{.name = asked.name,
+                                   .make = [&] { return std::make_unique<Composed>(asked.begun()); },
+                                   .traits = asked.begun().traits,
+                                   .position = asked.start.position,
+                                   .momentum = asked.start.momentum,
+                                   .step = asked.step,
+                                   .time = asked.begin};
+    if (system.constraint_count() > 0)
+      subject.constraint = [&](const Eigen::VectorXd& q) { return constraint_rows(system, q); };
+    subject.exact = [&](double later) {
+      constexpr int steps = 400;
+      Composed precise(asked.precise());
+      laws::detail::PhasePoint z{asked.start.position, asked.start.momentum};
+      const double h = later / steps;
+      for (int k = 0; k < steps; ++k) z = laws::detail::stepped(subject, precise, z, h, asked.begin + k * h);
+      Eigen::VectorXd both(2 * z.q.size());
+      both << z.q, z.p;
+      return both;
+    };
+    Certificate certificate;
+    certificate.system = asked.name;
+    certificate.groupoid = "pair groupoid of R^n";
+    certificate.states = 1;
+    certificate.samples = options.samples;
+    certificate.seed = options.seed;
+    const auto* lagrangian = dynamic_cast<const FormulaLagrangian*>(asked.system.get());
+    if (lagrangian) certificate.suites.push_back(laws::sized_lagrangian_laws(*lagrangian, subject));
+    certificate.suites.push_back(laws::sized_step_laws(subject));
+    if (!system.symmetries().empty())
+      certificate.suites.push_back(symmetry_laws(subject, system, lagrangian != nullptr));
+    return certificate;
+  }
+};
+
+}  // namespace
+
+const FamilyLaws& formula_laws() {
+  static const FormulaLaws laws;
+  return laws;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,54 @@
+#pragma once
+/// A Hamiltonian on T*R^n that is written as text, with constraints of places and symmetries, and its generating
+/// functions of type II by Taylor's method of order r and a quadrature: what a scene has under [hamiltonian].
+///
+///     const FormulaHamiltonian spring({.coordinates = {"q"}}, {"p"}, "(p^2 + q^2)/2", {1,
+///     quadrature_rules::trapezoid}); GeneratingStep step(spring, GeneratingType::two);  // Stormer-Verlet's
+///
+/// The Taylor coefficients, and the derivatives of the generating function, are formulas of the same graph.
+///
+/// Errors: FormulaError, also for a Hamiltonian that knows the time.
+///
+/// Source: [V] 5.4.1.
+
+#include <lagroid/core/hamiltonian/quadrature_rule.hpp>
+#include <lagroid/run/formula/formula_system.hpp>
+#include <lagroid/solvers/generating/generating_step.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace lagroid {
+
+/// Taylor's order r, 0 to 4, and the quadrature. The step's order is min(r + 1, that of the quadrature), with
+/// constraints no more than two ([V] Theorem 5.1, docs/hamiltonian_maps.md); one for r = 0.
+struct TaylorChoice {
+  int order = 1;
+  QuadratureRule quadrature = quadrature_rules::trapezoid;
+
+  int step_order(bool constrained) const {
+    const int free = order == 0 ? 1 : std::min(order + 1, quadrature.order);
+    return constrained ? std::min(free, 2) : free;
+  }
+};
+
+class FormulaHamiltonian final : public SizedHamiltonian, public FormulaSystem {
+ public:
+  FormulaHamiltonian(const FormulaTexts& texts, const std::vector<std::string>& momenta, const std::string& hamiltonian,
+                     const TaylorChoice& taylor);
+
+  bool keeps_energy() const override { return true; }
+  const char* energy_is() const override { return "H"; }
+
+  void hamiltonian(const double* q, const double* p, double* out) const override;
+  void generating(const double* q, const double* p, const double* sigma, const double* far, double h,
+                  double* out) const override;
+  void constraint(const double* q, double* out) const override { FormulaSystem::constraint(q, out); }
+
+ private:
+  FormulaProgram hamiltonian_, generating_;
+  mutable std::vector<double> arguments_;  ///< the variables, then sigma, p1 and h
+};
+
+}  // namespace lagroid

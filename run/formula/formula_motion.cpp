@@ -1,0 +1,242 @@
+#include <lagroid/run/formula/formula_motion.hpp>
+#include <lagroid/run/run_result.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lagroid {
+
+FormulaNode::FormulaNode(const FormulaSystem& system, bool symplectic)
+    : system_(system),
+      field_(system.symmetries().size() * system.coordinates().size()),
+      constraint_(system.constraint_numbers()) {
+  fields_.push_back({.columns = {"position", system.coordinates(), "1", "coordinates", false, {}}});
+  fields_.push_back({.columns = {"velocity", system.velocities(), "1/s", "of the coordinates", false, {}}});
+  fields_.push_back({.columns = {"momentum", system.momenta(), "1", "tangent to the constraints", false, {}}});
+  const auto watch = [&](const std::string& name, const std::string& column, Promise promise, bool promised,
+                         const char* meaning) {
+    watched_.push_back({name, {column}, promise, false, SizeOf::terms, promised});
+    fields_.push_back({.columns = {column, {column}, "1", meaning, false, {}}});
+  };
+  watch("energy", "energy", Promise::bounded, symplectic && system.keeps_energy(), system.energy_is());
+  for (const ReadSymmetry& each : system.symmetries())
+    watch(each.name, "J " + each.name, Promise::conserved, each.affine, "<p, xi(q)>");
+  for (std::size_t i = 0; i < watched_.size(); ++i)
+    fields_.push_back({.columns = {"drift of " + watched_[i].name,
+                                   {"drift " + watched_[i].components.front()},
+                                   "1",
+                                   "deviation from the first value",
+                                   false,
+                                   {}},
+                       .drift_of = i});
+}
+
+void FormulaNode::see(long index, double time, const FormulaState& state, const SizedStep& step) {
+  index_ = index;
+  time_ = time;
+  state_ = state;
+  step.find_velocity(state.position, state.momentum, time, tangent_);
+  system_.fields(state.position.data(), field_.data());
+  residual_ = 0;
+  residual_size_ = 1;
+  if (system_.constraint_count() == 0) return;
+  system_.constraint(state.position.data(), constraint_.data());
+  const std::size_t n = system_.coordinates().size();
+  const std::size_t each = constraint_.size() / system_.constraint_count();
+  for (std::size_t a = 0; a < constraint_.size(); a += each) {
+    double terms = 0;
+    for (std::size_t i = 0; i < n; ++i) terms += std::abs(constraint_[a + 1 + i] * state.position(Eigen::Index(i)));
+    residual_ = std::max(residual_, std::abs(constraint_[a]));
+    residual_size_ = std::max(residual_size_, terms);
+  }
+}
+
+Endpoint FormulaNode::endpoint() const {
+  Endpoint end;
+  end.time = time_;
+  end.position.assign(state_.position.begin(), state_.position.end());
+  end.momentum.assign(tangent_.momentum.begin(), tangent_.momentum.end());
+  return end;
+}
+
+void FormulaNode::read(std::size_t field, double* row) const {
+  const auto copy = [&](const Eigen::VectorXd& from) { std::copy(from.begin(), from.end(), row); };
+  if (field == 0) {
+    copy(state_.position);
+  } else if (field == 1) {
+    copy(tangent_.velocity);
+  } else if (field == 2) {
+    copy(tangent_.momentum);
+  } else {
+    measure(field - 3, row);
+  }
+}
+
+double FormulaNode::measure(std::size_t quantity, double* values) const {
+  if (quantity == 0) {
+    *values = tangent_.energy;
+    return tangent_.energy_size;
+  }
+  // Symmetries leave the constraints, so that the part of p across them does not count.
+  double sum = 0, size = 0;
+  const std::size_t n = std::size_t(state_.momentum.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const double term = tangent_.momentum(Eigen::Index(i)) * field_[(quantity - 1) * n + i];
+    sum += term;
+    size += std::abs(term);
+  }
+  *values = sum;
+  return size;
+}
+
+std::optional<double> FormulaNode::residual() const {
+  if (system_.constraint_count() == 0) return {};
+  return residual_;
+}
+
+FormulaMotion::FormulaMotion(std::string name, std::shared_ptr<const FormulaSystem> system, FormulaMethod method,
+                             FormulaState start, double step, double begin)
+    : name_(std::move(name)),
+      system_(std::move(system)),
+      method_(std::move(method)),
+      state_(std::move(start)),
+      size_(step),
+      begin_(begin),
+      node_(*system_, method_.traits.symplectic) {}
+
+StepReport FormulaMotion::go(FormulaState& state, double t, double h) {
+  trial_ = state;
+  StepReport report, worst;
+  worst.status = SolveStatus::converged;
+  double at = t;
+  for (const double gamma : method_.composition.coefficients) {
+    report = method_.step->take(trial_.position, trial_.momentum, at, gamma * h);
+    worst.iterations += report.iterations;
+    worst.residual = std::max(worst.residual, report.residual);
+    worst.roundoff_ratio = std::max(worst.roundoff_ratio, report.roundoff_ratio);
+    if (!report.converged()) {
+      worst.status = report.status;
+      return worst;
+    }
+    at += gamma * h;
+  }
+  std::swap(state, trial_);
+  return worst;
+}
+
+StepReport FormulaMotion::advance() {
+  const StepReport report = go(state_, time(), size_);
+  if (report.converged()) ++index_;
+  return report;
+}
+
+std::string FormulaMotion::failure(const StepReport& report, long step) const {
+  const std::string where = fmt::format("step {} (from t = {:.6g})", step, time());
+  switch (report.status) {
+    case SolveStatus::singular:
+      return fmt::format(
+          "{}: the step's equations are singular: l is degenerate in the velocities there, constraints "
+          "depend on each other, or the step is too long",
+          where);
+    case SolveStatus::not_finite:
+      return fmt::format("{}: a formula is no finite number there; use a smaller time.step", where);
+    default:
+      return fmt::format(
+          "{}: the step's equations were not solved ({}, residual {:.3g} after {} iterations); use a "
+          "smaller time.step",
+          where, to_string(report.status), report.residual, report.iterations);
+  }
+}
+
+const Observables& FormulaMotion::look() {
+  node_.see(index_, time(), state_, *method_.step);
+  return node_;
+}
+
+std::vector<NamedVector> FormulaMotion::state() const {
+  // Momenta that differ across the constraints are one.
+  TangentState tangent;
+  method_.step->find_velocity(state_.position, state_.momentum, time(), tangent);
+  const auto numbers = [](const Eigen::VectorXd& x) { return std::vector<double>(x.begin(), x.end()); };
+  return {{"configuration", numbers(state_.position)}, {"momentum", numbers(tangent.momentum)}};
+}
+
+std::optional<double> FormulaMotion::defect() const {
+  FormulaNode node(*system_, method_.traits.symplectic);
+  node.see(index_, time(), state_, *method_.step);
+  return node.residual();
+}
+
+void FormulaMotion::describe(RunResult& result) const {
+  const std::vector<std::string>& names = system_->coordinates();
+  const std::vector<std::string>& momenta = system_->momenta();
+  result.panels.push_back({"position", "t", "", "t", names});
+  if (names.size() > 1)
+    result.panels.push_back({names[1] + " over " + names[0], names[0], names[1], names[0], {names[1]}, true});
+  if (names.size() == 1) result.panels.push_back({"phase space", names[0], momenta[0], names[0], {momenta[0]}});
+  for (const Watched& each : node_.quantities())
+    result.panels.push_back({each.name + " error", "t", "deviation", "t", {"drift " + each.components.front()}});
+  if (names.size() > 1) {
+    Shape point{"sphere", {0.03}};
+    point.position = {names[0], names[1], 0.0};
+    if (names.size() > 2) point.position[2] = names[2];
+    point.trail = true;
+    result.shapes = {point};
+  }
+  result.trajectory.conventions = {{"state", "coordinates of R^n and their momenta"}};
+}
+
+void FormulaMotion::keep_node() {
+  kept_ = state_;
+  kept_time_ = time();
+  rest_ = 1;
+}
+
+bool FormulaMotion::go_within(double share) {
+  inside_ = kept_;
+  const double size = share * rest_ * size_;
+  return size == 0 || go(inside_, kept_time_, size).converged();
+}
+
+const Observables* FormulaMotion::look_within(double share) {
+  if (!go_within(share)) return nullptr;
+  node_.see(index_, kept_time_ + share * rest_ * size_, inside_, *method_.step);
+  return &node_;
+}
+
+Changeable FormulaMotion::changeable() const { return {.momenta = {{"", system_->coordinates().size()}}}; }
+
+FormulaState FormulaMotion::kicked(const MotionChange& change) const {
+  FormulaState out = inside_;
+  for (std::size_t i = 0; i < change.kick.size(); ++i) out.momentum(Eigen::Index(i)) += change.kick[i];
+  return out;
+}
+
+std::string FormulaMotion::refused(double share, const MotionChange& change) {
+  if (!go_within(share)) return "a part of the step does not converge; use a smaller time.step";
+  return kicked(change).momentum.allFinite() ? "" : "the kick is no number there";
+}
+
+StepReport FormulaMotion::change_within(double share, const MotionChange& change) {
+  StepReport report;
+  if (!go_within(share)) return report;
+  kept_ = kicked(change);
+  kept_time_ += share * rest_ * size_;
+  rest_ *= 1 - share;
+  if (!go_within(1)) return report;
+  state_ = inside_;
+  report.status = SolveStatus::converged;
+  return report;
+}
+
+void FormulaMotion::serialize(NumberArchive& archive) {
+  for (double& each : state_.position) archive(each);
+  for (double& each : state_.momentum) archive(each);
+  archive(index_);
+}
+
+}  // namespace lagroid

@@ -1,0 +1,175 @@
+#include <lagroid/run/formula/formula_system.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+namespace lagroid {
+
+namespace {
+
+bool is_word(const std::string& name) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  return !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) == 0 &&
+         std::all_of(name.begin(), name.end(), fits);
+}
+
+}  // namespace
+
+FormulaSystem::FormulaSystem(const FormulaTexts& texts, std::vector<std::string> momenta, bool by_velocity)
+    : coordinates_(texts.coordinates), momenta_(std::move(momenta)), by_velocity_(by_velocity) {
+  if (coordinates_.empty()) throw FormulaError("coordinates", "names no coordinate");
+  for (const std::string& each : coordinates_) velocities_.push_back(each + "'");
+  if (momenta_.empty())
+    for (const std::string& each : coordinates_) momenta_.push_back("p_" + each);
+  if (momenta_.size() != size())
+    throw FormulaError("momenta", fmt::format("names {}, and there are {} coordinates", momenta_.size(), size()));
+  std::set<std::string> known{"t", "pi"};
+  const auto add = [&](const std::string& name, const char* key) {
+    if (!is_word(name))
+      throw FormulaError(key, fmt::format("\"{}\" is no name: letters, digits and _, not a digit first", name));
+    if (!known.insert(name).second)
+      throw FormulaError(key, fmt::format("\"{}\" is taken: names of coordinates, momenta and parameters differ from "
+                                          "each other and from t and pi",
+                                          name));
+  };
+  for (const std::string& each : coordinates_) add(each, "coordinates");
+  for (const std::string& each : momenta_) add(each, "momenta");
+  names_ = coordinates_;
+  const std::vector<std::string>& second = by_velocity ? velocities_ : momenta_;
+  names_.insert(names_.end(), second.begin(), second.end());
+  names_.emplace_back("t");
+  for (const auto& [name, value] : texts.parameters) {
+    add(name, "parameters");
+    names_.push_back(name);
+  }
+  variables_.assign(names_.size(), 0);
+  for (std::size_t i = 0; i < texts.parameters.size(); ++i) variables_[time() + 1 + i] = texts.parameters[i].second;
+}
+
+FormulaGraph::Node FormulaSystem::read(const std::string& key, const std::string& text) {
+  try {
+    return graph_.read(text, names_);
+  } catch (const std::invalid_argument& error) {
+    throw FormulaError(key, fmt::format("\"{}\": {}", text, error.what()));
+  }
+}
+
+std::vector<FormulaGraph::Node> FormulaSystem::with_derivatives(Node f, std::size_t count) {
+  std::vector<Node> all{f};
+  for (std::size_t i = 0; i < count; ++i) all.push_back(graph_.derivative(f, i));
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i; j < count; ++j) all.push_back(graph_.derivative(all[1 + i], j));
+  return all;
+}
+
+void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::vector<Node>& force) {
+  using enum FormulaOperation;
+  const std::size_t n = size();
+  const auto of_places_alone = [&](Node f, const std::string& key, const std::string& text) {
+    for (std::size_t i = n; i <= time(); ++i)
+      if (depends(f, i))
+        throw FormulaError(key, fmt::format("\"{}\" depends on {}: it is of places alone", text, names_[i]));
+  };
+  std::vector<Node> constraints, wanted;
+  for (const std::string& text : texts.constraints) {
+    constraints.push_back(read("constraints", text));
+    of_places_alone(constraints.back(), "constraints", text);
+    const std::vector<Node> all = with_derivatives(constraints.back(), n);
+    wanted.insert(wanted.end(), all.begin(), all.end());
+  }
+  constraint_count_ = constraints.size();
+  if (constraint_count_ >= n)
+    throw FormulaError("constraints",
+                       fmt::format("{} of {} coordinates leave nothing that moves", constraint_count_, n));
+  constraint_ = FormulaProgram(graph_, wanted);
+
+  // xi, and of each symmetry what changes along it, with the sum of its terms' sizes.
+  wanted.clear();
+  std::vector<Node> changes;
+  const auto times = [&](Node a, Node b) { return graph_.apply(multiply, a, b); };
+  const auto change = [&](const std::vector<Node>& terms) {
+    Node sum = graph_.constant(0), sizes = graph_.constant(0);
+    for (const Node term : terms) {
+      sum = graph_.apply(add, sum, term);
+      sizes = graph_.apply(add, sizes, graph_.apply(FormulaOperation::abs, term));
+    }
+    changes.push_back(sum);
+    changes.push_back(sizes);
+  };
+  for (const FormulaSymmetry& symmetry : texts.symmetries) {
+    if (symmetry.field.size() != n)
+      throw FormulaError("field",
+                         fmt::format("has {} components, and there are {} coordinates", symmetry.field.size(), n));
+    std::vector<Node> xi;
+    bool affine = true;
+    for (const std::string& text : symmetry.field) {
+      xi.push_back(read("field", text));
+      of_places_alone(xi.back(), "field", text);
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i; j < n; ++j) affine = affine && !depends(graph_.derivative(xi.back(), i), j);
+    }
+    wanted.insert(wanted.end(), xi.begin(), xi.end());
+    symmetries_.push_back({symmetry.name, affine});
+    // Velocities are carried by xi' v, momenta by -xi'^T p.
+    std::vector<Node> terms;
+    for (std::size_t i = 0; i < n; ++i) {
+      terms.push_back(times(graph_.derivative(function, i), xi[i]));
+      for (std::size_t j = 0; j < n; ++j) {
+        const Node carried = by_velocity_ ? times(graph_.derivative(xi[i], j), graph_.variable(n + j))
+                                          : times(graph_.derivative(xi[j], i), graph_.variable(n + j));
+        const Node term = times(graph_.derivative(function, n + i), carried);
+        terms.push_back(by_velocity_ ? term : graph_.apply(negate, term));
+      }
+    }
+    change(terms);
+    for (const Node c : constraints) {
+      terms.clear();
+      for (std::size_t i = 0; i < n; ++i) terms.push_back(times(graph_.derivative(c, i), xi[i]));
+      change(terms);
+    }
+    terms.clear();
+    for (std::size_t i = 0; i < force.size(); ++i) terms.push_back(times(force[i], xi[i]));
+    change(terms);
+  }
+  fields_ = FormulaProgram(graph_, wanted);
+  changes_ = FormulaProgram(graph_, changes);
+  changed_.resize(changes_.count());
+}
+
+void FormulaSystem::require_parameters_read(const FormulaTexts& texts,
+                                            const std::vector<const FormulaProgram*>& programs) const {
+  for (std::size_t i = 0; i < texts.parameters.size(); ++i) {
+    const auto reads = [&](const FormulaProgram* program) { return program->reads(time() + 1 + i); };
+    if (!std::any_of(programs.begin(), programs.end(), reads) && !reads(&constraint_) && !reads(&fields_))
+      throw FormulaError("parameters", fmt::format("no formula has \"{}\": leave it out", texts.parameters[i].first));
+  }
+}
+
+const double* FormulaSystem::at(double t, const double* q, const double* w) const {
+  std::copy_n(q, size(), variables_.begin());
+  if (w) std::copy_n(w, size(), variables_.begin() + long(size()));
+  variables_[time()] = t;
+  return variables_.data();
+}
+
+void FormulaSystem::constraint(const double* q, double* out) const {
+  constraint_.evaluate(at(0, q, nullptr), out, scratch_);
+}
+void FormulaSystem::fields(const double* q, double* out) const { fields_.evaluate(at(0, q, nullptr), out, scratch_); }
+
+double FormulaSystem::symmetry_defect(std::size_t i, double t, const double* q, const double* w) const {
+  changes_.evaluate(at(t, q, w), changed_.data(), scratch_);
+  const std::size_t each = changed_.size() / symmetries_.size();
+  double worst = 0;
+  for (std::size_t k = i * each; k < (i + 1) * each; k += 2) {
+    const double relative = changed_[k] == 0 ? 0 : std::abs(changed_[k]) / changed_[k + 1];
+    if (!(relative <= worst)) worst = relative;
+  }
+  return worst;
+}
+
+}  // namespace lagroid

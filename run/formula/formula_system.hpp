@@ -1,0 +1,110 @@
+#pragma once
+/// What systems written as text have in common: coordinates of R^n, parameters, constraints of places and symmetries.
+///
+/// A motion asks it what it shows and keeps, and for a step by one of its methods.
+///
+///     const std::unique_ptr<SizedStep> step = system.make_step(method);
+///     system.fields(q, xi);  // of all symmetries
+///
+/// Errors: FormulaError, which says what was read and what is wrong in it.
+
+#include <lagroid/run/expressions/formula_graph.hpp>
+#include <lagroid/solvers/step/sized_step.hpp>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// A mistake in a text; `key` says in which, as scenes call it: "coordinates", "l", "constraints", ...
+class FormulaError : public std::invalid_argument {
+ public:
+  FormulaError(std::string key, const std::string& problem) : std::invalid_argument(problem), key_(std::move(key)) {}
+  const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+/// A vector field xi(q) along which nothing changes; J = <p, xi(q)> is its momentum.
+struct FormulaSymmetry {
+  std::string name;
+  std::vector<std::string> field;
+};
+/// The same as it was read.
+struct ReadSymmetry {
+  std::string name;
+  bool affine;  ///< in q: curves of polynomials are carried to such, and steps along them keep J
+};
+
+/// The texts that all of them have.
+struct FormulaTexts {
+  std::vector<std::string> coordinates = {};
+  std::vector<std::string> constraints = {};
+  std::vector<FormulaSymmetry> symmetries = {};
+  std::vector<std::pair<std::string, double>> parameters = {};
+};
+
+class FormulaSystem {
+ public:
+  virtual ~FormulaSystem() = default;
+
+  const std::vector<std::string>& coordinates() const { return coordinates_; }
+  /// Their velocities and momenta, as columns and formulas call them.
+  const std::vector<std::string>& velocities() const { return velocities_; }
+  const std::vector<std::string>& momenta() const { return momenta_; }
+  std::size_t constraint_count() const { return constraint_count_; }
+  const std::vector<ReadSymmetry>& symmetries() const { return symmetries_; }
+  /// Whether nothing but l or H decides of the energy: no force, no time.
+  virtual bool keeps_energy() const = 0;
+  /// What the energy is, in words.
+  virtual const char* energy_is() const = 0;
+
+  /// C, its n derivatives and its n (n + 1) / 2 second ones, all of the first component, then of the next.
+  void constraint(const double* q, double* out) const;
+  std::size_t constraint_numbers() const { return constraint_.count(); }
+  /// The fields xi of all symmetries, one after another.
+  void fields(const double* q, double* out) const;
+  /// How much the system changes along symmetry i at (q, w), w the velocity of a Lagrangian or the momentum of a
+  /// Hamiltonian: the largest of l or H, C and the work of the force, relative to their terms. Zero up to rounding
+  /// where it is one.
+  double symmetry_defect(std::size_t i, double t, const double* q, const double* w) const;
+
+ protected:
+  using Node = FormulaGraph::Node;
+  /// `second` are the names that formulas have after the coordinates, velocities or momenta.
+  FormulaSystem(const FormulaTexts& texts, std::vector<std::string> momenta, bool by_velocity);
+
+  Node read(const std::string& key, const std::string& text);
+  bool depends(Node f, std::size_t variable) { return !graph_.is_zero(graph_.derivative(f, variable)); }
+  /// f, its derivatives by the first `count` variables, and the upper triangle of its second ones.
+  std::vector<Node> with_derivatives(Node f, std::size_t count);
+  /// Reads constraints and symmetries, of the function that does not change along these, and of a force. To be called
+  /// once, last but for further programs.
+  void finish(const FormulaTexts& texts, Node function, const std::vector<Node>& force);
+  /// Of variables that q, w, t and the parameters have.
+  const double* at(double t, const double* q, const double* w) const;
+  /// Refuses parameters that no formula reads: those of `programs`, constraints and fields.
+  void require_parameters_read(const FormulaTexts& texts, const std::vector<const FormulaProgram*>& programs) const;
+
+  std::size_t size() const { return coordinates_.size(); }
+  std::size_t time() const { return 2 * coordinates_.size(); }  ///< the variable t
+
+  FormulaGraph graph_;
+  std::vector<std::string> names_;  ///< of the variables
+  // Where operations are made: each motion has a system of its own.
+  mutable std::vector<double> variables_, scratch_;
+
+ private:
+  std::vector<std::string> coordinates_, velocities_, momenta_;
+  bool by_velocity_;
+  std::size_t constraint_count_ = 0;
+  std::vector<ReadSymmetry> symmetries_;
+  FormulaProgram constraint_, fields_, changes_;
+  mutable std::vector<double> changed_;
+};
+
+}  // namespace lagroid

@@ -1,0 +1,90 @@
+#pragma once
+/// Steps of generating functions of types II and III on T*R^n whose n is known when it runs, with constraints of
+/// places: Hamiltonian Taylor variational integrators of a Hamiltonian of any size,
+///
+///     II     p0 + C'(q0)^T lambda = D1 H_d+(q0, p1),    q1 = D2 H_d+(q0, p1),     C(q1) = 0,
+///     III    q0 = -D2 H_d-(q1, p0 + C'(q0)^T lambda),   p1 = -D1 H_d-(q1, ...),   H_d-(q, p; h) = -H_d+(q, p; -h).
+///
+/// They are those of HamiltonianMap<TaylorHamiltonian> (hamiltonian_map.hpp), whose sizes are a type's. The momentum p~
+/// from which Taylor's method reaches p1 is an unknown here, held by a multiplier sigma:
+///
+///     H_d+(q, p1) = stationary value in (p~, sigma) of W = p1.Q(q, p~) + G(q, p~) + <sigma, P(q, p~) - p1>,
+///
+/// P and Q the ends of Taylor's method of order r and r + 1, G = -h sum b_i (p_i.H_p - H) at the nodes c_i h of the
+/// former.
+///
+///     GeneratingStep step(hamiltonian, GeneratingType::two);
+///     const StepReport report = step.take(q, p, /*t*/ 0, /*h*/ 0.1);
+///
+/// Refers to the Hamiltonian. Errors: `singular`, `not_finite`, `not_converged`. Nothing is allocated in a step,
+/// nothing throws.
+///
+/// Source: [V] 5.4.1, (3.19), (3.21).
+
+#include <lagroid/core/hamiltonian/generating_function.hpp>
+#include <lagroid/solvers/step/sized_step.hpp>
+
+#include <vector>
+
+namespace lagroid {
+
+/// H(q, p) with the parts of W, for a step h, behind virtual functions. Second derivatives are upper triangles, row by
+/// row, by z = (q, p).
+class SizedHamiltonian {
+ public:
+  SizedHamiltonian(int dimension, int constraints) : n_(dimension), k_(constraints) {}
+  virtual ~SizedHamiltonian() = default;
+  int dimension() const { return n_; }
+  int constraints() const { return k_; }
+
+  /// H, its 2 n derivatives, its n (2 n + 1) second ones.
+  virtual void hamiltonian(const double* q, const double* p, double* out) const = 0;
+  /// At (q, p~, sigma, p1): W, its 2 n derivatives by (q, p~) and its n (2 n + 1) second ones; P and its n x 2 n
+  /// derivatives, a row each; Q and the same.
+  virtual void generating(const double* q, const double* p, const double* sigma, const double* far, double h,
+                          double* out) const = 0;
+  /// C and its derivatives, as SizedLagrangian has them.
+  virtual void constraint(const double* q, double* out) const = 0;
+
+ private:
+  int n_, k_;
+};
+
+class GeneratingStep final : public SizedStep {
+ public:
+  /// Type II or III.
+  GeneratingStep(const SizedHamiltonian& hamiltonian, GeneratingType type);
+
+  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override;
+  /// v = H_p at p + C'^T nu, which is the tangent momentum.
+  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override;
+
+ private:
+  void write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double h);
+
+  const SizedHamiltonian& hamiltonian_;
+  GeneratingType type_;
+  int n_, k_;
+  Eigen::VectorXd unknown_, residual_, terms_, update_, base_, far_, to_;
+  Eigen::MatrixXd matrix_, reaction_, gradient_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+  mutable std::vector<double> w_, c_, h_;
+};
+
+/// Type III after type II, half a step each: a map and its adjoint, whose product is symmetric and of even order.
+class SymmetrisedGeneratingStep final : public SizedStep {
+ public:
+  explicit SymmetrisedGeneratingStep(const SizedHamiltonian& hamiltonian)
+      : first_(hamiltonian, GeneratingType::two), second_(hamiltonian, GeneratingType::three) {}
+
+  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override;
+  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override {
+    first_.find_velocity(q, p, t, out);
+  }
+
+ private:
+  GeneratingStep first_, second_;
+  Eigen::VectorXd q_, p_;
+};
+
+}  // namespace lagroid

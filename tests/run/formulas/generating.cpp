@@ -1,0 +1,126 @@
+// Hamiltonians that are texts: their steps are those of the same generating functions in C++, and types agree.
+#include <lagroid/run/formula/formula_hamiltonian.hpp>
+#include <lagroid/solvers/generating/hamiltonian_map.hpp>
+#include <lagroid/solvers/generating/taylor_hamiltonian.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace lagroid;
+
+namespace {
+
+struct Swing {
+  static constexpr int dimension = 1, constraints = 0;
+  template <class S> S hamiltonian(const Vector<S, 1>& q, const Vector<S, 1>& p) const {
+    using std::cos;
+    return p(0) * p(0) * (0.5 + q(0) * q(0) * 0.1) - cos(q(0));
+  }
+};
+FormulaHamiltonian swing(const TaylorChoice& taylor) {
+  return {{.coordinates = {"q"}}, {"p"}, "p^2*(0.5 + 0.1*q^2) - cos(q)", taylor};
+}
+struct Bob {
+  static constexpr int dimension = 3, constraints = 1;
+  template <class S> S hamiltonian(const Vector<S, 3>& q, const Vector<S, 3>& p) const {
+    return (p(0) * p(0) + p(1) * p(1) + p(2) * p(2)) * 0.5 + q(2);
+  }
+  template <class S> Vector<S, 1> constraint(const Vector<S, 3>& q) const {
+    return Vector<S, 1>((q(0) * q(0) + q(1) * q(1) + q(2) * q(2) - 1.0) * 0.5);
+  }
+};
+FormulaHamiltonian bob(const TaylorChoice& taylor) {
+  return {{.coordinates = {"x", "y", "z"}, .constraints = {"(x^2 + y^2 + z^2 - 1)/2"}},
+          {},
+          "(p_x^2 + p_y^2 + p_z^2)/2 + z",
+          taylor};
+}
+
+/// Steps of both kinds from a start, which are to be one.
+template <int R, class M, int N, int D>
+void expect_the_map(const FormulaHamiltonian& formula, const M& system, const QuadratureRule& rule,
+                    const Phase<N, D>& start, double h, int steps) {
+  const TaylorHamiltonian<M, R> two{system, rule};
+  const HamiltonianMap by_two(two);
+  const HamiltonianMap by_three(adjoint_of(two));
+  for (const GeneratingType type : {GeneratingType::two, GeneratingType::three}) {
+    GeneratingStep step(formula, type);
+    Eigen::VectorXd q = start.q, p = start.p;
+    Phase<N, D> z = start;
+    for (int k = 0; k < steps; ++k) {
+      ASSERT_EQ(step.take(q, p, 0, h).status, SolveStatus::converged) << k;
+      ASSERT_EQ(type == GeneratingType::two ? by_two.step(z, h) : by_three.step(z, h), SolveStatus::converged) << k;
+    }
+    EXPECT_LT((q - z.q).norm(), 1e-12) << R;
+    EXPECT_LT((p - z.p).norm(), 1e-12) << R;
+  }
+}
+
+TEST(FormulaHamiltonians, StepsAreThoseOfTheSameGeneratingFunctionsInCpp) {
+  const Phase<1, 0> start{Vector<double, 1>(0.8), Vector<double, 1>(0.5)};
+  expect_the_map<0>(swing({0, quadrature_rules::rectangle}), Swing{}, quadrature_rules::rectangle, start, 0.1, 20);
+  expect_the_map<1>(swing({1, quadrature_rules::trapezoid}), Swing{}, quadrature_rules::trapezoid, start, 0.1, 20);
+  expect_the_map<2>(swing({2, quadrature_rules::simpson}), Swing{}, quadrature_rules::simpson, start, 0.1, 20);
+}
+TEST(FormulaHamiltonians, WithConstraints) {
+  const Phase<3, 1> start{{0.6, 0, -0.8}, {0, 0.7, 0}};
+  expect_the_map<1>(bob({1, quadrature_rules::trapezoid}), Bob{}, quadrature_rules::trapezoid, start, 0.05, 20);
+}
+
+// A step of type III back undoes one of type II, and the product of both is symmetric.
+TEST(FormulaHamiltonians, TypesAreEachOthersAdjoints) {
+  const FormulaHamiltonian system = swing({3, quadrature_rules::gauss_2});
+  GeneratingStep two(system, GeneratingType::two), three(system, GeneratingType::three);
+  SymmetrisedGeneratingStep both(system);
+  const Eigen::VectorXd q0 = Eigen::VectorXd::Constant(1, 0.8), p0 = Eigen::VectorXd::Constant(1, 0.5);
+  Eigen::VectorXd q = q0, p = p0;
+  ASSERT_TRUE(two.take(q, p, 0, 0.3).converged());
+  ASSERT_TRUE(three.take(q, p, 0, -0.3).converged());
+  EXPECT_LT((q - q0).norm() + (p - p0).norm(), 1e-14);
+  ASSERT_TRUE(both.take(q, p, 0, 0.3).converged());
+  ASSERT_TRUE(both.take(q, p, 0, -0.3).converged());
+  EXPECT_LT((q - q0).norm() + (p - p0).norm(), 1e-14);
+}
+
+TEST(FormulaHamiltonians, TakeEveryFunctionThatFormulasHave) {
+  const Vector<double, 1> q0(0.4), p0(0.3);
+  for (const std::string f :
+       {"sin(q)",  "cos(q)",  "tan(q)",   "asin(q)",      "acos(q)",         "atan(q)",   "sinh(q)",
+        "cosh(q)", "tanh(q)", "asinh(q)", "acosh(1 + q)", "atanh(q)",        "exp(q)",    "ln(q)",
+        "sqrt(q)", "abs(q)",  "q^2.5",    "2^q",          "atan2(q, 1 + q)", "1/(1 + q)", "-q"}) {
+    const FormulaHamiltonian system({.coordinates = {"q"}}, {"p"}, "p^2/2 + 0.1*(" + f + ")",
+                                    {3, quadrature_rules::gauss_2});
+    SymmetrisedGeneratingStep step(system);
+    std::vector<double> h(1 + 2 + 3);
+    const auto energy = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& p) {
+      system.hamiltonian(q.data(), p.data(), h.data());
+      return h[0];
+    };
+    Eigen::VectorXd q = q0, p = p0;
+    for (int k = 0; k < 5; ++k) ASSERT_TRUE(step.take(q, p, 0, 0.05).converged()) << f;
+    // Of order four: the coefficients of the flow are right.
+    EXPECT_NEAR(energy(q, p), energy(q0, p0), 1e-8) << f;
+    EXPECT_GT((q - q0).norm(), 0.01);
+  }
+}
+
+TEST(FormulaHamiltonians, SayWhatIsWrongWithTheirTexts) {
+  const auto key_of = [](const FormulaTexts& texts, const std::vector<std::string>& momenta, const std::string& text) {
+    try {
+      const FormulaHamiltonian read(texts, momenta, text, {});
+    } catch (const FormulaError& error) {
+      return error.key();
+    }
+    return std::string();
+  };
+  EXPECT_EQ(key_of({.coordinates = {"q"}}, {}, "p_q^2"), "");
+  EXPECT_EQ(key_of({.coordinates = {"q"}}, {"q"}, "q^2"), "momenta");
+  EXPECT_EQ(key_of({.coordinates = {"q"}}, {"p", "r"}, "p^2"), "momenta");
+  EXPECT_EQ(key_of({.coordinates = {"q"}}, {"p"}, "q'^2"), "H");
+  EXPECT_EQ(key_of({.coordinates = {"q"}}, {"p"}, "p^2 + q*t"), "H");
+}
+
+}  // namespace

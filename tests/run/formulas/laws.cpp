@@ -1,0 +1,97 @@
+// The suites of steps of any size hold for what is sound, and fail for what is broken.
+#include <lagroid/run/formula/formula_lagrangian.hpp>
+#include <lagroid/solvers/galerkin/curve_step.hpp>
+#include <lagroid/solvers/testing/sized_step_laws.hpp>
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+using namespace lagroid;
+
+namespace {
+
+const FormulaLagrangian& orbit() {
+  static const FormulaLagrangian read({.coordinates = {"x", "y"}}, "(x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)");
+  return read;
+}
+
+/// A step along curves that is taken wrong.
+enum class Fault { none, gains, drags, order };
+class Broken final : public SizedStep {
+ public:
+  Broken(const SizedLagrangian& l, Fault fault) : step_(l, {CurveQuadrature::gauss, 2}), fault_(fault) {}
+  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override {
+    const StepReport report = step_.take(q, p, t, h);
+    if (fault_ == Fault::gains) p *= 1 + 1e-3 * h * h;  // the same forwards and backwards
+    if (fault_ == Fault::drags) p *= 1 - 1e-3 * h;
+    if (fault_ == Fault::order) q(0) += 1e-2 * h * h * h * p(0);
+    return report;
+  }
+  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override {
+    step_.find_velocity(q, p, t, out);
+  }
+
+ private:
+  CurveStep step_;
+  Fault fault_;
+};
+
+laws::LawReport report_of(Fault fault) {
+  laws::SizedStepSubject subject{.name = "orbit",
+                                 .make = [=] { return std::make_unique<Broken>(orbit(), fault); },
+                                 .traits = {"Gauss 2", 4, true, true, false},
+                                 .position = Eigen::Vector2d(1, 0),
+                                 .momentum = Eigen::Vector2d(0.1, 1.1),
+                                 .step = 0.1};
+  subject.exact = [&](double later) {
+    CurveStep precise(orbit(), {CurveQuadrature::gauss, 5});
+    Eigen::VectorXd q = subject.position, p = subject.momentum, both(4);
+    for (int k = 0; k < 100; ++k) precise.take(q, p, 0, later / 100);
+    both << q, p;
+    return Eigen::VectorXd(both);
+  };
+  return laws::sized_step_laws(subject);
+}
+
+TEST(SizedStepLaws, HoldForAnOrbit) {
+  const laws::LawReport report = report_of(Fault::none);
+  EXPECT_EQ(report.laws.size(), 3u);
+  EXPECT_TRUE(report.holds()) << report;
+}
+TEST(SizedStepLaws, FailForStepsThatAreBroken) {
+  EXPECT_FALSE(report_of(Fault::gains).law("the step is symplectic").holds());
+  EXPECT_FALSE(report_of(Fault::gains).law("steps return to where they began").holds());
+  EXPECT_FALSE(report_of(Fault::drags).law("the step is symplectic").holds());
+  EXPECT_FALSE(report_of(Fault::drags).law("the error falls as declared").holds());
+  EXPECT_FALSE(report_of(Fault::order).law("the error falls as declared").holds());
+}
+
+/// A Lagrangian whose second derivatives are symmetric and wrong: no step tells.
+class WrongCurvature final : public SizedLagrangian {
+ public:
+  WrongCurvature() : SizedLagrangian({2, 0, false}) {}
+  void lagrangian(double t, const double* q, const double* v, double* out) const override {
+    orbit().lagrangian(t, q, v, out);
+    out[5] *= 1.01;
+  }
+};
+TEST(SizedLagrangianLaws, FailForDerivativesThatAreWrong) {
+  const WrongCurvature wrong;
+  for (const SizedLagrangian* each :
+       {static_cast<const SizedLagrangian*>(&orbit()), static_cast<const SizedLagrangian*>(&wrong)}) {
+    const laws::SizedStepSubject subject{
+        .name = "orbit",
+        .make =
+            [=] {
+              return std::make_unique<CurveStep>(*each, CurveChoice{CurveQuadrature::gauss, 2});
+            },
+        .traits = {"Gauss 2", 4, true, true, false},
+        .position = Eigen::Vector2d(1, 0),
+        .momentum = Eigen::Vector2d(0.1, 1.1),
+        .step = 0.1};
+    EXPECT_EQ(laws::sized_lagrangian_laws(*each, subject).holds(), each == &orbit());
+  }
+}
+
+}  // namespace

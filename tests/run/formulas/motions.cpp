@@ -1,0 +1,183 @@
+// Lagrangians that are texts: their steps are those of the same Lagrangian in C++, constraints and forces included.
+#include <lagroid/run/formula/formula_lagrangian.hpp>
+#include <lagroid/run/formula/formula_motion.hpp>
+#include <lagroid/solvers/galerkin/curve_step.hpp>
+#include <lagroid/solvers/galerkin/galerkin.hpp>
+#include <lagroid/solvers/galerkin/rules_of_order_two.hpp>
+#include <lagroid/systems/reference.hpp>
+
+#include "../../solvers/continuous_lagrangian/subjects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+using namespace lagroid;
+using namespace lagroid::subjects;
+
+namespace {
+
+/// The texts of a scene.
+struct Written {
+  FormulaTexts texts;
+  std::string l;
+  std::vector<std::string> force = {};
+};
+FormulaMotion motion_of(const Written& written, const CurveChoice& curve, const Eigen::VectorXd& q,
+                        const Eigen::VectorXd& p, double h) {
+  const auto system = std::make_shared<const FormulaLagrangian>(written.texts, written.l, written.force);
+  return {"formula", system, {std::make_unique<CurveStep>(*system, curve), {"curve", curve.order(), true, true, false}},
+          {q, p},    h,      0};
+}
+std::vector<double> ends(FormulaMotion& motion, int steps) {
+  for (int k = 0; k < steps; ++k) EXPECT_TRUE(motion.advance().converged()) << k;
+  const auto state = motion.state();
+  std::vector<double> all = state[0].values;
+  all.insert(all.end(), state[1].values.begin(), state[1].values.end());
+  return all;
+}
+
+const Written orbit{{.coordinates = {"x", "y"}, .symmetries = {{"angular momentum", {"-y", "x"}}}},
+                    "(x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)"};
+const Written bead{{.coordinates = {"x", "y", "z"}, .constraints = {"(x^2 + y^2 + z^2 - 1)/2"}},
+                   "(x'^2 + y'^2 + z'^2)/2 - z"};
+
+template <class Sys>
+void expect_steps_of(const Sys& system, const Written& texts, const CurveChoice& curve,
+                     const State<typename Sys::GroupoidType>& start, int steps) {
+  auto run = make(system, start);
+  for (int k = 0; k < steps; ++k) ASSERT_TRUE(run.advance().converged()) << k;
+  FormulaMotion motion = motion_of(texts, curve, start.object, start.momentum, system.h);
+  const std::vector<double> found = ends(motion, steps);
+  State<typename Sys::GroupoidType> end = run.point().state;
+  constexpr int n = Sys::dimension;
+  if constexpr (Sys::object_constraints > 0)  // of the unit sphere
+    end.momentum -= end.object * end.object.dot(end.momentum) / end.object.squaredNorm();
+  for (int i = 0; i < n; ++i) {
+    EXPECT_NEAR(found[std::size_t(i)], end.object(i), 1e-12) << Sys::traits().name;
+    EXPECT_NEAR(found[std::size_t(n + i)], end.momentum(i), 1e-12) << Sys::traits().name;
+  }
+}
+
+TEST(FormulaMotions, StepsAreThoseOfTheSameLagrangianInCpp) {
+  const State<Pair<2>> start{{1, 0.1}, {0.1, 1.1}};
+  expect_steps_of(Midpoint<Orbit>{{}, 0.05}, orbit, {CurveQuadrature::gauss, 1}, start, 50);
+  expect_steps_of(Trapezoidal<Orbit>{{}, 0.05}, orbit, {CurveQuadrature::lobatto, 1}, start, 50);
+  expect_steps_of(Galerkin<Orbit, 2>{{}, 0.1}, orbit, {CurveQuadrature::gauss, 2}, start, 30);
+  expect_steps_of(Galerkin<Orbit, 3>{{}, 0.1}, orbit, {CurveQuadrature::gauss, 3}, start, 30);
+}
+TEST(FormulaMotions, WithConstraints) {
+  expect_steps_of(Trapezoidal<Bead>{{}, 0.05}, bead, {CurveQuadrature::lobatto, 1}, bead_start, 50);
+  expect_steps_of(Galerkin<Bead, 3, CurveQuadrature::lobatto_pair>{{}, 0.1}, bead, {CurveQuadrature::lobatto_pair, 3},
+                  bead_start, 30);
+}
+
+/// The order in the end of a motion whose exact end is known.
+void expect_order(const Written& texts, const CurveChoice& curve, const Eigen::VectorXd& q, const Eigen::VectorXd& p,
+                  double horizon, const Eigen::VectorXd& exact, int coarsest, double tolerance = 0.1) {
+  laws::OrderProblem problem;
+  problem.exact = exact;
+  problem.coarsest = coarsest;
+  problem.end = [&](int steps) {
+    FormulaMotion motion = motion_of(texts, curve, q, p, horizon / steps);
+    const std::vector<double> end = ends(motion, steps);
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(end.data(), Eigen::Index(exact.size())));
+  };
+  MethodTraits traits;
+  traits.name = "a curve of degree " + std::to_string(curve.degree);
+  traits.order = curve.order();
+  EXPECT_TRUE(laws::order_laws(traits, problem, tolerance).holds()) << laws::measured_order(problem);
+}
+
+// x'' = x - x^3 + 0.3 cos(1.2 t) - 0.15 x', which knows the time and is damped.
+TEST(FormulaMotions, OrdersWithForcesAndTime) {
+  const Written duffing{
+      {.coordinates = {"x"}, .parameters = {{"m", 1.0}}}, "m*x'^2/2 + x^2/2 - x^4/4 + 0.3*x*cos(1.2*t)", {"-0.15*x'"}};
+  const auto rates = [](const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
+    dy << y(1), y(0) - y(0) * y(0) * y(0) + 0.3 * std::cos(1.2 * y(2)) - 0.15 * y(1), 1;
+  };
+  Eigen::VectorXd start(3);
+  start << 1, 0, 0;
+  const Eigen::VectorXd end = integrate_reference(rates, start, 4.0).head(2);
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 1.0), p = Eigen::VectorXd::Zero(1);
+  expect_order(duffing, {CurveQuadrature::gauss, 1}, q, p, 4, end, 30);
+  expect_order(duffing, {CurveQuadrature::lobatto, 1}, q, p, 4, end, 30);
+  expect_order(duffing, {CurveQuadrature::gauss, 2}, q, p, 4, end, 10);
+  expect_order(duffing, {CurveQuadrature::gauss, 3}, q, p, 4, end, 8);
+  expect_order(duffing, {CurveQuadrature::lobatto, 2}, q, p, 4, end, 10);
+}
+TEST(FormulaMotions, OrdersOnASphere) {
+  const Eigen::VectorXd end = bead_end(4);
+  const Eigen::VectorXd q = bead_start.object, p = bead_start.momentum;
+  expect_order(bead, {CurveQuadrature::lobatto_pair, 2}, q, p, 4, end, 30);
+  expect_order(bead, {CurveQuadrature::lobatto_pair, 3}, q, p, 4, end, 12);
+  expect_order(bead, {CurveQuadrature::lobatto_pair, 4}, q, p, 4, end, 10);
+  expect_order(bead, {CurveQuadrature::lobatto_pair, 5}, q, p, 4, end, 6, 0.3);
+}
+
+TEST(FormulaMotions, KeepMomentaAndTheirEnergyWithinABand) {
+  FormulaMotion motion =
+      motion_of(orbit, {CurveQuadrature::gauss, 2}, Eigen::Vector2d(1, 0), Eigen::Vector2d(0.1, 1.1), 0.1);
+  double momentum, energy, first_energy;
+  motion.look().measure(0, &first_energy);
+  for (int k = 0; k < 2000; ++k) {
+    ASSERT_TRUE(motion.advance().converged());
+    const Observables& at = motion.look();
+    at.measure(1, &momentum);
+    at.measure(0, &energy);
+    EXPECT_NEAR(momentum, 1.1, 1e-12);
+    EXPECT_NEAR(energy, first_energy, 1e-4);
+  }
+}
+
+TEST(FormulaMotions, AStepThatFailsIsNotTaken) {
+  // y' does not occur.
+  const Written degenerate{{.coordinates = {"x", "y"}}, "x'^2/2 - x^2/2 - y^2"};
+  FormulaMotion motion = motion_of(degenerate, {}, Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 0), 0.1);
+  EXPECT_EQ(motion.advance().status, SolveStatus::singular);
+  EXPECT_EQ(motion.index(), 0);
+  FormulaMotion beyond = motion_of({{.coordinates = {"x"}}, "x'^2/2 + ln(x)"}, {}, Eigen::VectorXd::Constant(1, -1.0),
+                                   Eigen::VectorXd::Zero(1), 0.1);
+  EXPECT_EQ(beyond.advance().status, SolveStatus::not_finite);
+  EXPECT_THROW(motion_of(bead, {CurveQuadrature::gauss, 2}, Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, 0), 0.1),
+               std::invalid_argument);
+}
+
+TEST(FormulaLagrangians, SayWhatIsWrongWithTheirTexts) {
+  const auto key_of = [](const Written& written) -> std::string {
+    try {
+      const FormulaLagrangian read(written.texts, written.l, written.force);
+    } catch (const FormulaError& error) {
+      return error.key();
+    }
+    return "";
+  };
+  EXPECT_EQ(key_of(orbit), "");
+  EXPECT_EQ(key_of({{.coordinates = {"x", "x"}}, "x'^2"}), "coordinates");
+  EXPECT_EQ(key_of({{.coordinates = {"t"}}, "t'^2"}), "coordinates");
+  EXPECT_EQ(key_of({{.coordinates = {"2x"}}, "1"}), "coordinates");
+  EXPECT_EQ(key_of({{}, "1"}), "coordinates");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}}, "y'^2"}), "l");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}, .constraints = {"x"}}, "x'^2"}), "constraints");
+  EXPECT_EQ(key_of({{.coordinates = {"x", "y"}, .constraints = {"x'"}}, "x'^2"}), "constraints");
+  EXPECT_EQ(key_of({{.coordinates = {"x", "y"}}, "x'^2", {"x"}}), "force");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}, .symmetries = {{"J", {"t"}}}}, "x'^2"}), "field");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}, .parameters = {{"x", 1.0}}}, "x'^2"}), "parameters");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}, .parameters = {{"unused", 1.0}}}, "x'^2"}), "parameters");
+}
+
+TEST(FormulaLagrangians, KnowWhichFieldsAreSymmetries) {
+  const FormulaLagrangian read(orbit.texts, orbit.l);
+  const double q[] = {0.3, 0.9}, v[] = {-0.2, 0.7};
+  EXPECT_LT(read.symmetry_defect(0, 0, q, v), 1e-15);
+  EXPECT_TRUE(read.symmetries()[0].affine);
+  FormulaTexts none = orbit.texts;
+  none.symmetries = {{"no momentum", {"1", "0"}}, {"none either", {"x^2", "y"}}};
+  const FormulaLagrangian other(none, orbit.l);
+  EXPECT_GT(other.symmetry_defect(0, 0, q, v), 1e-3);
+  EXPECT_GT(other.symmetry_defect(1, 0, q, v), 1e-3);
+  EXPECT_FALSE(other.symmetries()[1].affine);
+}
+
+}  // namespace

@@ -1,0 +1,54 @@
+// Velocity, momentum and arrow as independent variables: of regular Lagrangians the step is the rule's.
+#include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/solvers/galerkin/hamilton_pontryagin.hpp>
+
+#include "../subjects.hpp"
+
+using namespace lagroid;
+using namespace lagroid::subjects;
+
+namespace {
+
+template <class Rule> void expect_step_of(const State<typename Rule::GroupoidType>& start, double h, int steps) {
+  auto plain = make(Rule{{}, h}, start);
+  using Sys = HamiltonPontryagin<Rule>;
+  const Sys system{{}, h};
+  auto independent = make(system, Sys::extended(start));
+  for (int k = 0; k < steps; ++k) {
+    ASSERT_TRUE(plain.advance().converged()) << k;
+    ASSERT_TRUE(independent.advance().converged()) << k;
+  }
+  const State<typename Rule::GroupoidType> s = Sys::reduced(independent.point().state);
+  const auto& g = plain.system().groupoid;
+  EXPECT_LT((plain.point().state.momentum - s.momentum).norm(), 1e-12);
+  EXPECT_LT((g.coordinates_of_object(plain.point().state.object) - g.coordinates_of_object(s.object)).norm(), 1e-12);
+  EXPECT_NEAR(system.energy(independent.point().state), plain.system().energy(plain.point().state), 1e-12);
+}
+
+TEST(HamiltonPontryagin, IsDiscreteEulerLagrangeOfRegularLagrangians) {
+  expect_step_of<Midpoint<Orbit>>({{1, 0}, {0.1, 1.1}}, 0.05, 200);
+  expect_step_of<Trapezoidal<Orbit>>({{1, 0}, {0.1, 1.1}}, 0.05, 200);
+  expect_step_of<Midpoint<FreeBody<SO3>>>({{}, {0.3, 1.5, 0.4}}, 0.1, 100);
+  expect_step_of<Midpoint<FreeBody<SpecialOrthogonal3<Retraction::cayley>>>>({{}, {0.3, 1.5, 0.4}}, 0.1, 100);
+}
+TEST(HamiltonPontryagin, IsDiscreteEulerLagrangeOnAnActionGroupoid) {
+  expect_step_of<Trapezoidal<Top>>({{0, 0.6, 0.8}, {0.4, 0.2, 1.5}}, 0.05, 100);
+}
+TEST(HamiltonPontryagin, TakesConstraintsOfTheVelocity) {
+  expect_step_of<Midpoint<Elastica>>({{}, elastica_start}, 0.05, 60);
+}
+
+TEST(HamiltonPontryagin, VelocitiesAndMomentaAreThoseOfTheLegendreTransform) {
+  using Sys = HamiltonPontryagin<Midpoint<Orbit>>;
+  const Sys system{{}, 0.1};
+  const State<Pair<2>> start{{1, 0}, {0.1, 1.1}};
+  const auto from = Sys::extended(start);
+  StepSolution<Sys> step;
+  step.step = system.first_guess(from);
+  ASSERT_EQ(NewtonStep<Sys>().solve(system, from, step).status, SolveStatus::converged);
+  const auto& [arrow, beside] = step.step.arrow;
+  EXPECT_LT((beside.head<2>() - (arrow.target - arrow.source) / 0.1).norm(), 1e-13);
+  EXPECT_LT((beside.tail<2>() - beside.head<2>()).norm(), 1e-13);  // of unit mass
+}
+
+}  // namespace
