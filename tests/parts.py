@@ -115,6 +115,43 @@ class Parts(unittest.TestCase):
             self.assertEqual(told.returncode, 2, told.stdout)
             self.assertIn(why, told.stderr)
 
+    def test_gradients_of_formulas(self):
+        start = 'initial={position=[1.1,0.8],momentum=[0.1,-0.2]}'
+        for settings in (("method=gauss", "order=6"), ("method=lobatto", "order=4"), ("method=midpoint", "order=4")):
+            told = run(of_part("formula"), "gradient", examples / "elastic_pendulum.toml", "--set", start, "--set",
+                       "time.steps=100", *(word for each in settings for word in ("--set", "time." + each)),
+                       "--of", "final.position,final.energy,node.7.theta", "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertEqual(found["by"][4:], ["parameters.m", "parameters.g", "parameters.k", "parameters.length"])
+            self.assertGreater(found["digits_agreed"], 8, settings)
+        for method in ("type-2", "type-3", "symmetrised"):
+            told = run(of_part("formula"), "gradient", examples / "kepler_hamiltonian.toml", "--set", "time.steps=40",
+                       "--set", f"time.method={method}", "--of", "final", "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            self.assertGreater(json.loads(told.stdout)["digits_agreed"], 8, method)
+        for scene, why in (("elastic_pendulum", "initial.velocity"), ("bob_on_a_sphere", "with constraints")):
+            told = run(of_part("formula"), "gradient", examples / f"{scene}.toml", "--of", "final")
+            self.assertEqual(told.returncode, 2, told.stdout)
+            self.assertIn(why, told.stderr)
+
+    def test_parameters_of_formulas_are_fitted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene, data = examples / "elastic_pendulum.toml", pathlib.Path(folder) / "run"
+            short = ("--set", 'initial={position=[1.1,0.8],momentum=[0.1,-0.2]}', "--set", "time.steps=200", "--set",
+                     "output.every=5")
+            told = run(of_part("formula"), "run", scene, *short, "--out", data)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            rows = self.rows_of(data / "trajectory.csv")
+            measured = pathlib.Path(folder) / "measured.csv"
+            with open(measured, "w") as file:
+                file.write("t,r,theta\n" + "".join(f"{row['t']},{row['r']},{row['theta']}\n" for row in rows))
+            told = run(of_part("formula"), "fit", scene, measured, *short, "--set", "parameters.k=70", "--set",
+                       "parameters.g=9", "--wrt", "parameters.k,parameters.g", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            for unknown, value in zip(json.loads(told.stdout)["unknowns"], (80, 9.81)):
+                self.assertAlmostEqual(unknown["value"], value, delta=1e-9)
+
     def test_parameters_of_poisson_systems_are_fitted(self):
         with tempfile.TemporaryDirectory() as folder:
             scene, data = examples / "lotka_volterra.toml", pathlib.Path(folder) / "run"

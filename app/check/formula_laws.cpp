@@ -12,42 +12,6 @@ namespace lagroid::app {
 
 namespace {
 
-/// A step with its composition, as a motion takes them.
-class Composed final : public SizedStep {
- public:
-  explicit Composed(FormulaMethod method) : method_(std::move(method)) {}
-  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override {
-    Eigen::VectorXd q1 = q, p1 = p;
-    StepReport report;
-    for (const double gamma : method_.composition.coefficients) {
-      report = method_.step->take(q1, p1, t, gamma * h);
-      if (!report.converged()) return report;
-      t += gamma * h;
-    }
-    q = q1;
-    p = p1;
-    return report;
-  }
-  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override {
-    method_.step->find_velocity(q, p, t, out);
-  }
-
- private:
-  FormulaMethod method_;
-};
-
-/// C and its derivatives, a row each.
-Eigen::MatrixXd constraint_rows(const FormulaSystem& system, const Eigen::VectorXd& q) {
-  std::vector<double> numbers(system.constraint_numbers());
-  system.constraint(q.data(), numbers.data());
-  const std::size_t count = system.constraint_count();
-  Eigen::MatrixXd out(Eigen::Index(count), 1 + q.size());
-  for (std::size_t a = 0; a < count; ++a)
-    out.row(Eigen::Index(a)) =
-        Eigen::Map<const Eigen::RowVectorXd>(numbers.data() + a * (numbers.size() / count), 1 + q.size());
-  return out;
-}
-
 /// That what is declared a symmetry is one, and that steps keep the momenta of affine ones.
 laws::LawReport symmetry_laws(const laws::SizedStepSubject& subject, const FormulaSystem& system, bool by_velocity) {
   laws::LawReport report{subject.name + ", symmetries", {}};
@@ -57,17 +21,17 @@ laws::LawReport symmetry_laws(const laws::SizedStepSubject& subject, const Formu
     report.laws.push_back(laws::check_law(symmetry.name + " is that of a symmetry", 1e-10, [&] {
       const auto z = laws::detail::drawn(subject, *step);
       TangentState tangent;
-      step->find_velocity(z.q, z.p, subject.time, tangent);
-      return system.symmetry_defect(i, subject.time, z.q.data(),
+      step->find_velocity(z, subject.time, tangent);
+      return system.symmetry_defect(i, subject.time, z.position.data(),
                                     (by_velocity ? tangent.velocity : tangent.momentum).data());
     }));
     if (!symmetry.affine) continue;
     report.laws.push_back(laws::check_law("a step keeps " + symmetry.name, 1e-11, [&] {
       const auto momentum = [&](const auto& z) {
-        const std::size_t n = std::size_t(z.q.size());
+        const std::size_t n = std::size_t(z.position.size());
         std::vector<double> fields(system.symmetries().size() * n);
-        system.fields(z.q.data(), fields.data());
-        return z.p.dot(Eigen::Map<const Eigen::VectorXd>(fields.data() + i * n, z.q.size()));
+        system.fields(z.position.data(), fields.data());
+        return z.momentum.dot(Eigen::Map<const Eigen::VectorXd>(fields.data() + i * n, z.position.size()));
       };
       const auto z = laws::detail::drawn(subject, *step);
       const auto next = laws::detail::stepped(subject, *step, z, subject.step, subject.time);
@@ -84,22 +48,21 @@ class FormulaLaws final : public FamilyLaws {
     const FormulaToCheck asked = read_formula(scene, {}).to_check;
     const FormulaSystem& system = *asked.system;
     laws::SizedStepSubject subject{.name = asked.name,
-                                   .make = [&] { return std::make_unique<Composed>(asked.begun()); },
-                                   .traits = asked.begun().traits,
-                                   .position = asked.start.position,
-                                   .momentum = asked.start.momentum,
+                                   .make = [&] { return asked.begun(system).step; },
+                                   .traits = asked.begun(system).traits,
+                                   .start = asked.start,
                                    .step = asked.step,
                                    .time = asked.begin};
     if (system.constraint_count() > 0)
-      subject.constraint = [&](const Eigen::VectorXd& q) { return constraint_rows(system, q); };
+      subject.constraint = [&](const Eigen::VectorXd& q) { return system.constraint_rows(q); };
     subject.exact = [&](double later) {
       constexpr int steps = 400;
-      Composed precise(asked.precise());
-      laws::detail::PhasePoint z{asked.start.position, asked.start.momentum};
+      const FormulaMethod precise = asked.precise();
+      SizedState z = asked.start;
       const double h = later / steps;
-      for (int k = 0; k < steps; ++k) z = laws::detail::stepped(subject, precise, z, h, asked.begin + k * h);
-      Eigen::VectorXd both(2 * z.q.size());
-      both << z.q, z.p;
+      for (int k = 0; k < steps; ++k) z = laws::detail::stepped(subject, *precise.step, z, h, asked.begin + k * h);
+      Eigen::VectorXd both(2 * z.position.size());
+      both << z.position, z.momentum;
       return both;
     };
     Certificate certificate;

@@ -71,10 +71,15 @@ int symmetrised_order(const TaylorChoice& taylor, bool constrained) {
   return order + order % 2;
 }
 
+std::unique_ptr<SizedStep> composed(std::unique_ptr<SizedStep> step, const Composition& composition) {
+  if (composition.stages() == 1) return step;
+  return std::make_unique<ComposedSizedStep>(std::move(step), composition);
+}
+
 }  // namespace
 
 FormulaMethod CurveMethod::begun(const FormulaLagrangian& lagrangian) const {
-  FormulaMethod out{std::make_unique<CurveStep>(lagrangian, curve), traits, composition};
+  FormulaMethod out{composed(std::make_unique<CurveStep>(lagrangian, curve), composition), traits};
   out.traits.symplectic = !lagrangian.sizes().forced;
   return out;
 }
@@ -127,14 +132,11 @@ std::vector<Key> curve_method_keys() {
 }
 
 FormulaMethod GeneratingMethod::begun(const FormulaHamiltonian& hamiltonian) const {
-  FormulaMethod out{nullptr, traits, composition};
-  if (types == Types::both) {
-    out.step = std::make_unique<SymmetrisedGeneratingStep>(hamiltonian);
-  } else {
-    out.step = std::make_unique<GeneratingStep>(hamiltonian,
-                                                types == Types::two ? GeneratingType::two : GeneratingType::three);
-  }
-  return out;
+  if (types == Types::both)
+    return {composed(std::make_unique<SymmetrisedGeneratingStep>(hamiltonian), composition), traits};
+  return {
+      std::make_unique<GeneratingStep>(hamiltonian, types == Types::two ? GeneratingType::two : GeneratingType::three),
+      traits};
 }
 
 GeneratingMethod read_generating_method(const Section& time, bool constrained) {
@@ -151,7 +153,7 @@ GeneratingMethod read_generating_method(const Section& time, bool constrained) {
   if (both && (time.has("order") || time.has("composition"))) {
     if (own != 2 && read_key(time, time_keys::order()) != own)
       time.fail("order",
-                fmt::format("of these steps is {}; compositions are of steps of order two, taylor = 0 or 1", own));
+                fmt::format("of these steps is {}; compositions are of steps of order two, as by taylor = 1", own));
     if (own == 2) {
       method.composition = read_composition(time, compositions::all);
       method.traits.order = method.composition.order;
@@ -167,6 +169,7 @@ GeneratingMethod read_generating_method(const Section& time, bool constrained) {
 
 std::vector<Method> generating_methods(bool constrained) {
   std::vector<Method> all = composed_methods(type_words[0], compositions::all);
+  for (Method& each : all) each.settings.insert(each.settings.end(), {"time.taylor=1", "time.quadrature=trapezoid"});
   const auto add = [&](std::string_view word, int taylor, std::string_view quadrature) {
     const TaylorChoice choice{taylor, quadrature_named(quadrature)};
     const bool both = word == type_words[0];

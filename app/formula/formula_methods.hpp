@@ -1,8 +1,8 @@
 #pragma once
 /// The methods of systems that scenes hold as formulas: curves of a Lagrangian, generating functions of a Hamiltonian.
 ///
-///     const FormulaMethodChoice choice = read_curve_method(time, constrained);
-///     FormulaMethod method = choice.begun(*lagrangian);
+///     const CurveMethod method = read_curve_method(time, constrained);
+///     FormulaMethod begun = method.begun(*lagrangian);
 ///
 /// Errors: SceneError for a method that is none, or does not take what is asked of it.
 
@@ -15,6 +15,7 @@
 #include <lagroid/run/study/method.hpp>
 #include <lagroid/solvers/galerkin/curve_step.hpp>
 
+#include <memory>
 #include <vector>
 
 namespace lagroid::app {

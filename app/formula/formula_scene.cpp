@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <cmath>
 #include <filesystem>
@@ -22,7 +24,7 @@ const KeyOf<Text> lagrangian_key{
 const KeyOf<Texts> momenta_key{"momenta", {}, "", "names", {}, "p_x of each coordinate x"};
 const KeyOf<Text> hamiltonian_key{"H", {}, "", "H(x, p_x), of coordinates, momenta and the names of [parameters]"};
 const KeyOf<Texts> constraints_key{"constraints", {}, "", "functions of coordinates that are zero", {}, "none"};
-const KeyOf<Texts> force_key{"force", {}, "", "of each coordinate, a function as l is", {}, "none"};
+const KeyOf<Texts> force_key{"force", {}, "", "its components, functions as l is", {}, "none"};
 const KeyOf<Text> symmetry_name_key{"name", {}, "", "of its momentum"};
 const KeyOf<Texts> field_key{"field", {}, "", "how the coordinates move, functions of them"};
 const KeyOf<Tables> symmetry_key{
@@ -47,6 +49,8 @@ std::vector<std::pair<std::string, double>> read_numbers(const Section& scene) {
   const Section section = scene.section_or_empty("parameters");
   for (const std::string& each : section.as_overrides()) {
     const std::string name = each.substr(0, each.find('='));
+    if (const std::size_t table = name.find('.'); table != std::string::npos)
+      section.fail(name.substr(0, table), "expected a number, got a table");
     all.emplace_back(name, section.number(name));
   }
   return all;
@@ -68,7 +72,8 @@ template <class Make> auto at_its_key(const Section& scene, const Make& make) {
   } catch (const FormulaError& error) {
     if (error.key() == "parameters") scene.fail("parameters", error.what());
     const Section table = table_of(scene);
-    if (error.key() == field_key.name) table.tables(symmetry_key.name).front().fail(field_key.name, error.what());
+    if (error.key() == field_key.name || error.key() == symmetry_name_key.name)
+      table.tables(symmetry_key.name)[error.which()].fail(error.key(), error.what());
     table.fail(error.key(), error.what());
   }
 }
@@ -80,101 +85,129 @@ Eigen::VectorXd numbers_of(const Section& section, const KeyOf<NumberList>& key,
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(), Eigen::Index(count));
 }
 
-/// The constraints, or their change along v, relative to their terms; which is the largest, counted from one.
+constexpr double on_it = 1e-8;
+
+/// Which constraint, counted from one, q is farthest off, and how far, relative to its distance from the origin; of a
+/// velocity the part of it that leaves the constraint.
 struct OffBy {
-  double value = 0;
+  double distance = 0;
   std::size_t which = 0;
 };
 OffBy off_by(const FormulaSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd* v) {
-  std::vector<double> c(system.constraint_numbers());
-  system.constraint(q.data(), c.data());
-  const std::size_t n = std::size_t(q.size());
+  const Eigen::MatrixXd c = system.constraint_rows(q);
   OffBy worst;
-  for (std::size_t a = 0; a < system.constraint_count(); ++a) {
-    const double* each = c.data() + a * (c.size() / system.constraint_count());
-    double sum = v ? 0 : each[0], size = 1;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double term = each[1 + i] * (v ? *v : q)(Eigen::Index(i));
-      if (v) sum += term;
-      size += std::abs(term);
-    }
-    if (!(std::abs(sum) / size <= worst.value)) worst = {std::abs(sum) / size, a + 1};
+  for (Eigen::Index a = 0; a < c.rows(); ++a) {
+    const Eigen::VectorXd slope = c.row(a).tail(q.size());
+    const double off = v ? slope.dot(*v) : c(a, 0);
+    const double distance = off == 0 ? 0 : std::abs(off) / (slope.norm() * (v ? *v : q).norm());
+    if (!(distance <= worst.distance)) worst = {distance, std::size_t(a + 1)};
   }
   return worst;
 }
-constexpr double on_it = 1e-8;
 
-/// Position, and the velocity that a Lagrangian scene gives; the momentum is that of the scene where it gives one.
-FormulaState read_start(const Section& initial, const FormulaSystem& system, const FormulaLagrangian* l, double t) {
+/// Position and momentum, and the velocity where a Lagrangian scene gives it.
+SizedState read_start(const Section& initial, const FormulaSystem& system, const FormulaLagrangian* l, double t) {
   const std::size_t n = system.coordinates().size();
-  FormulaState start;
+  SizedState start;
   start.position = numbers_of(initial, position_key, n);
-  if (const OffBy off = off_by(system, start.position, nullptr); !(off.value <= on_it))
-    initial.fail(position_key.name, fmt::format("is off constraint {} by {:.3g}", off.which, off.value));
+  if (const OffBy off = off_by(system, start.position, nullptr); !(off.distance <= on_it))
+    initial.fail(position_key.name, fmt::format("is off constraint {}, by {:.3g} of its distance from the origin",
+                                                off.which, off.distance));
   if (!l || !initial.has(velocity_key.name)) {
     if (l && !initial.has(momentum_key.name)) initial.fail(velocity_key.name, "or momentum is to be given");
     start.momentum = numbers_of(initial, momentum_key, n);
     return start;
   }
   if (initial.has(momentum_key.name)) initial.fail(momentum_key.name, "is that of the velocity: leave one of them out");
-  const Eigen::VectorXd v = numbers_of(initial, velocity_key, n);
-  if (const OffBy off = off_by(system, start.position, &v); !(off.value <= on_it))
-    initial.fail(velocity_key.name, fmt::format("leaves constraint {}: C' v = {:.3g}", off.which, off.value));
+  start.velocity = numbers_of(initial, velocity_key, n);
+  if (const OffBy off = off_by(system, start.position, &start.velocity); !(off.distance <= on_it))
+    initial.fail(velocity_key.name,
+                 fmt::format("leaves constraint {}, by {:.3g} of its size", off.which, off.distance));
   std::vector<double> numbers(l->lagrangian_numbers());
-  l->lagrangian(t, start.position.data(), v.data(), numbers.data());
+  l->lagrangian(t, start.position.data(), start.velocity.data(), numbers.data());
   start.momentum = Eigen::Map<const Eigen::VectorXd>(numbers.data() + 1 + n, Eigen::Index(n));
   return start;
 }
 
-/// The velocity at the start. Refuses a start where there is none, and a momentum that leaves the constraints.
-TangentState require_regular(const Section& scene, const SizedStep& step, const FormulaState& start, double t) {
+/// Completes the start by its velocity. Refuses one where there is none, or that leaves the constraints.
+void require_regular(const Section& scene, const FormulaSystem& system, const SizedStep& step, SizedState& start,
+                     double t) {
   const Section initial = scene.section("initial", "");
-  TangentState tangent;
-  step.find_velocity(start.position, start.momentum, t, tangent);
-  if (!tangent.found) {
-    if (!std::isfinite(tangent.momentum.sum()))
-      initial.fail(position_key.name, "is where a formula or its slope is no finite number");
-    table_of(scene).fail(of_lagrangian(scene) ? lagrangian_key.name : hamiltonian_key.name,
-                         "is degenerate at the start: momenta there do not determine the velocities, or the "
-                         "constraints depend on each other");
+  const Section table = table_of(scene);
+  if (system.constraint_count() > 0) {
+    Eigen::MatrixXd slopes = system.constraint_rows(start.position).rightCols(start.position.size());
+    for (Eigen::Index a = 0; a < slopes.rows(); ++a) slopes.row(a) /= slopes.row(a).norm();
+    if (!slopes.allFinite() || slopes.colPivHouseholderQr().rank() < slopes.rows())
+      table.fail(constraints_key.name, "depend on each other at the start, or one has no slope there");
   }
-  if (!((tangent.momentum - start.momentum).norm() <= on_it * (1 + start.momentum.norm())))
+  TangentState tangent;
+  step.find_velocity(start, t, tangent);
+  if (!std::isfinite(tangent.momentum.sum()) || (tangent.found && !std::isfinite(tangent.energy)))
+    initial.fail(position_key.name, "is where a formula or its slope is no finite number");
+  if (!tangent.found)
+    table.fail(of_lagrangian(scene) ? lagrangian_key.name : hamiltonian_key.name,
+               "is degenerate at the start: momenta there do not determine the velocities");
+  if (start.velocity.size() > 0 && !((tangent.velocity - start.velocity).norm() <= on_it * start.velocity.norm()))
+    initial.fail(velocity_key.name, "is where l is degenerate: the momentum does not determine it");
+  if (!((tangent.momentum - start.momentum).norm() <= on_it * start.momentum.norm()))
     initial.fail(momentum_key.name, fmt::format("leaves the constraints; the part that does not is [{:.10g}]",
                                                 fmt::join(tangent.momentum, ", ")));
-  return tangent;
+  start.velocity = tangent.velocity;
 }
 
-/// Refuses what is declared a symmetry and is none, near the start.
-void require_symmetries(const Section& scene, const FormulaSystem& system, const FormulaState& start,
-                        const Eigen::VectorXd& velocity_or_momentum, double t) {
-  constexpr double rounding = 1e-10;
+/// The nearest place on the constraints, and v without what leaves them there.
+void bring_to_constraints(const FormulaSystem& system, Eigen::VectorXd& q, Eigen::VectorXd& v) {
+  for (int pass = 0; pass < 20; ++pass) {
+    const Eigen::MatrixXd c = system.constraint_rows(q), slope = c.rightCols(q.size());
+    q -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(c.col(0));
+  }
+  const Eigen::MatrixXd slope = system.constraint_rows(q).rightCols(q.size());
+  v -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(slope * v);
+}
+
+/// Refuses what is declared a symmetry and is none, near the start and at times of the run.
+void require_symmetries(const Section& scene, const FormulaSystem& system, const SizedState& start, bool by_velocity,
+                        double begin, double duration) {
+  constexpr double rounding = 1e-9;
+  constexpr int samples = 12;
   const std::vector<Section> declared = table_of(scene).tables(symmetry_key.name);
   std::mt19937_64 bits(1);
   const auto draw = [&] { return std::uniform_real_distribution<double>(-1, 1)(bits); };
-  for (std::size_t i = 0; i < system.symmetries().size(); ++i)
-    for (int sample = 0; sample < 8; ++sample) {
-      // On constraints where the start is: their change is asked for there alone.
-      Eigen::VectorXd q = start.position, w = velocity_or_momentum;
+  const Eigen::VectorXd& along = by_velocity ? start.velocity : start.momentum;
+  const double place = 0.1 * (start.position.norm() > 0 ? start.position.norm() : 1);
+  const double size = along.norm() > 0 ? along.norm() : 1;
+  for (std::size_t i = 0; i < system.symmetries().size(); ++i) {
+    int finite = 0;
+    for (int sample = 0; sample < samples; ++sample) {
+      Eigen::VectorXd q = start.position, w = along;
       for (Eigen::Index j = 0; j < q.size(); ++j) {
-        if (system.constraint_count() == 0) q(j) += 0.1 * sample * draw() * (1 + std::abs(q(j)));
-        w(j) += sample * draw() * (1 + std::abs(w(j)));
+        q(j) += sample > 0 ? place * draw() : 0;
+        w(j) += sample > 0 ? size * draw() : 0;
       }
+      if (system.constraint_count() > 0) bring_to_constraints(system, q, w);
+      const double t = begin + duration * 0.5 * (1 + draw());
       const double defect = system.symmetry_defect(i, t, q.data(), w.data());
-      if (std::isfinite(defect) && defect > rounding)
+      if (!std::isfinite(defect)) continue;
+      ++finite;
+      if (defect > rounding)
         declared[i].fail(
             field_key.name,
-            fmt::format("is no symmetry: {} changes along it, by {:.2g} of its terms at position "
+            fmt::format("is no symmetry: {} changes along it, by {:.2g} of its terms at t = {:.4g}, position "
                         "[{:.4g}], {} [{:.4g}]",
-                        of_lagrangian(scene) ? "l, a constraint or the work of the force" : "H or a constraint", defect,
-                        fmt::join(q, ", "), of_lagrangian(scene) ? "velocity" : "momentum", fmt::join(w, ", ")));
+                        by_velocity ? "l, a constraint or the work of the force" : "H or a constraint", defect, t,
+                        fmt::join(q, ", "), by_velocity ? "velocity" : "momentum", fmt::join(w, ", ")));
     }
+    if (finite == 0)
+      declared[i].fail(field_key.name, "cannot be examined: l or its slope is no finite number near the start");
+  }
 }
 
 /// What both kinds of scenes have read.
 struct FormulaRead {
-  std::function<FormulaMethod()> begun, precise;
+  std::function<FormulaMethod(const FormulaSystem&)> begun;
+  std::function<FormulaMethod()> precise;
   std::shared_ptr<const FormulaSystem> system;
-  FormulaState start;
+  SizedState start;
   std::vector<Method> methods;
 };
 
@@ -188,7 +221,7 @@ FormulaRead read_lagrangian(const Section& scene, const Section& time, double be
   const bool constrained = lagrangian->constraint_count() > 0;
   const CurveMethod method = read_curve_method(time, constrained);
   FormulaRead out{
-      [=] { return method.begun(*lagrangian); },
+      [=](const FormulaSystem& it) { return method.begun(dynamic_cast<const FormulaLagrangian&>(it)); },
       [=] {
         CurveMethod precise = method;
         precise.curve = {constrained ? CurveQuadrature::lobatto_pair : CurveQuadrature::gauss, 5};
@@ -198,8 +231,9 @@ FormulaRead read_lagrangian(const Section& scene, const Section& time, double be
       lagrangian,
       read_start(scene.section("initial", "position, and velocity or momentum"), *lagrangian, lagrangian.get(), begin),
       curve_methods(constrained)};
-  const TangentState tangent = require_regular(scene, *out.begun().step, out.start, begin);
-  require_symmetries(scene, *lagrangian, out.start, tangent.velocity, begin);
+  require_regular(scene, *lagrangian, *out.begun(*out.system).step, out.start, begin);
+  const TimeGrid grid = read_time(scene);
+  require_symmetries(scene, *lagrangian, out.start, true, begin, grid.step * double(grid.steps));
   return out;
 }
 
@@ -220,11 +254,12 @@ FormulaRead read_hamiltonian(const Section& scene, const Section& time) {
   precise.taylor = {1, quadrature_rules::trapezoid};
   precise.composition = compositions::kahan_li_8;
   const auto as_precise = made(precise.taylor);
-  FormulaRead out{[=] { return method.begun(*hamiltonian); }, [=] { return precise.begun(*as_precise); }, hamiltonian,
+  FormulaRead out{[=](const FormulaSystem& it) { return method.begun(dynamic_cast<const FormulaHamiltonian&>(it)); },
+                  [=] { return precise.begun(*as_precise); }, hamiltonian,
                   read_start(scene.section("initial", "position and momentum"), *hamiltonian, nullptr, 0),
                   generating_methods(constrained)};
-  require_regular(scene, *out.begun().step, out.start, 0);
-  require_symmetries(scene, *hamiltonian, out.start, out.start.momentum, 0);
+  require_regular(scene, *hamiltonian, *out.begun(*out.system).step, out.start, 0);
+  require_symmetries(scene, *hamiltonian, out.start, false, 0, 0);
   return out;
 }
 
@@ -252,7 +287,7 @@ Table formula_time_table(std::string_view word) {
 std::vector<Use> uses_of_formula(const Section& scene) {
   std::vector<Use> uses;
   const Section time = scene.section_or_empty("time");
-  const bool constrained = table_of(scene).has(constraints_key.name);
+  const bool constrained = !read_key_or(table_of(scene), constraints_key, {}).empty();
   if (of_lagrangian(scene)) {
     const CurveMethod method = read_curve_method(time, constrained);
     add_use(method.source, uses);
@@ -281,7 +316,7 @@ FormulaScene read_formula(const Section& scene, const RunContext& context) {
   out.extent = read_extent(scene, context);
   scene.finish();
   out.methods = std::move(read.methods);
-  out.motion = std::make_unique<FormulaMotion>(out.to_check.name, read.system, read.begun(), read.start,
+  out.motion = std::make_unique<FormulaMotion>(out.to_check.name, read.system, read.begun(*read.system), read.start,
                                                out.to_check.step, begin);
   return out;
 }

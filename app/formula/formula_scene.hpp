@@ -23,9 +23,10 @@ namespace lagroid::app {
 struct FormulaToCheck {
   std::string name;
   std::shared_ptr<const FormulaSystem> system;
-  std::function<FormulaMethod()> begun;    ///< the method that the scene names
+  /// The method that the scene names, of this system or of one with other parameters.
+  std::function<FormulaMethod(const FormulaSystem& system)> begun;
   std::function<FormulaMethod()> precise;  ///< one of high order, whose short steps are the motion to round-off
-  FormulaState start;
+  SizedState start;
   double step;
   double begin;
 };

@@ -68,7 +68,9 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
       const Uncertainty found = uncertainty_of(subject, options.of, deviations_of(options.deviations), options.draws);
       return report(options, found, found.table.failure);
     }
-    const GradientTable table = differentiate(subject, options.of, options.by, options.check);
+    std::vector<std::string> by = options.by;
+    if (by == GradientOptions{}.by && subject.parameters.empty()) by = {"initial"};
+    const GradientTable table = differentiate(subject, options.of, by, options.check);
     return report(options, table, table.failure);
   });
 }

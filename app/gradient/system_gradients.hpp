@@ -19,6 +19,9 @@ using AskGradient = std::optional<GradientSubject> (*)(const Section& scene);
 /// Of a scene of the library's Poisson systems, without events (SceneError).
 std::optional<GradientSubject> poisson_gradient(const Section& scene);
 
+/// Of a scene that holds its formulas, without constraints and events (SceneError).
+std::optional<GradientSubject> formula_gradient(const Section& scene);
+
 /// Serves a command line of `lagroid gradient`. Returns the exit code.
 int gradient_program(int argc, char** argv, ProgramParts parts, const std::vector<AskGradient>& subjects);
 

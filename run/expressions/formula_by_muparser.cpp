@@ -6,7 +6,6 @@
 #include <muParser.h>
 #include <boost/algorithm/string/replace.hpp>
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstring>
@@ -80,6 +79,8 @@ std::string unknown_word(const std::string& text, const mu::Parser& parser) {
        ++each) {
     std::string word = each->str();
     if (std::isdigit(static_cast<unsigned char>(word.front())) != 0 || word.front() == '.') continue;
+    if (each->position() > 0 && std::isdigit(static_cast<unsigned char>(text[std::size_t(each->position()) - 1])) != 0)
+      return fmt::format("a number stands before \"{}\" without *", word);
     const bool called = word.back() == '(';
     while (word.back() == '(' || std::isspace(static_cast<unsigned char>(word.back())) != 0) word.pop_back();
     if (called && !parser.GetFunDef().contains(word)) return fmt::format("there is no smooth function \"{}\"", word);
@@ -92,11 +93,16 @@ std::string unknown_word(const std::string& text, const mu::Parser& parser) {
 }  // namespace
 
 FormulaGraph::Node FormulaGraph::read(const std::string& text, const std::vector<std::string>& names) {
+  if (std::regex_search(text, std::regex("column_[0-9]+_"))) throw std::invalid_argument("a name in it is reserved");
   for (const char sign : {'?', '<', '>', '=', '&', '|'})
     if (text.find(sign) != std::string::npos)
       throw std::invalid_argument(fmt::format("\"{}\" makes it no smooth function", sign));
   graph = this;
   std::vector<double> nodes(names.size());
+  const auto in_names = [&](std::string message) {
+    for (std::size_t i = 0; i < names.size(); ++i) boost::algorithm::replace_all(message, detail::word_of(i), names[i]);
+    return message;
+  };
   try {
     mu::Parser parser;
     define(parser);
@@ -111,10 +117,9 @@ FormulaGraph::Node FormulaGraph::read(const std::string& text, const std::vector
     if (parser.GetNumResults() != 1) throw std::invalid_argument("it has several values");
     return std::size_t(found);
   } catch (const mu::Parser::exception_type& error) {
-    std::string message = error.GetMsg();
-    message.erase(std::min(message.find(" at position"), message.size()));  // of another text
-    for (std::size_t i = 0; i < names.size(); ++i) boost::algorithm::replace_all(message, detail::word_of(i), names[i]);
-    throw std::invalid_argument(message);
+    // Places are those of another text.
+    throw std::invalid_argument(
+        in_names(std::regex_replace(error.GetMsg(), std::regex(" at( expression)? position \\d+\\.?"), "")));
   }
 }
 

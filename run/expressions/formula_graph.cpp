@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace lagroid {
 
@@ -88,8 +89,11 @@ FormulaGraph::Node FormulaGraph::variable(std::size_t index) { return kept({Form
 FormulaGraph::Node FormulaGraph::apply(FormulaOperation kind, Node a, Node b) {
   const bool two = takes_two(kind);
   if (!two) b = 0;
-  if (is_constant(a) && (!two || is_constant(b)))
-    return constant(value_of(kind, operations_[a].value, two ? operations_[b].value : 0));
+  if (is_constant(a) && (!two || is_constant(b))) {
+    const double value = value_of(kind, operations_[a].value, two ? operations_[b].value : 0);
+    if (!std::isfinite(value)) throw std::invalid_argument("a part of it is no finite number");
+    return constant(value);
+  }
   const Node simple = simplified(kind, a, b);
   return simple != nowhere ? simple : kept({kind, a, b, 0});
 }
@@ -113,7 +117,7 @@ FormulaGraph::Node FormulaGraph::simplified(FormulaOperation kind, Node a, Node 
       if (is(b, -1)) return apply(negate, a);
       break;
     case divide:
-      if (is(a, 0)) return constant(0);
+      if (is(a, 0) && !is(b, 0)) return constant(0);
       if (is(b, 1)) return a;
       break;
     case power:
@@ -148,6 +152,8 @@ FormulaGraph::Node FormulaGraph::derivative(Node f, std::size_t by) {
   const auto root = [&](Node g) { return apply(sqrt, g); };
   const auto one = number(1);
   Node out = number(0);
+  const bool is_leaf = of.kind == FormulaOperation::constant || of.kind == FormulaOperation::variable;
+  if (!is_leaf && is_zero(d(a)) && (!takes_two(of.kind) || is_zero(d(b)))) return derivatives_[{f, by}] = out;
   switch (of.kind) {
     case FormulaOperation::constant:
       break;

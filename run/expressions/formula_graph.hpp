@@ -13,6 +13,8 @@
 /// `min`, `max` and `sign` have no second derivatives and are refused. Derivatives are exact; where there are none, as
 /// of abs(x) at zero, they are no numbers.
 ///
+/// A part that is no finite number, as 0/0 or sqrt(-1), is an error of the text too.
+///
 /// Errors: std::invalid_argument for a text that is no formula of these names, with what is wrong in it, or in a build
 /// without muparser, which reads the texts.
 

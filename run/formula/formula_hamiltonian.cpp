@@ -91,7 +91,9 @@ template <class S> class FormulaAt {
         return (*this)(of.a) / (*this)(of.b);
       case FormulaOperation::power:
         if (graph_.is_constant(of.b)) return pow((*this)(of.a), graph_.operation(of.b).value);
-        return exp((*this)(of.b) * log((*this)(of.a)));
+        if (graph_.is_constant(of.a)) return exp((*this)(of.b) * log((*this)(of.a)));
+        throw std::invalid_argument(
+            "of a power either the base or the exponent is a number, where power series are taken");
       case FormulaOperation::negate:
         return -(*this)(of.a);
       case FormulaOperation::sin:
@@ -141,7 +143,7 @@ template <class S> class FormulaAt {
 
 FormulaHamiltonian::FormulaHamiltonian(const FormulaTexts& texts, const std::vector<std::string>& momenta,
                                        const std::string& hamiltonian, const TaylorChoice& taylor)
-    : SizedHamiltonian(int(texts.coordinates.size()), int(texts.constraints.size())),
+    : SizedHamiltonian(int(texts.coordinates.size()), int(texts.constraints.size()), int(texts.parameters.size())),
       FormulaSystem(texts, momenta, false) {
   const std::size_t n = size();
   const Node energy = read("H", hamiltonian);
@@ -153,6 +155,15 @@ FormulaHamiltonian::FormulaHamiltonian(const FormulaTexts& texts, const std::vec
   finish(texts, energy, {});
   require_parameters_read(texts, {&hamiltonian_});
 
+  try {
+    read_generating_function(texts, energy, taylor);
+  } catch (const std::invalid_argument& error) {
+    throw FormulaError("H", fmt::format("\"{}\": {}", hamiltonian, error.what()));
+  }
+}
+
+void FormulaHamiltonian::read_generating_function(const FormulaTexts& texts, Node energy, const TaylorChoice& taylor) {
+  const std::size_t n = size();
   Formula::graph = &graph_;
   std::vector<Node> rate;  // (H_p, -H_q)
   for (std::size_t i = 0; i < n; ++i) rate.push_back(graph_.derivative(energy, n + i));
@@ -196,21 +207,52 @@ FormulaHamiltonian::FormulaHamiltonian(const FormulaTexts& texts, const std::vec
       for (std::size_t i = 0; i < 2 * n; ++i) wanted.push_back(graph_.derivative(f, i));
   }
   generating_ = FormulaProgram(graph_, wanted);
+  std::vector<Node> energy_slopes;
+  std::vector<Node> slopes(wanted.begin() + 1, wanted.begin() + 1 + long(2 * n));
+  wanted.clear();
+  for (std::size_t a = 0; a < texts.parameters.size(); ++a) {
+    const std::size_t parameter = time() + 1 + a;
+    energy_slopes.push_back(graph_.derivative(energy, parameter));
+    for (std::vector<Node>* each : {&slopes, &far_p, &far_q})
+      for (const Node f : *each) wanted.push_back(graph_.derivative(f, parameter));
+  }
+  energy_by_parameters_ = FormulaProgram(graph_, energy_slopes);
+  by_parameters_ = FormulaProgram(graph_, wanted);
   arguments_.resize(after + 2 * n + 1);
 }
 
 void FormulaHamiltonian::hamiltonian(const double* q, const double* p, double* out) const {
   hamiltonian_.evaluate(at(0, q, p), out, scratch_);
 }
+const double* FormulaHamiltonian::generating_arguments(const double* q, const double* p, const double* sigma,
+                                                       const double* far, double h) const {
+  auto to = std::copy_n(at(0, q, p), names_.size(), arguments_.begin());
+  to = std::copy_n(sigma, size(), to);
+  to = std::copy_n(far, size(), to);
+  *to = h;
+  return arguments_.data();
+}
 void FormulaHamiltonian::generating(const double* q, const double* p, const double* sigma, const double* far, double h,
                                     double* out) const {
+  generating_.evaluate(generating_arguments(q, p, sigma, far, h), out, scratch_);
+}
+void FormulaHamiltonian::by_parameters(const double* q, const double* p, const double* sigma, const double* far,
+                                       double h, double* out) const {
+  by_parameters_.evaluate(generating_arguments(q, p, sigma, far, h), out, scratch_);
+}
+
+std::unique_ptr<FormulaSystem> FormulaHamiltonian::changed(const std::string& parameter, double by) const {
+  auto other = std::make_unique<FormulaHamiltonian>(*this);
+  other->change(parameter, by);
+  return other;
+}
+
+void FormulaHamiltonian::energy_slope(double, const double* q, const double* p, const double*, double* out) const {
   const std::size_t n = size();
-  const double* variables = at(0, q, p);
-  auto to = std::copy_n(variables, names_.size(), arguments_.begin());
-  to = std::copy_n(sigma, n, to);
-  to = std::copy_n(far, n, to);
-  *to = h;
-  generating_.evaluate(arguments_.data(), out, scratch_);
+  std::vector<double> numbers(1 + 2 * n + n * (2 * n + 1));
+  hamiltonian(q, p, numbers.data());
+  std::copy_n(numbers.begin() + 1, 2 * n, out);
+  energy_by_parameters_.evaluate(at(0, q, p), out + 2 * n, scratch_);
 }
 
 }  // namespace lagroid

@@ -16,6 +16,7 @@
 #include <lagroid/solvers/generating/generating_step.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,13 +42,22 @@ class FormulaHamiltonian final : public SizedHamiltonian, public FormulaSystem {
   bool keeps_energy() const override { return true; }
   const char* energy_is() const override { return "H"; }
 
+  std::unique_ptr<FormulaSystem> changed(const std::string& parameter, double by) const override;
+  void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const override;
+
   void hamiltonian(const double* q, const double* p, double* out) const override;
   void generating(const double* q, const double* p, const double* sigma, const double* far, double h,
                   double* out) const override;
   void constraint(const double* q, double* out) const override { FormulaSystem::constraint(q, out); }
+  void by_parameters(const double* q, const double* p, const double* sigma, const double* far, double h,
+                     double* out) const override;
 
  private:
-  FormulaProgram hamiltonian_, generating_;
+  void read_generating_function(const FormulaTexts& texts, Node energy, const TaylorChoice& taylor);
+  const double* generating_arguments(const double* q, const double* p, const double* sigma, const double* far,
+                                     double h) const;
+
+  FormulaProgram hamiltonian_, energy_by_parameters_, generating_, by_parameters_;
   mutable std::vector<double> arguments_;  ///< the variables, then sigma, p1 and h
 };
 

@@ -6,7 +6,8 @@ namespace lagroid {
 
 FormulaLagrangian::FormulaLagrangian(const FormulaTexts& texts, const std::string& lagrangian,
                                      const std::vector<std::string>& force)
-    : SizedLagrangian({int(texts.coordinates.size()), int(texts.constraints.size()), !force.empty()}),
+    : SizedLagrangian(
+          {int(texts.coordinates.size()), int(texts.constraints.size()), !force.empty(), int(texts.parameters.size())}),
       FormulaSystem(texts, {}, true) {
   const std::size_t n = size();
   const Node l = read("l", lagrangian);
@@ -22,6 +23,14 @@ FormulaLagrangian::FormulaLagrangian(const FormulaTexts& texts, const std::strin
     for (std::size_t i = 0; i < 2 * n; ++i) wanted.push_back(graph_.derivative(components.back(), i));
   }
   force_ = FormulaProgram(graph_, wanted);
+  wanted.clear();
+  for (std::size_t a = 0; a < texts.parameters.size(); ++a) {
+    const std::size_t parameter = time() + 1 + a;
+    wanted.push_back(graph_.derivative(l, parameter));
+    for (std::size_t i = 0; i < 2 * n; ++i) wanted.push_back(graph_.derivative(graph_.derivative(l, i), parameter));
+    for (const Node component : components) wanted.push_back(graph_.derivative(component, parameter));
+  }
+  by_parameters_ = FormulaProgram(graph_, wanted);
   finish(texts, l, components);
   require_parameters_read(texts, {&lagrangian_, &force_});
 }
@@ -31,6 +40,29 @@ void FormulaLagrangian::lagrangian(double t, const double* q, const double* v, d
 }
 void FormulaLagrangian::force(double t, const double* q, const double* v, double* out) const {
   force_.evaluate(at(t, q, v), out, scratch_);
+}
+
+void FormulaLagrangian::by_parameters(double t, const double* q, const double* v, double* out) const {
+  by_parameters_.evaluate(at(t, q, v), out, scratch_);
+}
+
+std::unique_ptr<FormulaSystem> FormulaLagrangian::changed(const std::string& parameter, double by) const {
+  auto other = std::make_unique<FormulaLagrangian>(*this);
+  other->change(parameter, by);
+  return other;
+}
+
+// E(q, p) = ext_v <p, v> - l(q, v): at the velocity its derivatives are those at fixed v.
+void FormulaLagrangian::energy_slope(double t, const double* q, const double*, const double* v, double* out) const {
+  const std::size_t n = size(), each = 1 + 2 * n + (sizes().forced ? n : 0);
+  std::vector<double> numbers(lagrangian_numbers()), varied(parameter_numbers());
+  lagrangian(t, q, v, numbers.data());
+  by_parameters(t, q, v, varied.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    out[i] = -numbers[1 + i];
+    out[n + i] = v[i];
+  }
+  for (std::size_t a = 0; a < parameters().size(); ++a) out[2 * n + a] = -varied[a * each];
 }
 
 }  // namespace lagroid

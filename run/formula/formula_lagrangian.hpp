@@ -15,6 +15,7 @@
 #include <lagroid/run/formula/formula_system.hpp>
 #include <lagroid/solvers/galerkin/sized_lagrangian.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,13 +29,17 @@ class FormulaLagrangian final : public SizedLagrangian, public FormulaSystem {
   bool keeps_energy() const override { return !depends_on_time_ && !sizes().forced; }
   const char* energy_is() const override { return "<dl/dv, v> - l"; }
 
+  std::unique_ptr<FormulaSystem> changed(const std::string& parameter, double by) const override;
+  void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const override;
+
   void lagrangian(double t, const double* q, const double* v, double* out) const override;
   void constraint(const double* q, double* out) const override { FormulaSystem::constraint(q, out); }
   void force(double t, const double* q, const double* v, double* out) const override;
+  void by_parameters(double t, const double* q, const double* v, double* out) const override;
 
  private:
   bool depends_on_time_ = false;
-  FormulaProgram lagrangian_, force_;
+  FormulaProgram lagrangian_, force_, by_parameters_;
 };
 
 }  // namespace lagroid

@@ -11,9 +11,7 @@
 namespace lagroid {
 
 FormulaNode::FormulaNode(const FormulaSystem& system, bool symplectic)
-    : system_(system),
-      field_(system.symmetries().size() * system.coordinates().size()),
-      constraint_(system.constraint_numbers()) {
+    : system_(system), field_(system.symmetries().size() * system.coordinates().size()) {
   fields_.push_back({.columns = {"position", system.coordinates(), "1", "coordinates", false, {}}});
   fields_.push_back({.columns = {"velocity", system.velocities(), "1/s", "of the coordinates", false, {}}});
   fields_.push_back({.columns = {"momentum", system.momenta(), "1", "tangent to the constraints", false, {}}});
@@ -35,24 +33,17 @@ FormulaNode::FormulaNode(const FormulaSystem& system, bool symplectic)
                        .drift_of = i});
 }
 
-void FormulaNode::see(long index, double time, const FormulaState& state, const SizedStep& step) {
+void FormulaNode::see(long index, double time, const SizedState& state, const SizedStep& step) {
   index_ = index;
   time_ = time;
   state_ = state;
-  step.find_velocity(state.position, state.momentum, time, tangent_);
+  step.find_velocity(state, time, tangent_);
   system_.fields(state.position.data(), field_.data());
-  residual_ = 0;
-  residual_size_ = 1;
   if (system_.constraint_count() == 0) return;
-  system_.constraint(state.position.data(), constraint_.data());
-  const std::size_t n = system_.coordinates().size();
-  const std::size_t each = constraint_.size() / system_.constraint_count();
-  for (std::size_t a = 0; a < constraint_.size(); a += each) {
-    double terms = 0;
-    for (std::size_t i = 0; i < n; ++i) terms += std::abs(constraint_[a + 1 + i] * state.position(Eigen::Index(i)));
-    residual_ = std::max(residual_, std::abs(constraint_[a]));
-    residual_size_ = std::max(residual_size_, terms);
-  }
+  const Eigen::MatrixXd c = system_.constraint_rows(state.position);
+  residual_ = c.col(0).cwiseAbs().maxCoeff();
+  residual_size_ = (c.rightCols(c.cols() - 1).cwiseAbs() * state.position.cwiseAbs()).maxCoeff();
+  if (!(residual_size_ > 0)) residual_size_ = 1;
 }
 
 Endpoint FormulaNode::endpoint() const {
@@ -99,37 +90,24 @@ std::optional<double> FormulaNode::residual() const {
 }
 
 FormulaMotion::FormulaMotion(std::string name, std::shared_ptr<const FormulaSystem> system, FormulaMethod method,
-                             FormulaState start, double step, double begin)
+                             SizedState start, double step, double begin)
     : name_(std::move(name)),
       system_(std::move(system)),
       method_(std::move(method)),
       state_(std::move(start)),
       size_(step),
       begin_(begin),
-      node_(*system_, method_.traits.symplectic) {}
-
-StepReport FormulaMotion::go(FormulaState& state, double t, double h) {
-  trial_ = state;
-  StepReport report, worst;
-  worst.status = SolveStatus::converged;
-  double at = t;
-  for (const double gamma : method_.composition.coefficients) {
-    report = method_.step->take(trial_.position, trial_.momentum, at, gamma * h);
-    worst.iterations += report.iterations;
-    worst.residual = std::max(worst.residual, report.residual);
-    worst.roundoff_ratio = std::max(worst.roundoff_ratio, report.roundoff_ratio);
-    if (!report.converged()) {
-      worst.status = report.status;
-      return worst;
-    }
-    at += gamma * h;
+      node_(*system_, method_.traits.symplectic) {
+  // Part of the state, so that a resumed run goes on with the same bits.
+  if (state_.velocity.size() == 0) {
+    TangentState tangent;
+    method_.step->find_velocity(state_, begin_, tangent);
+    state_.velocity = tangent.velocity;
   }
-  std::swap(state, trial_);
-  return worst;
 }
 
 StepReport FormulaMotion::advance() {
-  const StepReport report = go(state_, time(), size_);
+  const StepReport report = method_.step->take(state_, time(), size_);
   if (report.converged()) ++index_;
   return report;
 }
@@ -139,8 +117,8 @@ std::string FormulaMotion::failure(const StepReport& report, long step) const {
   switch (report.status) {
     case SolveStatus::singular:
       return fmt::format(
-          "{}: the step's equations are singular: l is degenerate in the velocities there, constraints "
-          "depend on each other, or the step is too long",
+          "{}: the step's equations are singular: momenta do not determine velocities there, constraints depend on "
+          "each other, or the step is too long",
           where);
     case SolveStatus::not_finite:
       return fmt::format("{}: a formula is no finite number there; use a smaller time.step", where);
@@ -160,7 +138,7 @@ const Observables& FormulaMotion::look() {
 std::vector<NamedVector> FormulaMotion::state() const {
   // Momenta that differ across the constraints are one.
   TangentState tangent;
-  method_.step->find_velocity(state_.position, state_.momentum, time(), tangent);
+  method_.step->find_velocity(state_, time(), tangent);
   const auto numbers = [](const Eigen::VectorXd& x) { return std::vector<double>(x.begin(), x.end()); };
   return {{"configuration", numbers(state_.position)}, {"momentum", numbers(tangent.momentum)}};
 }
@@ -199,7 +177,7 @@ void FormulaMotion::keep_node() {
 bool FormulaMotion::go_within(double share) {
   inside_ = kept_;
   const double size = share * rest_ * size_;
-  return size == 0 || go(inside_, kept_time_, size).converged();
+  return size == 0 || method_.step->take(inside_, kept_time_, size).converged();
 }
 
 const Observables* FormulaMotion::look_within(double share) {
@@ -210,8 +188,8 @@ const Observables* FormulaMotion::look_within(double share) {
 
 Changeable FormulaMotion::changeable() const { return {.momenta = {{"", system_->coordinates().size()}}}; }
 
-FormulaState FormulaMotion::kicked(const MotionChange& change) const {
-  FormulaState out = inside_;
+SizedState FormulaMotion::kicked(const MotionChange& change) const {
+  SizedState out = inside_;
   for (std::size_t i = 0; i < change.kick.size(); ++i) out.momentum(Eigen::Index(i)) += change.kick[i];
   return out;
 }
@@ -236,6 +214,7 @@ StepReport FormulaMotion::change_within(double share, const MotionChange& change
 void FormulaMotion::serialize(NumberArchive& archive) {
   for (double& each : state_.position) archive(each);
   for (double& each : state_.momentum) archive(each);
+  for (double& each : state_.velocity) archive(each);
   archive(index_);
 }
 

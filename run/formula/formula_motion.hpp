@@ -8,7 +8,6 @@
 
 #include <lagroid/run/formula/formula_lagrangian.hpp>
 #include <lagroid/run/motion/motion.hpp>
-#include <lagroid/solvers/integrators/compositions.hpp>
 
 #include <memory>
 #include <optional>
@@ -17,16 +16,10 @@
 
 namespace lagroid {
 
-/// A step, what the composition of such steps declares, and the composition.
+/// A step, and what it declares.
 struct FormulaMethod {
   std::unique_ptr<SizedStep> step;
   MethodTraits traits;
-  Composition composition = compositions::single;
-};
-
-struct FormulaState {
-  Eigen::VectorXd position;
-  Eigen::VectorXd momentum;
 };
 
 /// What is to be seen of one. Fields: position, velocity, tangent momentum, energy, momenta of symmetries, drifts.
@@ -34,7 +27,7 @@ class FormulaNode final : public Observables {
  public:
   explicit FormulaNode(const FormulaSystem& system, bool symplectic);
 
-  void see(long index, double time, const FormulaState& state, const SizedStep& step);
+  void see(long index, double time, const SizedState& state, const SizedStep& step);
 
   long index() const override { return index_; }
   double time() const override { return time_; }
@@ -56,16 +49,15 @@ class FormulaNode final : public Observables {
   std::vector<Watched> watched_;
   long index_ = 0;
   double time_ = 0;
-  FormulaState state_;
+  SizedState state_;
   TangentState tangent_;
-  std::vector<double> field_;       ///< of the symmetries
-  std::vector<double> constraint_;  ///< with derivatives
+  std::vector<double> field_;  ///< of the symmetries
   double residual_ = 0, residual_size_ = 1;
 };
 
 class FormulaMotion final : public Motion {
  public:
-  FormulaMotion(std::string name, std::shared_ptr<const FormulaSystem> system, FormulaMethod method, FormulaState start,
+  FormulaMotion(std::string name, std::shared_ptr<const FormulaSystem> system, FormulaMethod method, SizedState start,
                 double step, double begin);
 
   std::string name() const override { return name_; }
@@ -89,20 +81,17 @@ class FormulaMotion final : public Motion {
   void serialize(NumberArchive& archive) override;
 
  private:
-  /// A step, or that share of one, by all stages; `state` stays where one does not converge.
-  StepReport go(FormulaState& state, double t, double h);
   bool go_within(double share);
-  FormulaState kicked(const MotionChange& change) const;
+  SizedState kicked(const MotionChange& change) const;
 
   std::string name_;
   std::shared_ptr<const FormulaSystem> system_;
   FormulaMethod method_;
-  FormulaState state_;
+  SizedState state_;
   double size_, begin_;
   FormulaNode node_;
   long index_ = 0;
-  FormulaState trial_;
-  FormulaState kept_, inside_;
+  SizedState kept_, inside_;
   double kept_time_ = 0;
   double rest_ = 1;  ///< of the step, from there on
 };

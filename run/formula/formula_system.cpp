@@ -20,24 +20,31 @@ bool is_word(const std::string& name) {
 }  // namespace
 
 FormulaSystem::FormulaSystem(const FormulaTexts& texts, std::vector<std::string> momenta, bool by_velocity)
-    : coordinates_(texts.coordinates), momenta_(std::move(momenta)), by_velocity_(by_velocity) {
+    : coordinates_(texts.coordinates),
+      momenta_(std::move(momenta)),
+      parameters_(texts.parameters),
+      by_velocity_(by_velocity) {
   if (coordinates_.empty()) throw FormulaError("coordinates", "names no coordinate");
   for (const std::string& each : coordinates_) velocities_.push_back(each + "'");
+  const char* const key_of_momenta = momenta_.empty() ? "coordinates" : "momenta";
   if (momenta_.empty())
     for (const std::string& each : coordinates_) momenta_.push_back("p_" + each);
   if (momenta_.size() != size())
     throw FormulaError("momenta", fmt::format("names {}, and there are {} coordinates", momenta_.size(), size()));
-  std::set<std::string> known{"t", "pi"};
+  // Of formulas, and of columns.
+  std::set<std::string> known{"t",     "pi",    "energy", "sin",  "cos",  "tan",   "asin",
+                              "acos",  "atan",  "sinh",   "cosh", "tanh", "asinh", "acosh",
+                              "atanh", "atan2", "exp",    "ln",   "log",  "sqrt",  "abs"};
   const auto add = [&](const std::string& name, const char* key) {
     if (!is_word(name))
       throw FormulaError(key, fmt::format("\"{}\" is no name: letters, digits and _, not a digit first", name));
     if (!known.insert(name).second)
       throw FormulaError(key, fmt::format("\"{}\" is taken: names of coordinates, momenta and parameters differ from "
-                                          "each other and from t and pi",
+                                          "each other, and from t, pi, energy and those of functions",
                                           name));
   };
   for (const std::string& each : coordinates_) add(each, "coordinates");
-  for (const std::string& each : momenta_) add(each, "momenta");
+  for (const std::string& each : momenta_) add(each, key_of_momenta);
   names_ = coordinates_;
   const std::vector<std::string>& second = by_velocity ? velocities_ : momenta_;
   names_.insert(names_.end(), second.begin(), second.end());
@@ -50,11 +57,11 @@ FormulaSystem::FormulaSystem(const FormulaTexts& texts, std::vector<std::string>
   for (std::size_t i = 0; i < texts.parameters.size(); ++i) variables_[time() + 1 + i] = texts.parameters[i].second;
 }
 
-FormulaGraph::Node FormulaSystem::read(const std::string& key, const std::string& text) {
+FormulaGraph::Node FormulaSystem::read(const std::string& key, const std::string& text, std::size_t which) {
   try {
     return graph_.read(text, names_);
   } catch (const std::invalid_argument& error) {
-    throw FormulaError(key, fmt::format("\"{}\": {}", text, error.what()));
+    throw FormulaError(key, fmt::format("\"{}\": {}", text, error.what()), which);
   }
 }
 
@@ -69,10 +76,10 @@ std::vector<FormulaGraph::Node> FormulaSystem::with_derivatives(Node f, std::siz
 void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::vector<Node>& force) {
   using enum FormulaOperation;
   const std::size_t n = size();
-  const auto of_places_alone = [&](Node f, const std::string& key, const std::string& text) {
+  const auto of_places_alone = [&](Node f, const std::string& key, const std::string& text, std::size_t which = 0) {
     for (std::size_t i = n; i <= time(); ++i)
       if (depends(f, i))
-        throw FormulaError(key, fmt::format("\"{}\" depends on {}: it is of places alone", text, names_[i]));
+        throw FormulaError(key, fmt::format("\"{}\" depends on {}: it is of places alone", text, names_[i]), which);
   };
   std::vector<Node> constraints, wanted;
   for (const std::string& text : texts.constraints) {
@@ -100,15 +107,19 @@ void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::
     changes.push_back(sum);
     changes.push_back(sizes);
   };
+  std::set<std::string> known{"energy"};
   for (const FormulaSymmetry& symmetry : texts.symmetries) {
+    const std::size_t which = symmetries_.size();
+    if (symmetry.name.empty() || !known.insert(symmetry.name).second)
+      throw FormulaError("name", "is empty, or that of another quantity", which);
     if (symmetry.field.size() != n)
-      throw FormulaError("field",
-                         fmt::format("has {} components, and there are {} coordinates", symmetry.field.size(), n));
+      throw FormulaError(
+          "field", fmt::format("has {} components, and there are {} coordinates", symmetry.field.size(), n), which);
     std::vector<Node> xi;
     bool affine = true;
     for (const std::string& text : symmetry.field) {
-      xi.push_back(read("field", text));
-      of_places_alone(xi.back(), "field", text);
+      xi.push_back(read("field", text, which));
+      of_places_alone(xi.back(), "field", text, which);
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i; j < n; ++j) affine = affine && !depends(graph_.derivative(xi.back(), i), j);
     }
@@ -136,6 +147,12 @@ void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::
     change(terms);
   }
   fields_ = FormulaProgram(graph_, wanted);
+  std::vector<Node> slopes;
+  for (const Node component : wanted) {
+    for (std::size_t i = 0; i < n; ++i) slopes.push_back(graph_.derivative(component, i));
+    for (std::size_t i = 0; i < parameters_.size(); ++i) slopes.push_back(graph_.derivative(component, time() + 1 + i));
+  }
+  field_slopes_ = FormulaProgram(graph_, slopes);
   changes_ = FormulaProgram(graph_, changes);
   changed_.resize(changes_.count());
 }
@@ -159,7 +176,38 @@ const double* FormulaSystem::at(double t, const double* q, const double* w) cons
 void FormulaSystem::constraint(const double* q, double* out) const {
   constraint_.evaluate(at(0, q, nullptr), out, scratch_);
 }
+Eigen::MatrixXd FormulaSystem::constraint_rows(const Eigen::VectorXd& q) const {
+  std::vector<double> numbers(constraint_.count());
+  constraint(q.data(), numbers.data());
+  Eigen::MatrixXd out(Eigen::Index(constraint_count_), 1 + q.size());
+  for (std::size_t a = 0; a < constraint_count_; ++a)
+    out.row(Eigen::Index(a)) =
+        Eigen::Map<const Eigen::RowVectorXd>(numbers.data() + a * (numbers.size() / constraint_count_), 1 + q.size());
+  return out;
+}
 void FormulaSystem::fields(const double* q, double* out) const { fields_.evaluate(at(0, q, nullptr), out, scratch_); }
+
+void FormulaSystem::momentum_slopes(const double* q, const double* p, double* out) const {
+  const std::size_t n = size(), each = n + parameters_.size(), columns = n + each;
+  std::vector<double> xi(fields_.count()), by(field_slopes_.count());
+  fields(q, xi.data());
+  field_slopes_.evaluate(at(0, q, nullptr), by.data(), scratch_);
+  for (std::size_t s = 0; s < symmetries_.size(); ++s) {
+    double* row = out + s * columns;
+    std::fill_n(row, columns, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double* slopes = by.data() + (s * n + i) * each;
+      row[n + i] = xi[s * n + i];
+      for (std::size_t j = 0; j < n; ++j) row[j] += p[i] * slopes[j];
+      for (std::size_t j = n; j < each; ++j) row[n + j] += p[i] * slopes[j];
+    }
+  }
+}
+
+void FormulaSystem::change(const std::string& parameter, double by) {
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    if (parameters_[i].first == parameter) variables_[time() + 1 + i] = parameters_[i].second += by;
+}
 
 double FormulaSystem::symmetry_defect(std::size_t i, double t, const double* q, const double* w) const {
   changes_.evaluate(at(t, q, w), changed_.data(), scratch_);
@@ -167,7 +215,8 @@ double FormulaSystem::symmetry_defect(std::size_t i, double t, const double* q, 
   double worst = 0;
   for (std::size_t k = i * each; k < (i + 1) * each; k += 2) {
     const double relative = changed_[k] == 0 ? 0 : std::abs(changed_[k]) / changed_[k + 1];
-    if (!(relative <= worst)) worst = relative;
+    if (std::isnan(relative)) return relative;
+    worst = std::max(worst, relative);
   }
   return worst;
 }

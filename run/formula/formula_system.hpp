@@ -1,10 +1,10 @@
 #pragma once
 /// What systems written as text have in common: coordinates of R^n, parameters, constraints of places and symmetries.
 ///
-/// A motion asks it what it shows and keeps, and for a step by one of its methods.
+/// A motion asks it what it shows and keeps.
 ///
-///     const std::unique_ptr<SizedStep> step = system.make_step(method);
-///     system.fields(q, xi);  // of all symmetries
+///     const Eigen::MatrixXd c = system.constraint_rows(q);  // C and C', a row each
+///     system.fields(q.data(), xi.data());                   // of all symmetries
 ///
 /// Errors: FormulaError, which says what was read and what is wrong in it.
 
@@ -19,14 +19,18 @@
 
 namespace lagroid {
 
-/// A mistake in a text; `key` says in which, as scenes call it: "coordinates", "l", "constraints", ...
+/// A mistake in a text; `key` says in which, as scenes call it: "coordinates", "l", "constraints", ...; of fields,
+/// `which` says of which symmetry.
 class FormulaError : public std::invalid_argument {
  public:
-  FormulaError(std::string key, const std::string& problem) : std::invalid_argument(problem), key_(std::move(key)) {}
+  FormulaError(std::string key, const std::string& problem, std::size_t which = 0)
+      : std::invalid_argument(problem), key_(std::move(key)), which_(which) {}
   const std::string& key() const { return key_; }
+  std::size_t which() const { return which_; }
 
  private:
   std::string key_;
+  std::size_t which_;
 };
 
 /// A vector field xi(q) along which nothing changes; J = <p, xi(q)> is its momentum.
@@ -63,9 +67,20 @@ class FormulaSystem {
   /// What the energy is, in words.
   virtual const char* energy_is() const = 0;
 
+  /// The names of its parameters, and their values.
+  const std::vector<std::pair<std::string, double>>& parameters() const { return parameters_; }
+  /// The system with one of these changed.
+  virtual std::unique_ptr<FormulaSystem> changed(const std::string& parameter, double by) const = 0;
+  /// The derivatives of the energy by q, p and the parameters, at a momentum of which v is the velocity.
+  virtual void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const = 0;
+  /// Of each symmetry the derivatives of <p, xi> by q, p and the parameters.
+  void momentum_slopes(const double* q, const double* p, double* out) const;
+
   /// C, its n derivatives and its n (n + 1) / 2 second ones, all of the first component, then of the next.
   void constraint(const double* q, double* out) const;
   std::size_t constraint_numbers() const { return constraint_.count(); }
+  /// C and its n derivatives, a row for each component.
+  Eigen::MatrixXd constraint_rows(const Eigen::VectorXd& q) const;
   /// The fields xi of all symmetries, one after another.
   void fields(const double* q, double* out) const;
   /// How much the system changes along symmetry i at (q, w), w the velocity of a Lagrangian or the momentum of a
@@ -78,7 +93,7 @@ class FormulaSystem {
   /// `second` are the names that formulas have after the coordinates, velocities or momenta.
   FormulaSystem(const FormulaTexts& texts, std::vector<std::string> momenta, bool by_velocity);
 
-  Node read(const std::string& key, const std::string& text);
+  Node read(const std::string& key, const std::string& text, std::size_t which = 0);
   bool depends(Node f, std::size_t variable) { return !graph_.is_zero(graph_.derivative(f, variable)); }
   /// f, its derivatives by the first `count` variables, and the upper triangle of its second ones.
   std::vector<Node> with_derivatives(Node f, std::size_t count);
@@ -90,6 +105,9 @@ class FormulaSystem {
   /// Refuses parameters that no formula reads: those of `programs`, constraints and fields.
   void require_parameters_read(const FormulaTexts& texts, const std::vector<const FormulaProgram*>& programs) const;
 
+  /// Changes a parameter, and all that is evaluated with it.
+  void change(const std::string& parameter, double by);
+
   std::size_t size() const { return coordinates_.size(); }
   std::size_t time() const { return 2 * coordinates_.size(); }  ///< the variable t
 
@@ -100,10 +118,11 @@ class FormulaSystem {
 
  private:
   std::vector<std::string> coordinates_, velocities_, momenta_;
+  std::vector<std::pair<std::string, double>> parameters_;
   bool by_velocity_;
   std::size_t constraint_count_ = 0;
   std::vector<ReadSymmetry> symmetries_;
-  FormulaProgram constraint_, fields_, changes_;
+  FormulaProgram constraint_, fields_, field_slopes_, changes_;
   mutable std::vector<double> changed_;
 };
 

@@ -46,18 +46,6 @@ template <class Visit> void visit_points(const CurveChoice& choice, const Visit&
   }
 }
 
-/// Where the curve's nodes are, after the first.
-std::vector<double> lobatto_nodes(int degree) {
-  std::vector<double> out;
-  const auto take = [&](const auto& nodes) { out.assign(nodes.node.begin() + 1, nodes.node.end()); };
-  if (degree == 1) take(LobattoNodes<1>());
-  if (degree == 2) take(LobattoNodes<2>());
-  if (degree == 3) take(LobattoNodes<3>());
-  if (degree == 4) take(LobattoNodes<4>());
-  if (degree == 5) take(LobattoNodes<5>());
-  return out;
-}
-
 }  // namespace
 
 CurveStep::CurveStep(const SizedLagrangian& lagrangian, const CurveChoice& choice)
@@ -69,7 +57,12 @@ CurveStep::CurveStep(const SizedLagrangian& lagrangian, const CurveChoice& choic
   if (k_ > 0 && !trapezoid && choice.points != CurveQuadrature::lobatto_pair)
     throw std::invalid_argument("curves keep constraints at the points of the trapezoid or of Lobatto's pair alone");
   int unknowns = n_ * degree_;
-  curve_nodes_ = lobatto_nodes(degree_);
+  // Lobatto's points of the curve's degree are its nodes, the last of them its end.
+  visit_points<CurveQuadrature::lobatto>(degree_,
+                                         [&](std::size_t i, double node, double, const auto&, const auto& rate) {
+                                           if (i > 0) curve_nodes_.push_back(node);
+                                           rate_at_end_.assign(rate.begin() + 1, rate.end());
+                                         });
   visit_points(choice, [&](std::size_t, double node, double weight, const auto& value, const auto& rate) {
     Point point{node, weight, {value.begin() + 1, value.end()}, {rate.begin() + 1, rate.end()}};
     if (k_ > 0 && node > 0 && node < 1) {
@@ -80,7 +73,7 @@ CurveStep::CurveStep(const SizedLagrangian& lagrangian, const CurveChoice& choic
   });
   first_multiplier_ = unknowns;
   unknowns += k_;
-  for (Eigen::VectorXd* each : {&unknown_, &residual_, &terms_, &update_}) each->setZero(unknowns);
+  for (Eigen::VectorXd* each : {&unknown_, &residual_, &terms_, &update_, &units_}) each->setZero(unknowns);
   for (Eigen::VectorXd* each : {&end_momentum_, &impulse_, &x_, &v_, &place_slope_, &velocity_slope_})
     each->setZero(n_);
   matrix_.setZero(unknowns, unknowns);
@@ -106,7 +99,7 @@ void CurveStep::add_to_node(int j, double scale, const Eigen::VectorXd& part) {
   if (last) end_momentum_ += scale * part;
 }
 
-void CurveStep::add_point(const Point& point, const Eigen::VectorXd& q, double t, double h) {
+void CurveStep::go_to(const Point& point, const Eigen::VectorXd& q, double t, double h) {
   x_ = q;
   v_.setZero();
   for (int j = 0; j < degree_; ++j) {
@@ -114,13 +107,33 @@ void CurveStep::add_point(const Point& point, const Eigen::VectorXd& q, double t
     v_ += (point.rate[std::size_t(j)] / h) * unknown_.segment(n_ * j, n_);
   }
   const double at = t + point.node * h;
-  const double b = point.weight * h;
   lagrangian_.lagrangian(at, x_.data(), v_.data(), l_.data());
-  if (!std::isfinite(l_.front())) residual_(0) = l_.front();  // slopes may be numbers where l is none
-  const double* slope = l_.data() + 1;
-  const double* second = slope + 2 * n_;
   if (lagrangian_.sizes().forced) lagrangian_.force(at, x_.data(), v_.data(), f_.data());
   if (point.multipliers >= 0) lagrangian_.constraint(x_.data(), c_.data());
+}
+
+double CurveStep::place_slope_by(const Point& point, int i, int j, bool velocity) const {
+  const double* second = l_.data() + 1 + 2 * n_;
+  double out = second[in_triangle(i, velocity ? n_ + j : j, 2 * n_)];
+  if (!f_.empty()) out += f_[std::size_t(i * (1 + 2 * n_) + 1 + (velocity ? n_ + j : j))];
+  if (point.multipliers >= 0 && !velocity) {
+    const std::size_t each_c = std::size_t(1 + n_ + n_ * (n_ + 1) / 2);
+    for (int a = 0; a < k_; ++a)
+      out +=
+          unknown_(point.multipliers + a) * c_[std::size_t(a) * each_c + std::size_t(1 + n_) + in_triangle(i, j, n_)];
+  }
+  return out;
+}
+double CurveStep::velocity_slope_by(int i, int j, bool velocity) const {
+  const double* second = l_.data() + 1 + 2 * n_;
+  return second[velocity ? in_triangle(n_ + i, n_ + j, 2 * n_) : in_triangle(j, n_ + i, 2 * n_)];
+}
+
+void CurveStep::add_point(const Point& point, const Eigen::VectorXd& q, double t, double h) {
+  go_to(point, q, t, h);
+  const double b = point.weight * h;
+  if (!std::isfinite(l_.front())) residual_(0) = l_.front();  // slopes may be numbers where l is none
+  const double* slope = l_.data() + 1;
   const std::size_t each_c = std::size_t(1 + n_ + n_ * (n_ + 1) / 2);
   const auto f = [&](int i, int j) { return f_.empty() ? 0 : f_[std::size_t(i * (1 + 2 * n_) + j)]; };
   const auto c = [&](int a, int j) { return c_[std::size_t(a) * each_c + std::size_t(j)]; };
@@ -144,12 +157,8 @@ void CurveStep::add_point(const Point& point, const Eigen::VectorXd& q, double t
     const double by_v = point.rate[std::size_t(m)] / h;
     for (int i = 0; i < n_; ++i)
       for (int j = 0; j < n_; ++j) {
-        double qq = second[in_triangle(i, j, 2 * n_)] + f(i, 1 + j);
-        for (int a = 0; a < k_ && point.multipliers >= 0; ++a)
-          qq += unknown_(point.multipliers + a) * c(a, 1 + n_ + int(in_triangle(i, j, n_)));
-        place_by_(i, j) = qq * by_x + (second[in_triangle(i, n_ + j, 2 * n_)] + f(i, 1 + n_ + j)) * by_v;
-        velocity_by_(i, j) =
-            second[in_triangle(j, n_ + i, 2 * n_)] * by_x + second[in_triangle(n_ + i, n_ + j, 2 * n_)] * by_v;
+        place_by_(i, j) = place_slope_by(point, i, j, false) * by_x + place_slope_by(point, i, j, true) * by_v;
+        velocity_by_(i, j) = velocity_slope_by(i, j, false) * by_x + velocity_slope_by(i, j, true) * by_v;
       }
     matrix_.block(0, n_ * m, n_, n_) += b * place_by_;
     for (int j = 0; j < degree_; ++j) {
@@ -177,6 +186,7 @@ void CurveStep::write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd&
   residual_.head(n_) = p;
   terms_.head(n_) = p.cwiseAbs();
   for (const Point& point : points_) add_point(point, q, t, h);
+  units_.setOnes();
   if (k_ == 0) return;
   const std::size_t each_c = std::size_t(1 + n_ + n_ * (n_ + 1) / 2);
   const auto c = [&](int a, int j) { return c_[std::size_t(a) * each_c + std::size_t(j)]; };
@@ -197,31 +207,92 @@ void CurveStep::write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd&
       terms_(first_multiplier_ + a) += std::abs(c(a, 1 + i) * x_(i));
     }
   }
+  units_.tail(units_.size() - n_ * degree_).setConstant(detail::unit_of_multipliers(matrix_, n_ * degree_));
 }
 
-StepReport CurveStep::take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) {
+StepReport CurveStep::take(SizedState& z, double t, double h) {
   StepReport report;
-  find_velocity(q, p, t, start_);
-  if (!start_.found) {
-    const bool finite = q.allFinite() && p.allFinite() && std::isfinite(l_.front());
+  const Eigen::VectorXd& q = z.position;
+  find_velocity(z, t, tangent_);
+  if (!tangent_.found) {
+    const bool finite = q.allFinite() && z.momentum.allFinite() && std::isfinite(l_.front());
     report.status = finite ? SolveStatus::singular : SolveStatus::not_finite;
     return report;
   }
   unknown_.setZero();
-  for (int j = 0; j < degree_; ++j) unknown_.segment(n_ * j, n_) = (curve_nodes_[std::size_t(j)] * h) * start_.velocity;
-  report = detail::newton_of_any_size([&] { write_equations(q, p, t, h); }, unknown_, residual_, terms_, matrix_,
-                                      update_, factor_);
-  if (report.converged()) {
-    q += unknown_.segment(n_ * (degree_ - 1), n_);
-    p = end_momentum_ + residual_.head(n_);  // p0 and the impulse, which a symmetry does not change
-  }
+  for (int j = 0; j < degree_; ++j)
+    unknown_.segment(n_ * j, n_) = (curve_nodes_[std::size_t(j)] * h) * tangent_.velocity;
+  report = detail::newton_of_any_size([&] { write_equations(q, z.momentum, t, h); }, unknown_, residual_, terms_,
+                                      matrix_, update_, units_, factor_);
+  if (!report.converged()) return report;
+  end_.position = q + unknown_.segment(n_ * (degree_ - 1), n_);
+  end_.momentum = end_momentum_ + residual_.head(n_);  // p0 and the impulse, which a symmetry does not change
+  // The velocity goes on along the curve.
+  end_.velocity.setZero(n_);
+  for (int j = 0; j < degree_; ++j) end_.velocity += (rate_at_end_[std::size_t(j)] / h) * unknown_.segment(n_ * j, n_);
+  std::swap(z, end_);
   return report;
 }
 
-void CurveStep::find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const {
+bool CurveStep::linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) {
+  const Eigen::VectorXd from = z.position;
+  if (!take(z, t, h).converged()) return false;
+  const int unknowns = int(unknown_.size()), parameters = lagrangian_.sizes().parameters;
+  const int columns = 2 * n_ + parameters, force_numbers = lagrangian_.sizes().forced ? n_ : 0;
+  SizedSlopes out{matrix_, Eigen::MatrixXd::Zero(unknowns, columns), Eigen::MatrixXd::Zero(2 * n_, unknowns),
+                  Eigen::MatrixXd::Zero(2 * n_, columns)};
+  // q1 = q0 + y_s, p1 = p0 + the impulse, which the equation at the start has with the momentum at the end.
+  out.end_by_start.topLeftCorner(n_, n_).setIdentity();
+  out.end_by_start.block(n_, n_, n_, n_).setIdentity();
+  out.end_by_unknowns.block(0, n_ * (degree_ - 1), n_, n_).setIdentity();
+  out.equations_by_start.block(0, n_, n_, n_).setIdentity();
+  std::vector<double> varied(lagrangian_.parameter_numbers());
+  Eigen::MatrixXd place(n_, columns), velocity(n_, columns);
+  for (const Point& point : points_) {
+    go_to(point, from, t, h);
+    lagrangian_.by_parameters(t + point.node * h, x_.data(), v_.data(), varied.data());
+    const double b = point.weight * h;
+    place.setZero();
+    velocity.setZero();
+    for (int i = 0; i < n_; ++i) {
+      for (int j = 0; j < n_; ++j) {
+        place(i, j) = place_slope_by(point, i, j, false);
+        velocity(i, j) = velocity_slope_by(i, j, false);
+      }
+      for (int a = 0; a < parameters; ++a) {
+        const double* each = varied.data() + a * (1 + 2 * n_ + force_numbers);
+        place(i, 2 * n_ + a) = each[1 + i] + (force_numbers > 0 ? each[1 + 2 * n_ + i] : 0);
+        velocity(i, 2 * n_ + a) = each[1 + n_ + i];
+      }
+    }
+    out.end_by_start.bottomRows(n_) += b * place;
+    out.equations_by_start.topRows(n_) += b * place;
+    for (int j = 0; j < degree_; ++j) {
+      const bool last = j + 1 == degree_;
+      out.equations_by_start.middleRows(last ? 0 : n_ * (j + 1), n_) +=
+          (last ? -1 : 1) *
+          (b * point.value[std::size_t(j)] * place + point.weight * point.rate[std::size_t(j)] * velocity);
+      for (int i = 0; i < n_; ++i)
+        for (int k = 0; k < n_; ++k)
+          out.end_by_unknowns(n_ + i, n_ * j + k) +=
+              b * (place_slope_by(point, i, k, false) * point.value[std::size_t(j)] +
+                   place_slope_by(point, i, k, true) * point.rate[std::size_t(j)] / h);
+    }
+  }
+  stages.push_back(std::move(out));
+  return true;
+}
+
+void CurveStep::find_velocity(const SizedState& z, double t, TangentState& out) const {
   constexpr int most_iterations = 60;
   const int size = n_ + k_;
-  if (!out.found || out.velocity.size() != n_) out.velocity.setZero(n_);
+  const Eigen::VectorXd& q = z.position;
+  const Eigen::VectorXd& p = z.momentum;
+  if (z.velocity.size() == n_) {
+    out.velocity = z.velocity;
+  } else {
+    out.velocity.setZero(n_);
+  }
   out.found = false;
   out.momentum.resize(n_);
   out.nu.setZero(k_);
@@ -279,7 +350,9 @@ void CurveStep::find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p
       return;
     }
     last = ratio;
-    if (!detail::solve_equilibrated(out.factor, out.matrix, out.residual, out.update)) return;
+    out.units.setOnes(size);
+    if (k_ > 0) out.units.tail(k_).setConstant(detail::unit_of_multipliers(out.matrix, n_));
+    if (!detail::solve_in_units(out.factor, out.matrix, out.residual, out.update, out.units)) return;
     out.velocity -= out.update.head(n_);
     out.nu -= out.update.tail(k_);
   }

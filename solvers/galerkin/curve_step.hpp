@@ -9,13 +9,13 @@
 /// multipliers and the end are unknowns of one Newton iteration here.
 ///
 ///     CurveStep step(lagrangian, {CurveQuadrature::gauss, 3});  // of order six
-///     Eigen::VectorXd q(1), p(1);
-///     const StepReport report = step.take(q, p, /*t*/ 0, /*h*/ 0.1);
+///     SizedState z{q, p};
+///     const StepReport report = step.take(z, /*t*/ 0, /*h*/ 0.1);
 ///
 /// Requires a regular l. Refers to the Lagrangian. A degree of one has no inner nodes: the midpoint rule of Gauss's
 /// point, the trapezoid of Lobatto's two. Constraints want Lobatto's points: the trapezoid, or the pair.
 ///
-/// Errors: `singular`, `not_finite`, `not_converged`; q and p stay as they were unless the step converged. Nothing is
+/// Errors: `singular`, `not_finite`, `not_converged`; the state stays as it was unless the step converged. Nothing is
 /// allocated in a step, nothing throws.
 ///
 /// Source: Marsden and West, Acta Numerica 10 (2001), 2.2.6, 3.2.5; Jay, SIAM J. Numer. Anal. 33 (1996).
@@ -43,9 +43,10 @@ class CurveStep final : public SizedStep {
  public:
   CurveStep(const SizedLagrangian& lagrangian, const CurveChoice& choice);
 
-  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override;
+  StepReport take(SizedState& z, double t, double h) override;
+  bool linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) override;
   /// v with p = l_v + C'^T nu, by Newton's method; the tangent momentum is l_v, the energy <l_v, v> - l.
-  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override;
+  void find_velocity(const SizedState& z, double t, TangentState& out) const override;
 
  private:
   struct Point {
@@ -57,6 +58,11 @@ class CurveStep final : public SizedStep {
 
   void write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, double h);
   void add_point(const Point& point, const Eigen::VectorXd& q, double t, double h);
+  /// Place and velocity at a point of the curve, and l there with its derivatives.
+  void go_to(const Point& point, const Eigen::VectorXd& q, double t, double h);
+  /// The entries of the derivatives of l_q + F + C'^T lambda, and of l_v, at the point where it is.
+  double place_slope_by(const Point& point, int i, int j, bool velocity) const;
+  double velocity_slope_by(int i, int j, bool velocity) const;
   /// Adds `scale` times `block` to the rows of the equations of node j, from `column` on.
   void add_to_node(int j, int column, double scale, const Eigen::MatrixXd& block);
   void add_to_node(int j, double scale, const Eigen::VectorXd& part);
@@ -64,13 +70,15 @@ class CurveStep final : public SizedStep {
   const SizedLagrangian& lagrangian_;
   int n_, k_, degree_;
   std::vector<Point> points_;
-  std::vector<double> curve_nodes_;
-  int first_multiplier_;  ///< of the multipliers at q0
-  Eigen::VectorXd unknown_, residual_, terms_, update_, end_momentum_, impulse_, x_, v_, place_slope_, velocity_slope_;
+  std::vector<double> curve_nodes_, rate_at_end_;  ///< after the first; of the polynomials that are one there
+  int first_multiplier_;                           ///< of the multipliers at q0
+  Eigen::VectorXd unknown_, residual_, terms_, update_, units_, end_momentum_, impulse_, x_, v_, place_slope_,
+      velocity_slope_;
   Eigen::MatrixXd matrix_, place_by_, velocity_by_, gradient_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
   mutable Numbers l_, c_, f_;
-  TangentState start_;
+  TangentState tangent_;
+  SizedState end_;
 };
 
 }  // namespace lagroid

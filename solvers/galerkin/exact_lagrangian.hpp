@@ -94,26 +94,39 @@ struct ExtrapolatedNumber {
   double error;
 };
 
+/// L(g) - L^E(g) of a rule with the step h, at g = tau(q, -h xi / 2)^{-1} tau(q, h xi / 2), and the size of L. Not a
+/// number where L^E is none there.
+struct ActionDifference {
+  double value;
+  double size;
+};
+template <class Rule>
+ActionDifference action_difference(Rule rule, const ObjectOf<typename Rule::GroupoidType>& q,
+                                   const AlgebroidVector<typename Rule::GroupoidType>& xi, double h) {
+  ExactLagrangian<typename Rule::Continuous> exact(rule.continuous(), h);
+  exact.groupoid = rule.groupoid;
+  rule.h = h;
+  const AlgebroidVector<typename Rule::GroupoidType> ahead = xi * (h / 2), back = -ahead;
+  const auto g = rule.groupoid.multiply(rule.groupoid.inverse(rule.groupoid.tau(q, back)), rule.groupoid.tau(q, ahead));
+  const double action = rule.lagrangian(g);
+  return {action - exact.lagrangian(g), std::abs(action)};
+}
+
 /// The first term of the modified Lagrangian of a rule of order r: its step is, to order r + 1, that of the flow of
 ///
-///     l~ = l + h^r l_r,    l_r(q, xi) = lim (L(g) - L^E(g)) / h^{r+1},    g = tau(q, -h xi / 2)^{-1} tau(q, h xi / 2),
+///     l~ = l + h^r l_r,    l_r(q, xi) = lim (L(g) - L^E(g)) / h^{r+1},
 ///
-/// extrapolated from h = `longest` and its halves. Not a number where L^E is none there. Vermeeren (2017).
+/// g as in action_difference, extrapolated from h = `longest` and its halves. Not a number where L^E is none. Vermeeren
+/// (2017).
 template <class Rule>
-ExtrapolatedNumber modified_term(Rule rule, const ObjectOf<typename Rule::GroupoidType>& q,
+ExtrapolatedNumber modified_term(const Rule& rule, const ObjectOf<typename Rule::GroupoidType>& q,
                                  const AlgebroidVector<typename Rule::GroupoidType>& xi, double longest = 0.1) {
   constexpr int levels = 4;
-  ExactLagrangian<typename Rule::Continuous> exact(rule.continuous());
-  exact.groupoid = rule.groupoid;
-  const auto& groupoid = rule.groupoid;
   double table[levels];
   double last = std::numeric_limits<double>::quiet_NaN();
   for (int level = 0; level < levels; ++level) {
     const double h = std::ldexp(longest, -level);
-    rule.h = exact.h = h;
-    const AlgebroidVector<typename Rule::GroupoidType> ahead = xi * (h / 2), back = -ahead;
-    const auto g = groupoid.multiply(groupoid.inverse(groupoid.tau(q, back)), groupoid.tau(q, ahead));
-    table[level] = (rule.lagrangian(g) - exact.lagrangian(g)) / std::pow(h, Rule::traits().order + 1);
+    table[level] = action_difference(rule, q, xi, h).value / std::pow(h, Rule::traits().order + 1);
     last = table[0];
     for (int k = level - 1; k >= 0; --k)
       table[k] = table[k + 1] + (table[k + 1] - table[k]) / (std::ldexp(1, level - k) - 1);

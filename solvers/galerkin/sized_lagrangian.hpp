@@ -25,6 +25,7 @@ class SizedLagrangian {
     int dimension = 1;    ///< n
     int constraints = 0;  ///< k
     bool forced = false;
+    int parameters = 0;  ///< by which there are derivatives
   };
   explicit SizedLagrangian(const Sizes& sizes) : sizes_(sizes) {}
   virtual ~SizedLagrangian() = default;
@@ -38,6 +39,10 @@ class SizedLagrangian {
   /// F and its 2 n derivatives by q and v: all of the first component, then of the next.
   virtual void force(double /*t*/, const double* /*q*/, const double* /*v*/, double* /*out*/) const {}
 
+  /// Of each parameter in turn the derivatives by it: of l, of its 2 n derivatives, and of the n components of F where
+  /// there is a force.
+  virtual void by_parameters(double /*t*/, const double* /*q*/, const double* /*v*/, double* /*out*/) const {}
+
   std::size_t lagrangian_numbers() const {
     const std::size_t n = std::size_t(sizes_.dimension);
     return 1 + 2 * n + n * (2 * n + 1);
@@ -49,6 +54,11 @@ class SizedLagrangian {
   std::size_t force_numbers() const {
     const std::size_t n = std::size_t(sizes_.dimension);
     return sizes_.forced ? n * (1 + 2 * n) : 0;
+  }
+
+  std::size_t parameter_numbers() const {
+    const std::size_t n = std::size_t(sizes_.dimension);
+    return std::size_t(sizes_.parameters) * (1 + 2 * n + (sizes_.forced ? n : 0));
   }
 
  private:

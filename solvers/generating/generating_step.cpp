@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lagroid {
 
@@ -11,7 +12,7 @@ using detail::in_triangle;
 GeneratingStep::GeneratingStep(const SizedHamiltonian& hamiltonian, GeneratingType type)
     : hamiltonian_(hamiltonian), type_(type), n_(hamiltonian.dimension()), k_(hamiltonian.constraints()) {
   const int unknowns = 3 * n_ + k_;
-  for (Eigen::VectorXd* each : {&unknown_, &residual_, &terms_, &update_}) each->setZero(unknowns);
+  for (Eigen::VectorXd* each : {&unknown_, &residual_, &terms_, &update_, &units_}) each->setZero(unknowns);
   for (Eigen::VectorXd* each : {&base_, &far_, &to_}) each->setZero(n_);
   matrix_.setZero(unknowns, unknowns);
   for (Eigen::MatrixXd* each : {&reaction_, &gradient_}) each->setZero(n_, k_);
@@ -51,21 +52,30 @@ void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::Vect
   const double* end_q = end_p_by + 2 * n_ * n_;
   const double* end_q_by = end_q + n_;
   const auto by = [&](const double* table, int i, int j) { return table[i * 2 * n_ + j]; };
+  // Of a derivative of W: what the ends add to it, and the rest.
+  const auto size_of_terms = [&](int column) {
+    double rest = slope[column], size = 0;
+    for (int j = 0; j < n_; ++j)
+      for (const double each : {by(end_q_by, j, column) * far_(j), by(end_p_by, j, column) * sigma(j)}) {
+        rest -= each;
+        size += std::abs(each);
+      }
+    return size + std::abs(rest);
+  };
   for (int i = 0; i < n_; ++i) {
     const int stationary = i, arrives = n_ + i, starts = 2 * n_ + i;
     residual_(stationary) = slope[n_ + i];
     residual_(arrives) = end_p[i] - far_(i);
-    terms_(stationary) = std::abs(sigma(i));
-    terms_(arrives) = std::abs(end_p[i]) + std::abs(far_(i));
+    terms_(arrives) = std::abs(end_p[i]) + std::abs(far_(i)) + std::abs(inner(i));
+    terms_(stationary) = size_of_terms(n_ + i) + std::abs(end_q[i] - base_(i));  // what the action is made of
     for (int j = 0; j < n_; ++j) {
       matrix_(stationary, j) = second[in_triangle(n_ + i, n_ + j, 2 * n_)];
       matrix_(stationary, n_ + j) = by(end_p_by, j, n_ + i);
       matrix_(arrives, j) = by(end_p_by, i, n_ + j);
-      terms_(stationary) += std::abs(by(end_q_by, j, n_ + i) * far_(j)) + std::abs(by(end_p_by, j, n_ + i) * sigma(j));
     }
     if (two) {
       residual_(starts) = slope[i] - p(i);
-      terms_(starts) = std::abs(slope[i]) + std::abs(p(i));
+      terms_(starts) = size_of_terms(i) + std::abs(p(i)) + std::abs(end_p[i] - inner(i));
       matrix_(arrives, 2 * n_ + i) = -1;
       for (int j = 0; j < n_; ++j) {
         matrix_(stationary, 2 * n_ + j) = by(end_q_by, j, n_ + i);
@@ -99,6 +109,18 @@ void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::Vect
   // A component may be zero by symmetry: its rounding is that of the others.
   for (int block = 0; block < 3; ++block)
     terms_.segment(block * n_, n_).setConstant(terms_.segment(block * n_, n_).maxCoeff());
+  // A unit of momenta that makes what they do to places as large as what places do to them.
+  double forces = 0, moves = 0;
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j < n_; ++j) {
+      forces = std::max(forces, std::abs(by(end_p_by, i, j)));
+      moves = std::max(moves, std::abs(by(end_q_by, i, n_ + j)));
+    }
+  const double momentum = moves > 0 ? (forces > 0 ? std::sqrt(forces / moves) : 1 / moves) : 1;
+  units_.setOnes();
+  units_.head(n_).setConstant(momentum);
+  if (two) units_.segment(2 * n_, n_).setConstant(momentum);
+  if (k_ > 0) units_.tail(k_).setConstant(momentum / reaction_.cwiseAbs().maxCoeff());
   if (!std::isfinite(w_.front())) residual_(0) = w_.front();  // slopes may be numbers where H is none
   if (k_ == 0) return;
   hamiltonian_.constraint(to_.data(), c_.data());
@@ -119,42 +141,91 @@ void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::Vect
   }
 }
 
-StepReport GeneratingStep::take(Eigen::VectorXd& q, Eigen::VectorXd& p, double /*t*/, double h) {
+StepReport GeneratingStep::take(SizedState& z, double /*t*/, double h) {
   const bool two = type_ == GeneratingType::two;
   unknown_.setZero();
-  unknown_.head(n_) = p;
-  unknown_.segment(2 * n_, n_) = two ? p : q;
-  const StepReport report = detail::newton_of_any_size([&] { write_equations(q, p, h); }, unknown_, residual_, terms_,
-                                                       matrix_, update_, factor_);
+  unknown_.head(n_) = z.momentum;
+  unknown_.segment(2 * n_, n_) = two ? z.momentum : z.position;
+  const StepReport report = detail::newton_of_any_size([&] { write_equations(z.position, z.momentum, h); }, unknown_,
+                                                       residual_, terms_, matrix_, update_, units_, factor_);
   if (report.converged()) {
-    q = to_;
+    z.position = to_;
     if (two) {
-      p = far_;
+      z.momentum = far_;
     } else {
-      std::copy_n(w_.begin() + 1, n_, p.data());
+      std::copy_n(w_.begin() + 1, n_, z.momentum.data());
     }
   }
   return report;
 }
 
-StepReport SymmetrisedGeneratingStep::take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) {
-  q_ = q;
-  p_ = p;
-  StepReport report = first_.take(q_, p_, t, h / 2);
+bool GeneratingStep::linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) {
+  if (!take(z, t, h).converged()) return false;
+  const bool two = type_ == GeneratingType::two;
+  const int parameters = hamiltonian_.parameters(), columns = 2 * n_ + parameters;
+  SizedSlopes out{matrix_, Eigen::MatrixXd::Zero(3 * n_, columns), Eigen::MatrixXd::Zero(2 * n_, 3 * n_),
+                  Eigen::MatrixXd::Zero(2 * n_, columns)};
+  const double* second = w_.data() + 1 + 2 * n_;
+  const double* end_p_by = second + n_ * (2 * n_ + 1) + n_;
+  const double* end_q_by = end_p_by + 2 * n_ * n_ + n_;
+  std::vector<double> varied(std::size_t(parameters * 4 * n_));
+  hamiltonian_.by_parameters(base_.data(), unknown_.data(), unknown_.data() + n_, far_.data(), two ? h : -h,
+                             varied.data());
+  const auto by = [&](const double* table, int i, int j) { return table[i * 2 * n_ + j]; };
+  for (int i = 0; i < n_; ++i) {
+    const int stationary = i, arrives = n_ + i, starts = 2 * n_ + i, place = i, momentum = n_ + i;
+    for (int a = 0; a < parameters; ++a) {
+      const double* w = varied.data() + a * 4 * n_;
+      const double end_p = w[2 * n_ + i], end_q = w[3 * n_ + i];
+      out.equations_by_start(stationary, 2 * n_ + a) = w[n_ + i];
+      out.equations_by_start(arrives, 2 * n_ + a) = end_p;
+      out.equations_by_start(starts, 2 * n_ + a) = two ? w[i] : end_q;
+      (two ? out.end_by_start(place, 2 * n_ + a) : out.end_by_start(momentum, 2 * n_ + a)) = two ? end_q : w[i];
+    }
+    for (int j = 0; j < n_; ++j) {
+      if (two) {
+        out.equations_by_start(stationary, j) = second[in_triangle(j, n_ + i, 2 * n_)];
+        out.equations_by_start(arrives, j) = by(end_p_by, i, j);
+        out.equations_by_start(starts, j) = second[in_triangle(i, j, 2 * n_)];
+        out.end_by_start(place, j) = by(end_q_by, i, j);
+        out.end_by_unknowns(place, j) = by(end_q_by, i, n_ + j);
+      } else {
+        out.equations_by_start(stationary, n_ + j) = by(end_q_by, j, n_ + i);
+        out.end_by_start(momentum, n_ + j) = by(end_q_by, j, i);
+        out.end_by_unknowns(momentum, j) = second[in_triangle(i, n_ + j, 2 * n_)];
+        out.end_by_unknowns(momentum, n_ + j) = by(end_p_by, j, i);
+        out.end_by_unknowns(momentum, 2 * n_ + j) = second[in_triangle(i, j, 2 * n_)];
+      }
+    }
+    if (two) {
+      out.equations_by_start(starts, momentum) = -1;
+      out.end_by_unknowns(place, n_ + i) = -1;
+      out.end_by_unknowns(momentum, 2 * n_ + i) = 1;
+    } else {
+      out.equations_by_start(arrives, momentum) = -1;
+      out.equations_by_start(starts, place) = -1;
+      out.end_by_unknowns(place, 2 * n_ + i) = 1;
+    }
+  }
+  stages.push_back(std::move(out));
+  return true;
+}
+
+StepReport SymmetrisedGeneratingStep::take(SizedState& z, double t, double h) {
+  trial_ = z;
+  StepReport report = first_.take(trial_, t, h / 2);
   if (!report.converged()) return report;
   const int iterations = report.iterations;
-  report = second_.take(q_, p_, t + h / 2, h / 2);
+  report = second_.take(trial_, t + h / 2, h / 2);
   report.iterations += iterations;
-  if (report.converged()) {
-    q = q_;
-    p = p_;
-  }
+  if (report.converged()) std::swap(z, trial_);
   return report;
 }
 
-void GeneratingStep::find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double /*t*/,
-                                   TangentState& out) const {
+void GeneratingStep::find_velocity(const SizedState& z, double /*t*/, TangentState& out) const {
   constexpr int most_iterations = 60;
+  const Eigen::VectorXd& q = z.position;
+  const Eigen::VectorXd& p = z.momentum;
   out.found = false;
   out.momentum = p;
   out.velocity.setZero(n_);
@@ -197,7 +268,8 @@ void GeneratingStep::find_velocity(const Eigen::VectorXd& q, const Eigen::Vector
       return;
     }
     last = ratio;
-    if (!detail::solve_equilibrated(out.factor, out.matrix, out.residual, out.update)) return;
+    out.units.setOnes(k_);
+    if (!detail::solve_in_units(out.factor, out.matrix, out.residual, out.update, out.units)) return;
     out.nu -= out.update;
     for (int i = 0; i < n_; ++i) {
       out.momentum(i) = p(i);

@@ -14,7 +14,7 @@
 /// former.
 ///
 ///     GeneratingStep step(hamiltonian, GeneratingType::two);
-///     const StepReport report = step.take(q, p, /*t*/ 0, /*h*/ 0.1);
+///     const StepReport report = step.take(z, /*t*/ 0, /*h*/ 0.1);
 ///
 /// Refers to the Hamiltonian. Errors: `singular`, `not_finite`, `not_converged`. Nothing is allocated in a step,
 /// nothing throws.
@@ -32,10 +32,12 @@ namespace lagroid {
 /// row, by z = (q, p).
 class SizedHamiltonian {
  public:
-  SizedHamiltonian(int dimension, int constraints) : n_(dimension), k_(constraints) {}
+  SizedHamiltonian(int dimension, int constraints, int parameters = 0)
+      : n_(dimension), k_(constraints), parameters_(parameters) {}
   virtual ~SizedHamiltonian() = default;
   int dimension() const { return n_; }
   int constraints() const { return k_; }
+  int parameters() const { return parameters_; }  ///< by which there are derivatives
 
   /// H, its 2 n derivatives, its n (2 n + 1) second ones.
   virtual void hamiltonian(const double* q, const double* p, double* out) const = 0;
@@ -45,9 +47,12 @@ class SizedHamiltonian {
                           double* out) const = 0;
   /// C and its derivatives, as SizedLagrangian has them.
   virtual void constraint(const double* q, double* out) const = 0;
+  /// Of each parameter in turn the derivatives by it: of the 2 n derivatives of W, of P and of Q.
+  virtual void by_parameters(const double* /*q*/, const double* /*p*/, const double* /*sigma*/, const double* /*far*/,
+                             double /*h*/, double* /*out*/) const {}
 
  private:
-  int n_, k_;
+  int n_, k_, parameters_;
 };
 
 class GeneratingStep final : public SizedStep {
@@ -55,9 +60,10 @@ class GeneratingStep final : public SizedStep {
   /// Type II or III.
   GeneratingStep(const SizedHamiltonian& hamiltonian, GeneratingType type);
 
-  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override;
+  StepReport take(SizedState& z, double t, double h) override;
+  bool linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) override;
   /// v = H_p at p + C'^T nu, which is the tangent momentum.
-  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override;
+  void find_velocity(const SizedState& z, double t, TangentState& out) const override;
 
  private:
   void write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double h);
@@ -65,7 +71,7 @@ class GeneratingStep final : public SizedStep {
   const SizedHamiltonian& hamiltonian_;
   GeneratingType type_;
   int n_, k_;
-  Eigen::VectorXd unknown_, residual_, terms_, update_, base_, far_, to_;
+  Eigen::VectorXd unknown_, residual_, terms_, update_, units_, base_, far_, to_;
   Eigen::MatrixXd matrix_, reaction_, gradient_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
   mutable std::vector<double> w_, c_, h_;
@@ -77,14 +83,17 @@ class SymmetrisedGeneratingStep final : public SizedStep {
   explicit SymmetrisedGeneratingStep(const SizedHamiltonian& hamiltonian)
       : first_(hamiltonian, GeneratingType::two), second_(hamiltonian, GeneratingType::three) {}
 
-  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override;
-  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override {
-    first_.find_velocity(q, p, t, out);
+  StepReport take(SizedState& z, double t, double h) override;
+  bool linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) override {
+    return first_.linearise(z, t, h / 2, stages) && second_.linearise(z, t + h / 2, h / 2, stages);
+  }
+  void find_velocity(const SizedState& z, double t, TangentState& out) const override {
+    first_.find_velocity(z, t, out);
   }
 
  private:
   GeneratingStep first_, second_;
-  Eigen::VectorXd q_, p_;
+  SizedState trial_;
 };
 
 }  // namespace lagroid

@@ -2,12 +2,13 @@
 /// A one-step method (q, p) -> (q, p) on T*R^n, or on the part of it that constraints of places leave, whose n is known
 /// when it runs.
 ///
-///     Eigen::VectorXd q(1), p(1);
-///     const StepReport report = step.take(q, p, /*t*/ 0, /*h*/ 0.1);
+///     SizedState z{q, p};
+///     const StepReport report = step.take(z, /*t*/ 0, /*h*/ 0.1);
 ///
-/// Momenta that differ by C'(q)^T nu are one. Errors: the report's status; q and p stay as they were unless it is
-/// `converged`. Nothing throws.
+/// Momenta that differ by C'(q)^T nu are one. A step is a function of the state alone: what it begins to search from is
+/// part of that. Errors: the report's status; the state stays as it was unless it is `converged`. Nothing throws.
 
+#include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
 
 #include <Eigen/Core>
@@ -16,8 +17,19 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 namespace lagroid {
+
+/// The velocity is the root of p = l_v + C'^T nu where Newton's method begins, which for an l that is not convex is one
+/// of several; zero where it is left empty.
+struct SizedState {
+  Eigen::VectorXd position{};
+  Eigen::VectorXd momentum{};
+  Eigen::VectorXd velocity{};
+};
 
 /// The velocity that belongs to a momentum, C' v = 0, and of the momenta that are one the tangent one.
 struct TangentState {
@@ -29,25 +41,58 @@ struct TangentState {
   // Where it is computed.
   Eigen::VectorXd nu{};
   Eigen::MatrixXd matrix{};
-  Eigen::VectorXd residual{}, update{};
+  Eigen::VectorXd residual{}, update{}, units{};
   Eigen::PartialPivLU<Eigen::MatrixXd> factor{};
+};
+
+/// A step linearised where it is solved, as LinearStep has it (linear_step.hpp): E(z; x) = 0 and x' = X(z; x), x = (q,
+/// p, parameters).
+struct SizedSlopes {
+  Eigen::MatrixXd equations_by_unknowns;  ///< E_z
+  Eigen::MatrixXd equations_by_start;     ///< E_x
+  Eigen::MatrixXd end_by_unknowns;        ///< X_z
+  Eigen::MatrixXd end_by_start;           ///< X_x
 };
 
 class SizedStep {
  public:
   virtual ~SizedStep() = default;
   /// A step h of either sign, not zero, at the time t.
-  virtual StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) = 0;
-  /// Goes on from the velocity that `out` has where it was found before.
-  virtual void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const = 0;
+  virtual StepReport take(SizedState& z, double t, double h) = 0;
+  /// Takes a step that converges, of a system without constraints, and appends its slopes, those of each of its stages.
+  /// False where it does not converge.
+  virtual bool linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) = 0;
+  /// Begins at the velocity that the state has.
+  virtual void find_velocity(const SizedState& z, double t, TangentState& out) const = 0;
+};
+
+/// The steps gamma_i h of a composition, or none.
+class ComposedSizedStep final : public SizedStep {
+ public:
+  ComposedSizedStep(std::unique_ptr<SizedStep> step, const Composition& composition)
+      : step_(std::move(step)), composition_(composition) {}
+
+  StepReport take(SizedState& z, double t, double h) override;
+  bool linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) override;
+  void find_velocity(const SizedState& z, double t, TangentState& out) const override {
+    step_->find_velocity(z, t, out);
+  }
+
+ private:
+  std::unique_ptr<SizedStep> step_;
+  Composition composition_;
+  SizedState trial_;
 };
 
 namespace detail {
 
-/// matrix x = right, of rows brought to one size, in place. False where the matrix is singular.
-bool solve_equilibrated(Eigen::PartialPivLU<Eigen::MatrixXd>& factor, Eigen::MatrixXd& matrix, Eigen::VectorXd& right,
-                        Eigen::VectorXd& x);
-/// The largest residual over the rounding of its terms; infinite where it is no number.
+/// matrix x = right, in place, unknown j in units of `units(j)`, rows and columns then brought to one size. False where
+/// the matrix is singular.
+bool solve_in_units(Eigen::PartialPivLU<Eigen::MatrixXd>& factor, Eigen::MatrixXd& matrix, Eigen::VectorXd& right,
+                    Eigen::VectorXd& x, Eigen::VectorXd& units);
+/// The unit of multipliers, in columns from `first` on, that makes them as large as what they add to.
+double unit_of_multipliers(const Eigen::MatrixXd& matrix, Eigen::Index first);
+/// The largest residual over the rounding of its terms; infinite where that is nothing.
 double roundoff_ratio(const Eigen::VectorXd& residual, const Eigen::VectorXd& terms);
 
 /// The place of entry (i, j) in an upper triangle of `size` rows, row by row.
@@ -56,12 +101,12 @@ constexpr std::size_t in_triangle(int i, int j, int size) {
   return std::size_t(row * size - row * (row - 1) / 2 + column - row);
 }
 
-/// Newton's iteration for `unknown`: `write` writes residual, terms and matrix there; until each equation is left with
-/// the rounding of its terms. The last equations written are those of the unknown that is left.
+/// Newton's iteration for `unknown`: `write` writes residual, terms, matrix and units there; until each equation is
+/// left with the rounding of its terms. The last equations written are those of the unknown that is left.
 template <class Write>
 StepReport newton_of_any_size(const Write& write, Eigen::VectorXd& unknown, Eigen::VectorXd& residual,
                               const Eigen::VectorXd& terms, Eigen::MatrixXd& matrix, Eigen::VectorXd& update,
-                              Eigen::PartialPivLU<Eigen::MatrixXd>& factor) {
+                              Eigen::VectorXd& units, Eigen::PartialPivLU<Eigen::MatrixXd>& factor) {
   constexpr int most_iterations = 50;
   constexpr double floor = 100;  // times its rounding is as far as some get
   StepReport report;
@@ -70,7 +115,7 @@ StepReport newton_of_any_size(const Write& write, Eigen::VectorXd& unknown, Eige
     write();
     report.residual = residual.cwiseAbs().maxCoeff();
     report.roundoff_ratio = roundoff_ratio(residual, terms);
-    if (!std::isfinite(report.roundoff_ratio) || !matrix.allFinite()) {
+    if (!residual.allFinite() || !terms.allFinite() || !matrix.allFinite()) {
       report.status = SolveStatus::not_finite;
       return report;
     }
@@ -79,7 +124,7 @@ StepReport newton_of_any_size(const Write& write, Eigen::VectorXd& unknown, Eige
       return report;
     }
     last = report.roundoff_ratio;
-    if (!solve_equilibrated(factor, matrix, residual, update)) {
+    if (!solve_in_units(factor, matrix, residual, update, units)) {
       report.status = SolveStatus::singular;
       return report;
     }

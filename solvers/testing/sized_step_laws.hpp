@@ -2,8 +2,7 @@
 /// Laws of one-step methods on T*R^n of any size (sized_step.hpp), for your own: a step has its order, is symplectic on
 /// the constrained space and goes back the way it came, where it declares that.
 ///
-///     laws::SizedStepSubject subject{.name = "drop", .make = make, .traits = traits, .position = q, .momentum = p,
-///                                    .step = 0.1};
+///     laws::SizedStepSubject subject{.name = "drop", .make = make, .traits = traits, .start = {q, p}, .step = 0.1};
 ///     EXPECT_TRUE(laws::sized_step_laws(subject).holds());
 ///
 /// Requires RapidCheck and a start beside which the system is smooth; states are drawn there, on the constraints.
@@ -33,8 +32,7 @@ struct SizedStepSubject {
   std::string name;
   std::function<std::unique_ptr<SizedStep>()> make;
   MethodTraits traits;
-  Eigen::VectorXd position;
-  Eigen::VectorXd momentum;
+  SizedState start;
   double step;
   double time = 0;
   /// C and its derivatives at q, a row each; null where there are no constraints.
@@ -46,47 +44,44 @@ struct SizedStepSubject {
 
 namespace detail {
 
-struct PhasePoint {
-  Eigen::VectorXd q, p;
-};
-
 /// The nearest place on the constraints, and the momentum that is tangent there.
-inline PhasePoint on_constraints(const SizedStepSubject& subject, const SizedStep& step, PhasePoint z) {
+inline SizedState on_constraints(const SizedStepSubject& subject, const SizedStep& step, SizedState z) {
   if (subject.constraint)
     for (int pass = 0; pass < 20; ++pass) {
-      const Eigen::MatrixXd c = subject.constraint(z.q);
-      const Eigen::MatrixXd slope = c.rightCols(z.q.size());
-      z.q -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(c.col(0));
+      const Eigen::MatrixXd c = subject.constraint(z.position);
+      const Eigen::MatrixXd slope = c.rightCols(z.position.size());
+      z.position -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(c.col(0));
     }
   TangentState tangent;
-  step.find_velocity(z.q, z.p, subject.time, tangent);
+  step.find_velocity(z, subject.time, tangent);
   if (!tangent.found) throw NotSampled("no velocity belongs to a momentum there");
-  z.p = tangent.momentum;
+  z.momentum = tangent.momentum;
+  z.velocity = tangent.velocity;
   return z;
 }
-inline PhasePoint drawn(const SizedStepSubject& subject, const SizedStep& step) {
-  PhasePoint z{subject.position, subject.momentum};
-  for (double& each : z.q) each += subject.spread * (1 + subject.position.norm()) * draw_uniform();
-  for (double& each : z.p) each += subject.spread * (1 + subject.momentum.norm()) * draw_uniform();
+inline SizedState drawn(const SizedStepSubject& subject, const SizedStep& step) {
+  SizedState z = subject.start;
+  for (double& each : z.position) each += subject.spread * (1 + subject.start.position.norm()) * draw_uniform();
+  for (double& each : z.momentum) each += subject.spread * (1 + subject.start.momentum.norm()) * draw_uniform();
   return on_constraints(subject, step, z);
 }
-inline PhasePoint stepped(const SizedStepSubject& subject, SizedStep& step, PhasePoint z, double h, double t) {
-  if (const StepReport report = step.take(z.q, z.p, t, h); !report.converged())
+inline SizedState stepped(const SizedStepSubject& subject, SizedStep& step, SizedState z, double h, double t) {
+  if (const StepReport report = step.take(z, t, h); !report.converged())
     throw NotSampled("a step from here ends " + std::string(to_string(report.status)));
   return on_constraints(subject, step, z);
 }
 /// The derivative at zero of a curve of states, by differences that are extrapolated twice.
-template <class Curve> PhasePoint derivative(const Curve& curve) {
+template <class Curve> SizedState derivative(const Curve& curve) {
   const auto quotient = [&](double h) {
-    const PhasePoint ahead = curve(h), back = curve(-h);
-    return PhasePoint{(ahead.q - back.q) / (2 * h), (ahead.p - back.p) / (2 * h)};
+    const SizedState ahead = curve(h), back = curve(-h);
+    return SizedState{(ahead.position - back.position) / (2 * h), (ahead.momentum - back.momentum) / (2 * h)};
   };
-  const PhasePoint a = quotient(4e-3), b = quotient(2e-3), c = quotient(1e-3);
+  const SizedState a = quotient(4e-3), b = quotient(2e-3), c = quotient(1e-3);
   const auto extrapolated = [](const auto& x, const auto& y, const auto& z) {
     const Eigen::VectorXd first = (4 * y - x) / 3, second = (4 * z - y) / 3;
     return Eigen::VectorXd((16 * second - first) / 15);
   };
-  return {extrapolated(a.q, b.q, c.q), extrapolated(a.p, b.p, c.p)};
+  return {extrapolated(a.position, b.position, c.position), extrapolated(a.momentum, b.momentum, c.momentum)};
 }
 
 }  // namespace detail
@@ -94,41 +89,44 @@ template <class Curve> PhasePoint derivative(const Curve& curve) {
 /// "steps return to where they began" (of symmetric ones), "the step is symplectic" (where that is declared), "the
 /// error falls as declared".
 inline LawReport sized_step_laws(const SizedStepSubject& subject) {
-  using detail::PhasePoint;
-  const Eigen::Index n = subject.position.size();
+  const Eigen::Index n = subject.start.position.size();
   const std::unique_ptr<SizedStep> step = subject.make();
   LawReport report{subject.name + ", steps by " + subject.traits.name, {}};
   const double h = subject.step, t = subject.time;
 
   if (subject.traits.symmetric)
     report.laws.push_back(check_law("steps return to where they began", 1e-10, [&] {
-      const PhasePoint z = detail::drawn(subject, *step);
-      const PhasePoint back = detail::stepped(subject, *step, detail::stepped(subject, *step, z, h, t), -h, t + h);
-      return ((back.q - z.q).norm() + (back.p - z.p).norm()) / (1 + z.q.norm() + z.p.norm());
+      const SizedState z = detail::drawn(subject, *step);
+      const SizedState back = detail::stepped(subject, *step, detail::stepped(subject, *step, z, h, t), -h, t + h);
+      return ((back.position - z.position).norm() + (back.momentum - z.momentum).norm()) /
+             (1 + z.position.norm() + z.momentum.norm());
     }));
 
   if (subject.traits.symplectic)
     report.laws.push_back(check_law("the step is symplectic", 1e-7, [&] {
-      const PhasePoint z = detail::drawn(subject, *step);
+      const SizedState z = detail::drawn(subject, *step);
       const auto direction = [&] {
-        PhasePoint d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
-        for (double& each : d.q) each = draw_uniform();
-        for (double& each : d.p) each = draw_uniform();
+        SizedState d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+        for (double& each : d.position) each = draw_uniform();
+        for (double& each : d.momentum) each = draw_uniform();
         return d;
       };
-      const PhasePoint one = direction(), other = direction();
-      const auto moved = [&](const PhasePoint& by, double s) {
-        return detail::on_constraints(subject, *step, {z.q + s * by.q, z.p + s * by.p});
+      const SizedState one = direction(), other = direction();
+      const auto moved = [&](const SizedState& by, double s) {
+        return detail::on_constraints(subject, *step, {z.position + s * by.position, z.momentum + s * by.momentum});
       };
-      const auto before = [&](const PhasePoint& by) {
+      const auto before = [&](const SizedState& by) {
         return detail::derivative([&](double s) { return moved(by, s); });
       };
-      const auto after = [&](const PhasePoint& by) {
+      const auto after = [&](const SizedState& by) {
         return detail::derivative([&](double s) { return detail::stepped(subject, *step, moved(by, s), h, t); });
       };
-      const auto form = [](const PhasePoint& a, const PhasePoint& b) { return a.q.dot(b.p) - a.p.dot(b.q); };
-      const PhasePoint a = before(one), b = before(other), c = after(one), d = after(other);
-      return std::abs(form(c, d) - form(a, b)) / (1 + c.q.norm() * d.p.norm() + c.p.norm() * d.q.norm());
+      const auto form = [](const SizedState& a, const SizedState& b) {
+        return a.position.dot(b.momentum) - a.momentum.dot(b.position);
+      };
+      const SizedState a = before(one), b = before(other), c = after(one), d = after(other);
+      return std::abs(form(c, d) - form(a, b)) /
+             (1 + c.position.norm() * d.momentum.norm() + c.momentum.norm() * d.position.norm());
     }));
 
   if (!subject.exact) return report;
@@ -143,15 +141,15 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
       const double later = steps * h * longer;
       OrderProblem problem;
       problem.coarsest = steps;
-      problem.plateau = 1e-11 * (1 + subject.position.norm());
+      problem.plateau = 1e-11 * (1 + subject.start.position.norm());
       problem.exact = subject.exact(later);
       problem.end = [&](int count) {
         const std::unique_ptr<SizedStep> taken = subject.make();
-        PhasePoint z = detail::on_constraints(subject, *taken, {subject.position, subject.momentum});
+        SizedState z = detail::on_constraints(subject, *taken, subject.start);
         const double part = later / count;
         for (int k = 0; k < count; ++k) z = detail::stepped(subject, *taken, z, part, t + k * part);
         Eigen::VectorXd both(2 * n);
-        both << z.q, z.p;
+        both << z.position, z.momentum;
         return both;
       };
       measured = measured_order(problem);
@@ -171,24 +169,23 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
 
 /// "derivatives are those of l": first and second ones, against differences of l and of the first.
 inline LawReport sized_lagrangian_laws(const SizedLagrangian& l, const SizedStepSubject& subject) {
-  using detail::PhasePoint;
   const Eigen::Index n = l.sizes().dimension;
   const std::unique_ptr<SizedStep> step = subject.make();
   LawReport report{subject.name + ", Lagrangian", {}};
   report.laws.push_back(check_law("derivatives are those of l", 1e-7, [&] {
-    const PhasePoint z = detail::drawn(subject, *step);
+    const SizedState z = detail::drawn(subject, *step);
     TangentState tangent;
-    step->find_velocity(z.q, z.p, subject.time, tangent);
+    step->find_velocity(z, subject.time, tangent);
     Eigen::VectorXd at(2 * n), along(2 * n);
-    at << z.q, tangent.velocity;
+    at << z.position, tangent.velocity;
     for (double& each : along) each = draw_uniform();
     std::vector<double> numbers(l.lagrangian_numbers());
     const auto first = [&](const Eigen::VectorXd& x) {
       l.lagrangian(subject.time, x.data(), x.data() + n, numbers.data());
       return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(numbers.data(), 1 + 2 * n));
     };
-    const PhasePoint found = detail::derivative([&](double s) {
-      return PhasePoint{first(at + s * along), Eigen::VectorXd(0)};
+    const SizedState found = detail::derivative([&](double s) {
+      return SizedState{first(at + s * along), Eigen::VectorXd(0)};
     });
     const Eigen::VectorXd slope = first(at).tail(2 * n);
     Eigen::MatrixXd second(2 * n, 2 * n);
@@ -197,7 +194,7 @@ inline LawReport sized_lagrangian_laws(const SizedLagrangian& l, const SizedStep
       for (Eigen::Index j = i; j < 2 * n; ++j) second(i, j) = second(j, i) = numbers[place++];
     Eigen::VectorXd declared(1 + 2 * n);
     declared << slope.dot(along), second * along;
-    return (found.q - declared).norm() / (1 + declared.norm());
+    return (found.position - declared).norm() / (1 + declared.norm());
   }));
   return report;
 }

@@ -3,6 +3,8 @@
 #include <lagroid/solvers/generating/hamiltonian_map.hpp>
 #include <lagroid/solvers/generating/taylor_hamiltonian.hpp>
 
+#include "../../support/allocation_counter.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,14 +50,14 @@ void expect_the_map(const FormulaHamiltonian& formula, const M& system, const Qu
   const HamiltonianMap by_three(adjoint_of(two));
   for (const GeneratingType type : {GeneratingType::two, GeneratingType::three}) {
     GeneratingStep step(formula, type);
-    Eigen::VectorXd q = start.q, p = start.p;
+    SizedState by_text{start.q, start.p};
     Phase<N, D> z = start;
     for (int k = 0; k < steps; ++k) {
-      ASSERT_EQ(step.take(q, p, 0, h).status, SolveStatus::converged) << k;
+      ASSERT_EQ(step.take(by_text, 0, h).status, SolveStatus::converged) << k;
       ASSERT_EQ(type == GeneratingType::two ? by_two.step(z, h) : by_three.step(z, h), SolveStatus::converged) << k;
     }
-    EXPECT_LT((q - z.q).norm(), 1e-12) << R;
-    EXPECT_LT((p - z.p).norm(), 1e-12) << R;
+    EXPECT_LT((by_text.position - z.q).norm(), 1e-12) << R;
+    EXPECT_LT((by_text.momentum - z.p).norm(), 1e-12) << R;
   }
 }
 
@@ -76,13 +78,13 @@ TEST(FormulaHamiltonians, TypesAreEachOthersAdjoints) {
   GeneratingStep two(system, GeneratingType::two), three(system, GeneratingType::three);
   SymmetrisedGeneratingStep both(system);
   const Eigen::VectorXd q0 = Eigen::VectorXd::Constant(1, 0.8), p0 = Eigen::VectorXd::Constant(1, 0.5);
-  Eigen::VectorXd q = q0, p = p0;
-  ASSERT_TRUE(two.take(q, p, 0, 0.3).converged());
-  ASSERT_TRUE(three.take(q, p, 0, -0.3).converged());
-  EXPECT_LT((q - q0).norm() + (p - p0).norm(), 1e-14);
-  ASSERT_TRUE(both.take(q, p, 0, 0.3).converged());
-  ASSERT_TRUE(both.take(q, p, 0, -0.3).converged());
-  EXPECT_LT((q - q0).norm() + (p - p0).norm(), 1e-14);
+  SizedState z{q0, p0};
+  ASSERT_TRUE(two.take(z, 0, 0.3).converged());
+  ASSERT_TRUE(three.take(z, 0, -0.3).converged());
+  EXPECT_LT((z.position - q0).norm() + (z.momentum - p0).norm(), 1e-14);
+  ASSERT_TRUE(both.take(z, 0, 0.3).converged());
+  ASSERT_TRUE(both.take(z, 0, -0.3).converged());
+  EXPECT_LT((z.position - q0).norm() + (z.momentum - p0).norm(), 1e-14);
 }
 
 TEST(FormulaHamiltonians, TakeEveryFunctionThatFormulasHave) {
@@ -99,11 +101,52 @@ TEST(FormulaHamiltonians, TakeEveryFunctionThatFormulasHave) {
       system.hamiltonian(q.data(), p.data(), h.data());
       return h[0];
     };
-    Eigen::VectorXd q = q0, p = p0;
-    for (int k = 0; k < 5; ++k) ASSERT_TRUE(step.take(q, p, 0, 0.05).converged()) << f;
+    SizedState z{q0, p0};
+    for (int k = 0; k < 5; ++k) ASSERT_TRUE(step.take(z, 0, 0.05).converged()) << f;
     // Of order four: the coefficients of the flow are right.
-    EXPECT_NEAR(energy(q, p), energy(q0, p0), 1e-8) << f;
-    EXPECT_GT((q - q0).norm(), 0.01);
+    EXPECT_NEAR(energy(z.position, z.momentum), energy(q0, p0), 1e-8) << f;
+    EXPECT_GT((z.position - q0).norm(), 0.01);
+  }
+}
+
+// Nothing of the step's equations is of the size of a momentum then.
+TEST(FormulaHamiltonians, BeginAtRest) {
+  for (int taylor = 0; taylor <= 4; ++taylor) {
+    const FormulaHamiltonian system = bob({taylor, quadrature_rules::gauss_3});
+    for (const GeneratingType type : {GeneratingType::two, GeneratingType::three}) {
+      GeneratingStep step(system, type);
+      SizedState z{Eigen::Vector3d(0.6, 0, -0.8), Eigen::Vector3d(0, 0, 0)};
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(step.take(z, 0, 0.05).status, SolveStatus::converged) << taylor;
+      EXPECT_NEAR(z.position.norm(), 1, 1e-14);
+    }
+  }
+}
+
+TEST(FormulaHamiltonians, StepsAllocateNothing) {
+  const FormulaHamiltonian system = bob({3, quadrature_rules::gauss_2});
+  SymmetrisedGeneratingStep step(system);
+  SizedState z{Eigen::Vector3d(0.6, 0, -0.8), Eigen::Vector3d(0, 0.7, 0)};
+  for (int k = 0; k < 3; ++k) step.take(z, 0, 0.05);
+  const long before = allocation_count();
+  if (before < 0) GTEST_SKIP() << "allocations are not counted here";
+  for (int k = 0; k < 50; ++k) step.take(z, 0, 0.05);
+  EXPECT_EQ(allocation_count(), before);
+}
+
+// Units do not decide whether equations are regular.
+TEST(FormulaHamiltonians, OfAPlanetAndOfAMolecule) {
+  for (const double mass : {1e-27, 1.0, 1e24}) {
+    const FormulaHamiltonian system({.coordinates = {"x"}, .parameters = {{"m", mass}}}, {"p"}, "p^2/(2*m) + m*x^2/2",
+                                    {3, quadrature_rules::gauss_2});
+    for (const GeneratingType type : {GeneratingType::two, GeneratingType::three}) {
+      SizedState one{Eigen::VectorXd::Constant(1, 1.0), Eigen::VectorXd::Zero(1)};
+      EXPECT_EQ(GeneratingStep(system, type).take(one, 0, 0.1).status, SolveStatus::converged) << mass;
+    }
+    SymmetrisedGeneratingStep step(system);
+    SizedState z{Eigen::VectorXd::Constant(1, 1.0), Eigen::VectorXd::Zero(1)};
+    for (int k = 0; k < 10; ++k) ASSERT_EQ(step.take(z, 0, 0.1).status, SolveStatus::converged) << mass;
+    EXPECT_NEAR(z.position(0), std::cos(1), 1e-5) << mass;
+    EXPECT_NEAR(z.momentum(0) / mass, -std::sin(1), 1e-5) << mass;
   }
 }
 
@@ -121,6 +164,7 @@ TEST(FormulaHamiltonians, SayWhatIsWrongWithTheirTexts) {
   EXPECT_EQ(key_of({.coordinates = {"q"}}, {"p", "r"}, "p^2"), "momenta");
   EXPECT_EQ(key_of({.coordinates = {"q"}}, {"p"}, "q'^2"), "H");
   EXPECT_EQ(key_of({.coordinates = {"q"}}, {"p"}, "p^2 + q*t"), "H");
+  EXPECT_EQ(key_of({.coordinates = {"q"}, .parameters = {{"n", 4.0}}}, {"p"}, "p^2 + q^n"), "H");
 }
 
 }  // namespace

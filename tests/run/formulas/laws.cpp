@@ -21,15 +21,17 @@ enum class Fault { none, gains, drags, order };
 class Broken final : public SizedStep {
  public:
   Broken(const SizedLagrangian& l, Fault fault) : step_(l, {CurveQuadrature::gauss, 2}), fault_(fault) {}
-  StepReport take(Eigen::VectorXd& q, Eigen::VectorXd& p, double t, double h) override {
-    const StepReport report = step_.take(q, p, t, h);
+  StepReport take(SizedState& z, double t, double h) override {
+    const StepReport report = step_.take(z, t, h);
+    Eigen::VectorXd& p = z.momentum;
     if (fault_ == Fault::gains) p *= 1 + 1e-3 * h * h;  // the same forwards and backwards
     if (fault_ == Fault::drags) p *= 1 - 1e-3 * h;
-    if (fault_ == Fault::order) q(0) += 1e-2 * h * h * h * p(0);
+    if (fault_ == Fault::order) z.position(0) += 1e-2 * h * h * h * p(0);
     return report;
   }
-  void find_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, TangentState& out) const override {
-    step_.find_velocity(q, p, t, out);
+  bool linearise(SizedState&, double, double, std::vector<SizedSlopes>&) override { return false; }
+  void find_velocity(const SizedState& z, double t, TangentState& out) const override {
+    step_.find_velocity(z, t, out);
   }
 
  private:
@@ -41,14 +43,14 @@ laws::LawReport report_of(Fault fault) {
   laws::SizedStepSubject subject{.name = "orbit",
                                  .make = [=] { return std::make_unique<Broken>(orbit(), fault); },
                                  .traits = {"Gauss 2", 4, true, true, false},
-                                 .position = Eigen::Vector2d(1, 0),
-                                 .momentum = Eigen::Vector2d(0.1, 1.1),
+                                 .start = {Eigen::Vector2d(1, 0), Eigen::Vector2d(0.1, 1.1)},
                                  .step = 0.1};
   subject.exact = [&](double later) {
     CurveStep precise(orbit(), {CurveQuadrature::gauss, 5});
-    Eigen::VectorXd q = subject.position, p = subject.momentum, both(4);
-    for (int k = 0; k < 100; ++k) precise.take(q, p, 0, later / 100);
-    both << q, p;
+    SizedState z = subject.start;
+    Eigen::VectorXd both(4);
+    for (int k = 0; k < 100; ++k) precise.take(z, 0, later / 100);
+    both << z.position, z.momentum;
     return Eigen::VectorXd(both);
   };
   return laws::sized_step_laws(subject);
@@ -87,8 +89,7 @@ TEST(SizedLagrangianLaws, FailForDerivativesThatAreWrong) {
               return std::make_unique<CurveStep>(*each, CurveChoice{CurveQuadrature::gauss, 2});
             },
         .traits = {"Gauss 2", 4, true, true, false},
-        .position = Eigen::Vector2d(1, 0),
-        .momentum = Eigen::Vector2d(0.1, 1.1),
+        .start = {Eigen::Vector2d(1, 0), Eigen::Vector2d(0.1, 1.1)},
         .step = 0.1};
     EXPECT_EQ(laws::sized_lagrangian_laws(*each, subject).holds(), each == &orbit());
   }

@@ -7,6 +7,7 @@
 #include <lagroid/systems/reference.hpp>
 
 #include "../../solvers/continuous_lagrangian/subjects.hpp"
+#include "../../support/allocation_counter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -131,6 +132,49 @@ TEST(FormulaMotions, KeepMomentaAndTheirEnergyWithinABand) {
   }
 }
 
+// An l that is not convex: two velocities have one momentum, and the start says which.
+TEST(FormulaMotions, GoOnWithTheVelocityTheyBeganWith) {
+  const Written double_well{{.coordinates = {"x"}}, "x'^4/4 - x'^2/2"};
+  for (const double v : {1.1, 1.5, -1.2}) {
+    const auto system = std::make_shared<const FormulaLagrangian>(double_well.texts, double_well.l);
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
+    FormulaMotion motion("free", system, {std::make_unique<CurveStep>(*system, CurveChoice{}), {}},
+                         {zero, Eigen::VectorXd::Constant(1, v * v * v - v), Eigen::VectorXd::Constant(1, v)}, 0.1, 0);
+    for (int k = 0; k < 10; ++k) ASSERT_TRUE(motion.advance().converged());
+    EXPECT_NEAR(motion.state()[0].values[0], v, 1e-12);
+  }
+}
+
+// What is kept is all that the next step depends on; parts of steps are looked into without a trace.
+TEST(FormulaMotions, GoOnWithTheSameBits) {
+  FormulaMotion one = motion_of(bead, {CurveQuadrature::lobatto_pair, 3}, bead_start.object, bead_start.momentum, 0.1);
+  FormulaMotion other =
+      motion_of(bead, {CurveQuadrature::lobatto_pair, 3}, bead_start.object, bead_start.momentum, 0.1);
+  ends(one, 10);
+  NumberArchive kept;
+  one.serialize(kept);
+  NumberArchive read(kept.numbers());
+  other.serialize(read);
+  for (int k = 0; k < 10; ++k) {
+    one.keep_node();
+    ASSERT_TRUE(one.advance().converged());
+    ASSERT_NE(one.look_within(0.3), nullptr);
+    ASSERT_TRUE(other.advance().converged());
+  }
+  EXPECT_EQ(one.state()[0].values, other.state()[0].values);
+  EXPECT_EQ(one.state()[1].values, other.state()[1].values);
+}
+
+TEST(FormulaMotions, StepsAllocateNothing) {
+  FormulaMotion motion =
+      motion_of(bead, {CurveQuadrature::lobatto_pair, 3}, bead_start.object, bead_start.momentum, 0.1);
+  ends(motion, 3);
+  const long before = allocation_count();
+  if (before < 0) GTEST_SKIP() << "allocations are not counted here";
+  for (int k = 0; k < 50; ++k) motion.advance();
+  EXPECT_EQ(allocation_count(), before);
+}
+
 TEST(FormulaMotions, AStepThatFailsIsNotTaken) {
   // y' does not occur.
   const Written degenerate{{.coordinates = {"x", "y"}}, "x'^2/2 - x^2/2 - y^2"};
@@ -157,6 +201,14 @@ TEST(FormulaLagrangians, SayWhatIsWrongWithTheirTexts) {
   EXPECT_EQ(key_of({{.coordinates = {"x", "x"}}, "x'^2"}), "coordinates");
   EXPECT_EQ(key_of({{.coordinates = {"t"}}, "t'^2"}), "coordinates");
   EXPECT_EQ(key_of({{.coordinates = {"2x"}}, "1"}), "coordinates");
+  EXPECT_EQ(key_of({{.coordinates = {"sin"}}, "1"}), "coordinates");
+  EXPECT_EQ(key_of({{.coordinates = {"energy"}}, "1"}), "coordinates");
+  EXPECT_EQ(key_of({{.coordinates = {"x", "p_x"}}, "1"}), "coordinates");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}}, "x'^2 + 0/0*x"}), "l");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}}, "x'^2 - (-8)^(1/3)*x^2"}), "l");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}}, "x'^2 + column_0_"}), "l");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}, .symmetries = {{"J", {"1"}}, {"J", {"1"}}}}, "x'^2"}), "name");
+  EXPECT_EQ(key_of({{.coordinates = {"x"}, .symmetries = {{"energy", {"1"}}}}, "x'^2"}), "name");
   EXPECT_EQ(key_of({{}, "1"}), "coordinates");
   EXPECT_EQ(key_of({{.coordinates = {"x"}}, "y'^2"}), "l");
   EXPECT_EQ(key_of({{.coordinates = {"x"}, .constraints = {"x"}}, "x'^2"}), "constraints");

@@ -1,6 +1,7 @@
 // The exact discrete Lagrangian: its value, its step on R^n, and how the actions of rules differ from it.
 #include <lagroid/solvers/galerkin/exact_lagrangian.hpp>
 #include <lagroid/solvers/galerkin/rules_of_order_two.hpp>
+#include <lagroid/solvers/testing/exact_action_laws.hpp>
 
 #include "../subjects.hpp"
 #include "exact_steps.hpp"
@@ -50,6 +51,22 @@ TEST(ExactAction, RulesOfOrderFourHaveATermOfThatOrder) {
       modified_term(Galerkin<Oscillator, 2>{}, Vector<double, 1>(0.7), Vector<double, 1>(1.2), 0.4);
   EXPECT_GT(std::abs(found.value), 1e-5);
   EXPECT_LT(found.error, 1e-3 * std::abs(found.value));
+}
+
+State<Pair<1>> draw_swing() {
+  return {Vector<double, 1>(laws::draw_uniform()), Vector<double, 1>(1.5 * laws::draw_uniform())};
+}
+/// Declares an order that it has not.
+struct Boasting : Midpoint<Swing> {
+  using Midpoint<Swing>::Midpoint;
+  static MethodTraits traits() { return {"boasting", 3, true, true, false}; }
+};
+TEST(ExactAction, OrdersAreSeenInTheActionItself) {
+  EXPECT_TRUE(laws::exact_action_laws(Midpoint<Swing>{}, draw_swing, 0.1).holds());
+  EXPECT_TRUE(laws::exact_action_laws(Trapezoidal<Swing>{}, draw_swing, 0.1).holds());
+  const laws::LawReport four = laws::exact_action_laws(Galerkin<Swing, 2>{}, draw_swing, 0.4);
+  EXPECT_TRUE(four.holds()) << four;
+  EXPECT_FALSE(laws::exact_action_laws(Boasting{}, draw_swing, 0.1).holds());
 }
 
 TEST(ExactAction, AStepThatBendsTooMuchIsRefused) {

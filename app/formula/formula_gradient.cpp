@@ -1,0 +1,170 @@
+#include "../gradient/system_gradients.hpp"
+#include "../reading/kinds.hpp"
+#include "formula_scene.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+/// A motion whose steps are linearised: states are coordinates and momenta.
+class LinearisedFormula final : public LinearisedMotion {
+ public:
+  LinearisedFormula(std::shared_ptr<const FormulaSystem> system, FormulaMethod method, SizedState start, double step,
+                    double begin, std::vector<std::size_t> parameters)
+      : system_(std::move(system)),
+        method_(std::move(method)),
+        state_(std::move(start)),
+        before_(state_),
+        step_(step),
+        begin_(begin),
+        parameters_(std::move(parameters)) {}
+
+  int states() const override { return int(2 * state_.position.size()); }
+  int parameters() const override { return int(parameters_.size()); }
+  double time() const override { return begin_ + double(index_) * step_; }
+
+  StepReport advance() override {
+    before_ = state_;
+    const StepReport report = method_.step->take(state_, time(), step_);
+    if (report.converged()) ++index_;
+    return report;
+  }
+  bool linearise() override {
+    std::vector<SizedSlopes> slopes;
+    SizedState z = before_;
+    stages_.clear();
+    if (!method_.step->linearise(z, time() - step_, step_, slopes)) return false;
+    for (SizedSlopes& each : slopes) {
+      LinearStep stage(int(each.equations_by_unknowns.rows()), states(), parameters());
+      stage.equations_by_unknowns = std::move(each.equations_by_unknowns);
+      stage.equations_by_start = asked_columns(each.equations_by_start);
+      stage.end_by_unknowns = std::move(each.end_by_unknowns);
+      stage.end_by_start = asked_columns(each.end_by_start);
+      if (!stage.factor()) return false;
+      stages_.push_back(std::move(stage));
+    }
+    return true;
+  }
+  int stages() const override { return int(stages_.size()); }
+  const LinearStep& stage(int k) const override { return stages_[std::size_t(k)]; }
+
+  NodeValues observe() const override {
+    const Eigen::Index n = state_.position.size(), all = 2 * n + Eigen::Index(system_->parameters().size());
+    const Eigen::Index rows = 2 * n + 1 + Eigen::Index(system_->symmetries().size());
+    TangentState tangent;
+    method_.step->find_velocity(state_, time(), tangent);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by(rows, all);
+    by.setZero();
+    by.topLeftCorner(2 * n, 2 * n).setIdentity();
+    const double* q = state_.position.data();
+    const double* p = state_.momentum.data();
+    system_->energy_slope(time(), q, p, tangent.velocity.data(), by.row(2 * n).data());
+    NodeValues out{Eigen::VectorXd(rows), {}};
+    out.values << state_.position, state_.momentum, Eigen::VectorXd::Constant(rows - 2 * n, tangent.energy);
+    if (rows > 2 * n + 1) {
+      system_->momentum_slopes(q, p, by.row(2 * n + 1).data());
+      std::vector<double> xi(std::size_t((rows - 2 * n - 1) * n));
+      system_->fields(q, xi.data());
+      for (Eigen::Index s = 0; 2 * n + 1 + s < rows; ++s)
+        out.values(2 * n + 1 + s) = state_.momentum.dot(Eigen::Map<const Eigen::VectorXd>(xi.data() + s * n, n));
+    }
+    out.derivatives = asked_columns(by);
+    return out;
+  }
+
+  std::vector<double> save() override {
+    std::vector<double> all(state_.position.begin(), state_.position.end());
+    all.insert(all.end(), state_.momentum.begin(), state_.momentum.end());
+    all.insert(all.end(), state_.velocity.begin(), state_.velocity.end());
+    all.push_back(double(index_));
+    return all;
+  }
+  void restore(const std::vector<double>& saved) override {
+    const Eigen::Index n = state_.position.size();
+    state_.position = Eigen::Map<const Eigen::VectorXd>(saved.data(), n);
+    state_.momentum = Eigen::Map<const Eigen::VectorXd>(saved.data() + n, n);
+    state_.velocity = Eigen::Map<const Eigen::VectorXd>(saved.data() + 2 * n, n);
+    index_ = long(saved.back());
+  }
+
+ private:
+  /// The columns of the state, then of those parameters that were asked for.
+  Eigen::MatrixXd asked_columns(const Eigen::MatrixXd& all) const {
+    Eigen::MatrixXd out(all.rows(), states() + parameters());
+    out.leftCols(states()) = all.leftCols(states());
+    for (std::size_t a = 0; a < parameters_.size(); ++a)
+      out.col(states() + Eigen::Index(a)) = all.col(states() + Eigen::Index(parameters_[a]));
+    return out;
+  }
+
+  std::shared_ptr<const FormulaSystem> system_;
+  FormulaMethod method_;
+  SizedState state_, before_;
+  double step_, begin_;
+  long index_ = 0;
+  std::vector<std::size_t> parameters_;  ///< their places among the system's
+  std::vector<LinearStep> stages_;
+};
+
+}  // namespace
+
+std::optional<GradientSubject> formula_gradient(const Section& scene) {
+  if (!scene.has(keys::system) || !is_formula_word(scene.text(keys::system, "the name of a system")))
+    return std::nullopt;
+  const FormulaScene read = read_formula(scene, {});
+  const FormulaToCheck& asked = read.to_check;
+  if (!read.extent.events.empty())
+    scene.fail("event", "of formulas there are no derivatives through events; leave the events out");
+  if (asked.system->constraint_count() > 0)
+    scene.fail("system", "there are no derivatives of formulas with constraints: take coordinates without them");
+  if (const Section initial = scene.section("initial", ""); initial.has("velocity"))
+    initial.fail("velocity", fmt::format("is a momentum that depends on parameters; a start of which there are "
+                                         "derivatives is one that does not: momentum = [{:.17g}]",
+                                         fmt::join(asked.start.momentum, ", ")));
+  GradientSubject out;
+  out.system = asked.name;
+  out.steps = read.extent.steps;
+  for (const std::string& label : asked.system->coordinates()) out.start.push_back({"position", label});
+  for (const std::string& label : asked.system->momenta()) out.start.push_back({"momentum", label});
+  out.observed = out.start;
+  out.observed.push_back({"energy", "energy"});
+  for (const ReadSymmetry& each : asked.system->symmetries()) out.observed.push_back({"momenta", "J " + each.name});
+  for (const Eigen::VectorXd* each : {&asked.start.position, &asked.start.momentum})
+    out.sizes.insert(out.sizes.end(), each->begin(), each->end());
+  for (const auto& [name, value] : asked.system->parameters()) {
+    out.parameters.push_back({"parameters", name});
+    out.sizes.push_back(value);
+  }
+  out.begin = [asked](const std::vector<std::string>& parameters,
+                      const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {
+    std::shared_ptr<const FormulaSystem> system = asked.system;
+    SizedState start = asked.start;
+    const int n = int(start.position.size());
+    for (const Nudge& nudge : nudges) {
+      if (!nudge.parameter.empty()) {
+        system = system->changed(nudge.parameter, nudge.by);
+      } else if (nudge.index < n) {
+        start.position(nudge.index) += nudge.by;
+      } else {
+        start.momentum(nudge.index - n) += nudge.by;
+      }
+    }
+    std::vector<std::size_t> places;
+    for (const std::string& name : parameters) {
+      const auto& all = system->parameters();
+      const auto found = std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.first == name; });
+      if (found == all.end()) throw std::invalid_argument("there is no parameter \"" + name + "\"");
+      places.push_back(std::size_t(found - all.begin()));
+    }
+    return std::make_unique<LinearisedFormula>(system, asked.begun(*system), start, asked.step, asked.begin, places);
+  };
+  return out;
+}
+
+}  // namespace lagroid::app
