@@ -35,6 +35,21 @@ class Scenes(unittest.TestCase):
         self.assertEqual(len(run.time), 8)
         self.assertAlmostEqual(run.time[-1], 1.4)
 
+    def test_a_formula_is_the_system_of_its_class(self) -> None:
+        written = PENDULUM | {
+            "system": "lagrangian",
+            "lagrangian": {"coordinates": ["q"], "l": "m*length^2*q'^2/2 + m*g*length*cos(q)"},
+            "parameters": {"m": 2.0, "length": 0.5, "g": 3.0},
+            "time": PENDULUM["time"] | {"method": "midpoint"},
+        }
+        parameters = {"mass": 2.0, "length": 0.5, "gravity": 3.0, "quadrature": "midpoint"}
+        run, classes = lagroid.run(written), lagroid.run(PENDULUM, set={"parameters": parameters})
+        np.testing.assert_allclose(run["q"], classes["q"], rtol=0, atol=1e-13)
+        np.testing.assert_allclose(run["p_q"], classes["p"], rtol=0, atol=1e-13)
+        written["lagrangian"]["l"] = "m*length^2*q'^2/2 + foo"
+        with self.assertRaisesRegex(lagroid.SceneError, 'lagrangian.l: .*there is no "foo"'):
+            lagroid.run(written)
+
     def test_a_reduced_run_gives_the_full_motion_back(self) -> None:
         scene, settings = EXAMPLES / "kepler.toml", {"time.steps": 100}
         full = lagroid.run(scene, set=settings)
