@@ -2,7 +2,7 @@
 
 #include "../formula/formula_scene.hpp"
 
-#include <lagroid/solvers/testing/sized_step_laws.hpp>
+#include <lagroid/solvers/galerkin/testing/sized_step_laws.hpp>
 
 #include <cmath>
 #include <string>
@@ -16,10 +16,11 @@ namespace {
 laws::LawReport symmetry_laws(const laws::SizedStepSubject& subject, const FormulaSystem& system, bool by_velocity) {
   laws::LawReport report{subject.name + ", symmetries", {}};
   const auto step = subject.make();
+  const laws::detail::PhaseUnits units = laws::detail::units_of(subject, *step);
   for (std::size_t i = 0; i < system.symmetries().size(); ++i) {
     const ReadSymmetry& symmetry = system.symmetries()[i];
     report.laws.push_back(laws::check_law(symmetry.name + " is that of a symmetry", 1e-10, [&] {
-      const auto z = laws::detail::drawn(subject, *step);
+      const auto z = laws::detail::drawn(subject, *step, units);
       TangentState tangent;
       step->find_velocity(z, subject.time, tangent);
       return system.symmetry_defect(i, subject.time, z.position.data(),
@@ -33,9 +34,10 @@ laws::LawReport symmetry_laws(const laws::SizedStepSubject& subject, const Formu
         system.fields(z.position.data(), fields.data());
         return z.momentum.dot(Eigen::Map<const Eigen::VectorXd>(fields.data() + i * n, z.position.size()));
       };
-      const auto z = laws::detail::drawn(subject, *step);
+      const auto z = laws::detail::drawn(subject, *step, units);
       const auto next = laws::detail::stepped(subject, *step, z, subject.step, subject.time);
-      return std::abs(momentum(next) - momentum(z)) / (1 + std::abs(momentum(z)));
+      const double whole = std::abs(momentum(z)) + units.momentum * units.place;
+      return std::abs(momentum(next) - momentum(z)) / whole;
     }));
   }
   return report;

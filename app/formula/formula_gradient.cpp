@@ -123,10 +123,18 @@ std::optional<GradientSubject> formula_gradient(const Section& scene) {
     scene.fail("event", "of formulas there are no derivatives through events; leave the events out");
   if (asked.system->constraint_count() > 0)
     scene.fail("system", "there are no derivatives of formulas with constraints: take coordinates without them");
-  if (const Section initial = scene.section("initial", ""); initial.has("velocity"))
+  if (const Section initial = scene.section("initial", ""); initial.has("velocity")) {
+    TangentState from_rest;
+    asked.begun(*asked.system)
+        .step->find_velocity({asked.start.position, asked.start.momentum, {}}, asked.begin, from_rest);
+    if (!from_rest.found || !((from_rest.velocity - asked.start.velocity).norm() <= 1e-8 * from_rest.velocity.norm()))
+      initial.fail("velocity",
+                   "is one of several that its momentum has, and a start of which there are derivatives is a "
+                   "momentum; there are none of this run");
     initial.fail("velocity", fmt::format("is a momentum that depends on parameters; a start of which there are "
                                          "derivatives is one that does not: momentum = [{:.17g}]",
                                          fmt::join(asked.start.momentum, ", ")));
+  }
   GradientSubject out;
   out.system = asked.name;
   out.steps = read.extent.steps;

@@ -111,12 +111,18 @@ FormulaGraph::Node FormulaGraph::read(const std::string& text, const std::vector
       parser.DefineVar(detail::word_of(i), &nodes[i]);
     }
     const std::string words = detail::in_words(text, names);
-    if (const std::string unknown = unknown_word(words, parser); !unknown.empty()) throw std::invalid_argument(unknown);
+    if (const std::string unknown = unknown_word(words, parser); !unknown.empty()) throw std::invalid_argument(in_names(unknown));
     parser.SetExpr(words);
+    reading_ = true;
     const double found = parser.Eval();
+    reading_ = false;
     if (parser.GetNumResults() != 1) throw std::invalid_argument("it has several values");
     return std::size_t(found);
+  } catch (const std::invalid_argument&) {
+    reading_ = false;
+    throw;
   } catch (const mu::Parser::exception_type& error) {
+    reading_ = false;
     // Places are those of another text.
     throw std::invalid_argument(
         in_names(std::regex_replace(error.GetMsg(), std::regex(" at( expression)? position \\d+\\.?"), "")));

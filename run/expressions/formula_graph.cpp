@@ -91,8 +91,9 @@ FormulaGraph::Node FormulaGraph::apply(FormulaOperation kind, Node a, Node b) {
   if (!two) b = 0;
   if (is_constant(a) && (!two || is_constant(b))) {
     const double value = value_of(kind, operations_[a].value, two ? operations_[b].value : 0);
-    if (!std::isfinite(value)) throw std::invalid_argument("a part of it is no finite number");
-    return constant(value);
+    if (std::isfinite(value)) return constant(value);
+    if (reading_) throw std::invalid_argument("a part of it is no finite number");
+    return kept({kind, a, b, 0});  // of a derivative, which is none there
   }
   const Node simple = simplified(kind, a, b);
   return simple != nowhere ? simple : kept({kind, a, b, 0});

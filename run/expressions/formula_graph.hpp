@@ -83,6 +83,7 @@ class FormulaGraph {
   Node simplified(FormulaOperation kind, Node a, Node b);
   bool is(Node f, double value) const { return is_constant(f) && operations_[f].value == value; }
 
+  bool reading_ = false;  ///< a text, of which every part is to be a number
   std::vector<Operation> operations_;
   std::map<std::tuple<FormulaOperation, Node, Node, double>, Node> places_;
   std::map<std::pair<Node, std::size_t>, Node> derivatives_;

@@ -93,7 +93,7 @@ template <class S> class FormulaAt {
         if (graph_.is_constant(of.b)) return pow((*this)(of.a), graph_.operation(of.b).value);
         if (graph_.is_constant(of.a)) return exp((*this)(of.b) * log((*this)(of.a)));
         throw std::invalid_argument(
-            "of a power either the base or the exponent is a number, where power series are taken");
+            "an exponent is a number that is written there, or stands on one: powers are taken as power series");
       case FormulaOperation::negate:
         return -(*this)(of.a);
       case FormulaOperation::sin:

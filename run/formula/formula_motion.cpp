@@ -11,7 +11,10 @@
 namespace lagroid {
 
 FormulaNode::FormulaNode(const FormulaSystem& system, bool symplectic)
-    : system_(system), field_(system.symmetries().size() * system.coordinates().size()) {
+    : system_(system),
+      field_(system.symmetries().size() * system.coordinates().size()),
+      columns_(2 * system.coordinates().size() + system.parameters().size()),
+      field_slopes_(system.symmetries().size() * columns_) {
   fields_.push_back({.columns = {"position", system.coordinates(), "1", "coordinates", false, {}}});
   fields_.push_back({.columns = {"velocity", system.velocities(), "1/s", "of the coordinates", false, {}}});
   fields_.push_back({.columns = {"momentum", system.momenta(), "1", "tangent to the constraints", false, {}}});
@@ -39,6 +42,7 @@ void FormulaNode::see(long index, double time, const SizedState& state, const Si
   state_ = state;
   step.find_velocity(state, time, tangent_);
   system_.fields(state.position.data(), field_.data());
+  system_.momentum_slopes(state.position.data(), tangent_.momentum.data(), field_slopes_.data());
   if (system_.constraint_count() == 0) return;
   const Eigen::MatrixXd c = system_.constraint_rows(state.position);
   residual_ = c.col(0).cwiseAbs().maxCoeff();
@@ -80,6 +84,9 @@ double FormulaNode::measure(std::size_t quantity, double* values) const {
     sum += term;
     size += std::abs(term);
   }
+  // The rounding of q in xi.
+  for (std::size_t j = 0; j < n; ++j)
+    size += std::abs(field_slopes_[(quantity - 1) * columns_ + j] * state_.position(Eigen::Index(j)));
   *values = sum;
   return size;
 }

@@ -52,6 +52,8 @@ class FormulaNode final : public Observables {
   SizedState state_;
   TangentState tangent_;
   std::vector<double> field_;  ///< of the symmetries
+  std::size_t columns_;        ///< by which momenta have slopes
+  std::vector<double> field_slopes_;
   double residual_ = 0, residual_size_ = 1;
 };
 

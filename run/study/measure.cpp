@@ -281,6 +281,7 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
   Reached out;
   try {
     const auto motion = until.begin(method, end / double(steps));
+    const double begin = motion->time();
     std::vector<double> sizes;
     const auto look = [&](const std::vector<NamedVector>& state) {
       sizes.resize(state.size());
@@ -291,7 +292,7 @@ std::optional<Reached> reach(const Experiment& experiment, const Method& method,
     const long looks = std::min(steps, 64L);
     for (long k = 1; k <= looks; ++k) {
       const double start = processor_time();
-      const StepReport report = integrate_to(*motion, end * double(k) / double(looks), work);
+      const StepReport report = integrate_to(*motion, begin + end * double(k) / double(looks), work);
       out.seconds += processor_time() - start;
       if (!report.converged() || experiment.stopped()) return std::nullopt;
       out.state = motion->state();
@@ -354,6 +355,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
   out.step = h;
   try {
     const auto motion = experiment.begin(method, h);
+    const auto elapsed = [&motion, begin = motion->time()] { return motion->time() - begin; };
     Watch watch(experiment.end, out);
     watch.see(observation_of(*motion), 0);
     StepReport report;
@@ -362,12 +364,12 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
     // Varying steps are first ones: the last node may lie anywhere within half a step of the end.
     double last_step = h;
     Looks looks(experiment.end / h);
-    while (experiment.end - motion->time() > 0.5 * last_step) {
-      const double before = motion->time();
+    while (experiment.end - elapsed() > 0.5 * last_step) {
+      const double before = elapsed();
       report = advance(*motion, out.work);
       if (!report.converged()) break;
-      last_step = motion->time() - before;
-      if (looks.at(out.work.steps)) watch.see(observation_of(*motion), motion->time());
+      last_step = elapsed() - before;
+      if (looks.at(out.work.steps)) watch.see(observation_of(*motion), elapsed());
       if (out.work.steps % 64 != 0) continue;
       if (processor_time() - start > 8 * longest || experiment.stopped()) {
         out.status = experiment.stopped() ? "interrupted" : "too slow";
@@ -375,7 +377,7 @@ Measurement measure_once(const Experiment& experiment, const Method& method, dou
       }
     }
     out.seconds = {processor_time() - start};
-    out.reached = motion->time();
+    out.reached = elapsed();
     watch.finish();
     if (!report.converged()) {
       out.status = std::string(to_string(report.status));
@@ -408,7 +410,7 @@ double time_once(const Experiment& experiment, const Method& method, double h) {
     const auto motion = experiment.begin(method, h);
     IntegrationCost work;
     const double start = processor_time();
-    if (!integrate_to(*motion, experiment.end, work).converged()) return -1;
+    if (!integrate_to(*motion, motion->time() + experiment.end, work).converged()) return -1;
     total += processor_time() - start;
     ++runs;
   } while (total < long_enough && runs < 20);

@@ -25,7 +25,7 @@ struct NodeObservation {
 
 /// One step.
 StepReport advance(Motion& motion, IntegrationCost& work);
-/// Steps until `end` is less than half a step away, and looks at nothing. The report is that of the last step.
+/// Steps until the time `end` is less than half a step away, and looks at nothing. The report is that of the last step.
 StepReport integrate_to(Motion& motion, double end, IntegrationCost& work);
 /// The node that was reached.
 NodeObservation observation_of(Motion& motion);

@@ -130,12 +130,16 @@ template <class Rule> class PrimaryConstraintStep {
     for (int i = 0; i < n; ++i) out(i) += turned(i);
     return out;
   }
-  /// Whether dl/dv is the same in motion as at rest.
+  /// Whether dl/dv is the same in motion as at rest, at this velocity and at one in every direction.
   bool is_linear(const Vector<double, n>& q, const Vector<double, n>& v) const {
     const auto at = constants<Dual<double>>(q);
-    const Vector<double, n> moving = gradient_of([&](const Vector<Dual<double>, n>& x) { return rule_.l(at, x); }, v);
     const Vector<double, n> resting = momentum(q);
-    return (moving - resting).norm() <= 1e-12 * (moving.norm() + resting.norm());
+    for (int i = -1; i < n; ++i) {
+      const Vector<double, n> moving = gradient_of([&](const Vector<Dual<double>, n>& x) { return rule_.l(at, x); },
+                                                   i < 0 ? v : unit_vector<double, n>(i));
+      if (!((moving - resting).norm() <= 1e-12 * (moving.norm() + resting.norm()))) return false;
+    }
+    return true;
   }
 
   Rule rule_;

@@ -4,8 +4,9 @@
 ///     eta >= |df_y^{-1}|,    gamma >= |df_{y exp(u)} - df_y| / |u|,    y^{-1} y_n = exp(v_n),
 ///
 /// version 1 has |v_{n+1}| <= eta gamma |v_n|^2 (Theorem 4.6), and version 2 the same of the differential in
-/// coordinates and of the distance there (Theorem 4.4). From |v_0| < 1 / (eta gamma) on the bound falls, and the
-/// iteration with it.
+/// coordinates and of the distance there (Theorem 4.4), to leading order in v: both constants are those of the
+/// solution, not of a ball around it. 1 / (eta gamma) is the distance from which on that leading term falls; where the
+/// next ones are larger, as of v - v^3 at zero, the basin is smaller.
 ///
 ///     const auto constants = convergence_constants(step, found, LieIteration::version1);
 ///     const double radius = constants.radius();
@@ -29,7 +30,7 @@ namespace lagroid {
 struct ConvergenceConstants {
   double eta;
   double gamma;
-  /// |v_0| below which the bound falls.
+  /// |v_0| below which the leading term falls.
   double radius() const { return 1 / (eta * gamma); }
 };
 

@@ -84,6 +84,19 @@ TEST(Formulas, ShareWhatTheyHaveInCommon) {
   EXPECT_TRUE(graph.is_zero(graph.derivative(graph.read("3*y + 2", names), 0)));
 }
 
+// Of derivatives a part may be no number where the formula is one, and then it is none where it is evaluated.
+TEST(Formulas, DerivativesMayBeNoNumbers) {
+  FormulaGraph graph;
+  const auto power = graph.read("0^x", names);
+  const FormulaProgram program(graph, {power, graph.derivative(power, 0)});
+  const double at[] = {1, 0, 0};
+  double out[2];
+  std::vector<double> scratch;
+  program.evaluate(at, out, scratch);
+  EXPECT_EQ(out[0], 0);
+  EXPECT_FALSE(std::isfinite(out[1]));
+}
+
 TEST(Formulas, ThatAreNoneAreRefusedInWords) {
   FormulaGraph graph;
   const auto refused = [&](const std::string& text) -> std::string {
@@ -98,6 +111,9 @@ TEST(Formulas, ThatAreNoneAreRefusedInWords) {
   EXPECT_EQ(refused("min(x, y)"), "there is no smooth function \"min\"");
   EXPECT_EQ(refused("x > 1 ? x : y"), "\"?\" makes it no smooth function");
   EXPECT_EQ(refused("x, y"), "it has several values");
+  EXPECT_EQ(refused("x''"), "there is no \"x''\"");
+  EXPECT_EQ(refused("2x"), "a number stands before \"x\" without *");
+  EXPECT_EQ(refused("x + sqrt(-1)"), "a part of it is no finite number");
   for (const char* text : {"", "x +", "(x", "x y", "2 x", "x = 1", "sin", "x''", "1e", "x..y", "nan", "inf*x"})
     EXPECT_NE(refused(text), "") << text;
 }

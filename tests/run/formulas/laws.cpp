@@ -1,7 +1,7 @@
 // The suites of steps of any size hold for what is sound, and fail for what is broken.
 #include <lagroid/run/formula/formula_lagrangian.hpp>
 #include <lagroid/solvers/galerkin/curve_step.hpp>
-#include <lagroid/solvers/testing/sized_step_laws.hpp>
+#include <lagroid/solvers/galerkin/testing/sized_step_laws.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The exact discrete Lagrangian: its value, its step on R^n, and how the actions of rules differ from it.
 #include <lagroid/solvers/galerkin/exact_lagrangian.hpp>
 #include <lagroid/solvers/galerkin/rules_of_order_two.hpp>
-#include <lagroid/solvers/testing/exact_action_laws.hpp>
+#include <lagroid/solvers/galerkin/testing/exact_action_laws.hpp>
 
 #include "../subjects.hpp"
 #include "exact_steps.hpp"

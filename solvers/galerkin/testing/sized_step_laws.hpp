@@ -39,7 +39,7 @@ struct SizedStepSubject {
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& q)> constraint = nullptr;
   /// q and p so much later than at the start, to round-off; null: no order is asked.
   std::function<Eigen::VectorXd(double later)> exact = nullptr;
-  double spread = 0.02;  ///< states are drawn so far from the start, relative to its size
+  double spread = 0.02;  ///< states are drawn so far from the start, in units of its size
 };
 
 namespace detail {
@@ -59,10 +59,27 @@ inline SizedState on_constraints(const SizedStepSubject& subject, const SizedSte
   z.velocity = tangent.velocity;
   return z;
 }
-inline SizedState drawn(const SizedStepSubject& subject, const SizedStep& step) {
+/// What places and momenta are of the size of: at the start, and after eight steps where those converge.
+struct PhaseUnits {
+  double place = 0;
+  double momentum = 0;
+};
+inline PhaseUnits units_of(const SizedStepSubject& subject, SizedStep& step) {
   SizedState z = subject.start;
-  for (double& each : z.position) each += subject.spread * (1 + subject.start.position.norm()) * draw_uniform();
-  for (double& each : z.momentum) each += subject.spread * (1 + subject.start.momentum.norm()) * draw_uniform();
+  PhaseUnits out{z.position.norm(), z.momentum.norm()};
+  for (int k = 0; k < 8; ++k) {
+    if (!step.take(z, subject.time + k * subject.step, subject.step).converged()) break;
+    out.place = std::max(out.place, z.position.norm());
+    out.momentum = std::max(out.momentum, z.momentum.norm());
+  }
+  if (!(out.place > 0)) out.place = 1;
+  if (!(out.momentum > 0)) out.momentum = 1;
+  return out;
+}
+inline SizedState drawn(const SizedStepSubject& subject, const SizedStep& step, const PhaseUnits& units) {
+  SizedState z = subject.start;
+  for (double& each : z.position) each += subject.spread * units.place * draw_uniform();
+  for (double& each : z.momentum) each += subject.spread * units.momentum * draw_uniform();
   return on_constraints(subject, step, z);
 }
 inline SizedState stepped(const SizedStepSubject& subject, SizedStep& step, SizedState z, double h, double t) {
@@ -93,22 +110,22 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
   const std::unique_ptr<SizedStep> step = subject.make();
   LawReport report{subject.name + ", steps by " + subject.traits.name, {}};
   const double h = subject.step, t = subject.time;
+  const detail::PhaseUnits units = detail::units_of(subject, *step);
 
   if (subject.traits.symmetric)
     report.laws.push_back(check_law("steps return to where they began", 1e-10, [&] {
-      const SizedState z = detail::drawn(subject, *step);
+      const SizedState z = detail::drawn(subject, *step, units);
       const SizedState back = detail::stepped(subject, *step, detail::stepped(subject, *step, z, h, t), -h, t + h);
-      return ((back.position - z.position).norm() + (back.momentum - z.momentum).norm()) /
-             (1 + z.position.norm() + z.momentum.norm());
+      return (back.position - z.position).norm() / units.place + (back.momentum - z.momentum).norm() / units.momentum;
     }));
 
   if (subject.traits.symplectic)
     report.laws.push_back(check_law("the step is symplectic", 1e-7, [&] {
-      const SizedState z = detail::drawn(subject, *step);
+      const SizedState z = detail::drawn(subject, *step, units);
       const auto direction = [&] {
         SizedState d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
-        for (double& each : d.position) each = draw_uniform();
-        for (double& each : d.momentum) each = draw_uniform();
+        for (double& each : d.position) each = units.place * draw_uniform();
+        for (double& each : d.momentum) each = units.momentum * draw_uniform();
         return d;
       };
       const SizedState one = direction(), other = direction();
@@ -125,8 +142,8 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
         return a.position.dot(b.momentum) - a.momentum.dot(b.position);
       };
       const SizedState a = before(one), b = before(other), c = after(one), d = after(other);
-      return std::abs(form(c, d) - form(a, b)) /
-             (1 + c.position.norm() * d.momentum.norm() + c.momentum.norm() * d.position.norm());
+      return std::abs(form(c, d) - form(a, b)) / (units.place * units.momentum + c.position.norm() * d.momentum.norm() +
+                                                  c.momentum.norm() * d.position.norm());
     }));
 
   if (!subject.exact) return report;
@@ -141,8 +158,15 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
       const double later = steps * h * longer;
       OrderProblem problem;
       problem.coarsest = steps;
-      problem.plateau = 1e-11 * (1 + subject.start.position.norm());
-      problem.exact = subject.exact(later);
+      const auto in_units = [&](Eigen::VectorXd both) {
+        both.head(n) /= units.place;
+        both.tail(n) /= units.momentum;
+        return both;
+      };
+      problem.exact = in_units(subject.exact(later));
+      // What grew has lost its digits by then, and longer steps would lose more.
+      if (longer > 1 && !(problem.exact.norm() < 10)) break;
+      problem.plateau = 1e-11 * (1 + problem.exact.norm());
       problem.end = [&](int count) {
         const std::unique_ptr<SizedStep> taken = subject.make();
         SizedState z = detail::on_constraints(subject, *taken, subject.start);
@@ -150,7 +174,7 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
         for (int k = 0; k < count; ++k) z = detail::stepped(subject, *taken, z, part, t + k * part);
         Eigen::VectorXd both(2 * n);
         both << z.position, z.momentum;
-        return both;
+        return in_units(both);
       };
       measured = measured_order(problem);
     } catch (const NotSampled& none) {
@@ -171,14 +195,16 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
 inline LawReport sized_lagrangian_laws(const SizedLagrangian& l, const SizedStepSubject& subject) {
   const Eigen::Index n = l.sizes().dimension;
   const std::unique_ptr<SizedStep> step = subject.make();
+  const detail::PhaseUnits units = detail::units_of(subject, *step);
   LawReport report{subject.name + ", Lagrangian", {}};
   report.laws.push_back(check_law("derivatives are those of l", 1e-7, [&] {
-    const SizedState z = detail::drawn(subject, *step);
+    const SizedState z = detail::drawn(subject, *step, units);
     TangentState tangent;
     step->find_velocity(z, subject.time, tangent);
     Eigen::VectorXd at(2 * n), along(2 * n);
     at << z.position, tangent.velocity;
-    for (double& each : along) each = draw_uniform();
+    const double speed = std::max(tangent.velocity.norm(), units.place / std::abs(subject.step) * 1e-3);
+    for (Eigen::Index i = 0; i < 2 * n; ++i) along(i) = (i < n ? units.place : speed) * draw_uniform();
     std::vector<double> numbers(l.lagrangian_numbers());
     const auto first = [&](const Eigen::VectorXd& x) {
       l.lagrangian(subject.time, x.data(), x.data() + n, numbers.data());
@@ -194,7 +220,14 @@ inline LawReport sized_lagrangian_laws(const SizedLagrangian& l, const SizedStep
       for (Eigen::Index j = i; j < 2 * n; ++j) second(i, j) = second(j, i) = numbers[place++];
     Eigen::VectorXd declared(1 + 2 * n);
     declared << slope.dot(along), second * along;
-    return (found.position - declared).norm() / (1 + declared.norm());
+    // l, its derivatives by places and those by velocities are of different units.
+    const auto relative = [&](Eigen::Index from, Eigen::Index count, double size) {
+      const double off = (found.position - declared).segment(from, count).norm();
+      const double whole = declared.segment(from, count).norm() + size;
+      return off == 0 ? 0 : off / whole;
+    };
+    return std::max({relative(0, 1, std::abs(numbers[0])), relative(1, n, slope.head(n).norm()),
+                     relative(1 + n, n, slope.tail(n).norm())});
   }));
   return report;
 }
