@@ -132,6 +132,15 @@ void set_growth(GradientTable& table, double growth) {
   table.digits_left = propagated.digits_left();
 }
 
+double size_or_usual(double value) { return value != 0 ? std::abs(value) : 1e-2; }
+/// That of a number of the start, or a hundredth of the largest in its group: their unit is one.
+double size_of_start(const GradientSubject& subject, std::size_t index) {
+  double largest = 0;
+  for (std::size_t i = 0; i < subject.start.size(); ++i)
+    if (subject.start[i].group == subject.start[index].group) largest = std::max(largest, std::abs(subject.sizes[i]));
+  return largest != 0 ? std::max(std::abs(subject.sizes[index]), 1e-2 * largest) : size_or_usual(0);
+}
+
 void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
                               const std::function<std::optional<Eigen::VectorXd>(const std::vector<Nudge>&)>& values,
                               const std::vector<double>& widths) {
@@ -147,7 +156,8 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
       nudge.parameter = subject.parameters[std::size_t(index)].name;
     }
     const auto at = Eigen::Index(j);
-    sizes(at) = std::max(std::abs(subject.sizes[std::size_t(index) + (of_start ? 0 : subject.start.size())]), 1e-2);
+    sizes(at) = of_start ? size_of_start(subject, std::size_t(index))
+                         : size_or_usual(subject.sizes[subject.start.size() + std::size_t(index)]);
     const auto nudged = [&](double by) {
       nudge.by = by;
       return values({nudge});

@@ -1,4 +1,5 @@
 // The exact discrete Lagrangian: its value, its step on R^n, and how the actions of rules differ from it.
+#include <lagroid/core/testing/sampling.hpp>
 #include <lagroid/solvers/galerkin/exact_lagrangian.hpp>
 #include <lagroid/solvers/galerkin/rules_of_order_two.hpp>
 #include <lagroid/solvers/galerkin/testing/exact_action_laws.hpp>
@@ -66,7 +67,9 @@ TEST(ExactAction, OrdersAreSeenInTheActionItself) {
   EXPECT_TRUE(laws::exact_action_laws(Trapezoidal<Swing>{}, draw_swing, 0.1).holds());
   const laws::LawReport four = laws::exact_action_laws(Galerkin<Swing, 2>{}, draw_swing, 0.4);
   EXPECT_TRUE(four.holds()) << four;
-  EXPECT_FALSE(laws::exact_action_laws(Boasting{}, draw_swing, 0.1).holds());
+  const laws::Sampling quiet(20, 1);
+  const laws::LawReport boasting = laws::exact_action_laws(Boasting{}, draw_swing, 0.1);
+  EXPECT_FALSE(boasting.law("the action is exact to the declared order").holds());
 }
 
 TEST(ExactAction, AStepThatBendsTooMuchIsRefused) {
