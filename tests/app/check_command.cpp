@@ -12,7 +12,8 @@ namespace {
 constexpr std::array at_once{"pendulum_chain",    "learned_hamiltonian", "lotka_volterra", "three_species",
                              "volterra_ring",     "euler_top",           "kirchhoff",      "toda",
                              "toda_ring",         "maxwell_bloch",       "sklyanin",       "magnetic_particle",
-                             "heavy_top_bracket", "body_in_space",       "spin_chain"};
+                             "heavy_top_bracket", "body_in_space",       "spin_chain",     "lagrangian",
+                             "hamiltonian"};
 
 TEST_F(CommandLine, EveryExampleIsCertified) {
   for (const auto& entry : fs::directory_iterator(LAGROID_EXAMPLES)) {
@@ -25,7 +26,7 @@ TEST_F(CommandLine, EveryExampleIsCertified) {
     std::ifstream file(entry.path());
     const std::string text(std::istreambuf_iterator<char>(file), {});
     const int samples = text.find("[[body]]") == std::string::npos ? 10 : 1;
-    // Orders and loops of integrators on spheres and on Poisson manifolds are asked once.
+    // Orders and loops of integrators on spheres, on Poisson manifolds and of formulas are asked once.
     const bool once = std::any_of(at_once.begin(), at_once.end(), [&](const std::string& name) {
       return text.find('"' + name + '"') != std::string::npos;
     });
