@@ -111,7 +111,8 @@ FormulaGraph::Node FormulaGraph::read(const std::string& text, const std::vector
       parser.DefineVar(detail::word_of(i), &nodes[i]);
     }
     const std::string words = detail::in_words(text, names);
-    if (const std::string unknown = unknown_word(words, parser); !unknown.empty()) throw std::invalid_argument(in_names(unknown));
+    if (const std::string unknown = unknown_word(words, parser); !unknown.empty())
+      throw std::invalid_argument(in_names(unknown));
     parser.SetExpr(words);
     reading_ = true;
     const double found = parser.Eval();
