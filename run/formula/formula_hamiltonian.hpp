@@ -2,8 +2,9 @@
 /// A Hamiltonian on T*R^n that is written as text, with constraints of places and symmetries, and its generating
 /// functions of type II by Taylor's method of order r and a quadrature: what a scene has under [hamiltonian].
 ///
-///     const FormulaHamiltonian spring({.coordinates = {"q"}}, {"p"}, "(p^2 + q^2)/2", {1,
-///     quadrature_rules::trapezoid}); GeneratingStep step(spring, GeneratingType::two);  // Stormer-Verlet's
+///     const FormulaHamiltonian spring({.coordinates = {"q"}}, {"p"}, "(p^2 + q^2)/2",
+///                                     {1, quadrature_rules::trapezoid});
+///     GeneratingStep step(spring, GeneratingType::two);  // Stormer-Verlet's
 ///
 /// The Taylor coefficients, and the derivatives of the generating function, are formulas of the same graph.
 ///

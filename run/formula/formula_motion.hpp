@@ -1,8 +1,8 @@
 #pragma once
 /// A Lagrangian written as text, as a motion: it runs, is recorded, judged, studied and looked into as any other.
 ///
-///     FormulaMotion motion("pendulum", std::make_shared<FormulaLagrangian>(texts), method, start, /*h*/ 0.01, /*t*/
-///     0); motion.advance();
+///     FormulaMotion motion("pendulum", system, std::move(method), start, /*h*/ 0.01, /*t*/ 0);
+///     motion.advance();
 ///
 /// Requires a start on the constraints. Errors: those of CurveStep, as the steps' status.
 

@@ -6,7 +6,8 @@
 /// as a system like any other, whose step is the flow: what the discrete Lagrangians of rules are measured against.
 ///
 ///     struct Drop : ContinuousLagrangian<Pair<1>> {
-///       template <class S> S l(const Vector<S, 1>& q, const Vector<S, 1>& v) const { return v(0) * v(0) * 0.5 - q(0);
+///       template <class S> S l(const Vector<S, 1>& q, const Vector<S, 1>& v) const {
+///         return v(0) * v(0) * 0.5 - q(0);
 ///       }
 ///     };
 ///     inline const ExactLagrangian<Drop> flow{Drop{}, /*h*/ 0.5};

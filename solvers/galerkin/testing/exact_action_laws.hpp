@@ -2,8 +2,10 @@
 /// The order of a discrete Lagrangian, measured on the action itself: L(g) - L^E(g) = O(h^{r+1}), L^E the exact
 /// discrete Lagrangian, which makes the step of order r. No step is taken, and no reference motion is needed.
 ///
-///     const auto draw = [] { return State<Pair<1>>{Vector<double, 1>(0.5), Vector<double, 1>(laws::draw_uniform())};
-///     }; EXPECT_TRUE(laws::exact_action_laws(Midpoint<Pendulum>{}, draw, /*longest*/ 0.2).holds());
+///     const auto draw = [] {
+///       return State<Pair<1>>{Vector<double, 1>(0.5), Vector<double, 1>(laws::draw_uniform())};
+///     };
+///     EXPECT_TRUE(laws::exact_action_laws(Midpoint<Pendulum>{}, draw, /*longest*/ 0.2).holds());
 ///
 /// Requires RapidCheck, a rule of a continuous Lagrangian without constraints, and states (q, xi), `momentum` the
 /// velocity, beside which l is smooth. Returns a LawReport; a law that does not hold is no exception. Where the
