@@ -73,7 +73,10 @@ int symmetrised_order(const TaylorChoice& taylor, bool constrained) {
 
 std::unique_ptr<SizedStep> composed(std::unique_ptr<SizedStep> step, const Composition& composition) {
   if (composition.stages() == 1) return step;
-  return std::make_unique<ComposedSizedStep>(std::move(step), composition);
+  std::vector<std::unique_ptr<SizedStep>> methods;
+  methods.push_back(std::move(step));
+  return std::make_unique<ComposedSizedStep>(
+      std::move(methods), std::vector<double>(composition.coefficients.begin(), composition.coefficients.end()));
 }
 
 }  // namespace

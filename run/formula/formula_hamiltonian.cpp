@@ -249,7 +249,7 @@ std::unique_ptr<FormulaSystem> FormulaHamiltonian::changed(const std::string& pa
 
 void FormulaHamiltonian::energy_slope(double, const double* q, const double* p, const double*, double* out) const {
   const std::size_t n = size();
-  std::vector<double> numbers(1 + 2 * n + n * (2 * n + 1));
+  std::vector<double> numbers(SecondOrder::count(int(2 * n)));
   hamiltonian(q, p, numbers.data());
   std::copy_n(numbers.begin() + 1, 2 * n, out);
   energy_by_parameters_.evaluate(at(0, q, p), out + 2 * n, scratch_);

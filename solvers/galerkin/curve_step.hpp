@@ -25,7 +25,6 @@
 #include <lagroid/solvers/step/sized_step.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <vector>
 
@@ -72,10 +71,9 @@ class CurveStep final : public SizedStep {
   std::vector<Point> points_;
   std::vector<double> curve_nodes_, rate_at_end_;  ///< after the first; of the polynomials that are one there
   int first_multiplier_;                           ///< of the multipliers at q0
-  Eigen::VectorXd unknown_, residual_, terms_, update_, units_, end_momentum_, impulse_, x_, v_, place_slope_,
-      velocity_slope_;
-  Eigen::MatrixXd matrix_, place_by_, velocity_by_, gradient_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+  detail::SizedNewton newton_;
+  Eigen::VectorXd end_momentum_, impulse_, x_, v_, place_slope_, velocity_slope_;
+  Eigen::MatrixXd place_by_, velocity_by_, gradient_;
   mutable Numbers l_, c_, f_;
   TangentState tangent_;
   SizedState end_;

@@ -15,6 +15,8 @@
 ///
 /// Results are written to the last argument. Nothing throws.
 
+#include <lagroid/core/derivatives/second_order.hpp>
+
 #include <cstddef>
 
 namespace lagroid {
@@ -31,10 +33,9 @@ class SizedLagrangian {
   virtual ~SizedLagrangian() = default;
   const Sizes& sizes() const { return sizes_; }
 
-  /// l, its 2 n derivatives by q and v, and the n (2 n + 1) second ones: of the upper triangle, row by row.
+  /// l with its derivatives by q and v, as SecondOrder has them (second_order.hpp).
   virtual void lagrangian(double t, const double* q, const double* v, double* out) const = 0;
-  /// C, its n derivatives and its n (n + 1) / 2 second ones (the upper triangle, row by row): all of the first
-  /// component, then of the next.
+  /// C with its derivatives by q: all of the first component, then of the next.
   virtual void constraint(const double* /*q*/, double* /*out*/) const {}
   /// F and its 2 n derivatives by q and v: all of the first component, then of the next.
   virtual void force(double /*t*/, const double* /*q*/, const double* /*v*/, double* /*out*/) const {}
@@ -43,19 +44,14 @@ class SizedLagrangian {
   /// there is a force.
   virtual void by_parameters(double /*t*/, const double* /*q*/, const double* /*v*/, double* /*out*/) const {}
 
-  std::size_t lagrangian_numbers() const {
-    const std::size_t n = std::size_t(sizes_.dimension);
-    return 1 + 2 * n + n * (2 * n + 1);
-  }
+  std::size_t lagrangian_numbers() const { return SecondOrder::count(2 * sizes_.dimension); }
   std::size_t constraint_numbers() const {
-    const std::size_t n = std::size_t(sizes_.dimension);
-    return std::size_t(sizes_.constraints) * (1 + n + n * (n + 1) / 2);
+    return std::size_t(sizes_.constraints) * SecondOrder::count(sizes_.dimension);
   }
   std::size_t force_numbers() const {
     const std::size_t n = std::size_t(sizes_.dimension);
     return sizes_.forced ? n * (1 + 2 * n) : 0;
   }
-
   std::size_t parameter_numbers() const {
     const std::size_t n = std::size_t(sizes_.dimension);
     return std::size_t(sizes_.parameters) * (1 + 2 * n + (sizes_.forced ? n : 0));

@@ -21,6 +21,7 @@
 ///
 /// Source: [V] 5.4.1, (3.19), (3.21).
 
+#include <lagroid/core/derivatives/second_order.hpp>
 #include <lagroid/core/hamiltonian/generating_function.hpp>
 #include <lagroid/solvers/step/sized_step.hpp>
 
@@ -28,8 +29,8 @@
 
 namespace lagroid {
 
-/// H(q, p) with the parts of W, for a step h, behind virtual functions. Second derivatives are upper triangles, row by
-/// row, by z = (q, p).
+/// H(q, p) with the parts of W, for a step h, behind virtual functions; with first and second derivatives where
+/// SecondOrder has them (second_order.hpp).
 class SizedHamiltonian {
  public:
   SizedHamiltonian(int dimension, int constraints, int parameters = 0)
@@ -39,10 +40,10 @@ class SizedHamiltonian {
   int constraints() const { return k_; }
   int parameters() const { return parameters_; }  ///< by which there are derivatives
 
-  /// H, its 2 n derivatives, its n (2 n + 1) second ones.
+  /// H with its derivatives by (q, p).
   virtual void hamiltonian(const double* q, const double* p, double* out) const = 0;
-  /// At (q, p~, sigma, p1): W, its 2 n derivatives by (q, p~) and its n (2 n + 1) second ones; P and its n x 2 n
-  /// derivatives, a row each; Q and the same.
+  /// At (q, p~, sigma, p1): W with its derivatives by (q, p~); then P, and its n x 2 n derivatives, a row each; Q and
+  /// the same.
   virtual void generating(const double* q, const double* p, const double* sigma, const double* far, double h,
                           double* out) const = 0;
   /// C and its derivatives, as SizedLagrangian has them.
@@ -71,29 +72,16 @@ class GeneratingStep final : public SizedStep {
   const SizedHamiltonian& hamiltonian_;
   GeneratingType type_;
   int n_, k_;
-  Eigen::VectorXd unknown_, residual_, terms_, update_, units_, base_, far_, to_;
-  Eigen::MatrixXd matrix_, reaction_, gradient_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+  detail::SizedNewton newton_;
+  Eigen::VectorXd base_, far_, to_;
+  Eigen::MatrixXd reaction_;
   mutable std::vector<double> w_, c_, h_;
 };
 
 /// Type III after type II, half a step each: a map and its adjoint, whose product is symmetric and of even order.
-class SymmetrisedGeneratingStep final : public SizedStep {
+class SymmetrisedGeneratingStep final : public ComposedSizedStep {
  public:
-  explicit SymmetrisedGeneratingStep(const SizedHamiltonian& hamiltonian)
-      : first_(hamiltonian, GeneratingType::two), second_(hamiltonian, GeneratingType::three) {}
-
-  StepReport take(SizedState& z, double t, double h) override;
-  bool linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) override {
-    return first_.linearise(z, t, h / 2, stages) && second_.linearise(z, t + h / 2, h / 2, stages);
-  }
-  void find_velocity(const SizedState& z, double t, TangentState& out) const override {
-    first_.find_velocity(z, t, out);
-  }
-
- private:
-  GeneratingStep first_, second_;
-  SizedState trial_;
+  explicit SymmetrisedGeneratingStep(const SizedHamiltonian& hamiltonian);
 };
 
 }  // namespace lagroid

@@ -8,20 +8,69 @@
 /// Momenta that differ by C'(q)^T nu are one. A step is a function of the state alone: what it begins to search from is
 /// part of that. Errors: the report's status; the state stays as it was unless it is `converged`. Nothing throws.
 
-#include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include <cmath>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 namespace lagroid {
+
+namespace detail {
+
+/// Newton's iteration for equations whose number is known when it runs: until each is left with the rounding of its
+/// terms. Unknown j is in units of `units(j)`.
+struct SizedNewton {
+  Eigen::VectorXd unknown{}, residual{}, terms{}, units{};
+  Eigen::MatrixXd matrix{};
+
+  void resize(Eigen::Index count);
+  /// `write` writes residual, the sizes of its terms, matrix and units at `unknown`; what it wrote last is at the
+  /// unknown that is left. `least` iterations ask the matrix whether it determines the unknown, even of a solution.
+  template <class Write> StepReport solve(const Write& write, int least, int most) {
+    constexpr double floor = 100;  // times its rounding is as far as some get
+    StepReport report;
+    double last = std::numeric_limits<double>::infinity();
+    for (; report.iterations < most; ++report.iterations) {
+      write();
+      report.residual = residual.lpNorm<Eigen::Infinity>();
+      report.roundoff_ratio = roundoff_ratio();
+      if (!residual.allFinite() || !terms.allFinite() || !matrix.allFinite()) {
+        report.status = SolveStatus::not_finite;
+        return report;
+      }
+      if (report.iterations >= least &&
+          (report.roundoff_ratio <= 1 || (report.roundoff_ratio <= floor && report.roundoff_ratio >= last / 2))) {
+        report.status = SolveStatus::converged;
+        return report;
+      }
+      last = report.roundoff_ratio;
+      if (!find_update()) {
+        report.status = SolveStatus::singular;
+        return report;
+      }
+      unknown -= update_;
+    }
+    return report;
+  }
+  /// Of multipliers, the unknowns from `first` on: a unit that makes them as large as what they add to.
+  double unit_of_multipliers(Eigen::Index first) const;
+
+ private:
+  /// Rows and columns are brought to one size. False where the matrix is singular.
+  bool find_update();
+  /// The largest residual over the rounding of its terms; infinite where that is nothing.
+  double roundoff_ratio() const;
+
+  Eigen::VectorXd update_{};
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_{};
+};
+
+}  // namespace detail
 
 /// The velocity is the root of p = l_v + C'^T nu where Newton's method begins, which for an l that is not convex is one
 /// of several; zero where it is left empty.
@@ -38,11 +87,7 @@ struct TangentState {
   double energy = 0;
   double energy_size = 0;  ///< of its terms
   bool found = false;
-  // Where it is computed.
-  Eigen::VectorXd nu{};
-  Eigen::MatrixXd matrix{};
-  Eigen::VectorXd residual{}, update{}, units{};
-  Eigen::PartialPivLU<Eigen::MatrixXd> factor{};
+  detail::SizedNewton newton{};  ///< where it is computed
 };
 
 /// A step linearised where it is solved, as LinearStep has it (linear_step.hpp): E(z; x) = 0 and x' = X(z; x), x = (q,
@@ -66,73 +111,24 @@ class SizedStep {
   virtual void find_velocity(const SizedState& z, double t, TangentState& out) const = 0;
 };
 
-/// The steps gamma_i h of a composition, or none.
-class ComposedSizedStep final : public SizedStep {
+/// Steps gamma_i h one after the other, by each of some methods in turn, or none.
+class ComposedSizedStep : public SizedStep {
  public:
-  ComposedSizedStep(std::unique_ptr<SizedStep> step, const Composition& composition)
-      : step_(std::move(step)), composition_(composition) {}
+  ComposedSizedStep(std::vector<std::unique_ptr<SizedStep>> methods, std::vector<double> gammas)
+      : methods_(std::move(methods)), gammas_(std::move(gammas)) {}
 
   StepReport take(SizedState& z, double t, double h) override;
   bool linearise(SizedState& z, double t, double h, std::vector<SizedSlopes>& stages) override;
   void find_velocity(const SizedState& z, double t, TangentState& out) const override {
-    step_->find_velocity(z, t, out);
+    methods_.front()->find_velocity(z, t, out);
   }
 
  private:
-  std::unique_ptr<SizedStep> step_;
-  Composition composition_;
+  SizedStep& method_of(std::size_t stage) { return *methods_[stage % methods_.size()]; }
+
+  std::vector<std::unique_ptr<SizedStep>> methods_;
+  std::vector<double> gammas_;
   SizedState trial_;
 };
-
-namespace detail {
-
-/// matrix x = right, in place, unknown j in units of `units(j)`, rows and columns then brought to one size. False where
-/// the matrix is singular.
-bool solve_in_units(Eigen::PartialPivLU<Eigen::MatrixXd>& factor, Eigen::MatrixXd& matrix, Eigen::VectorXd& right,
-                    Eigen::VectorXd& x, Eigen::VectorXd& units);
-/// The unit of multipliers, in columns from `first` on, that makes them as large as what they add to.
-double unit_of_multipliers(const Eigen::MatrixXd& matrix, Eigen::Index first);
-/// The largest residual over the rounding of its terms; infinite where that is nothing.
-double roundoff_ratio(const Eigen::VectorXd& residual, const Eigen::VectorXd& terms);
-
-/// The place of entry (i, j) in an upper triangle of `size` rows, row by row.
-constexpr std::size_t in_triangle(int i, int j, int size) {
-  const int row = i < j ? i : j, column = i < j ? j : i;
-  return std::size_t(row * size - row * (row - 1) / 2 + column - row);
-}
-
-/// Newton's iteration for `unknown`: `write` writes residual, terms, matrix and units there; until each equation is
-/// left with the rounding of its terms. The last equations written are those of the unknown that is left.
-template <class Write>
-StepReport newton_of_any_size(const Write& write, Eigen::VectorXd& unknown, Eigen::VectorXd& residual,
-                              const Eigen::VectorXd& terms, Eigen::MatrixXd& matrix, Eigen::VectorXd& update,
-                              Eigen::VectorXd& units, Eigen::PartialPivLU<Eigen::MatrixXd>& factor) {
-  constexpr int most_iterations = 50;
-  constexpr double floor = 100;  // times its rounding is as far as some get
-  StepReport report;
-  double last = std::numeric_limits<double>::infinity();
-  for (; report.iterations < most_iterations; ++report.iterations) {
-    write();
-    report.residual = residual.cwiseAbs().maxCoeff();
-    report.roundoff_ratio = roundoff_ratio(residual, terms);
-    if (!residual.allFinite() || !terms.allFinite() || !matrix.allFinite()) {
-      report.status = SolveStatus::not_finite;
-      return report;
-    }
-    if (report.roundoff_ratio <= 1 || (report.roundoff_ratio <= floor && report.roundoff_ratio >= last / 2)) {
-      report.status = SolveStatus::converged;
-      return report;
-    }
-    last = report.roundoff_ratio;
-    if (!solve_in_units(factor, matrix, residual, update, units)) {
-      report.status = SolveStatus::singular;
-      return report;
-    }
-    unknown -= update;
-  }
-  return report;
-}
-
-}  // namespace detail
 
 }  // namespace lagroid

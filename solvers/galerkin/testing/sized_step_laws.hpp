@@ -215,9 +215,8 @@ inline LawReport sized_lagrangian_laws(const SizedLagrangian& l, const SizedStep
     });
     const Eigen::VectorXd slope = first(at).tail(2 * n);
     Eigen::MatrixXd second(2 * n, 2 * n);
-    std::size_t place = std::size_t(1 + 2 * n);
-    for (Eigen::Index i = 0; i < 2 * n; ++i)
-      for (Eigen::Index j = i; j < 2 * n; ++j) second(i, j) = second(j, i) = numbers[place++];
+    for (int i = 0; i < 2 * n; ++i)
+      for (int j = 0; j < 2 * n; ++j) second(i, j) = SecondOrder{numbers.data(), int(2 * n)}.second(i, j);
     Eigen::VectorXd declared(1 + 2 * n);
     declared << slope.dot(along), second * along;
     // l, its derivatives by places and those by velocities are of different units.
