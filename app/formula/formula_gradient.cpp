@@ -69,10 +69,8 @@ class LinearisedFormula final : public LinearisedMotion {
     out.values << state_.position, state_.momentum, Eigen::VectorXd::Constant(rows - 2 * n, tangent.energy);
     if (rows > 2 * n + 1) {
       system_->momentum_slopes(q, p, by.row(2 * n + 1).data());
-      std::vector<double> xi(std::size_t((rows - 2 * n - 1) * n));
-      system_->fields(q, xi.data());
-      for (Eigen::Index s = 0; 2 * n + 1 + s < rows; ++s)
-        out.values(2 * n + 1 + s) = state_.momentum.dot(Eigen::Map<const Eigen::VectorXd>(xi.data() + s * n, n));
+      // The derivatives of <p, xi> by p are xi.
+      for (Eigen::Index s = 2 * n + 1; s < rows; ++s) out.values(s) = by.row(s).segment(n, n).dot(state_.momentum);
     }
     out.derivatives = asked_columns(by);
     return out;

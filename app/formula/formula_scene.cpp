@@ -157,10 +157,7 @@ void require_regular(const Section& scene, const FormulaSystem& system, const Si
 
 /// The nearest place on the constraints, and v without what leaves them there.
 void bring_to_constraints(const FormulaSystem& system, Eigen::VectorXd& q, Eigen::VectorXd& v) {
-  for (int pass = 0; pass < 20; ++pass) {
-    const Eigen::MatrixXd c = system.constraint_rows(q), slope = c.rightCols(q.size());
-    q -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(c.col(0));
-  }
+  q = detail::place_on_constraints([&](const Eigen::VectorXd& at) { return system.constraint_rows(at); }, q);
   const Eigen::MatrixXd slope = system.constraint_rows(q).rightCols(q.size());
   v -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(slope * v);
 }
@@ -241,21 +238,23 @@ FormulaRead read_hamiltonian(const Section& scene, const Section& time) {
   const FormulaTexts texts = read_texts(scene);
   const Section table = table_of(scene);
   const GeneratingMethod method = read_generating_method(time, !texts.constraints.empty());
-  const auto made = [&](const TaylorChoice& taylor) {
-    return at_its_key(scene, [&] {
-      return std::make_shared<const FormulaHamiltonian>(texts, read_key_or(table, momenta_key, {}),
-                                                        read_key(table, hamiltonian_key), taylor);
-    });
+  const auto made = [texts, momenta = read_key_or(table, momenta_key, {}),
+                     text = read_key(table, hamiltonian_key)](const TaylorChoice& taylor) {
+    return std::make_shared<const FormulaHamiltonian>(texts, momenta, text, taylor);
   };
-  const auto hamiltonian = made(method.taylor);
+  const auto hamiltonian = at_its_key(scene, [&] { return made(method.taylor); });
   const bool constrained = hamiltonian->constraint_count() > 0;
   GeneratingMethod precise = method;
   precise.types = GeneratingMethod::Types::both;
   precise.taylor = {1, quadrature_rules::trapezoid};
   precise.composition = compositions::kahan_li_8;
-  const auto as_precise = made(precise.taylor);
+  // Made where it is asked for first: its formulas take as long to derive as the scene's.
+  const auto as_precise = [=, kept = std::shared_ptr<const FormulaHamiltonian>()]() mutable {
+    if (!kept) kept = made(precise.taylor);
+    return precise.begun(*kept);
+  };
   FormulaRead out{[=](const FormulaSystem& it) { return method.begun(dynamic_cast<const FormulaHamiltonian&>(it)); },
-                  [=] { return precise.begun(*as_precise); }, hamiltonian,
+                  as_precise, hamiltonian,
                   read_start(scene.section("initial", "position and momentum"), *hamiltonian, nullptr, 0),
                   generating_methods(constrained)};
   require_regular(scene, *hamiltonian, *out.begun(*out.system).step, out.start, 0);

@@ -38,13 +38,7 @@ PoissonNode::PoissonNode(const PoissonEntry& entry, const AnyPoissonSystem& syst
     watch(defect_name, "defect", Promise::conserved, kept.bracket == 0,
           "of the next step: the largest entry of D pi D^T - pi, relative");
   for (std::size_t i = 0; i < watched_.size(); ++i)
-    fields_.push_back({.columns = {"drift of " + watched_[i].name,
-                                   {"drift " + watched_[i].components.front()},
-                                   "1",
-                                   "deviation from the first value",
-                                   false,
-                                   {}},
-                       .drift_of = i});
+    fields_.push_back(drift_field(i, watched_[i].name, watched_[i].components.front()));
 }
 
 void PoissonNode::see(long index, double time, const PoissonIntegrator& at) {

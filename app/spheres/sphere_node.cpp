@@ -51,12 +51,8 @@ SphereNode::SphereNode(const SphereSystem& system, SphereForm form, const Method
     watched_.push_back({q.name, {q.column}, q.promise, false, SizeOf::terms, method.symplectic});
     add({q.column, {q.column}, q.unit, q.name, false, {}});
   }
-  for (std::size_t i = 0; i < quantities.size(); ++i) {
-    const auto& q = quantities[i];
-    fields_.push_back(
-        {.columns = {"drift of " + q.name, {"drift " + q.name}, q.unit, "deviation from the first value", false, {}},
-         .drift_of = i});
-  }
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    fields_.push_back(drift_field(i, quantities[i].name, quantities[i].name, quantities[i].unit));
   add({"constraint_residual", {"residual"}, "1", "largest distance from the spheres", false, {}});
 }
 

@@ -152,7 +152,7 @@ FormulaHamiltonian::FormulaHamiltonian(const FormulaTexts& texts, const std::vec
         "H", fmt::format("\"{}\" depends on t: generating functions here are of systems that do not", hamiltonian));
   if (taylor.order < 0 || taylor.order + 2 > most_terms) throw std::invalid_argument("Taylor's order is 0 to 4");
   hamiltonian_ = FormulaProgram(graph_, with_derivatives(energy, 2 * n));
-  finish(texts, energy, {});
+  read_constraints_and_symmetries(texts, energy, {});
   require_parameters_read(texts, {&hamiltonian_});
 
   try {
@@ -211,10 +211,9 @@ void FormulaHamiltonian::read_generating_function(const FormulaTexts& texts, Nod
   std::vector<Node> slopes(wanted.begin() + 1, wanted.begin() + 1 + long(2 * n));
   wanted.clear();
   for (std::size_t a = 0; a < texts.parameters.size(); ++a) {
-    const std::size_t parameter = time() + 1 + a;
-    energy_slopes.push_back(graph_.derivative(energy, parameter));
+    energy_slopes.push_back(graph_.derivative(energy, variable_of_parameter(a)));
     for (std::vector<Node>* each : {&slopes, &far_p, &far_q})
-      for (const Node f : *each) wanted.push_back(graph_.derivative(f, parameter));
+      for (const Node f : *each) wanted.push_back(graph_.derivative(f, variable_of_parameter(a)));
   }
   energy_by_parameters_ = FormulaProgram(graph_, energy_slopes);
   by_parameters_ = FormulaProgram(graph_, wanted);

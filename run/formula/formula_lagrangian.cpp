@@ -25,13 +25,13 @@ FormulaLagrangian::FormulaLagrangian(const FormulaTexts& texts, const std::strin
   force_ = FormulaProgram(graph_, wanted);
   wanted.clear();
   for (std::size_t a = 0; a < texts.parameters.size(); ++a) {
-    const std::size_t parameter = time() + 1 + a;
-    wanted.push_back(graph_.derivative(l, parameter));
-    for (std::size_t i = 0; i < 2 * n; ++i) wanted.push_back(graph_.derivative(graph_.derivative(l, i), parameter));
-    for (const Node component : components) wanted.push_back(graph_.derivative(component, parameter));
+    wanted.push_back(graph_.derivative(l, variable_of_parameter(a)));
+    for (std::size_t i = 0; i < 2 * n; ++i)
+      wanted.push_back(graph_.derivative(graph_.derivative(l, i), variable_of_parameter(a)));
+    for (const Node component : components) wanted.push_back(graph_.derivative(component, variable_of_parameter(a)));
   }
   by_parameters_ = FormulaProgram(graph_, wanted);
-  finish(texts, l, components);
+  read_constraints_and_symmetries(texts, l, components);
   require_parameters_read(texts, {&lagrangian_, &force_});
 }
 

@@ -12,9 +12,8 @@ namespace lagroid {
 
 FormulaNode::FormulaNode(const FormulaSystem& system, bool symplectic)
     : system_(system),
-      field_(system.symmetries().size() * system.coordinates().size()),
       columns_(2 * system.coordinates().size() + system.parameters().size()),
-      field_slopes_(system.symmetries().size() * columns_) {
+      momentum_slopes_(system.symmetries().size() * columns_) {
   fields_.push_back({.columns = {"position", system.coordinates(), "1", "coordinates", false, {}}});
   fields_.push_back({.columns = {"velocity", system.velocities(), "1/s", "of the coordinates", false, {}}});
   fields_.push_back({.columns = {"momentum", system.momenta(), "1", "tangent to the constraints", false, {}}});
@@ -27,13 +26,7 @@ FormulaNode::FormulaNode(const FormulaSystem& system, bool symplectic)
   for (const ReadSymmetry& each : system.symmetries())
     watch(each.name, "J " + each.name, Promise::conserved, each.affine, "<p, xi(q)>");
   for (std::size_t i = 0; i < watched_.size(); ++i)
-    fields_.push_back({.columns = {"drift of " + watched_[i].name,
-                                   {"drift " + watched_[i].components.front()},
-                                   "1",
-                                   "deviation from the first value",
-                                   false,
-                                   {}},
-                       .drift_of = i});
+    fields_.push_back(drift_field(i, watched_[i].name, watched_[i].components.front()));
 }
 
 void FormulaNode::see(long index, double time, const SizedState& state, const SizedStep& step) {
@@ -41,8 +34,7 @@ void FormulaNode::see(long index, double time, const SizedState& state, const Si
   time_ = time;
   state_ = state;
   step.find_velocity(state, time, tangent_);
-  system_.fields(state.position.data(), field_.data());
-  system_.momentum_slopes(state.position.data(), tangent_.momentum.data(), field_slopes_.data());
+  system_.momentum_slopes(state.position.data(), tangent_.momentum.data(), momentum_slopes_.data());
   if (system_.constraint_count() == 0) return;
   const Eigen::MatrixXd c = system_.constraint_rows(state.position);
   residual_ = c.col(0).cwiseAbs().maxCoeff();
@@ -78,15 +70,15 @@ double FormulaNode::measure(std::size_t quantity, double* values) const {
   }
   // Symmetries leave the constraints, so that the part of p across them does not count.
   double sum = 0, size = 0;
-  const std::size_t n = std::size_t(state_.momentum.size());
-  for (std::size_t i = 0; i < n; ++i) {
-    const double term = tangent_.momentum(Eigen::Index(i)) * field_[(quantity - 1) * n + i];
+  const double* by_place = momentum_slopes_.data() + (quantity - 1) * columns_;
+  const double* xi = by_place + state_.position.size();
+  for (Eigen::Index i = 0; i < state_.momentum.size(); ++i) {
+    const double term = tangent_.momentum(i) * xi[i];
     sum += term;
     size += std::abs(term);
   }
   // The rounding of q in xi.
-  for (std::size_t j = 0; j < n; ++j)
-    size += std::abs(field_slopes_[(quantity - 1) * columns_ + j] * state_.position(Eigen::Index(j)));
+  for (Eigen::Index j = 0; j < state_.position.size(); ++j) size += std::abs(by_place[j] * state_.position(j));
   *values = sum;
   return size;
 }

@@ -1,10 +1,11 @@
 #pragma once
-/// A Lagrangian written as text, as a motion: it runs, is recorded, judged, studied and looked into as any other.
+/// A Lagrangian or a Hamiltonian written as text, as a motion: it runs, is recorded, judged, studied and looked into as
+/// any other.
 ///
 ///     FormulaMotion motion("pendulum", system, std::move(method), start, /*h*/ 0.01, /*t*/ 0);
 ///     motion.advance();
 ///
-/// Requires a start on the constraints. Errors: those of CurveStep, as the steps' status.
+/// Requires a start on the constraints. Errors: those of the method's steps, as their status.
 
 #include <lagroid/run/formula/formula_lagrangian.hpp>
 #include <lagroid/run/motion/motion.hpp>
@@ -51,9 +52,8 @@ class FormulaNode final : public Observables {
   double time_ = 0;
   SizedState state_;
   TangentState tangent_;
-  std::vector<double> field_;  ///< of the symmetries
-  std::size_t columns_;        ///< by which momenta have slopes
-  std::vector<double> field_slopes_;
+  std::size_t columns_;  ///< by which momenta of symmetries have slopes
+  std::vector<double> momentum_slopes_;
   double residual_ = 0, residual_size_ = 1;
 };
 

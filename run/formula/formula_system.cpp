@@ -54,7 +54,8 @@ FormulaSystem::FormulaSystem(const FormulaTexts& texts, std::vector<std::string>
     names_.push_back(name);
   }
   variables_.assign(names_.size(), 0);
-  for (std::size_t i = 0; i < texts.parameters.size(); ++i) variables_[time() + 1 + i] = texts.parameters[i].second;
+  for (std::size_t i = 0; i < texts.parameters.size(); ++i)
+    variables_[variable_of_parameter(i)] = texts.parameters[i].second;
 }
 
 FormulaGraph::Node FormulaSystem::read(const std::string& key, const std::string& text, std::size_t which) {
@@ -73,18 +74,18 @@ std::vector<FormulaGraph::Node> FormulaSystem::with_derivatives(Node f, std::siz
   return all;
 }
 
-void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::vector<Node>& force) {
-  using enum FormulaOperation;
+void FormulaSystem::require_of_places(Node f, const std::string& key, const std::string& text, std::size_t which) {
+  for (std::size_t i = size(); i <= time(); ++i)
+    if (depends(f, i))
+      throw FormulaError(key, fmt::format("\"{}\" depends on {}: it is of places alone", text, names_[i]), which);
+}
+
+std::vector<FormulaGraph::Node> FormulaSystem::read_constraints(const FormulaTexts& texts) {
   const std::size_t n = size();
-  const auto of_places_alone = [&](Node f, const std::string& key, const std::string& text, std::size_t which = 0) {
-    for (std::size_t i = n; i <= time(); ++i)
-      if (depends(f, i))
-        throw FormulaError(key, fmt::format("\"{}\" depends on {}: it is of places alone", text, names_[i]), which);
-  };
   std::vector<Node> constraints, wanted;
   for (const std::string& text : texts.constraints) {
     constraints.push_back(read("constraints", text));
-    of_places_alone(constraints.back(), "constraints", text);
+    require_of_places(constraints.back(), "constraints", text);
     const std::vector<Node> all = with_derivatives(constraints.back(), n);
     wanted.insert(wanted.end(), all.begin(), all.end());
   }
@@ -93,12 +94,17 @@ void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::
     throw FormulaError("constraints",
                        fmt::format("{} of {} coordinates leave nothing that moves", constraint_count_, n));
   constraint_ = FormulaProgram(graph_, wanted);
+  return constraints;
+}
 
-  // xi, and of each symmetry what changes along it, with the sum of its terms' sizes.
-  wanted.clear();
-  std::vector<Node> changes;
+std::vector<FormulaGraph::Node> FormulaSystem::changes_along(const std::vector<Node>& field, Node function,
+                                                             const std::vector<Node>& constraints,
+                                                             const std::vector<Node>& force) {
+  using enum FormulaOperation;
+  const std::size_t n = size();
+  std::vector<Node> changes, terms;
   const auto times = [&](Node a, Node b) { return graph_.apply(multiply, a, b); };
-  const auto change = [&](const std::vector<Node>& terms) {
+  const auto add_change = [&] {
     Node sum = graph_.constant(0), sizes = graph_.constant(0);
     for (const Node term : terms) {
       sum = graph_.apply(add, sum, term);
@@ -106,7 +112,33 @@ void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::
     }
     changes.push_back(sum);
     changes.push_back(sizes);
+    terms.clear();
   };
+  // Velocities are carried by xi' v, momenta by -xi'^T p.
+  for (std::size_t i = 0; i < n; ++i) {
+    terms.push_back(times(graph_.derivative(function, i), field[i]));
+    for (std::size_t j = 0; j < n; ++j) {
+      const Node carried = by_velocity_ ? times(graph_.derivative(field[i], j), graph_.variable(n + j))
+                                        : times(graph_.derivative(field[j], i), graph_.variable(n + j));
+      const Node term = times(graph_.derivative(function, n + i), carried);
+      terms.push_back(by_velocity_ ? term : graph_.apply(negate, term));
+    }
+  }
+  add_change();
+  for (const Node c : constraints) {
+    for (std::size_t i = 0; i < n; ++i) terms.push_back(times(graph_.derivative(c, i), field[i]));
+    add_change();
+  }
+  for (std::size_t i = 0; i < force.size(); ++i) terms.push_back(times(force[i], field[i]));
+  add_change();
+  return changes;
+}
+
+void FormulaSystem::read_constraints_and_symmetries(const FormulaTexts& texts, Node function,
+                                                    const std::vector<Node>& force) {
+  const std::size_t n = size();
+  const std::vector<Node> constraints = read_constraints(texts);
+  std::vector<Node> fields, changes;
   std::set<std::string> known{"energy"};
   for (const FormulaSymmetry& symmetry : texts.symmetries) {
     const std::size_t which = symmetries_.size();
@@ -119,38 +151,21 @@ void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::
     bool affine = true;
     for (const std::string& text : symmetry.field) {
       xi.push_back(read("field", text, which));
-      of_places_alone(xi.back(), "field", text, which);
+      require_of_places(xi.back(), "field", text, which);
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i; j < n; ++j) affine = affine && !depends(graph_.derivative(xi.back(), i), j);
     }
-    wanted.insert(wanted.end(), xi.begin(), xi.end());
     symmetries_.push_back({symmetry.name, affine});
-    // Velocities are carried by xi' v, momenta by -xi'^T p.
-    std::vector<Node> terms;
-    for (std::size_t i = 0; i < n; ++i) {
-      terms.push_back(times(graph_.derivative(function, i), xi[i]));
-      for (std::size_t j = 0; j < n; ++j) {
-        const Node carried = by_velocity_ ? times(graph_.derivative(xi[i], j), graph_.variable(n + j))
-                                          : times(graph_.derivative(xi[j], i), graph_.variable(n + j));
-        const Node term = times(graph_.derivative(function, n + i), carried);
-        terms.push_back(by_velocity_ ? term : graph_.apply(negate, term));
-      }
-    }
-    change(terms);
-    for (const Node c : constraints) {
-      terms.clear();
-      for (std::size_t i = 0; i < n; ++i) terms.push_back(times(graph_.derivative(c, i), xi[i]));
-      change(terms);
-    }
-    terms.clear();
-    for (std::size_t i = 0; i < force.size(); ++i) terms.push_back(times(force[i], xi[i]));
-    change(terms);
+    fields.insert(fields.end(), xi.begin(), xi.end());
+    const std::vector<Node> along = changes_along(xi, function, constraints, force);
+    changes.insert(changes.end(), along.begin(), along.end());
   }
-  fields_ = FormulaProgram(graph_, wanted);
+  fields_ = FormulaProgram(graph_, fields);
   std::vector<Node> slopes;
-  for (const Node component : wanted) {
+  for (const Node component : fields) {
     for (std::size_t i = 0; i < n; ++i) slopes.push_back(graph_.derivative(component, i));
-    for (std::size_t i = 0; i < parameters_.size(); ++i) slopes.push_back(graph_.derivative(component, time() + 1 + i));
+    for (std::size_t i = 0; i < parameters_.size(); ++i)
+      slopes.push_back(graph_.derivative(component, variable_of_parameter(i)));
   }
   field_slopes_ = FormulaProgram(graph_, slopes);
   changes_ = FormulaProgram(graph_, changes);
@@ -160,7 +175,7 @@ void FormulaSystem::finish(const FormulaTexts& texts, Node function, const std::
 void FormulaSystem::require_parameters_read(const FormulaTexts& texts,
                                             const std::vector<const FormulaProgram*>& programs) const {
   for (std::size_t i = 0; i < texts.parameters.size(); ++i) {
-    const auto reads = [&](const FormulaProgram* program) { return program->reads(time() + 1 + i); };
+    const auto reads = [&](const FormulaProgram* program) { return program->reads(variable_of_parameter(i)); };
     if (!std::any_of(programs.begin(), programs.end(), reads) && !reads(&constraint_) && !reads(&fields_))
       throw FormulaError("parameters", fmt::format("no formula has \"{}\": leave it out", texts.parameters[i].first));
   }
@@ -206,7 +221,7 @@ void FormulaSystem::momentum_slopes(const double* q, const double* p, double* ou
 
 void FormulaSystem::change(const std::string& parameter, double by) {
   for (std::size_t i = 0; i < parameters_.size(); ++i)
-    if (parameters_[i].first == parameter) variables_[time() + 1 + i] = parameters_[i].second += by;
+    if (parameters_[i].first == parameter) variables_[variable_of_parameter(i)] = parameters_[i].second += by;
 }
 
 double FormulaSystem::symmetry_defect(std::size_t i, double t, const double* q, const double* w) const {

@@ -90,16 +90,16 @@ class FormulaSystem {
 
  protected:
   using Node = FormulaGraph::Node;
-  /// `second` are the names that formulas have after the coordinates, velocities or momenta.
+  /// After the coordinates formulas have their velocities, or the momenta, p_x of x where none are named.
   FormulaSystem(const FormulaTexts& texts, std::vector<std::string> momenta, bool by_velocity);
 
   Node read(const std::string& key, const std::string& text, std::size_t which = 0);
   bool depends(Node f, std::size_t variable) { return !graph_.is_zero(graph_.derivative(f, variable)); }
   /// f, its derivatives by the first `count` variables, and the upper triangle of its second ones.
   std::vector<Node> with_derivatives(Node f, std::size_t count);
-  /// Reads constraints and symmetries, of the function that does not change along these, and of a force. To be called
-  /// once, last but for further programs.
-  void finish(const FormulaTexts& texts, Node function, const std::vector<Node>& force);
+  /// Reads constraints, and symmetries, along which neither `function` nor the work of the force changes. To be called
+  /// once.
+  void read_constraints_and_symmetries(const FormulaTexts& texts, Node function, const std::vector<Node>& force);
   /// Of variables that q, w, t and the parameters have.
   const double* at(double t, const double* q, const double* w) const;
   /// Refuses parameters that no formula reads: those of `programs`, constraints and fields.
@@ -110,6 +110,7 @@ class FormulaSystem {
 
   std::size_t size() const { return coordinates_.size(); }
   std::size_t time() const { return 2 * coordinates_.size(); }  ///< the variable t
+  std::size_t variable_of_parameter(std::size_t i) const { return time() + 1 + i; }
 
   FormulaGraph graph_;
   std::vector<std::string> names_;  ///< of the variables
@@ -117,6 +118,13 @@ class FormulaSystem {
   mutable std::vector<double> variables_, scratch_;
 
  private:
+  /// Refuses a formula, of that key, of anything but coordinates and parameters.
+  void require_of_places(Node f, const std::string& key, const std::string& text, std::size_t which = 0);
+  std::vector<Node> read_constraints(const FormulaTexts& texts);
+  /// Of a field what changes along it, with the sum of its terms' sizes: the function, each constraint, the work.
+  std::vector<Node> changes_along(const std::vector<Node>& field, Node function, const std::vector<Node>& constraints,
+                                  const std::vector<Node>& force);
+
   std::vector<std::string> coordinates_, velocities_, momenta_;
   std::vector<std::pair<std::string, double>> parameters_;
   bool by_velocity_;

@@ -43,6 +43,13 @@ struct Watched {
   bool adds_up = false;     ///< from node to node: it is known there alone
 };
 
+/// How far a watched quantity, of that place, unit and name, is from its first value.
+inline Field drift_field(std::size_t quantity, const std::string& name, const std::string& label,
+                         const std::string& unit = "1") {
+  return {.columns = {"drift of " + name, {"drift " + label}, unit, "deviation from the first value", false, {}},
+          .drift_of = quantity};
+}
+
 /// What the ledger holds of constraints.
 enum class Constrained {
   no,

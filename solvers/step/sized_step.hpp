@@ -22,6 +22,16 @@ namespace lagroid {
 
 namespace detail {
 
+/// The place on constraints that is near q: `rows` are C and its derivatives, a row each.
+template <class Rows> Eigen::VectorXd place_on_constraints(const Rows& rows, Eigen::VectorXd q) {
+  constexpr int passes = 20;
+  for (int pass = 0; pass < passes; ++pass) {
+    const Eigen::MatrixXd c = rows(q), slope = c.rightCols(q.size());
+    q -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(c.col(0));
+  }
+  return q;
+}
+
 /// Newton's iteration for equations whose number is known when it runs: until each is left with the rounding of its
 /// terms. Unknown j is in units of `units(j)`.
 struct SizedNewton {

@@ -46,12 +46,7 @@ namespace detail {
 
 /// The nearest place on the constraints, and the momentum that is tangent there.
 inline SizedState on_constraints(const SizedStepSubject& subject, const SizedStep& step, SizedState z) {
-  if (subject.constraint)
-    for (int pass = 0; pass < 20; ++pass) {
-      const Eigen::MatrixXd c = subject.constraint(z.position);
-      const Eigen::MatrixXd slope = c.rightCols(z.position.size());
-      z.position -= slope.transpose() * (slope * slope.transpose()).partialPivLu().solve(c.col(0));
-    }
+  if (subject.constraint) z.position = lagroid::detail::place_on_constraints(subject.constraint, z.position);
   TangentState tangent;
   step.find_velocity(z, subject.time, tangent);
   if (!tangent.found) throw NotSampled("no velocity belongs to a momentum there");
