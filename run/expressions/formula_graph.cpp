@@ -16,6 +16,8 @@ bool takes_two(FormulaOperation kind) {
   return kind == add || kind == subtract || kind == multiply || kind == divide || kind == power || kind == atan2;
 }
 
+bool is_leaf(FormulaOperation kind) { return kind == constant || kind == variable; }
+
 double value_of(FormulaOperation kind, double a, double b) {
   switch (kind) {
     case add:
@@ -153,8 +155,7 @@ FormulaGraph::Node FormulaGraph::derivative(Node f, std::size_t by) {
   const auto root = [&](Node g) { return apply(sqrt, g); };
   const auto one = number(1);
   Node out = number(0);
-  const bool is_leaf = of.kind == FormulaOperation::constant || of.kind == FormulaOperation::variable;
-  if (!is_leaf && is_zero(d(a)) && (!takes_two(of.kind) || is_zero(d(b)))) return derivatives_[{f, by}] = out;
+  if (!is_leaf(of.kind) && is_zero(d(a)) && (!takes_two(of.kind) || is_zero(d(b)))) return derivatives_[{f, by}] = out;
   switch (of.kind) {
     case FormulaOperation::constant:
       break;
@@ -241,25 +242,21 @@ FormulaGraph::Node FormulaGraph::derivative(Node f, std::size_t by) {
 
 FormulaProgram::FormulaProgram(const FormulaGraph& graph, const std::vector<FormulaGraph::Node>& formulas) {
   // Operands stand before what is made of them: in the order of the graph, as far as it is needed.
-  struct {
-    const FormulaGraph& graph;
-    const FormulaGraph::Operation& operator[](std::size_t f) const { return graph.operation(f); }
-    std::size_t size() const { return graph.count(); }
-  } const all{graph};
-  std::vector<bool> needed(all.size());
+  std::vector<bool> needed(graph.count());
   for (const std::size_t f : formulas) needed[f] = true;
-  for (std::size_t f = all.size(); f-- > 0;)
-    if (needed[f] && all[f].kind != FormulaOperation::constant && all[f].kind != FormulaOperation::variable) {
-      needed[all[f].a] = true;
-      if (takes_two(all[f].kind)) needed[all[f].b] = true;
-    }
-  std::vector<std::size_t> place(all.size());
-  for (std::size_t f = 0; f < all.size(); ++f) {
+  for (std::size_t f = graph.count(); f-- > 0;) {
+    const FormulaGraph::Operation& of = graph.operation(f);
+    if (!needed[f] || is_leaf(of.kind)) continue;
+    needed[of.a] = true;
+    if (takes_two(of.kind)) needed[of.b] = true;
+  }
+  std::vector<std::size_t> place(graph.count());
+  for (std::size_t f = 0; f < graph.count(); ++f) {
     if (!needed[f]) continue;
     place[f] = instructions_.size();
-    const bool is_leaf = all[f].kind == FormulaOperation::constant || all[f].kind == FormulaOperation::variable;
-    instructions_.push_back({all[f].kind, is_leaf ? all[f].a : place[all[f].a],
-                             takes_two(all[f].kind) ? place[all[f].b] : 0, all[f].value});
+    const FormulaGraph::Operation& of = graph.operation(f);
+    instructions_.push_back(
+        {of.kind, is_leaf(of.kind) ? of.a : place[of.a], takes_two(of.kind) ? place[of.b] : 0, of.value});
   }
   for (const std::size_t f : formulas) outputs_.push_back(place[f]);
 }

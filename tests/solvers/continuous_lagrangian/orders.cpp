@@ -28,22 +28,7 @@ TEST(AnyLagrangian, OrdersOnThePendulumByLobatto) {
   expect_order(swing<Galerkin<Swing, 3, CurveQuadrature::lobatto>>(), 20);
   expect_order(swing<Galerkin<Swing, 4, CurveQuadrature::lobatto>>(40), 80, 0.3);
 }
-/// M' = M x w + v x weight, v' = v x w.
-template <class Sys> Case<Sys> top() {
-  const Top system;
-  const Vector<double, 3> v(0, 0.6, 0.8);
-  const State<typename Sys::GroupoidType> start{v, {0.4, 0.2, 1.5}};
-  const auto rates = [&](const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
-    const Vector<double, 3> at = y.head<3>();
-    const Vector<double, 3> m = y.tail<3>();
-    const Vector<double, 3> w = m.cwiseQuotient(system.inertia);
-    dy.head<3>() = at.cross(w);
-    dy.tail<3>() = m.cross(w) + at.cross(system.weight);
-  };
-  Eigen::VectorXd y(6);
-  y << v, start.momentum;
-  return {Sys{}, start, 3, integrate_reference(rates, y, 3.0)};
-}
+template <class Sys> Case<Sys> top() { return {Sys{}, {top_start.object, top_start.momentum}, 3, top_end(3.0)}; }
 TEST(AnyLagrangian, OrdersOnTheHeavyTop) {
   expect_order(top<Midpoint<Top>>(), 40);
   expect_order(top<Trapezoidal<Top>>(), 40);

@@ -66,6 +66,21 @@ struct Top : ContinuousLagrangian<Action<SO3, RotatedDirections>> {
   }
 };
 
+inline const State<Top::GroupoidType> top_start{{0, 0.6, 0.8}, {0.4, 0.2, 1.5}};
+/// Vertical and momentum of the top: M' = M x w + v x weight, v' = v x w.
+inline Eigen::VectorXd top_end(double t) {
+  const auto rates = [top = Top{}](const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
+    const Vector<double, 3> v = y.head<3>();
+    const Vector<double, 3> momentum = y.tail<3>();
+    const Vector<double, 3> w = momentum.cwiseQuotient(top.inertia);
+    dy.head<3>() = v.cross(w);
+    dy.tail<3>() = momentum.cross(w) + v.cross(top.weight);
+  };
+  Eigen::VectorXd y(6);
+  y << top_start.object, top_start.momentum;
+  return integrate_reference(rates, y, t);
+}
+
 /// A charge in a potential, by the isoperimetric problem: (x'^2 + y'^2) / 2 - x^2 / 4 - y^2 / 3 - x^2 y^2 / 5
 /// on R^3 with z' = (x y' - y x') / 2.
 struct Area : ContinuousLagrangian<Pair<3>, 1> {
