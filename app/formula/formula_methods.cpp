@@ -193,7 +193,8 @@ std::vector<Method> generating_methods(bool constrained) {
 }
 
 std::vector<Key> generating_method_keys() {
-  return {type_key(), taylor_key, quadrature_key(), time_keys::order(), time_keys::composition(compositions::all)};
+  return {time_keys::start, type_key(),         taylor_key,
+          quadrature_key(), time_keys::order(), time_keys::composition(compositions::all)};
 }
 
 }  // namespace lagroid::app

@@ -22,7 +22,8 @@ const KeyOf<Texts> coordinates_key{"coordinates", {}, "", "names; that of x has 
 const KeyOf<Text> lagrangian_key{
     "l", {}, "", "l(t, x, x'), of coordinates, velocities, t and the names of [parameters]"};
 const KeyOf<Texts> momenta_key{"momenta", {}, "", "names", {}, "p_x of each coordinate x"};
-const KeyOf<Text> hamiltonian_key{"H", {}, "", "H(x, p_x), of coordinates, momenta and the names of [parameters]"};
+const KeyOf<Text> hamiltonian_key{
+    "H", {}, "", "H(t, x, p_x), of coordinates, momenta, t and the names of [parameters]"};
 const KeyOf<Texts> constraints_key{"constraints", {}, "", "functions of coordinates that are zero", {}, "none"};
 const KeyOf<Texts> force_key{"force", {}, "", "its components, functions as l is", {}, "none"};
 const KeyOf<Text> symmetry_name_key{"name", {}, "", "of its momentum"};
@@ -234,7 +235,7 @@ FormulaRead read_lagrangian(const Section& scene, const Section& time, double be
   return out;
 }
 
-FormulaRead read_hamiltonian(const Section& scene, const Section& time) {
+FormulaRead read_hamiltonian(const Section& scene, const Section& time, double begin) {
   const FormulaTexts texts = read_texts(scene);
   const Section table = table_of(scene);
   const GeneratingMethod method = read_generating_method(time, !texts.constraints.empty());
@@ -255,10 +256,11 @@ FormulaRead read_hamiltonian(const Section& scene, const Section& time) {
   };
   FormulaRead out{[=](const FormulaSystem& it) { return method.begun(dynamic_cast<const FormulaHamiltonian&>(it)); },
                   as_precise, hamiltonian,
-                  read_start(scene.section("initial", "position and momentum"), *hamiltonian, nullptr, 0),
+                  read_start(scene.section("initial", "position and momentum"), *hamiltonian, nullptr, begin),
                   generating_methods(constrained)};
-  require_regular(scene, *hamiltonian, *out.begun(*out.system).step, out.start, 0);
-  require_symmetries(scene, *hamiltonian, out.start, false, 0, 0);
+  require_regular(scene, *hamiltonian, *out.begun(*out.system).step, out.start, begin);
+  const TimeGrid grid = read_time(scene);
+  require_symmetries(scene, *hamiltonian, out.start, false, begin, grid.step * double(grid.steps));
   return out;
 }
 
@@ -302,8 +304,8 @@ FormulaScene read_formula(const Section& scene, const RunContext& context) {
   const Section time = scene.section("time", "step and steps, or duration and steps");
   refuse_accuracy(scene);
   const bool lagrangian = of_lagrangian(scene);
-  const double begin = lagrangian ? read_key(time, time_keys::start) : 0;
-  FormulaRead read = lagrangian ? read_lagrangian(scene, time, begin) : read_hamiltonian(scene, time);
+  const double begin = read_key(time, time_keys::start);
+  FormulaRead read = lagrangian ? read_lagrangian(scene, time, begin) : read_hamiltonian(scene, time, begin);
   FormulaScene out;
   out.to_check = {std::filesystem::path(scene.file()).stem().string(),
                   read.system,

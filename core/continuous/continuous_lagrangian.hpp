@@ -68,6 +68,13 @@ template <class L>
 concept Continuous = Groupoid<typename L::GroupoidType> && detail::HasVelocityLagrangian<L> &&
     (L::arrow_constraints == 0 || detail::HasVelocityConstraint<L>);
 
+/// What has a Hamiltonian beside it, H(q, mu) (continuous_hamiltonian.hpp).
+template <class L>
+concept HasHamiltonian = requires(const L& system, const ObjectOf<typename L::GroupoidType>& q,
+                                  const AlgebroidVector<typename L::GroupoidType>& mu) {
+  { system.hamiltonian(q, mu) } -> std::convertible_to<double>;
+};
+
 /// Does not compile where l or psi is not that of a ContinuousLagrangian.
 template <class L> constexpr void require_continuous() {
   static_assert(

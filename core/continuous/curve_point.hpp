@@ -69,17 +69,24 @@ AlgebroidVector<G, S> automatic_chart_velocity(const G& groupoid, const ObjectOf
   return derivative_of(v);
 }
 
-/// The point of AG where the curve tau(q, x(t)) is, from x and x' = rate.
+/// The velocity where the curve tau(q, x(t)) is, from x and x' = rate.
+template <class S, Groupoid G>
+AlgebroidVector<G, S> velocity_in_chart(const G& groupoid, const ObjectOf<G, S>& q, const AlgebroidVector<G, S>& x,
+                                        const AlgebroidVector<G, S>& rate) {
+  if constexpr (HasChartVelocity<G>) {
+    return groupoid.chart_velocity(q, x, rate);
+  } else {
+    return automatic_chart_velocity<S>(groupoid, q, x, rate);
+  }
+}
+
+/// The same as a point of AG.
 template <class S, Groupoid G>
 CurvePoint<G, S> curve_point(const G& groupoid, const ObjectOf<G, S>& q, const AlgebroidVector<G, S>& x,
                              const AlgebroidVector<G, S>& rate) {
   CurvePoint<G, S> out;
   if constexpr (object_dimension_of<G>() > 0) out.object = groupoid.target(groupoid.tau(q, x));
-  if constexpr (HasChartVelocity<G>) {
-    out.velocity = groupoid.chart_velocity(q, x, rate);
-  } else {
-    out.velocity = automatic_chart_velocity<S>(groupoid, q, x, rate);
-  }
+  out.velocity = velocity_in_chart<S>(groupoid, q, x, rate);
   return out;
 }
 

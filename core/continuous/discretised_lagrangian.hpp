@@ -38,8 +38,17 @@ template <class L> struct VelocityAndMultipliers {
   Vector<double, L::arrow_constraints> multipliers;
 };
 
-/// The inverse of the Legendre transform: (xi, lambda) with dl/dxi + <lambda, dpsi/dxi> = mu and psi(q, xi) = 0. Not
-/// numbers where Newton's method does not converge from rest. No allocation.
+/// The inverse of the Legendre transform: xi = dH/dmu, or (xi, lambda) with dl/dxi + <lambda, dpsi/dxi> = mu and
+/// psi(q, xi) = 0. Not numbers where Newton's method does not converge from rest. No allocation.
+template <Continuous L>
+requires HasHamiltonian<L> VelocityAndMultipliers<L> velocity_of(const L& system,
+                                                                 const typename L::GroupoidType& groupoid,
+                                                                 const State<typename L::GroupoidType>& state) {
+  const auto q = groupoid.template cast_object<Dual<double>>(state.object);
+  return {gradient_of([&](const Vector<Dual<double>, L::dimension>& mu) { return system.hamiltonian(q, mu); },
+                      state.momentum),
+          {}};
+}
 template <Continuous L>
 VelocityAndMultipliers<L> velocity_of(const L& lagrangian, const typename L::GroupoidType& groupoid,
                                       const State<typename L::GroupoidType>& state) {

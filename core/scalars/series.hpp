@@ -13,6 +13,7 @@
 ///
 /// Source: Griewank and Walther, *Evaluating Derivatives*, 2008, chapter 13.
 
+#include <lagroid/core/scalars/special_functions.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <array>
@@ -20,6 +21,7 @@
 #include <concepts>
 #include <ostream>
 #include <type_traits>
+#include <utility>
 
 namespace lagroid {
 
@@ -236,6 +238,23 @@ template <class T, int K> Series<T, K> atan2(const Series<T, K>& y, const Series
   using std::atan2;
   return detail::integral(T(atan2(y[0], x[0])),
                           (x * detail::derivative(y) - y * detail::derivative(x)) / (x * x + y * y));
+}
+/// By the Taylor coefficients a_{m, j} of c_m at x_0: a_{m, j} = -(a_{m+1, j-1} - m a_{m+2, j-1}) / (2 j).
+template <int M, class T, int K> Series<T, K> stumpff(const Series<T, K>& x) {
+  constexpr std::size_t needed = std::size_t(2 * K - 1);
+  std::array<T, needed> a = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array<T, needed>{stumpff<M + int(I)>(x[0])...};
+  }
+  (std::make_index_sequence<needed>());
+  const Series<T, K> away = x - Series<T, K>(x[0]);
+  Series<T, K> sum(a[0]), power(1.0);
+  for (int j = 1; j < K; ++j) {
+    for (std::size_t m = 0; m + 2 < needed - 2 * std::size_t(j - 1); ++m)
+      a[m] = (a[m + 2] * double(M + int(m)) - a[m + 1]) * (0.5 / double(j));
+    power *= away;
+    for (int k = j; k < K; ++k) sum[k] += power[k] * a[0];
+  }
+  return sum;
 }
 template <class T, int K> Series<T, K> abs(const Series<T, K>& x) { return value_of(x) < 0 ? -x : x; }
 

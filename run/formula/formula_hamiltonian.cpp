@@ -147,9 +147,7 @@ FormulaHamiltonian::FormulaHamiltonian(const FormulaTexts& texts, const std::vec
       FormulaSystem(texts, momenta, false) {
   const std::size_t n = size();
   const Node energy = read("H", hamiltonian);
-  if (depends(energy, time()))
-    throw FormulaError(
-        "H", fmt::format("\"{}\" depends on t: generating functions here are of systems that do not", hamiltonian));
+  depends_on_time_ = depends(energy, time());
   if (taylor.order < 0 || taylor.order + 2 > most_terms) throw std::invalid_argument("Taylor's order is 0 to 4");
   hamiltonian_ = FormulaProgram(graph_, with_derivatives(energy, 2 * n));
   read_constraints_and_symmetries(texts, energy, {});
@@ -172,6 +170,7 @@ void FormulaHamiltonian::read_generating_function(const FormulaTexts& texts, Nod
   // The Taylor coefficients of the flow from (q, p~), by Picard's iteration.
   std::vector<Row> flow;
   for (std::size_t i = 0; i < names_.size(); ++i) flow.emplace_back(Formula::of(graph_.variable(i)));
+  flow[time()][1] = Formula(1.0);
   for (int k = 1; k < taylor.order + 2; ++k) {
     FormulaAt<Row> along(graph_, flow);
     std::vector<Formula> next;
@@ -191,10 +190,9 @@ void FormulaHamiltonian::read_generating_function(const FormulaTexts& texts, Nod
     w += far(i) * (q - sigma(i)) + sigma(i) * p;
   }
   for (std::size_t i = 0; i < taylor.quadrature.nodes.size(); ++i) {
-    const Formula time = h * Formula(taylor.quadrature.nodes[i]);
+    const Formula since = h * Formula(taylor.quadrature.nodes[i]);
     std::vector<Formula> there;
-    for (std::size_t j = 0; j < names_.size(); ++j)
-      there.push_back(j < 2 * n ? flow[j].at(time, taylor.order + 1) : flow[j][0]);
+    for (const Row& each : flow) there.push_back(each.at(since, taylor.order + 1));
     FormulaAt<Formula> evaluate(graph_, there);
     Formula legendre = -evaluate(energy);
     for (std::size_t j = 0; j < n; ++j) legendre += there[n + j] * evaluate(rate[j]);
@@ -220,24 +218,24 @@ void FormulaHamiltonian::read_generating_function(const FormulaTexts& texts, Nod
   arguments_.resize(after + 2 * n + 1);
 }
 
-void FormulaHamiltonian::hamiltonian(const double* q, const double* p, double* out) const {
-  hamiltonian_.evaluate(at(0, q, p), out, scratch_);
+void FormulaHamiltonian::hamiltonian(double t, const double* q, const double* p, double* out) const {
+  hamiltonian_.evaluate(at(t, q, p), out, scratch_);
 }
-const double* FormulaHamiltonian::generating_arguments(const double* q, const double* p, const double* sigma,
+const double* FormulaHamiltonian::generating_arguments(double t, const double* q, const double* p, const double* sigma,
                                                        const double* far, double h) const {
-  auto to = std::copy_n(at(0, q, p), names_.size(), arguments_.begin());
+  auto to = std::copy_n(at(t, q, p), names_.size(), arguments_.begin());
   to = std::copy_n(sigma, size(), to);
   to = std::copy_n(far, size(), to);
   *to = h;
   return arguments_.data();
 }
-void FormulaHamiltonian::generating(const double* q, const double* p, const double* sigma, const double* far, double h,
-                                    double* out) const {
-  generating_.evaluate(generating_arguments(q, p, sigma, far, h), out, scratch_);
+void FormulaHamiltonian::generating(double t, const double* q, const double* p, const double* sigma, const double* far,
+                                    double h, double* out) const {
+  generating_.evaluate(generating_arguments(t, q, p, sigma, far, h), out, scratch_);
 }
-void FormulaHamiltonian::by_parameters(const double* q, const double* p, const double* sigma, const double* far,
-                                       double h, double* out) const {
-  by_parameters_.evaluate(generating_arguments(q, p, sigma, far, h), out, scratch_);
+void FormulaHamiltonian::by_parameters(double t, const double* q, const double* p, const double* sigma,
+                                       const double* far, double h, double* out) const {
+  by_parameters_.evaluate(generating_arguments(t, q, p, sigma, far, h), out, scratch_);
 }
 
 std::unique_ptr<FormulaSystem> FormulaHamiltonian::changed(const std::string& parameter, double by) const {
@@ -246,12 +244,12 @@ std::unique_ptr<FormulaSystem> FormulaHamiltonian::changed(const std::string& pa
   return other;
 }
 
-void FormulaHamiltonian::energy_slope(double, const double* q, const double* p, const double*, double* out) const {
+void FormulaHamiltonian::energy_slope(double t, const double* q, const double* p, const double*, double* out) const {
   const std::size_t n = size();
   std::vector<double> numbers(SecondOrder::count(int(2 * n)));
-  hamiltonian(q, p, numbers.data());
+  hamiltonian(t, q, p, numbers.data());
   std::copy_n(numbers.begin() + 1, 2 * n, out);
-  energy_by_parameters_.evaluate(at(0, q, p), out + 2 * n, scratch_);
+  energy_by_parameters_.evaluate(at(t, q, p), out + 2 * n, scratch_);
 }
 
 }  // namespace lagroid

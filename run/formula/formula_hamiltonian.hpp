@@ -8,7 +8,7 @@
 ///
 /// The Taylor coefficients, and the derivatives of the generating function, are formulas of the same graph.
 ///
-/// Errors: FormulaError, also for a Hamiltonian that knows the time.
+/// Errors: FormulaError.
 ///
 /// Source: [V] 5.4.1.
 
@@ -40,23 +40,24 @@ class FormulaHamiltonian final : public SizedHamiltonian, public FormulaSystem {
   FormulaHamiltonian(const FormulaTexts& texts, const std::vector<std::string>& momenta, const std::string& hamiltonian,
                      const TaylorChoice& taylor);
 
-  bool keeps_energy() const override { return true; }
+  bool keeps_energy() const override { return !depends_on_time_; }
   const char* energy_is() const override { return "H"; }
 
   std::unique_ptr<FormulaSystem> changed(const std::string& parameter, double by) const override;
   void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const override;
 
-  void hamiltonian(const double* q, const double* p, double* out) const override;
-  void generating(const double* q, const double* p, const double* sigma, const double* far, double h,
+  void hamiltonian(double t, const double* q, const double* p, double* out) const override;
+  void generating(double t, const double* q, const double* p, const double* sigma, const double* far, double h,
                   double* out) const override;
   void constraint(const double* q, double* out) const override { FormulaSystem::constraint(q, out); }
-  void by_parameters(const double* q, const double* p, const double* sigma, const double* far, double h,
+  void by_parameters(double t, const double* q, const double* p, const double* sigma, const double* far, double h,
                      double* out) const override;
 
  private:
   void read_generating_function(const FormulaTexts& texts, Node energy, const TaylorChoice& taylor);
-  const double* generating_arguments(const double* q, const double* p, const double* sigma, const double* far,
+  const double* generating_arguments(double t, const double* q, const double* p, const double* sigma, const double* far,
                                      double h) const;
+  bool depends_on_time_;
 
   FormulaProgram hamiltonian_, energy_by_parameters_, generating_, by_parameters_;
   mutable std::vector<double> arguments_;  ///< the variables, then sigma, p1 and h

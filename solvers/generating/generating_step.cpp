@@ -19,7 +19,7 @@ GeneratingStep::GeneratingStep(const SizedHamiltonian& hamiltonian, GeneratingTy
 
 /// Unknowns are p~, sigma, then p1 (type II) or q1 (type III), then lambda; equations W_{p~} = 0, P = p1, the third
 /// that of the start, then C(q1) = 0.
-void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double h) {
+void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, double h) {
   const bool two = type_ == GeneratingType::two;
   const auto inner = newton_.unknown.head(n_);
   const auto sigma = newton_.unknown.segment(n_, n_);
@@ -37,7 +37,8 @@ void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::Vect
     far_ = p;
     far_.noalias() += reaction_ * newton_.unknown.tail(k_);
   }
-  hamiltonian_.generating(base_.data(), inner.data(), sigma.data(), far_.data(), two ? h : -h, w_.data());
+  const auto [from, along] = span(t, h);
+  hamiltonian_.generating(from, base_.data(), inner.data(), sigma.data(), far_.data(), along, w_.data());
   const double* end_p = w_.data() + SecondOrder::count(2 * n_);
   const double* end_p_by = end_p + n_;
   const double* end_q = end_p_by + 2 * n_ * n_;
@@ -134,13 +135,13 @@ void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::Vect
   }
 }
 
-StepReport GeneratingStep::take(SizedState& z, double /*t*/, double h) {
+StepReport GeneratingStep::take(SizedState& z, double t, double h) {
   constexpr int most_iterations = 50;
   const bool two = type_ == GeneratingType::two;
   newton_.unknown.setZero();
   newton_.unknown.head(n_) = z.momentum;
   newton_.unknown.segment(2 * n_, n_) = two ? z.momentum : z.position;
-  const StepReport report = newton_.solve([&] { write_equations(z.position, z.momentum, h); }, 0, most_iterations);
+  const StepReport report = newton_.solve([&] { write_equations(z.position, z.momentum, t, h); }, 0, most_iterations);
   if (report.converged()) {
     z.position = to_;
     if (two) {
@@ -162,8 +163,9 @@ bool GeneratingStep::linearise(SizedState& z, double t, double h, std::vector<Si
   const double* end_p_by = w_.data() + SecondOrder::count(2 * n_) + n_;
   const double* end_q_by = end_p_by + 2 * n_ * n_ + n_;
   std::vector<double> varied(std::size_t(parameters * 4 * n_));
-  hamiltonian_.by_parameters(base_.data(), newton_.unknown.data(), newton_.unknown.data() + n_, far_.data(),
-                             two ? h : -h, varied.data());
+  const auto [from, along] = span(t, h);
+  hamiltonian_.by_parameters(from, base_.data(), newton_.unknown.data(), newton_.unknown.data() + n_, far_.data(),
+                             along, varied.data());
   const auto by = [&](const double* table, int i, int j) { return table[i * 2 * n_ + j]; };
   for (int i = 0; i < n_; ++i) {
     const int stationary = i, arrives = n_ + i, starts = 2 * n_ + i, place = i, momentum = n_ + i;
@@ -204,7 +206,7 @@ bool GeneratingStep::linearise(SizedState& z, double t, double h, std::vector<Si
   return true;
 }
 
-void GeneratingStep::find_velocity(const SizedState& z, double /*t*/, TangentState& out) const {
+void GeneratingStep::find_velocity(const SizedState& z, double t, TangentState& out) const {
   constexpr int most_iterations = 60;
   const Eigen::VectorXd& q = z.position;
   const Eigen::VectorXd& p = z.momentum;
@@ -221,7 +223,7 @@ void GeneratingStep::find_velocity(const SizedState& z, double /*t*/, TangentSta
       out.momentum(i) = p(i);
       for (int a = 0; a < k_; ++a) out.momentum(i) += c(a, i) * newton.unknown(a);
     }
-    hamiltonian_.hamiltonian(q.data(), out.momentum.data(), h_.data());
+    hamiltonian_.hamiltonian(t, q.data(), out.momentum.data(), h_.data());
     for (int i = 0; i < n_; ++i) out.velocity(i) = energy.slope(n_ + i);
     newton.units.setOnes();
     for (int a = 0; a < k_; ++a) {

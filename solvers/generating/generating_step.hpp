@@ -11,7 +11,8 @@
 ///     H_d+(q, p1) = stationary value in (p~, sigma) of W = p1.Q(q, p~) + G(q, p~) + <sigma, P(q, p~) - p1>,
 ///
 /// P and Q the ends of Taylor's method of order r and r + 1, G = -h sum b_i (p_i.H_p - H) at the nodes c_i h of the
-/// former.
+/// former. A Hamiltonian may depend on the time t: its function is that of t as a coordinate, E_d+(q0, t0, p1) with
+/// t1 = t0 + h, looked at from t0 in type II and from t1 in type III.
 ///
 ///     GeneratingStep step(hamiltonian, GeneratingType::two);
 ///     const StepReport report = step.take(z, /*t*/ 0, /*h*/ 0.1);
@@ -25,6 +26,7 @@
 #include <lagroid/core/hamiltonian/generating_function.hpp>
 #include <lagroid/solvers/step/sized_step.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -40,17 +42,17 @@ class SizedHamiltonian {
   int constraints() const { return k_; }
   int parameters() const { return parameters_; }  ///< by which there are derivatives
 
-  /// H with its derivatives by (q, p).
-  virtual void hamiltonian(const double* q, const double* p, double* out) const = 0;
-  /// At (q, p~, sigma, p1): W with its derivatives by (q, p~); then P, and its n x 2 n derivatives, a row each; Q and
-  /// the same.
-  virtual void generating(const double* q, const double* p, const double* sigma, const double* far, double h,
+  /// H at the time t with its derivatives by (q, p).
+  virtual void hamiltonian(double t, const double* q, const double* p, double* out) const = 0;
+  /// At (q, p~, sigma, p1), from the time t: W with its derivatives by (q, p~); then P, and its n x 2 n derivatives, a
+  /// row each; Q and the same.
+  virtual void generating(double t, const double* q, const double* p, const double* sigma, const double* far, double h,
                           double* out) const = 0;
   /// C and its derivatives, as SizedLagrangian has them.
   virtual void constraint(const double* q, double* out) const = 0;
   /// Of each parameter in turn the derivatives by it: of the 2 n derivatives of W, of P and of Q.
-  virtual void by_parameters(const double* /*q*/, const double* /*p*/, const double* /*sigma*/, const double* /*far*/,
-                             double /*h*/, double* /*out*/) const {}
+  virtual void by_parameters(double /*t*/, const double* /*q*/, const double* /*p*/, const double* /*sigma*/,
+                             const double* /*far*/, double /*h*/, double* /*out*/) const {}
 
  private:
   int n_, k_, parameters_;
@@ -67,7 +69,11 @@ class GeneratingStep final : public SizedStep {
   void find_velocity(const SizedState& z, double t, TangentState& out) const override;
 
  private:
-  void write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double h);
+  void write_equations(const Eigen::VectorXd& q, const Eigen::VectorXd& p, double t, double h);
+  /// Where the function of this type looks from, and how far.
+  std::pair<double, double> span(double t, double h) const {
+    return type_ == GeneratingType::two ? std::pair(t, h) : std::pair(t + h, -h);
+  }
 
   const SizedHamiltonian& hamiltonian_;
   GeneratingType type_;

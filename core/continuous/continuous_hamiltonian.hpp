@@ -1,0 +1,102 @@
+#pragma once
+/// A continuous Hamiltonian H : A*G -> R on the dual of the Lie algebroid of a groupoid. It is a continuous Lagrangian
+/// by the Legendre transform in each fibre,
+///
+///     l(q, xi) = ext over mu of  <mu, xi> - H(q, mu),
+///
+/// so that a system that is known by its Hamiltonian is discretised by whatever takes a Lagrangian, and by
+/// HamiltonianTaylor (solvers/generating/hamiltonian_taylor.hpp), which takes H itself.
+///
+///     struct Spring : ContinuousHamiltonian<Spring, Pair<1>> {
+///       template <class S> S hamiltonian(const Vector<S, 1>& q, const Vector<S, 1>& p) const {
+///         return (p(0) * p(0) + q(0) * q(0)) * 0.5;
+///       }
+///     };
+///     inline const Midpoint<Spring> system{Spring{}, /*h*/ 0.1};  // rules_of_order_two.hpp
+///
+/// Requires an H over any scalar that is regular in mu. mu is a momentum in A*_qG in the basis that the retraction
+/// fixes: p on the pair groupoid, the body momentum on a Lie group.
+///
+/// Errors: l is not a number (NaN) where Newton's method, from zero, finds no momentum of the velocity.
+
+#include <lagroid/core/continuous/continuous_lagrangian.hpp>
+#include <lagroid/core/derivatives/implicit.hpp>
+#include <lagroid/core/scalars/second_jet.hpp>
+
+namespace lagroid {
+
+namespace detail {
+
+/// The x in R^N where f is stationary, from zero. f is a function over SecondJet<double, N>, and terms(i) the size of
+/// what cancels in its slope i beside second derivatives times x.
+template <int N, class F, class Terms> Root<N> stationary_point(const F& f, const Terms& terms) {
+  using J = SecondJet<double, N>;
+  const auto at = [&](const Vector<double, N>& x) {
+    Vector<J, N> seeded;
+    for (int i = 0; i < N; ++i) seeded(i) = J::variable(x(i), i);
+    const J value = f(seeded);
+    EquationsAt<N> out;
+    for (int i = 0; i < N; ++i) {
+      double size = std::abs(terms(i));
+      for (int j = 0; j < N; ++j) {
+        out.jacobian(i, j) = value.hessian(i, j);
+        size += std::abs(value.hessian(i, j) * x(j));
+      }
+      out.value(i) = value.gradient(i);
+      out.measure(i, size);
+    }
+    return out;
+  };
+  return newton_iteration<N>(at, Vector<double, N>(Vector<double, N>::Zero()));
+}
+
+/// The plain numbers of a vector.
+template <class S, int N> Vector<double, N> numbers_of(const Vector<S, N>& x) {
+  Vector<double, N> out;
+  for (int i = 0; i < N; ++i) out(i) = number_of(x(i));
+  return out;
+}
+
+/// ext over x of <y, x> - f(q, x).
+template <class G, class S, class Q, int N, class F>
+S fibre_transform(const G& groupoid, const F& f, const Q& q, const Vector<S, N>& y) {
+  const auto paired = [&f](const auto& at, const auto& x, const auto& with) {
+    auto sum = -f(at, x);
+    for (int i = 0; i < N; ++i) sum += x(i) * with(i);
+    return sum;
+  };
+  using J = SecondJet<double, N>;
+  using D = Dual<S>;
+  const auto place = groupoid.template object_at<double>(numbers_of(groupoid.coordinates_of_object(q)));
+  const auto fixed = groupoid.template cast_object<J>(place);
+  const Vector<double, N> numbers = numbers_of(y);
+  const Root<N> root = stationary_point<N>([&](const Vector<J, N>& x) { return paired(fixed, x, numbers); },
+                                           [&](int i) { return numbers(i); });
+  const auto from = groupoid.template cast_object<D>(q);
+  const auto with = constants<D>(y);
+  // An error e of x is one of e^2 in the value.
+  const Vector<S, N> x = with_infinitesimals<S, N>(
+      root,
+      [&](const Vector<S, N>& near) {
+        return gradient_of([&](const Vector<D, N>& moved) { return paired(from, moved, with); }, near);
+      },
+      nilpotency<S> / 2);
+  return paired(q, x, y);
+}
+
+}  // namespace detail
+
+/// Base of continuous Hamiltonians, which are continuous Lagrangians by it. The derived class writes
+///
+///     S hamiltonian(const Object<S>& q, const Velocity<S>& mu) const
+///     Vector<S, ObjectConstraints> object_constraint(const Object<S>& q) const              if there are any
+template <class Derived, class G, int ObjectConstraints = 0>
+struct ContinuousHamiltonian : ContinuousLagrangian<G, 0, ObjectConstraints> {
+  template <class Q, class S> S l(const Q& q, const Vector<S, G::dimension>& xi) const {
+    return detail::fibre_transform(
+        G{}, [this](const auto& at, const auto& mu) { return static_cast<const Derived&>(*this).hamiltonian(at, mu); },
+        q, xi);
+  }
+};
+
+}  // namespace lagroid
