@@ -149,12 +149,13 @@ std::optional<GradientSubject> formula_gradient(const Section& scene) {
   }
   out.begin = [asked](const std::vector<std::string>& parameters,
                       const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {
-    std::shared_ptr<const FormulaSystem> system = asked.system;
+    const std::shared_ptr<FormulaSystem> system = asked.system->clone();
     SizedState start = asked.start;
     const int n = int(start.position.size());
     for (const Nudge& nudge : nudges) {
       if (!nudge.parameter.empty()) {
-        system = system->changed(nudge.parameter, nudge.by);
+        for (const auto& [name, value] : asked.system->parameters())
+          if (name == nudge.parameter) system->set_parameter(name, value + nudge.by);
       } else if (nudge.index < n) {
         start.position(nudge.index) += nudge.by;
       } else {

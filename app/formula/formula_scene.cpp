@@ -317,7 +317,9 @@ FormulaScene read_formula(const Section& scene, const RunContext& context) {
   out.extent = read_extent(scene, context);
   scene.finish();
   out.methods = std::move(read.methods);
-  out.motion = std::make_unique<FormulaMotion>(out.to_check.name, read.system, read.begun(*read.system), read.start,
+  std::unique_ptr<FormulaSystem> own = read.system->clone();
+  FormulaMethod method = read.begun(*own);
+  out.motion = std::make_unique<FormulaMotion>(out.to_check.name, std::move(own), std::move(method), read.start,
                                                out.to_check.step, begin);
   return out;
 }

@@ -238,12 +238,6 @@ void FormulaHamiltonian::by_parameters(double t, const double* q, const double* 
   by_parameters_.evaluate(generating_arguments(t, q, p, sigma, far, h), out, scratch_);
 }
 
-std::unique_ptr<FormulaSystem> FormulaHamiltonian::changed(const std::string& parameter, double by) const {
-  auto other = std::make_unique<FormulaHamiltonian>(*this);
-  other->change(parameter, by);
-  return other;
-}
-
 void FormulaHamiltonian::energy_slope(double t, const double* q, const double* p, const double*, double* out) const {
   const std::size_t n = size();
   std::vector<double> numbers(SecondOrder::count(int(2 * n)));

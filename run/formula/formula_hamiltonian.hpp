@@ -43,7 +43,7 @@ class FormulaHamiltonian final : public SizedHamiltonian, public FormulaSystem {
   bool keeps_energy() const override { return !depends_on_time_; }
   const char* energy_is() const override { return "H"; }
 
-  std::unique_ptr<FormulaSystem> changed(const std::string& parameter, double by) const override;
+  std::unique_ptr<FormulaSystem> clone() const override { return std::make_unique<FormulaHamiltonian>(*this); }
   void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const override;
 
   void hamiltonian(double t, const double* q, const double* p, double* out) const override;

@@ -46,12 +46,6 @@ void FormulaLagrangian::by_parameters(double t, const double* q, const double* v
   by_parameters_.evaluate(at(t, q, v), out, scratch_);
 }
 
-std::unique_ptr<FormulaSystem> FormulaLagrangian::changed(const std::string& parameter, double by) const {
-  auto other = std::make_unique<FormulaLagrangian>(*this);
-  other->change(parameter, by);
-  return other;
-}
-
 // E(q, p) = ext_v <p, v> - l(q, v): at the velocity its derivatives are those at fixed v.
 void FormulaLagrangian::energy_slope(double t, const double* q, const double*, const double* v, double* out) const {
   const std::size_t n = size(), each = 1 + 2 * n + (sizes().forced ? n : 0);

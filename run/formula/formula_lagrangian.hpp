@@ -29,7 +29,7 @@ class FormulaLagrangian final : public SizedLagrangian, public FormulaSystem {
   bool keeps_energy() const override { return !depends_on_time_ && !sizes().forced; }
   const char* energy_is() const override { return "<dl/dv, v> - l"; }
 
-  std::unique_ptr<FormulaSystem> changed(const std::string& parameter, double by) const override;
+  std::unique_ptr<FormulaSystem> clone() const override { return std::make_unique<FormulaLagrangian>(*this); }
   void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const override;
 
   void lagrangian(double t, const double* q, const double* v, double* out) const override;

@@ -88,7 +88,7 @@ std::optional<double> FormulaNode::residual() const {
   return residual_;
 }
 
-FormulaMotion::FormulaMotion(std::string name, std::shared_ptr<const FormulaSystem> system, FormulaMethod method,
+FormulaMotion::FormulaMotion(std::string name, std::unique_ptr<FormulaSystem> system, FormulaMethod method,
                              SizedState start, double step, double begin)
     : name_(std::move(name)),
       system_(std::move(system)),
@@ -185,7 +185,17 @@ const Observables* FormulaMotion::look_within(double share) {
   return &node_;
 }
 
-Changeable FormulaMotion::changeable() const { return {.momenta = {{"", system_->coordinates().size()}}}; }
+Changeable FormulaMotion::changeable() const {
+  Changeable out{.momenta = {{"", system_->coordinates().size()}}};
+  for (const auto& [name, value] : system_->parameters()) out.parameters.push_back(name);
+  return out;
+}
+
+std::vector<std::pair<std::string, double>> FormulaMotion::set(const std::vector<ParameterValue>& parameters) {
+  const std::vector<std::pair<std::string, double>> before = system_->parameters();
+  for (const ParameterValue& each : parameters) system_->set_parameter(each.name, each.value);
+  return before;
+}
 
 SizedState FormulaMotion::kicked(const MotionChange& change) const {
   SizedState out = inside_;
@@ -195,7 +205,21 @@ SizedState FormulaMotion::kicked(const MotionChange& change) const {
 
 std::string FormulaMotion::refused(double share, const MotionChange& change) {
   if (!go_within(share)) return "a part of the step does not converge; use a smaller time.step";
-  return kicked(change).momentum.allFinite() ? "" : "the kick is no number there";
+  if (!kicked(change).momentum.allFinite()) return "the kick is no number there";
+  for (const ParameterValue& each : change.parameters)
+    if (!std::isfinite(each.value)) return fmt::format("{} becomes {:g}, and is to be finite", each.name, each.value);
+  if (system_->constraint_count() == 0 || change.parameters.empty()) return "";
+  const std::unique_ptr<FormulaSystem> after = system_->clone();
+  for (const ParameterValue& each : change.parameters) after->set_parameter(each.name, each.value);
+  constexpr double rounding = 1e-10;
+  const Eigen::MatrixXd rows = after->constraint_rows(inside_.position);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const double size = rows.row(i).tail(rows.cols() - 1).cwiseAbs().dot(inside_.position.cwiseAbs().transpose());
+    if (!(std::abs(rows(i, 0)) <= rounding * size))
+      return fmt::format("constraint {} is {:.3g} there with these parameters, and the motion would leave it", i + 1,
+                         rows(i, 0));
+  }
+  return "";
 }
 
 StepReport FormulaMotion::change_within(double share, const MotionChange& change) {
@@ -204,7 +228,11 @@ StepReport FormulaMotion::change_within(double share, const MotionChange& change
   kept_ = kicked(change);
   kept_time_ += share * rest_ * size_;
   rest_ *= 1 - share;
-  if (!go_within(1)) return report;
+  const auto before = set(change.parameters);
+  if (!go_within(1)) {
+    for (const auto& [name, value] : before) system_->set_parameter(name, value);
+    return report;
+  }
   state_ = inside_;
   report.status = SolveStatus::converged;
   return report;
@@ -215,6 +243,10 @@ void FormulaMotion::serialize(NumberArchive& archive) {
   for (double& each : state_.momentum) archive(each);
   for (double& each : state_.velocity) archive(each);
   archive(index_);
+  for (auto [name, value] : system_->parameters()) {
+    archive(value);
+    system_->set_parameter(name, value);
+  }
 }
 
 }  // namespace lagroid

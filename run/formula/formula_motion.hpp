@@ -2,7 +2,7 @@
 /// A Lagrangian or a Hamiltonian written as text, as a motion: it runs, is recorded, judged, studied and looked into as
 /// any other.
 ///
-///     FormulaMotion motion("pendulum", system, std::move(method), start, /*h*/ 0.01, /*t*/ 0);
+///     FormulaMotion motion("pendulum", std::move(system), std::move(method), start, /*h*/ 0.01, /*t*/ 0);
 ///     motion.advance();
 ///
 /// Requires a start on the constraints. Errors: those of the method's steps, as their status.
@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -59,7 +60,8 @@ class FormulaNode final : public Observables {
 
 class FormulaMotion final : public Motion {
  public:
-  FormulaMotion(std::string name, std::shared_ptr<const FormulaSystem> system, FormulaMethod method, SizedState start,
+  /// The system is the motion's own, whose parameters events may set, and the method is of it.
+  FormulaMotion(std::string name, std::unique_ptr<FormulaSystem> system, FormulaMethod method, SizedState start,
                 double step, double begin);
 
   std::string name() const override { return name_; }
@@ -85,9 +87,11 @@ class FormulaMotion final : public Motion {
  private:
   bool go_within(double share);
   SizedState kicked(const MotionChange& change) const;
+  /// Sets parameters; returns what they were.
+  std::vector<std::pair<std::string, double>> set(const std::vector<ParameterValue>& parameters);
 
   std::string name_;
-  std::shared_ptr<const FormulaSystem> system_;
+  std::unique_ptr<FormulaSystem> system_;
   FormulaMethod method_;
   SizedState state_;
   double size_, begin_;

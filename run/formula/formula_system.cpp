@@ -219,9 +219,9 @@ void FormulaSystem::momentum_slopes(const double* q, const double* p, double* ou
   }
 }
 
-void FormulaSystem::change(const std::string& parameter, double by) {
+void FormulaSystem::set_parameter(const std::string& name, double value) {
   for (std::size_t i = 0; i < parameters_.size(); ++i)
-    if (parameters_[i].first == parameter) variables_[variable_of_parameter(i)] = parameters_[i].second += by;
+    if (parameters_[i].first == name) variables_[variable_of_parameter(i)] = parameters_[i].second = value;
 }
 
 double FormulaSystem::symmetry_defect(std::size_t i, double t, const double* q, const double* w) const {

@@ -69,8 +69,9 @@ class FormulaSystem {
 
   /// The names of its parameters, and their values.
   const std::vector<std::pair<std::string, double>>& parameters() const { return parameters_; }
-  /// The system with one of these changed.
-  virtual std::unique_ptr<FormulaSystem> changed(const std::string& parameter, double by) const = 0;
+  /// Gives one of these another value, and all that is evaluated with it; others are left alone.
+  void set_parameter(const std::string& name, double value);
+  virtual std::unique_ptr<FormulaSystem> clone() const = 0;
   /// The derivatives of the energy by q, p and the parameters, at a momentum of which v is the velocity.
   virtual void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const = 0;
   /// Of each symmetry the derivatives of <p, xi> by q, p and the parameters.
@@ -104,9 +105,6 @@ class FormulaSystem {
   const double* at(double t, const double* q, const double* w) const;
   /// Refuses parameters that no formula reads: those of `programs`, constraints and fields.
   void require_parameters_read(const FormulaTexts& texts, const std::vector<const FormulaProgram*>& programs) const;
-
-  /// Changes a parameter, and all that is evaluated with it.
-  void change(const std::string& parameter, double by);
 
   std::size_t size() const { return coordinates_.size(); }
   std::size_t time() const { return 2 * coordinates_.size(); }  ///< the variable t

@@ -27,9 +27,9 @@ struct Written {
 };
 FormulaMotion motion_of(const Written& written, const CurveChoice& curve, const Eigen::VectorXd& q,
                         const Eigen::VectorXd& p, double h) {
-  const auto system = std::make_shared<const FormulaLagrangian>(written.texts, written.l, written.force);
-  return {"formula", system, {std::make_unique<CurveStep>(*system, curve), {"curve", curve.order(), true, true, false}},
-          {q, p},    h,      0};
+  auto system = std::make_unique<FormulaLagrangian>(written.texts, written.l, written.force);
+  FormulaMethod method{std::make_unique<CurveStep>(*system, curve), {"curve", curve.order(), true, true, false}};
+  return {"formula", std::move(system), std::move(method), {q, p}, h, 0};
 }
 std::vector<double> ends(FormulaMotion& motion, int steps) {
   for (int k = 0; k < steps; ++k) EXPECT_TRUE(motion.advance().converged()) << k;
@@ -136,9 +136,10 @@ TEST(FormulaMotions, KeepMomentaAndTheirEnergyWithinABand) {
 TEST(FormulaMotions, GoOnWithTheVelocityTheyBeganWith) {
   const Written double_well{{.coordinates = {"x"}}, "x'^4/4 - x'^2/2"};
   for (const double v : {1.1, 1.5, -1.2}) {
-    const auto system = std::make_shared<const FormulaLagrangian>(double_well.texts, double_well.l);
+    auto system = std::make_unique<FormulaLagrangian>(double_well.texts, double_well.l);
+    FormulaMethod method{std::make_unique<CurveStep>(*system, CurveChoice{}), {}};
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
-    FormulaMotion motion("free", system, {std::make_unique<CurveStep>(*system, CurveChoice{}), {}},
+    FormulaMotion motion("free", std::move(system), std::move(method),
                          {zero, Eigen::VectorXd::Constant(1, v * v * v - v), Eigen::VectorXd::Constant(1, v)}, 0.1, 0);
     for (int k = 0; k < 10; ++k) ASSERT_TRUE(motion.advance().converged());
     EXPECT_NEAR(motion.state()[0].values[0], v, 1e-12);
@@ -163,6 +164,39 @@ TEST(FormulaMotions, GoOnWithTheSameBits) {
   }
   EXPECT_EQ(one.state()[0].values, other.state()[0].values);
   EXPECT_EQ(one.state()[1].values, other.state()[1].values);
+}
+
+// x'' = -k x with another k from inside of a step on: the exact motion to that time, and from there that of the other.
+TEST(FormulaMotions, GoOnWithOtherParameters) {
+  const Written spring{{.coordinates = {"x"}, .parameters = {{"k", 1.0}}}, "x'^2/2 - k*x^2/2"};
+  const auto one = Eigen::VectorXd::Constant(1, 1.0);
+  FormulaMotion motion = motion_of(spring, {CurveQuadrature::gauss, 5}, one, Eigen::VectorXd::Zero(1), 0.1);
+  ends(motion, 10);
+  motion.keep_node();
+  ASSERT_TRUE(motion.advance().converged());
+  const MotionChange change{.parameters = {{"k", 4.0}}};
+  EXPECT_EQ(motion.refused(0.3, change), "");
+  ASSERT_TRUE(motion.change_within(0.3, change).converged());
+  NumberArchive kept;
+  motion.serialize(kept);
+  FormulaMotion resumed = motion_of(spring, {CurveQuadrature::gauss, 5}, one, Eigen::VectorXd::Zero(1), 0.1);
+  NumberArchive read(kept.numbers());
+  resumed.serialize(read);
+  const double at = 1.03, then = 2.1 - at;
+  const double x = std::cos(at) * std::cos(2 * then) - std::sin(at) * std::sin(2 * then) / 2;
+  EXPECT_NEAR(ends(motion, 10)[0], x, 1e-12);
+  EXPECT_EQ(ends(resumed, 10)[0], motion.state()[0].values[0]);
+  EXPECT_NE(motion.refused(0.3, {.parameters = {{"k", NAN}}}), "");
+}
+TEST(FormulaMotions, DoNotLeaveTheirConstraintsByOtherParameters) {
+  const Written wheel{{.coordinates = {"x", "y"}, .constraints = {"x^2 + y^2 - r^2"}, .parameters = {{"r", 1.0}}},
+                      "(x'^2 + y'^2)/2"};
+  FormulaMotion motion =
+      motion_of(wheel, {CurveQuadrature::lobatto, 1}, Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), 0.1);
+  motion.keep_node();
+  ASSERT_TRUE(motion.advance().converged());
+  EXPECT_EQ(motion.refused(0.5, {.parameters = {{"r", 1.0}}}), "");
+  EXPECT_NE(motion.refused(0.5, {.parameters = {{"r", 1.1}}}), "");
 }
 
 TEST(FormulaMotions, StepsAllocateNothing) {
