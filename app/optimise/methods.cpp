@@ -22,8 +22,12 @@ using MadeMethod = std::unique_ptr<DescentMethod>;
 
 const std::string projection = "projection";
 const std::string penalty = "penalty";
-const KeyOf<OneOf> constraint_key{
-    "constraint", {{"multipliers", projection, penalty}}, "", "how the point is kept on the manifold", "multipliers"};
+const std::string geodesics = "geodesics";
+const KeyOf<OneOf> constraint_key{"constraint",
+                                  {{"multipliers", projection, geodesics, penalty}},
+                                  "",
+                                  "how the point is kept on the manifold",
+                                  "multipliers"};
 const KeyOf<Number> penalty_key{"penalty", {positive}, "", "the weight, with constraint = \"penalty\"", 1e4};
 KeyOf<Flag> rescale_key(bool usual) { return {"rescale", {}, "", "shorten a step that leads off the manifold", usual}; }
 const KeyOf<Flag> restart_key{"restart", {}, "", "forget the momentum after a step that went uphill", false};
@@ -41,7 +45,9 @@ const KeyOf<Number> adaptive_rate{"po", {positive}, "", "p-ring, of the adaptive
 const KeyOf<Number> factor{"C", {positive}, "", "the factor of f", Bregman{}.c};
 const KeyOf<Number> step{"h", {positive}, "", "the step", 1e-3};
 const KeyOf<Number> start_time{"start_time", {positive}, "", "t of the first step", 0.1};
-const KeyOf<Number> convexity{"lambda", {positive}, "", "zeta / alpha of (5.1), at least 1", Bregman{}.lambda};
+const KeyOf<Number> convexity{"lambda", {positive}, "", "zeta / alpha of (5.1), at least 1", {}, "zeta"};
+const KeyOf<Number> diameter_key{"diameter", {positive},      "", "of a domain that holds start and minimum, for zeta",
+                                 {},         "the manifold's"};
 const KeyOf<Whole> version{"version", {1, 2}, "", "2: the gradient where the momentum alone would lead", 1};
 
 const KeyOf<Number> descent_step{"step", {nonnegative}, "", "the step", {}, "a line search"};
@@ -53,13 +59,14 @@ const KeyOf<Number> largest_radius{
 constexpr std::array retractions{ManifoldRetraction::qr, ManifoldRetraction::polar, ManifoldRetraction::exponential,
                                  ManifoldRetraction::orthographic, ManifoldRetraction::cayley};
 KeyOf<OneOf> retraction_key() {
-  KeyOf<OneOf> key{"retraction", {}, "", "from tangents to the manifold", std::string(to_string(retractions[0]))};
+  KeyOf<OneOf> key{"retraction", {}, "", "from tangents to the manifold", {}, "qr, or exponential where there is none"};
   for (const ManifoldRetraction each : retractions) key.value.words.emplace_back(to_string(each));
   return key;
 }
 
-ManifoldRetraction retraction(const Section& section) {
+std::optional<ManifoldRetraction> retraction(const Section& section) {
   const KeyOf<OneOf> key = retraction_key();
+  if (!section.has(key.name)) return std::nullopt;
   const auto& names = key.value.words;
   return retractions[std::size_t(std::find(names.begin(), names.end(), read_key(section, key)) - names.begin())];
 }
@@ -67,11 +74,17 @@ ManifoldRetraction retraction(const Section& section) {
 AcceleratedOptions accelerated(const Section& section, std::string name, bool rescale) {
   AcceleratedOptions out{.name = std::move(name)};
   // A penalty takes the place of the constraint before a method sees it.
-  if (read_key(section, constraint_key) == projection) out.constraint = Constraint::projection;
+  const std::string constraint = read_key(section, constraint_key);
+  if (constraint == projection) out.constraint = Constraint::projection;
+  if (constraint == geodesics) out.constraint = Constraint::geodesics;
   out.rescale = read_key(section, rescale_key(rescale));
   out.restart = read_key(section, restart_key);
   out.look_ahead = read_key(section, ahead_key);
   return out;
+}
+
+std::optional<double> lambda(const Section& section) {
+  return section.has(convexity.name) ? std::optional(read_key(section, convexity)) : std::nullopt;
 }
 
 double cap(const Section& section) {
@@ -94,11 +107,12 @@ MadeMethod read_hamiltonian(const Section& section, Bregman::Kind kind, const ch
   bregman.p = read_key(section, rate);
   if (kind == Bregman::Kind::adaptive) bregman.po = read_key(section, adaptive_rate);
   bregman.c = read_key(section, factor);
-  bregman.lambda = read_key(section, convexity);
+  bregman.lambda = lambda(section);
   const HamiltonianOptions options{.bregman = bregman,
                                    .h = read_key(section, step),
                                    .start_time = read_key(section, start_time),
-                                   .cap = cap(section)};
+                                   .cap = cap(section),
+                                   .diameter = read_key_or(section, diameter_key, 0)};
   return std::make_unique<HamiltonianDescent>(options, accelerated(section, name, false));
 }
 MadeMethod read_adaptive(const Section& section) {
@@ -111,7 +125,8 @@ MadeMethod read_euler_lagrange(const Section& section) {
   options.p = read_key(section, rate);
   options.c = read_key(section, factor);
   options.h = read_key(section, step);
-  options.lambda = read_key(section, convexity);
+  options.lambda = lambda(section);
+  options.diameter = read_key_or(section, diameter_key, 0);
   options.version = int(read_key(section, version));
   options.cap = cap(section);
   options.retraction = retraction(section);
@@ -139,8 +154,8 @@ MadeMethod read_trust_region(const Section& section) {
 std::vector<Key> hamiltonian_keys(bool adaptive) {
   std::vector<Key> out{rate};
   if (adaptive) out.push_back(adaptive_rate);
-  out.insert(out.end(), {factor, step, start_time, convexity, cap_key, capped_key, constraint_key, penalty_key,
-                         rescale_key(false), restart_key, ahead_key});
+  out.insert(out.end(), {factor, step, start_time, convexity, diameter_key, cap_key, capped_key, constraint_key,
+                         penalty_key, rescale_key(false), restart_key, ahead_key});
   return out;
 }
 
@@ -189,7 +204,7 @@ std::span<const OptimiserEntry> optimisers() {
       {"direct", "Algorithm 1 with the direct Bregman Hamiltonian (5.2)", hamiltonian_keys(false), read_direct},
       {"euler-lagrange",
        "Algorithm 2: semi-implicit Euler for the Bregman Euler-Lagrange equations",
-       {version, rate, factor, step, convexity, cap_key, capped_key, retraction_key()},
+       {version, rate, factor, step, convexity, diameter_key, cap_key, capped_key, retraction_key()},
        read_euler_lagrange},
       {"gradient-descent",
        "Algorithm 3; by a line search unless it is given a step",

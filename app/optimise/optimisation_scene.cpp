@@ -20,7 +20,8 @@ namespace {
 using optimisation::Instance, optimisation::Point, optimisation::Stopping;
 
 const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of a random start", 1};
-const KeyOf<Text> file_key{"file", {}, "", "the name of a file; without it the start is random"};
+const KeyOf<Text> file_key{
+    "file", {}, "", "the name of a file; without it the start is random, or the first point of a mean"};
 const KeyOf<Flag> nearest{"nearest", {}, "", "true: the point of the manifold that is nearest to the file's", false};
 const KeyOf<Whole> component_key{"component", {-1, 1},      "", "of O(n): 1 or -1, the sign of the determinant",
                                  {},          "as it comes"};
@@ -45,10 +46,12 @@ const KeyOf<Whole> patience{"patience",
 const KeyOf<Flag> reference_key{
     "reference", {}, "", "ask linear algebra for the least value", {}, "true with `gap` of [stop]"};
 
-/// Start: a file, or else a random point; of O(n), in the component that is asked for.
+/// Start: a file, or else the problem's, or else a random point; of O(n), in the component that is asked for.
 Point read_start(const Section& scene, const Instance& instance, const std::filesystem::path& folder) {
   const Section start = scene.section_or_empty("start");
   const auto seed = unsigned(read_key(start, seed_key));
+  if (instance.start && start.has(seed_key.name))
+    start.fail(seed_key.name, "a mean starts from its first point, or from a file");
   Point x;
   if (start.has("file")) {
     Eigen::MatrixXd matrix;
@@ -68,10 +71,10 @@ Point read_start(const Section& scene, const Instance& instance, const std::file
       start.fail("file", fmt::format("off the {} by {:.1e}; start.nearest = true takes the nearest point of it",
                                      instance.manifold->name(), off));
   } else {
-    x = optimisation::random_start(*instance.manifold, seed);
+    x = instance.start ? *instance.start : optimisation::random_start(*instance.manifold, seed);
   }
   if (start.has("component")) {
-    if (instance.rows != instance.columns) start.fail("component", "only O(n) has two components");
+    if (instance.rows != instance.columns || instance.start) start.fail("component", "only O(n) has two components");
     const long component = read_key(start, component_key);
     Eigen::Map<Eigen::MatrixXd> matrix(x.data(), instance.rows, instance.columns);
     if (component == 0) start.fail("component", "1 or -1, the sign of the determinant");

@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 
 #include <new>
+#include <stdexcept>
 
 namespace lagroid::app {
 
@@ -27,13 +28,13 @@ std::string listing() {
   };
   out += "problems\n";
   for (const auto& entry : problems()) {
-    out += fmt::format("  {:<20} {}\n", entry.name, entry.summary);
+    out += fmt::format("  {:<22} {}\n", entry.name, entry.summary);
     list(entry.data, "data.");
     list(entry.parameters, "parameters.");
   }
   out += "methods\n";
   for (const auto& entry : optimisers()) {
-    out += fmt::format("  {:<20} {}\n", entry.name, entry.summary);
+    out += fmt::format("  {:<22} {}\n", entry.name, entry.summary);
     list(entry.keys);
   }
   return out;
@@ -66,7 +67,7 @@ int run(const OptimiseOptions& options) {
   if (options.out) folder.emplace(folder_for_optimisation(*options.out, file));
   const InterruptGuard guard;
   optimisation::Result result;
-  {
+  try {
     Progress progress(scene.problem, scene.stopping.iterations, !options.json);
     const auto watch = [&](const optimisation::Iterate& now, const optimisation::Point&) {
       progress.update(now.iteration);
@@ -79,6 +80,8 @@ int run(const OptimiseOptions& options) {
                  ? optimisation::minimise_penalised(manifold, objective, *scene.penalty, scene.start, *scene.method,
                                                     scene.stopping, recording)
                  : optimisation::minimise(manifold, objective, scene.start, *scene.method, scene.stopping, recording);
+  } catch (const std::invalid_argument& error) {
+    file.section_or_empty("method").fail("", error.what());
   }
   std::string text = optimisation_text(scene, result);
   auto json = optimisation_json(scene, result);

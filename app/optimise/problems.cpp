@@ -41,6 +41,11 @@ const KeyOf<Either> any_b = matrix_key("B", "as many rows as A, no more columns"
 const KeyOf<NumberList> weights_key{
     "weights", {}, "", "one for each eigenvalue sought, increasing from zero or more: the diagonal entries of N"};
 
+const KeyOf<Either> points_key = matrix_key(
+    "points", "the space parts of points, one a line: a file, or {random = \"gaussian\", rows, columns, seed}");
+const KeyOf<Text> matrices_key{
+    "matrices", {}, "", "a file of symmetric positive definite matrices, one below the other"};
+
 AnyMatrix read_data(const Section& scene, const KeyOf<Either>& key, const fs::path& folder) {
   const Section data = scene.section("data", "the matrices of the problem");
   if (data.is_table(key.name)) {
@@ -99,6 +104,17 @@ Instance read_procrustes(const Section& scene, const fs::path& folder) {
   return made(scene, "data", "B", [&] { return optimisation::procrustes_instance(a, b); });
 }
 
+Instance read_hyperbolic_mean(const Section& scene, const fs::path& folder) {
+  const Eigen::MatrixXd points = dense(read_data(scene, points_key, folder));
+  return made(scene, "data", "points", [&] { return optimisation::hyperbolic_mean_instance(points); });
+}
+
+Instance read_positive_definite_mean(const Section& scene, const fs::path& folder) {
+  const std::string file = read_key(scene.section("data", "the matrices of the problem"), matrices_key);
+  return made(scene, "data", "matrices",
+              [&] { return optimisation::positive_definite_mean_instance(dense(read_matrix(file, folder))); });
+}
+
 }  // namespace
 
 std::span<const ProblemEntry> problems() {
@@ -113,7 +129,17 @@ std::span<const ProblemEntry> problems() {
        "|A X - B|^2 on the Stiefel manifold; balanced, on O(n), where B has as many columns as A",
        {any_a, any_b},
        {},
-       read_procrustes}};
+       read_procrustes},
+      {"hyperbolic-mean",
+       "the Frechet mean in hyperbolic space: the point with the least squared distances to others",
+       {points_key},
+       {},
+       read_hyperbolic_mean},
+      {"positive-definite-mean",
+       "the Frechet mean of positive definite matrices, the same in every basis",
+       {matrices_key},
+       {},
+       read_positive_definite_mean}};
   return all;
 }
 

@@ -13,6 +13,16 @@ double rounding_of(const EvaluatedPoint& state) {
   return 64 * std::numeric_limits<double>::epsilon() * std::abs(state.value);
 }
 
+/// The slope at `to` of the curve that left `from` along the direction: in the metric of the space around the direction
+/// itself stands for the curve's there.
+double slope_at(const Manifold& manifold, const Point& from, const EvaluatedPoint& to, const Vector& direction,
+                Vector& buffer) {
+  if (!manifold.has_own_metric()) return to.gradient.dot(direction);
+  buffer = direction;
+  manifold.transport(from, to.x, buffer);
+  return manifold.inner(to.x, to.gradient, buffer);
+}
+
 }  // namespace
 
 double backtrack(Problem& problem, ManifoldRetraction retraction, const EvaluatedPoint& state, const Vector& direction,
@@ -58,7 +68,7 @@ double secant_search(Problem& problem, ManifoldRetraction retraction, const Eval
     bool falls = evaluate(t);
     double there = std::numeric_limits<double>::quiet_NaN();
     if (falls) {
-      there = to.gradient.dot(direction);
+      there = slope_at(problem.manifold(), state.x, to, direction, buffer);
       falls = to.value <= state.value + decrease * t * slope + rounding;
     }
     if (falls && std::abs(there) <= flat * std::abs(slope)) return t;

@@ -18,9 +18,10 @@ double backtrack(Problem& problem, ManifoldRetraction retraction, const Evaluate
                  double slope, double first, double decrease, Point& to, Vector& buffer);
 
 /// The step t for which f(R_x(t d)) <= f(x) + 1e-4 t slope, as above near the minimum, and the slope there, of which d
-/// itself stands for the curve's direction, is at most `flat` times the one at x: by secants from `first`, between
-/// bounds once there are two. Where that slope is not met in a few trials, for d stands for the curve's direction near
-/// x only, the lowest of them. `to` is evaluated there. 0 where none falls.
+/// itself (of manifolds with a metric of their own, d transported) stands for the curve's direction, is at most `flat`
+/// times the one at x: by secants from `first`, between bounds once there are two. Where that slope is not met in a few
+/// trials, for d stands for the curve's direction near x only, the lowest of them. `to` is evaluated there. 0 where
+/// none falls.
 double secant_search(Problem& problem, ManifoldRetraction retraction, const EvaluatedPoint& state,
                      const Vector& direction, double slope, double first, double flat, EvaluatedPoint& to,
                      Vector& buffer);

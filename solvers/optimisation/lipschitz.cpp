@@ -6,22 +6,23 @@
 namespace lagroid::optimisation {
 
 double largest_curvature(Problem& problem, const EvaluatedPoint& state, int steps) {
+  const Manifold& manifold = problem.manifold();
   Vector v = state.gradient;
   Vector h(v.size());
   double largest = 0;
   constexpr double settled = 1e-3;
   for (int k = 0; k < steps; ++k) {
-    const double length = v.norm();
+    const double length = manifold.norm(state.x, v);
     if (!(length > 0) || !std::isfinite(length)) break;
     v /= length;
     problem.hessian(state, v, h);
-    const double found = h.norm();
+    const double found = manifold.norm(state.x, h);
     if (found <= (1 + settled) * largest) break;
     largest = found;
     v = h;
   }
   // A function without curvature along its gradient: its size is the only scale there is.
-  return largest > 0 && std::isfinite(largest) ? largest : std::max(1e-300, state.gradient.norm());
+  return largest > 0 && std::isfinite(largest) ? largest : std::max(1e-300, manifold.norm(state.x, state.gradient));
 }
 
 double lipschitz_bound(Problem& problem, const EvaluatedPoint& state) {

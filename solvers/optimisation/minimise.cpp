@@ -39,7 +39,7 @@ void Problem::evaluate(EvaluatedPoint& state) {
   state.euclidean.resize(state.x.size());
   state.value = objective_.evaluate(state.x, state.euclidean);
   state.gradient = state.euclidean;
-  manifold_.project(state.x, state.gradient);
+  manifold_.gradient(state.x, state.gradient);
 }
 
 double Problem::value(const Point& x) {
@@ -55,8 +55,8 @@ void Problem::hessian(const EvaluatedPoint& state, const Vector& v, Vector& h) {
 
 namespace {
 
-bool finite(const EvaluatedPoint& state) {
-  return std::isfinite(state.value) && std::isfinite(state.gradient.squaredNorm());
+bool finite(const Manifold& manifold, const EvaluatedPoint& state) {
+  return std::isfinite(state.value) && std::isfinite(manifold.inner(state.x, state.gradient, state.gradient));
 }
 
 /// Whether anything still falls.
@@ -114,10 +114,10 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
   EvaluatedPoint state;
   state.x = start;
   problem.evaluate(state);
-  if (!finite(state))
+  if (!finite(manifold, state))
     return end(MinimisationStatus::not_finite, "value or gradient at the start are not finite; look at the data");
   out.value = state.value;
-  out.gradient = state.gradient.norm();
+  out.gradient = manifold.norm(state.x, state.gradient);
   // What rounding leaves of a gradient that vanishes.
   const double rounding = 4e-15 * std::sqrt(double(manifold.size())) * state.euclidean.norm();
   if (out.gradient <= rounding)
@@ -128,7 +128,7 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
 
   Progress progress;
   const auto record = [&](long iteration) {
-    const Iterate now{iteration, state.value, state.gradient.norm(), seconds(), problem.evaluations()};
+    const Iterate now{iteration, state.value, manifold.norm(state.x, state.gradient), seconds(), problem.evaluations()};
     if (recording.history) out.history.push_back(now);
     if (state.value <= out.value) {
       out.x = state.x;
@@ -169,7 +169,7 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
                  fmt::format("{} finds no step after {} iterations; take a smaller one or another "
                              "method",
                              method.name(), k));
-    if (!finite(state))
+    if (!finite(manifold, state))
       return end(MinimisationStatus::not_finite,
                  fmt::format("{} left all numbers after {} iterations; take a smaller step", method.name(), k + 1));
     now = record(k + 1);

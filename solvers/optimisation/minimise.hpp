@@ -49,7 +49,7 @@ struct EvaluatedPoint {
   Point x;
   double value = 0;
   Vector euclidean;  ///< D f(x)
-  Vector gradient;   ///< its tangent part, the Riemannian gradient
+  Vector gradient;   ///< the Riemannian gradient; in the metric of the space around, the tangent part of D f(x)
 };
 
 /// A manifold and a function on it, which counts evaluations. Refers to both.
@@ -80,7 +80,8 @@ class DescentMethod {
  public:
   virtual ~DescentMethod() = default;
   virtual std::string name() const = 0;
-  /// `state` has been evaluated.
+  /// `state` has been evaluated. Throws std::invalid_argument, with the remedy, where the manifold does not offer what
+  /// the method needs.
   virtual void begin(Problem& problem, const EvaluatedPoint& state) = 0;
   /// Moves the state and evaluates it. Where it returns `none` the state is as it was.
   virtual StepOutcome advance(Problem& problem, EvaluatedPoint& state) = 0;
@@ -90,7 +91,7 @@ class DescentMethod {
 struct Iterate {
   long iteration = 0;
   double value = 0;
-  double gradient = 0;  ///< |grad f|
+  double gradient = 0;  ///< |grad f|, in the metric of the manifold
   double seconds = 0;
   Evaluations evaluations;
 };
@@ -132,7 +133,8 @@ struct Recording {
 };
 
 /// Minimises f from `start`, a point of the manifold. Of methods that do not descend in every step the best point is
-/// what is returned. Numbers never throw: how it ended is a MinimisationStatus.
+/// what is returned. Numbers never throw: how it ended is a MinimisationStatus. A method that the manifold is not made
+/// for throws std::invalid_argument, with the remedy.
 Result minimise(const Manifold& manifold, const Objective& objective, const Point& start, DescentMethod& method,
                 const Stopping& stopping, const Recording& recording = {});
 

@@ -25,7 +25,7 @@ Result minimise_penalised(const Manifold& manifold, const Objective& objective, 
   problem.evaluate(state);
   out.x = state.x;
   out.value = state.value;
-  out.gradient = state.gradient.norm();
+  out.gradient = manifold.norm(state.x, state.gradient);
   out.residual = manifold.residual(out.x);
   return out;
 }

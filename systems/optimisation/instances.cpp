@@ -1,18 +1,40 @@
 #include <lagroid/systems/optimisation/instances.hpp>
 
+#include <lagroid/solvers/optimisation/manifolds/hyperbolic_space.hpp>
+#include <lagroid/solvers/optimisation/manifolds/positive_definite.hpp>
 #include <lagroid/solvers/optimisation/manifolds/sphere.hpp>
 #include <lagroid/solvers/optimisation/manifolds/stiefel.hpp>
+#include <lagroid/systems/optimisation/frechet_mean.hpp>
 #include <lagroid/systems/optimisation/procrustes.hpp>
 #include <lagroid/systems/optimisation/random.hpp>
 #include <lagroid/systems/optimisation/rayleigh.hpp>
 
+#include <fmt/format.h>
+
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace lagroid::optimisation {
 
 namespace {
 
 constexpr const char* by_lanczos = "eigenvalues (Eigen; of large matrices Spectra)";
+
+/// Their mean on the manifold of the instance, from the first of them.
+void take_mean(Instance& instance, std::vector<Point> points) {
+  const Manifold& manifold = *instance.manifold;
+  instance.start = points.front();
+  if (points.size() == 2) {
+    Vector apart;
+    if (manifold.logarithm(points[0], points[1], apart)) {
+      const double square = manifold.inner(points[0], apart, apart);
+      instance.least = [square](const Point&) { return square / 8; };
+      instance.least_by = "the distance of the two points";
+    }
+  }
+  instance.objective = std::make_unique<FrechetMean>(manifold, std::move(points));
+}
 
 }  // namespace
 
@@ -57,6 +79,40 @@ Instance procrustes_instance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b)
     };
     out.least_by = "singular values (Eigen), in the component of the start";
   }
+  return out;
+}
+
+Instance hyperbolic_mean_instance(const Eigen::MatrixXd& points) {
+  Instance out;
+  out.manifold = std::make_unique<HyperbolicSpace>(points.cols());
+  out.rows = points.cols() + 1;
+  std::vector<Point> each;
+  for (const auto& row : points.rowwise()) {
+    Point& point = each.emplace_back(out.rows);
+    point << 1, row.transpose();
+    if (!out.manifold->nearest(point)) throw std::invalid_argument("a mean is one of finite points");
+  }
+  take_mean(out, std::move(each));
+  return out;
+}
+
+Instance positive_definite_mean_instance(const Eigen::MatrixXd& matrices) {
+  const Eigen::Index n = matrices.cols();
+  if (n < 1 || matrices.rows() < n || matrices.rows() % n != 0)
+    throw std::invalid_argument(
+        fmt::format("{} x {} numbers; give square matrices, one below the other", matrices.rows(), n));
+  Instance out;
+  out.manifold = std::make_unique<PositiveDefinite>(n);
+  out.rows = out.columns = n;
+  std::vector<Point> each;
+  for (Eigen::Index i = 0; i < matrices.rows(); i += n) {
+    constexpr double rounding = 1e-12;
+    const Eigen::MatrixXd matrix = matrices.middleRows(i, n);
+    Point& point = each.emplace_back(matrix.reshaped());
+    if (!((matrix - matrix.transpose()).norm() <= rounding * matrix.norm()) || !out.manifold->nearest(point))
+      throw std::invalid_argument(fmt::format("matrix {} is not symmetric and positive definite", i / n + 1));
+  }
+  take_mean(out, std::move(each));
   return out;
 }
 

@@ -30,6 +30,8 @@ struct Instance {
   /// The least value that can be reached from a start, without optimisation; empty where nobody knows it.
   std::function<double(const Point& start)> least;
   std::string least_by;  ///< how
+  /// Where to begin unless told otherwise; without it at a random point.
+  std::optional<Point> start = {};
 };
 
 /// The largest eigenvalue of A ([V] 5.3.1).
@@ -39,6 +41,13 @@ Instance brockett_instance(const SymmetricOperator& a, const Eigen::VectorXd& we
 /// |A X - B|^2 ([V] (5.9)), balanced where B has as many columns as A. Throws std::invalid_argument as `Procrustes`
 /// does.
 Instance procrustes_instance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// The Frechet mean in hyperbolic space; each row is the space part of a point. Throws std::invalid_argument as
+/// `FrechetMean` and `HyperbolicSpace` do.
+Instance hyperbolic_mean_instance(const Eigen::MatrixXd& points);
+/// The Frechet mean of positive definite matrices, one below the other. Throws std::invalid_argument where they are not
+/// such.
+Instance positive_definite_mean_instance(const Eigen::MatrixXd& matrices);
 
 /// The point of the manifold nearest to a random matrix.
 Point random_start(const Manifold& manifold, unsigned seed);

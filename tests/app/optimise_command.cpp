@@ -40,10 +40,14 @@ TEST_F(Optimise, EveryExampleFindsItsMinimum) {
     const std::string name = entry.path().stem();
     const auto found = summary(scene(name));
     EXPECT_EQ(found.at("status"), "converged");
-    EXPECT_LT(found.at("gap").get<double>(), 2e-10) << name;
+    // Of the means of many points nobody knows the minimum; their Hessians are at least one.
+    if (found.contains("gap"))
+      EXPECT_LT(found.at("gap").get<double>(), 2e-10) << name;
+    else
+      EXPECT_LT(found.at("gradient").get<double>(), 1e-9) << name;
     EXPECT_LT(found.at("constraints").get<double>(), 1e-14) << name;
   }
-  EXPECT_GE(examples, 3);
+  EXPECT_GE(examples, 5);
 }
 
 TEST_F(Optimise, EveryMethodFindsTheMinimum) {
@@ -63,6 +67,28 @@ TEST_F(Optimise, EveryMethodFindsTheMinimum) {
         summary(scene("rayleigh") + " --set stop.gap=1e-7 --set stop.iterations=20000 --set method.name=" + method);
     EXPECT_LT(found.at("gap").get<double>(), 1e-7) << method;
   }
+}
+
+TEST_F(Optimise, EveryMethodFindsTheMeanOfTwoPoints) {
+  const std::string points = file("two.toml",
+                                  "problem = \"hyperbolic-mean\"\nreference = true\n[data]\npoints = \"two.csv\"\n"
+                                  "[start]\nfile = \"start.csv\"\nnearest = true\n[stop]\ngradient = 1e-7\n");
+  file("two.csv", "1, 0\n0, 2\n");
+  file("start.csv", "1\n-1\n0.5\n");
+  const std::string tensors = file("tensors.toml",
+                                   "problem = \"positive-definite-mean\"\nreference = true\n[data]\n"
+                                   "matrices = \"matrices.csv\"\n[stop]\ngradient = 1e-7\n");
+  file("matrices.csv", "2, 1\n1, 3\n1, 0\n0, 0.5\n");
+  for (const std::string& problem : {points, tensors})
+    for (const std::string method :
+         {"robust --set method.constraint=geodesics", "adaptive --set method.constraint=geodesics --set method.h=0.02",
+          "direct --set method.constraint=geodesics --set method.h=0.02 --set method.lambda=2",
+          "euler-lagrange --set method.h=0.02", "gradient-descent", "conjugate-gradients", "trust-region"}) {
+      const std::string domain =
+          method.starts_with("adaptive") || method.starts_with("euler") ? " --set method.diameter=4" : "";
+      const auto found = summary("optimize " + problem + " --set method.name=" + method + domain);
+      EXPECT_LT(std::abs(found.at("gap").get<double>()), 1e-13) << method;
+    }
 }
 
 TEST_F(Optimise, APenaltyComesNear) {
@@ -152,6 +178,8 @@ TEST_F(Optimise, BadInputIsOneLineThatNamesTheRemedy) {
   file("zero.mtx", "%%MatrixMarket matrix coordinate real general\n2 2 1\n0 0 3\n");
   file("off.csv", "1\n1\n");
   file("two.csv", "1, 0\n0, 2\n");
+  file("indefinite.csv", "1, 0\n0, 1\n1, 2\n2, 1\n");
+  file("three.csv", "1, 0\n0, 1\n1, 2\n");
   file("a.bin", "");
   file("b.h5", "no HDF5");
   const std::string path = folder_.string() + "/";
@@ -189,6 +217,14 @@ TEST_F(Optimise, BadInputIsOneLineThatNamesTheRemedy) {
       {scene("rayleigh") + " --set method.name=trust-region --set method.constraint=penalty", "unknown key"},
       {scene("rayleigh") + " --set method.capped=false --set method.cap=2", "goes with capped"},
       {scene("rayleigh") + " --set stop.relative_gradient=2", "below 1"},
+      {scene("tensors") + " --set method.name=robust", "take the constraint geodesics"},
+      {scene("tensors") + " --set method.retraction=qr", "take one of: exponential"},
+      {scene("tensors") + " --set method.name=euler-lagrange", "or lambda"},
+      {scene("tensors") + " --set start.seed=2", "first point"},
+      {scene("tensors") + " --set data.matrices=\\\"" + path + "indefinite.csv\\\"", "matrix 2 is not symmetric"},
+      {scene("tensors") + " --set data.matrices=\\\"" + path + "three.csv\\\"", "one below the other"},
+      {scene("tensors") + " --set data.matrices=\\\"" + path + "missing.csv\\\"", "no such file"},
+      {scene("hyperbolic_mean") + " --set method.diameter=-1", "positive"},
       {"optimize", "name a scene"},
       {"optimize nowhere.toml", "nowhere.toml"}};
   for (const auto& [arguments, words] : cases) {
@@ -222,8 +258,9 @@ TEST_F(Optimise, AGapThatWasAskedForIsNotForgotten) {
 TEST_F(Optimise, ListsProblemsAndMethods) {
   const Outcome r = run("optimize --list");
   EXPECT_EQ(r.code, 0);
-  for (const char* name : {"rayleigh", "brockett", "procrustes", "robust", "adaptive", "direct", "euler-lagrange",
-                           "gradient-descent", "conjugate-gradients", "trust-region"})
+  for (const char* name :
+       {"rayleigh", "brockett", "procrustes", "hyperbolic-mean", "positive-definite-mean", "robust", "adaptive",
+        "direct", "euler-lagrange", "gradient-descent", "conjugate-gradients", "trust-region"})
     EXPECT_NE(r.out.find("  " + std::string(name) + " "), std::string::npos) << name;
 }
 

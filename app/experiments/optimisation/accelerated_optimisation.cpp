@@ -26,19 +26,23 @@ struct Maker {
   std::unique_ptr<DescentMethod> (*make)();
 };
 
+/// The paper's, also where curvatures are negative.
+constexpr double lambda = 1;
 template <Bregman::Kind kind> std::unique_ptr<DescentMethod> hamiltonian() {
-  return std::make_unique<HamiltonianDescent>(HamiltonianOptions{.bregman = {.kind = kind}}, AcceleratedOptions{});
+  return std::make_unique<HamiltonianDescent>(HamiltonianOptions{.bregman = {.kind = kind, .lambda = lambda}},
+                                              AcceleratedOptions{});
 }
 std::unique_ptr<DescentMethod> uncapped_hamiltonian() {
   return std::make_unique<HamiltonianDescent>(
-      HamiltonianOptions{.bregman = {}, .cap = std::numeric_limits<double>::infinity()}, AcceleratedOptions{});
+      HamiltonianOptions{.bregman = {.lambda = lambda}, .cap = std::numeric_limits<double>::infinity()},
+      AcceleratedOptions{});
 }
 template <int version> std::unique_ptr<DescentMethod> euler_lagrange() {
-  return std::make_unique<EulerLagrange>(EulerLagrangeOptions{.version = version});
+  return std::make_unique<EulerLagrange>(EulerLagrangeOptions{.lambda = lambda, .version = version});
 }
 template <int version> std::unique_ptr<DescentMethod> uncapped_euler_lagrange() {
   return std::make_unique<EulerLagrange>(
-      EulerLagrangeOptions{.version = version, .cap = std::numeric_limits<double>::infinity()});
+      EulerLagrangeOptions{.lambda = lambda, .version = version, .cap = std::numeric_limits<double>::infinity()});
 }
 
 const std::vector<Maker>& makers() {

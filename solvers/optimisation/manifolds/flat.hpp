@@ -35,6 +35,7 @@ class FlatSpace final : public Manifold {
     v = y - x;
     return true;
   }
+  bool parallel_transport(const Point&, const Point&, Vector&) const override { return true; }
   void hessian(const Point&, const Vector&, const Vector&, Vector&) const override {}
   double least_curvature() const override { return 0; }
   double diameter() const override { return std::numeric_limits<double>::infinity(); }

@@ -14,6 +14,7 @@ ProductManifold::ProductManifold(std::vector<std::unique_ptr<Manifold>> factors)
   for (const auto& factor : factors_) {
     const Vector zero = Vector::Zero(factor->size());
     buffers_.push_back({zero, zero, zero, zero});
+    has_own_metric_ = has_own_metric_ || factor->has_own_metric();
   }
 }
 
@@ -83,6 +84,61 @@ void ProductManifold::project(const Point& x, Vector& v) const {
     factor.project(at.x, at.y);
     part(v) = at.y;
     return true;
+  });
+}
+
+double ProductManifold::inner(const Point& x, const Vector& u, const Vector& v) const {
+  if (!has_own_metric_) return u.dot(v);
+  double sum = 0;
+  each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(x);
+    at.y = part(u);
+    at.z = part(v);
+    sum += factor.inner(at.x, at.y, at.z);
+    return true;
+  });
+  return sum;
+}
+
+void ProductManifold::gradient(const Point& x, Vector& differential) const {
+  each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(x);
+    at.y = part(differential);
+    factor.gradient(at.x, at.y);
+    part(differential) = at.y;
+    return true;
+  });
+}
+
+void ProductManifold::differential(const Point& x, Vector& gradient) const {
+  each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(x);
+    at.y = part(gradient);
+    factor.differential(at.x, at.y);
+    part(gradient) = at.y;
+    return true;
+  });
+}
+
+void ProductManifold::transport(const Point& from, const Point& to, Vector& v) const {
+  each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(from);
+    at.y = part(to);
+    at.z = part(v);
+    factor.transport(at.x, at.y, at.z);
+    part(v) = at.z;
+    return true;
+  });
+}
+
+bool ProductManifold::parallel_transport(const Point& from, const Point& to, Vector& v) const {
+  return each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(from);
+    at.y = part(to);
+    at.z = part(v);
+    const bool found = factor.parallel_transport(at.x, at.y, at.z);
+    part(v) = at.z;
+    return found;
   });
 }
 

@@ -32,12 +32,19 @@ class ProductManifold final : public Manifold {
   double penalty(const Point& x, double weight, Vector& gradient) const override;
   bool nearest(Point& x) const override;
   void project(const Point& x, Vector& v) const override;
+  /// Where a factor has one.
+  bool has_own_metric() const override { return has_own_metric_; }
+  double inner(const Point& x, const Vector& u, const Vector& v) const override;
+  void gradient(const Point& x, Vector& differential) const override;
+  void differential(const Point& x, Vector& gradient) const override;
+  void transport(const Point& from, const Point& to, Vector& v) const override;
   /// Those that all factors offer.
   bool offers(ManifoldRetraction retraction) const override;
   bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const override;
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
   double reach(const Vector& v) const override;
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
+  bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override;
   double diameter() const override;
@@ -47,6 +54,7 @@ class ProductManifold final : public Manifold {
 
   std::vector<std::unique_ptr<Manifold>> factors_;
   std::vector<Eigen::Index> first_;
+  bool has_own_metric_ = false;
   struct Buffers {
     Vector x, y, z, w;
   };

@@ -79,6 +79,16 @@ bool Sphere::logarithm(const Point& x, const Point& y, Vector& v) const {
   return true;
 }
 
+bool Sphere::parallel_transport(const Point& from, const Point& to, Vector& v) const {
+  // As for the logarithm, which is not unique where 1 + cos = sin^2 / 2 is below.
+  constexpr double opposite = 0.5e-16;
+  moved_ = from + to;
+  const double sum = 0.5 * moved_.squaredNorm();
+  if (!(sum > opposite)) return false;
+  v -= to.dot(v) / sum * moved_;
+  return true;
+}
+
 void Sphere::hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const {
   project(x, h);
   h -= x.dot(gradient) * v;

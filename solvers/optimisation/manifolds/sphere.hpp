@@ -27,6 +27,8 @@ class Sphere final : public Manifold {
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
   double reach(const Vector& v) const override { return v.norm(); }
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
+  /// v - (x + y) <y, v> / (1 + <x, y>). False between opposite points.
+  bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 2 ? 1 : 0; }
   double diameter() const override;

@@ -267,6 +267,18 @@ bool Stiefel::logarithm(const Point& x, const Point& y, Vector& v) const {
   return true;
 }
 
+bool Stiefel::parallel_transport(const Point& from, const Point& to, Vector& v) const {
+  if (!logarithm(from, to, moved_)) return false;
+  const ConstMap point(from.data(), n_, m_);
+  product_.noalias() = 0.5 * point.transpose() * Map(moved_.data(), n_, m_);
+  square_ = matrix_exponential(product_);
+  product_.noalias() = point.transpose() * Map(v.data(), n_, m_);
+  skew_.noalias() = square_ * product_;
+  tall_.noalias() = point * skew_;
+  Map(v.data(), n_, m_).noalias() = tall_ * square_;
+  return true;
+}
+
 void Stiefel::hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const {
   const ConstMap point(x.data(), n_, m_);
   const ConstMap slope(gradient.data(), n_, m_);

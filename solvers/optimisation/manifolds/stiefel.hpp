@@ -40,9 +40,11 @@ class Stiefel final : public Manifold {
   /// and where that is slow by Newton's method, a Lyapunov equation each time. The multipliers are lambda = -T (up to
   /// the symmetric part of X^T Z). One Newton-Schulz step X <- X (3 I - X^T X) / 2 keeps X^T X = I to round-off.
   bool orthographic(const Point& x, const Vector& z, Point& to, Vector& moved) const override;
-  /// Known for m = n: X log(X^T Y). False for m < n, in the other component and at half turns.
   double reach(const Vector& v) const override;
+  /// Known for m = n: X log(X^T Y). False for m < n, in the other component and at half turns.
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
+  /// Where the logarithm is known: X R (X^T V) R, R^2 = X^T Y.
+  bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
   /// P_X(h - V sym(X^T G)).
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override;

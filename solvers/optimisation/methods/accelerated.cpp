@@ -2,6 +2,8 @@
 
 #include <lagroid/solvers/optimisation/lipschitz.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,6 +12,11 @@
 namespace lagroid::optimisation {
 
 void Accelerated::begin(Problem& problem, const EvaluatedPoint& state) {
+  const Manifold& manifold = problem.manifold();
+  if (options_.constraint == Constraint::multipliers && !manifold.offers(ManifoldRetraction::orthographic))
+    throw std::invalid_argument(
+        fmt::format("the {} has no steps with multipliers; take the constraint geodesics", manifold.name()));
+  if (options_.constraint == Constraint::geodesics) chosen_retraction(manifold, ManifoldRetraction::exponential);
   for (Vector* v : {&displacement_, &v_, &moved_, &before_}) v->setZero(state.x.size());
   to_ = state.x;
   ahead_ = state;
@@ -17,10 +24,18 @@ void Accelerated::begin(Problem& problem, const EvaluatedPoint& state) {
   start(problem, state);
 }
 
-/// From x along v_ to to_, by moved_. The multipliers take the normal part of v_ as well.
-bool Accelerated::step(Problem& problem, const Point& x) {
-  const Manifold& manifold = problem.manifold();
+/// From x along v_ to to_, by moved_, there. The multipliers take the normal part of v_ as well.
+bool Accelerated::step(const Manifold& manifold, const Point& x) {
   if (options_.constraint == Constraint::multipliers) return manifold.orthographic(x, v_, to_, moved_);
+  if (options_.constraint == Constraint::geodesics) {
+    if (!manifold.retract(ManifoldRetraction::exponential, x, v_, to_)) return false;
+    moved_ = v_;
+    if (!manifold.parallel_transport(x, to_, moved_)) {
+      moved_ = v_;
+      manifold.transport(x, to_, moved_);
+    }
+    return true;
+  }
   manifold.project(x, v_);
   to_ = x + v_;
   if (!manifold.nearest(to_)) return false;
@@ -34,9 +49,10 @@ StepOutcome Accelerated::advance(Problem& problem, EvaluatedPoint& state) {
   v_ = shares.momentum * displacement_;
   const EvaluatedPoint* at = &state;
   if (options_.look_ahead) {
-    if (!step(problem, state.x)) return StepOutcome::none;
+    if (!step(manifold, state.x)) return StepOutcome::none;
     ahead_.x = to_;
     problem.evaluate(ahead_);
+    if (options_.constraint == Constraint::geodesics) manifold.transport(ahead_.x, state.x, ahead_.gradient);
     at = &ahead_;
   }
   v_ -= shares.gradient * at->gradient;
@@ -44,9 +60,9 @@ StepOutcome Accelerated::advance(Problem& problem, EvaluatedPoint& state) {
   if (options_.restart) {
     before_ = at->gradient;
     manifold.project(state.x, before_);
-    uphill = before_.dot(v_) > 0;
+    uphill = manifold.inner(state.x, before_, v_) > 0;
   }
-  bool found = step(problem, state.x);
+  bool found = step(manifold, state.x);
   constexpr int most = 40;
   double longest = 0.5;
   for (int k = 0; !found && options_.rescale && k < most; ++k, longest /= 2) {
@@ -57,7 +73,7 @@ StepOutcome Accelerated::advance(Problem& problem, EvaluatedPoint& state) {
     const double length = manifold.reach(v_);
     if (!(length > 0) || !std::isfinite(length)) return StepOutcome::none;
     v_ *= longest / length;
-    found = step(problem, state.x);
+    found = step(manifold, state.x);
   }
   if (!found) return StepOutcome::none;
   std::swap(displacement_, moved_);
@@ -66,9 +82,9 @@ StepOutcome Accelerated::advance(Problem& problem, EvaluatedPoint& state) {
   std::swap(state.x, to_);
   problem.evaluate(state);
   if (learns) {
-    manifold.transport(state.x, before_);
+    manifold.transport(to_, state.x, before_);
     before_ -= state.gradient;
-    learn(before_.norm(), displacement_.norm());
+    learn(manifold.norm(state.x, before_), manifold.norm(state.x, displacement_));
   }
   if (uphill) {
     ++restarts_;
@@ -81,18 +97,21 @@ StepOutcome Accelerated::advance(Problem& problem, EvaluatedPoint& state) {
 HamiltonianDescent::HamiltonianDescent(HamiltonianOptions hamiltonian, AcceleratedOptions options)
     : Accelerated(std::move(options)), hamiltonian_(hamiltonian) {
   check(hamiltonian_.bregman);
+  if (!(hamiltonian_.diameter >= 0)) throw std::invalid_argument("the diameter of a domain is positive");
   if (!(hamiltonian_.h > 0) || !(hamiltonian_.start_time > 0) || !(hamiltonian_.cap > 0))
     throw std::invalid_argument("step, start time and cap are positive");
 }
 
 void HamiltonianDescent::start(Problem& problem, const EvaluatedPoint& state) {
+  bregman_ = hamiltonian_.bregman;
+  if (!bregman_.lambda) bregman_.lambda = zeta(problem.manifold(), hamiltonian_.diameter);
   largest_ = std::isfinite(hamiltonian_.cap) ? hamiltonian_.cap / lipschitz_bound(problem, state) : hamiltonian_.cap;
   time_ = hamiltonian_.start_time;
   last_alpha_ = 0;
 }
 
 Accelerated::Shares HamiltonianDescent::next() {
-  const auto [alpha, beta, next_time] = coefficients(hamiltonian_.bregman, time_, hamiltonian_.h);
+  const auto [alpha, beta, next_time] = coefficients(bregman_, time_, hamiltonian_.h);
   time_ = next_time;
   const double momentum = last_alpha_ > 0 ? alpha / last_alpha_ : 0;
   last_alpha_ = alpha;

@@ -11,7 +11,8 @@
 ///     const Result found = minimise(Sphere(3), Height(), Eigen::Vector3d(1, 0, 0), method, {.gradient = 1e-9});
 ///
 /// (`Height` stands in objective.hpp.) Options out of range throw std::invalid_argument, with the remedy; a step that
-/// leads off the manifold ends as `no_step`, unless `rescale` shortens it. [V] Algorithm 1, (3.19)
+/// leads off the manifold ends as `no_step`, unless `rescale` shortens it. A manifold without steps with multipliers
+/// throws std::invalid_argument: take `Constraint::geodesics` there. [V] Algorithm 1, (3.19)
 
 #include <lagroid/solvers/optimisation/methods/bregman.hpp>
 #include <lagroid/solvers/optimisation/minimise.hpp>
@@ -23,7 +24,8 @@ namespace lagroid::optimisation {
 /// How a step meets the constraint.
 enum class Constraint {
   multipliers,  ///< by the constrained type II map ([V] (3.19)): the orthographic step
-  projection    ///< by the unconstrained map and the nearest point ([V] 5.5); in flat space neither does anything
+  projection,   ///< by the unconstrained map and the nearest point ([V] 5.5); in flat space neither does anything
+  geodesics     ///< along geodesics, the momentum transported: without a space around, in the manifold's own metric
 };
 
 struct AcceleratedOptions {
@@ -41,6 +43,12 @@ struct AcceleratedOptions {
 /// This is the type II map with r = 0 and multipliers: mu = alpha_k / alpha_(k-1) and s = alpha_k beta_k, since
 /// D = alpha_(k-1) r_k. What P_x takes away and the normal vector belong to the multipliers. Without momenta as
 /// variables, which grow like powers of t, nothing cancels. Subclasses say mu and s.
+///
+/// With `Constraint::geodesics` it is the map's intrinsic form, q+ = exp_q(alpha r+) and r+ transported to q+:
+///
+///     V = mu D - s grad f(x),   x+ = exp_x(V),   D+ = V, brought to x+ by parallel transport,
+///
+/// or, where that is not known in closed form, by the manifold's transport.
 class Accelerated : public DescentMethod {
  public:
   explicit Accelerated(AcceleratedOptions options) : options_(std::move(options)) {}
@@ -68,7 +76,7 @@ class Accelerated : public DescentMethod {
   virtual void learn(double, double) {}
 
  private:
-  bool step(Problem& problem, const Point& x);
+  bool step(const Manifold& manifold, const Point& x);
 
   AcceleratedOptions options_;
   Vector displacement_, v_, moved_, before_;
@@ -85,6 +93,8 @@ struct HamiltonianOptions {
   double start_time = 0.1;
   /// s = alpha beta <= cap / L; infinite: it grows past what is stable, 4 / L ([V] 5.5 bounds its coefficient).
   double cap = 1;
+  /// Of the domain, for zeta where lambda is not given; 0: that of the manifold.
+  double diameter = 0;
 };
 class HamiltonianDescent final : public Accelerated {
  public:
@@ -97,6 +107,7 @@ class HamiltonianDescent final : public Accelerated {
   void forget() override;
 
   HamiltonianOptions hamiltonian_;
+  Bregman bregman_;
   double time_ = 0;
   double last_alpha_ = 0;
   double largest_ = 0;

@@ -9,6 +9,7 @@
 ///
 /// `check` throws std::invalid_argument, with the remedy, for numbers out of range. [V] (5.2) to (5.5), (5.11), (5.12)
 
+#include <optional>
 #include <string>
 
 namespace lagroid::optimisation {
@@ -27,9 +28,9 @@ struct Bregman {
   enum class Kind { direct, adaptive };
   Kind kind = Kind::adaptive;
   double p = 6;
-  double po = 2;      ///< p-ring; of `adaptive` alone
-  double c = 1;       ///< C > 0
-  double lambda = 1;  ///< at least 1
+  double po = 2;                      ///< p-ring; of `adaptive` alone
+  double c = 1;                       ///< C > 0
+  std::optional<double> lambda = {};  ///< at least 1; without it zeta of the manifold, in a vector space 1
 };
 
 /// Throws std::invalid_argument, with the remedy, for p, po, C <= 0 or lambda < 1.

@@ -15,23 +15,26 @@
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
+#include <optional>
 #include <string>
 
 namespace lagroid::optimisation {
 
-/// Directions d+ = -grad f+ + b T d with the b of Hestenes and Stiefel, not below zero, T the transport by projection;
+/// Directions d+ = -grad f+ + b T d with the b of Hestenes and Stiefel, not below zero, T the manifold's transport;
 /// the steepest descent where d+ does not descend. Steps by secants (`secant_search`) from the minimum along the line
 /// of the parabola with the curvature of the last step.
 class ConjugateGradient final : public DescentMethod {
  public:
-  explicit ConjugateGradient(ManifoldRetraction retraction = ManifoldRetraction::qr) : retraction_(retraction) {}
+  /// Without a retraction by qr or, where that is not offered, along geodesics.
+  explicit ConjugateGradient(std::optional<ManifoldRetraction> retraction = {}) : asked_(retraction) {}
 
   std::string name() const override { return "conjugate gradients"; }
   void begin(Problem& problem, const EvaluatedPoint& state) override;
   StepOutcome advance(Problem& problem, EvaluatedPoint& state) override;
 
  private:
-  ManifoldRetraction retraction_;
+  std::optional<ManifoldRetraction> asked_;
+  ManifoldRetraction retraction_ = ManifoldRetraction::qr;
   Vector direction_, before_, v_;
   EvaluatedPoint to_;
   double first_ = 0;

@@ -14,6 +14,7 @@
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
+#include <optional>
 #include <string>
 
 namespace lagroid::optimisation {
@@ -22,11 +23,12 @@ struct EulerLagrangeOptions {
   double p = 6;
   double c = 1;  ///< C
   double h = 1e-3;
-  double lambda = 1;  ///< zeta / alpha, at least 1
-  int version = 1;    ///< 2: the gradient is taken where the momentum alone would lead
+  std::optional<double> lambda = {};  ///< zeta / alpha, at least 1; without it zeta of the manifold
+  int version = 1;                    ///< 2: the gradient is taken where the momentum alone would lead
   /// h^2 C p^2 (k h)^(p - 2) <= cap / L; infinite: it grows without end and loses convergence ([V] 5.5).
   double cap = 1;
-  ManifoldRetraction retraction = ManifoldRetraction::qr;
+  std::optional<ManifoldRetraction> retraction = {};  ///< without it qr or, where that is not offered, the exponential
+  double diameter = 0;                                ///< of the domain, for zeta; 0: that of the manifold
 };
 
 /// For k = 1, 2, ..., b_k = 1 - (lambda p + 1) / k and c_k = C p^2 (k h)^(p - 2):
@@ -45,6 +47,8 @@ class EulerLagrange final : public DescentMethod {
 
  private:
   EulerLagrangeOptions options_;
+  ManifoldRetraction retraction_ = ManifoldRetraction::qr;
+  double lambda_ = 1;
   long k_ = 0;
   double largest_ = 0;
   Vector velocity_, v_;

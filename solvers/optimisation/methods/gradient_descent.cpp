@@ -19,20 +19,22 @@ std::string GradientDescent::name() const {
 
 void GradientDescent::begin(Problem& problem, const EvaluatedPoint& state) {
   step_ = options_.c > 0 ? options_.c / lipschitz_bound(problem, state) : options_.step;
+  retraction_ = chosen_retraction(problem.manifold(), options_.retraction);
   v_.setZero(state.x.size());
   to_ = state.x;
-  last_ = state.gradient.norm() > 0 ? 1 / state.gradient.norm() : 1;
+  const double length = problem.manifold().norm(state.x, state.gradient);
+  last_ = length > 0 ? 1 / length : 1;
 }
 
 StepOutcome GradientDescent::advance(Problem& problem, EvaluatedPoint& state) {
   if (step_ > 0) {
     v_ = -step_ * state.gradient;
-    if (!problem.manifold().retract(options_.retraction, state.x, v_, to_)) return StepOutcome::none;
+    if (!problem.manifold().retract(retraction_, state.x, v_, to_)) return StepOutcome::none;
   } else {
-    const double slope = state.gradient.squaredNorm();
+    const double slope = problem.manifold().inner(state.x, state.gradient, state.gradient);
     Vector& direction = state.gradient;
     direction = -direction;
-    last_ = backtrack(problem, options_.retraction, state, direction, -slope, 2 * last_, options_.decrease, to_, v_);
+    last_ = backtrack(problem, retraction_, state, direction, -slope, 2 * last_, options_.decrease, to_, v_);
     if (!(last_ > 0)) {
       direction = -direction;
       return StepOutcome::none;

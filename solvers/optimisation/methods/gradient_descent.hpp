@@ -11,6 +11,7 @@
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
+#include <optional>
 #include <string>
 
 namespace lagroid::optimisation {
@@ -21,7 +22,7 @@ struct GradientDescentOptions {
   double step = 0;
   double c = 0;  ///< step = c / L
   double decrease = 1e-4;
-  ManifoldRetraction retraction = ManifoldRetraction::qr;
+  std::optional<ManifoldRetraction> retraction = {};  ///< without it qr or, where that is not offered, the exponential
 };
 
 class GradientDescent final : public DescentMethod {
@@ -35,6 +36,7 @@ class GradientDescent final : public DescentMethod {
 
  private:
   GradientDescentOptions options_;
+  ManifoldRetraction retraction_ = ManifoldRetraction::qr;
   double step_ = 0;
   double last_ = 0;
   Vector v_;

@@ -14,13 +14,14 @@
 
 #include <lagroid/solvers/optimisation/minimise.hpp>
 
+#include <optional>
 #include <string>
 
 namespace lagroid::optimisation {
 
 struct TrustRegionOptions {
-  ManifoldRetraction retraction = ManifoldRetraction::qr;
-  double first_radius = 0;    ///< 0: an eighth of the largest
+  std::optional<ManifoldRetraction> retraction = {};  ///< without it qr or, where that is not offered, the exponential
+  double first_radius = 0;                            ///< 0: an eighth of the largest
   double largest_radius = 0;  ///< 0: the square root of the dimension, about the size of the manifold
   int inner_iterations = 0;   ///< 0: the dimension
 };
@@ -40,10 +41,11 @@ class TrustRegion final : public DescentMethod {
   void solve_model(Problem& problem, const EvaluatedPoint& state);
 
   TrustRegionOptions options_;
+  ManifoldRetraction retraction_ = ManifoldRetraction::qr;
   double radius_ = 0;
   double largest_ = 0;
   double first_gradient_ = 0;
-  Vector step_, curved_step_, residual_, direction_, curved_;
+  Vector step_, next_step_, curved_step_, residual_, direction_, curved_;
   Point to_;
 };
 

@@ -70,8 +70,9 @@ inline RandomInstance brockett(unsigned seed) {
           seed + 100};
 }
 
+/// The paper's, with lambda = 1 also where curvatures are negative.
 inline HamiltonianDescent hamiltonian(Bregman::Kind kind, double cap = 1) {
-  return HamiltonianDescent({.bregman = {.kind = kind}, .cap = cap}, {.name = "Algorithm 1"});
+  return HamiltonianDescent({.bregman = {.kind = kind, .lambda = 1}, .cap = cap}, {.name = "Algorithm 1"});
 }
 
 }  // namespace lagroid::optimisation::tests

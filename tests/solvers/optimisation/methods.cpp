@@ -87,7 +87,7 @@ TEST(Accelerated, AdaptiveBeatsDirectWhichIsNoWorseThanEulerLagrange) {
     const RandomInstance problem = make(1);
     HamiltonianDescent adaptive = hamiltonian(Bregman::Kind::adaptive);
     HamiltonianDescent direct = hamiltonian(Bregman::Kind::direct);
-    EulerLagrange euler_lagrange({});
+    EulerLagrange euler_lagrange({.lambda = 1});
     const auto to_8 = [&](DescentMethod& method) {
       return count(*problem.manifold, *problem.objective, problem.start, problem.minimum, method, 30000).to_8;
     };
@@ -99,6 +99,23 @@ TEST(Accelerated, AdaptiveBeatsDirectWhichIsNoWorseThanEulerLagrange) {
     EXPECT_LT(2 * a, d);
     EXPECT_LE(double(d), 1.05 * double(e));
   }
+}
+
+TEST(Accelerated, WithLambdaOfTheCurvatureTakesHalfTheIterations) {
+  // On Stiefel manifolds, which curve down to -1/2.
+  for (const auto make : {brockett, unbalanced})
+    for (unsigned seed = 1; seed < 40; seed += 10) {
+      const RandomInstance problem = make(seed);
+      HamiltonianDescent paper = hamiltonian(Bregman::Kind::adaptive);
+      HamiltonianDescent curved({}, {});
+      const auto to_12 = [&](DescentMethod& method) {
+        return count(*problem.manifold, *problem.objective, problem.start, problem.minimum, method, 6000).to_12;
+      };
+      const long with_zeta = to_12(curved);
+      SCOPED_TRACE(problem.objective->name() + ", seed " + std::to_string(seed));
+      EXPECT_GT(with_zeta, 0);
+      EXPECT_GT(to_12(paper), 2 * with_zeta);
+    }
 }
 
 TEST(EulerLagrange, LosesConvergenceWithoutACap) {
