@@ -11,8 +11,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace lagroid::app {
@@ -132,13 +134,26 @@ void set_growth(GradientTable& table, double growth) {
   table.digits_left = propagated.digits_left();
 }
 
-double size_or_usual(double value) { return value != 0 ? std::abs(value) : 1e-2; }
-/// That of a number of the start, or a hundredth of the largest in its group: their unit is one.
+/// The change of column j by which some group of rows changes by a hundredth of its largest value: the unit of a number
+/// that is zero.
+double size_by_what_it_does(const GradientSubject& subject, const GradientTable& table, Eigen::Index j) {
+  std::map<std::string, std::pair<double, double>> groups;  // the largest value, the largest derivative
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    auto& [value, slope] = groups[subject.observed[std::size_t(table.observed[i])].group];
+    value = std::max(value, std::abs(table.values(Eigen::Index(i))));
+    slope = std::max(slope, std::abs(table.derivatives(Eigen::Index(i), j)));
+  }
+  double size = std::numeric_limits<double>::infinity();
+  for (const auto& [group, largest] : groups)
+    if (largest.first > 0 && largest.second > 0) size = std::min(size, 1e-2 * largest.first / largest.second);
+  return std::isfinite(size) ? size : 1e-2;
+}
+/// That of a number of the start, or a hundredth of the largest in its group: their unit is one. Zero where all are.
 double size_of_start(const GradientSubject& subject, std::size_t index) {
   double largest = 0;
   for (std::size_t i = 0; i < subject.start.size(); ++i)
     if (subject.start[i].group == subject.start[index].group) largest = std::max(largest, std::abs(subject.sizes[i]));
-  return largest != 0 ? std::max(std::abs(subject.sizes[index]), 1e-2 * largest) : size_or_usual(0);
+  return std::max(std::abs(subject.sizes[index]), 1e-2 * largest);
 }
 
 void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
@@ -157,7 +172,8 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
     }
     const auto at = Eigen::Index(j);
     sizes(at) = of_start ? size_of_start(subject, std::size_t(index))
-                         : size_or_usual(subject.sizes[subject.start.size() + std::size_t(index)]);
+                         : std::abs(subject.sizes[subject.start.size() + std::size_t(index)]);
+    if (sizes(at) == 0) sizes(at) = size_by_what_it_does(subject, table, at);
     const auto nudged = [&](double by) {
       nudge.by = by;
       return values({nudge});
