@@ -39,7 +39,7 @@ ProgramParts whole_program() {
                              add_optimise_options, optimise),
            command_of_scenes("control", "solve an optimal control problem (see docs/optimal_control.md)",
                              add_control_options, control),
-           command_of("learn", "fit a Hamiltonian on (T*S^2)^k to trajectories (see docs/learning.md)",
+           command_of("learn", "fit a Hamiltonian on (T*S^2)^k or R^2n to trajectories (see docs/learning.md)",
                       add_learn_options, learn),
            command_of("trajectories", "draw trajectories of a pendulum chain into a file, to learn from",
                       add_draw_options, draw),

@@ -44,24 +44,35 @@ int exit_code(TrainingStatus outcome) {
   }
 }
 
+learning::StateSpace space_of(const learning::Trajectories& data) {
+  return data.bodies > 0 ? learning::cotangent_spheres(data.bodies) : learning::phase_space(int(data.width() / 2));
+}
+
 /// Reads what the options name. Throws DataError and ModelError.
 TrainingOutcome prepare(const LearnOptions& options) {
   TrainingOutcome outcome;
   outcome.options = options;
-  outcome.data = read_trajectories(options.data, options.noise);
+  outcome.data = read_trajectories(options.data, options.noise, options.points);
+  const std::string space = to_string(space_of(outcome.data));
   if (options.model.ends_with(".json")) {
     outcome.learned = read_model(options.model);
-    if (outcome.learned.model->bodies() != outcome.data.bodies)
-      throw DataError(fmt::format("{} is of {} bodies, {} of {}; give data of its system", options.model,
-                                  outcome.learned.model->bodies(), options.data, outcome.data.bodies));
+    if (const std::string its = to_string(outcome.learned.model->space()); its != space)
+      throw DataError(
+          fmt::format("{} is on {}, {} on {}; give data of its system", options.model, its, options.data, space));
+    if (options.dissipation && outcome.learned.model->dissipation(outcome.learned.parameters).size() == 0)
+      throw ModelError(
+          fmt::format("{} declares no dissipation; leave --dissipation out, or begin anew with it", options.model));
   } else {
-    outcome.learned.model = named_model(options.model, outcome.data.bodies);
+    outcome.learned.model =
+        named_model(options.model, space_of(outcome.data),
+                    options.dissipation ? learning::Dissipation::rayleigh : learning::Dissipation::none);
   }
+  if (!options.integrator) outcome.options.integrator = outcome.data.bodies > 0 ? "commutator-free-4" : "runge-kutta-4";
   if (options.test) {
     outcome.test = read_trajectories(*options.test, options.test_noise);
-    if (outcome.test->bodies != outcome.data.bodies)
-      throw DataError(fmt::format("{} is of {} bodies, {} of {}; give data of one system", *options.test,
-                                  outcome.test->bodies, options.data, outcome.data.bodies));
+    if (const std::string its = to_string(space_of(*outcome.test)); its != space)
+      throw DataError(
+          fmt::format("{} is on {}, {} on {}; give data of one system", *options.test, its, options.data, space));
   }
   return outcome;
 }
@@ -69,7 +80,7 @@ TrainingOutcome prepare(const LearnOptions& options) {
 learning::Trained train(const TrainingOutcome& outcome) {
   const LearnOptions& options = outcome.options;
   learning::Training training;
-  training.method = *lie_group_methods::named(options.integrator);
+  training.method = *lie_group_methods::named(*options.integrator);
   training.substeps = options.substeps;
   training.seed = options.seed;
   training.begin = outcome.learned.parameters;
@@ -108,10 +119,10 @@ int refuse_untrained(const TrainingOutcome& outcome) {
 }
 
 int serve(const LearnOptions& options) {
-  if (lie_group_methods::named(options.integrator) == nullptr)
+  if (options.integrator && lie_group_methods::named(*options.integrator) == nullptr)
     return refuse(
         options.json, exit_bad_input, "invalid_command_line",
-        fmt::format("--integrator {}: there is none; take one of {}", options.integrator, integrator_names()));
+        fmt::format("--integrator {}: there is none; take one of {}", *options.integrator, integrator_names()));
   TrainingOutcome outcome;
   std::optional<OutputFolder> folder;
   try {
@@ -151,13 +162,20 @@ int serve(const LearnOptions& options) {
 
 void add_learn_options(CLI::App& command, LearnOptions& options) {
   const auto share = number_that_is("a share from 0 to 0.9", [](double x) { return x >= 0 && x <= 0.9; });
-  command.add_option("data", options.data, "trajectories, a .csv or .h5 file (see docs/learning.md)")->required();
+  command
+      .add_option("data", options.data,
+                  "trajectories, a .csv or .h5 file, or the trajectory.h5 of a run in R^n (see docs/learning.md)")
+      ->required();
   command.add_option(
       "--model", options.model,
-      "of the potential: polynomial:DEGREE, or network:UNITS[,UNITS...] (default network:8); or a model.json to "
-      "go on from");
+      "of the potential on spheres, of H(q, p) in R^n: polynomial:DEGREE, or network:UNITS[,UNITS...] (default "
+      "network:8); or a model.json to go on from");
+  command.add_flag("--dissipation", options.dissipation, "learn a friction -R q' too, R constant and semidefinite");
+  command.add_option("--points", options.points, "cut trajectories into pieces of so many (default: as they are)")
+      ->check(CLI::Range(2, 1'000'000));
   command.add_option("--integrator", options.integrator,
-                     fmt::format("trained through: {} (default commutator-free-4)", integrator_names()));
+                     fmt::format("trained through: {} (default commutator-free-4 on spheres, runge-kutta-4 in R^n)",
+                                 integrator_names()));
   command.add_option("--substeps", options.substeps, "of the integrator between points (default 2)")
       ->check(CLI::Range(1, 10000));
   command.add_option("--noise", options.noise, "size of the errors in the data (default 0)")

@@ -1,5 +1,5 @@
 #pragma once
-/// `lagroid learn`: fits a Hamiltonian on (T*S^2)^k to trajectories.
+/// `lagroid learn`: fits a Hamiltonian on (T*S^2)^k or R^2n to trajectories.
 
 #include "../command/command.hpp"
 
@@ -12,7 +12,9 @@ namespace lagroid::app {
 struct LearnOptions {
   std::string data;
   std::string model = "network:8";
-  std::string integrator = "commutator-free-4";
+  bool dissipation = false;
+  std::optional<std::string> integrator;  ///< else of order four, as the data's space calls it
+  int points = 0;                         ///< of the pieces that trajectories are cut into; zero: none
   int substeps = 2;
   double noise = 0;
   std::optional<std::string> test;

@@ -6,6 +6,7 @@
 #include <lagroid/run/reports/text.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -21,8 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using learning::Stage;
 
-constexpr std::array<const char*, 8> files{model_file_name, "history.csv", "errors.csv", "summary.json",
-                                           "summary.txt",   "plot.gp",     "plot.svg",   "plot.png"};
+constexpr const char* scene_file_name = "learned.toml";
+constexpr std::array<const char*, 9> files{model_file_name, scene_file_name, "history.csv",
+                                           "errors.csv",    "summary.json",  "summary.txt",
+                                           "plot.gp",       "plot.svg",      "plot.png"};
 
 std::string history_csv(const TrainingOutcome& outcome) {
   std::string out = "line,start,iteration,training,validation,damping,seconds\n";
@@ -38,6 +41,32 @@ std::string errors_csv(const TrainingOutcome& outcome) {
   for (std::size_t i = 0; i < outcome.measures->times.size(); ++i)
     fmt::format_to(std::back_inserter(out), "{},{:.6g}\n", outcome.measures->times[i], outcome.measures->rms[i]);
   return out;
+}
+
+/// A scene of the learned H as a formula, from where the first trajectory starts. Empty where scenes have no such
+/// system, as with dissipation, or nobody would read it.
+std::string learned_scene(const TrainingOutcome& outcome) {
+  constexpr std::size_t longest = 20'000;
+  const auto& [model, parameters] = outcome.learned;
+  if (model->bodies() > 0 || model->dissipation(parameters).size() > 0) return {};
+  const auto n = std::size_t(outcome.data.width()) / 2;
+  std::vector<std::string> names;
+  for (const char which : {'q', 'p'})
+    for (std::size_t i = 1; i <= n; ++i) names.push_back(fmt::format("{}{}", which, i));
+  const std::string formula = model->formula(parameters, names);
+  if (formula.empty() || formula.size() > longest) return {};
+  const auto quoted = [&](std::size_t from) {
+    return fmt::format("[\"{}\"]", fmt::join(names.begin() + long(from), names.begin() + long(from + n), "\", \""));
+  };
+  const Eigen::VectorXd start = outcome.data.starts.col(0);
+  return fmt::format(
+      "# The Hamiltonian that lagroid learn found in {}, {}.\n# Run it with: lagroid run {}\nsystem = "
+      "\"hamiltonian\"\n\n"
+      "[hamiltonian]\ncoordinates = {}\nmomenta = {}\nH = \"{}\"\n\n"
+      "[initial]\nposition = [{}]\nmomentum = [{}]\n\n[time]\nstep = {}\nsteps = 1000\n",
+      outcome.options.data, model->name(), scene_file_name, quoted(0), quoted(n), formula,
+      fmt::join(start.begin(), start.begin() + long(n), ", "), fmt::join(start.begin() + long(n), start.end(), ", "),
+      outcome.data.interval / outcome.options.substeps);
 }
 
 std::string gnuplot_script(const TrainingOutcome& outcome) {
@@ -99,8 +128,31 @@ nlohmann::ordered_json known(double x) {
 
 /// What decides what is learned, beside data and model; other test data measure the same.
 std::string as_text(const LearnOptions& o) {
-  return fmt::format("{} {} {:.17g} {:.17g} {} {} {} {:.17g}", o.integrator, o.substeps, o.noise,
-                     o.validation.value_or(-1), o.starts, o.iterations, o.seed, o.enough);
+  std::string out = fmt::format("{} {} {:.17g} {:.17g} {} {} {} {:.17g}", *o.integrator, o.substeps, o.noise,
+                                o.validation.value_or(-1), o.starts, o.iterations, o.seed, o.enough);
+  if (o.dissipation) out += " dissipation";
+  if (o.points > 0) out += fmt::format(" pieces of {}", o.points);
+  return out;
+}
+
+std::vector<std::vector<double>> rows_of(const Eigen::MatrixXd& matrix) {
+  std::vector<std::vector<double>> out;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    const Eigen::VectorXd row = matrix.row(i);
+    out.emplace_back(row.begin(), row.end());
+  }
+  return out;
+}
+
+/// A line for each row, the first under its name.
+std::string matrix_lines(const char* name, const Eigen::MatrixXd& matrix) {
+  std::string out;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    out += fmt::format("  {:<12}", i == 0 ? name : "");
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) out += fmt::format(" {:12.8f}", matrix(i, j));
+    out += "\n";
+  }
+  return out;
 }
 
 }  // namespace
@@ -111,8 +163,12 @@ nlohmann::ordered_json training_json(const TrainingOutcome& outcome) {
   out["status"] = to_string(trained.outcome);
   if (!trained.message.empty()) out["message"] = trained.message;
   out["model"] = outcome.learned.model->name();
-  out["bodies"] = outcome.data.bodies;
-  out["integrator"] = outcome.options.integrator;
+  if (outcome.data.bodies > 0) {
+    out["bodies"] = outcome.data.bodies;
+  } else {
+    out["coordinates"] = outcome.data.width() / 2;
+  }
+  out["integrator"] = *outcome.options.integrator;
   out["substeps"] = outcome.options.substeps;
   out["data"] = {{"file", outcome.options.data},
                  {"trajectories", outcome.data.count()},
@@ -126,11 +182,9 @@ nlohmann::ordered_json training_json(const TrainingOutcome& outcome) {
   out["iterations"] = trained.iterations;
   out["best_seed"] = trained.start;
   out["seconds"] = trained.seconds;
-  const Eigen::MatrixXd mass = outcome.learned.model->mass(trained.parameters);
-  for (Eigen::Index i = 0; i < mass.rows(); ++i) {
-    const Eigen::VectorXd row = mass.row(i);
-    out["mass_matrix"].push_back(std::vector<double>(row.begin(), row.end()));
-  }
+  const auto& model = *outcome.learned.model;
+  if (const auto mass = rows_of(model.mass(trained.parameters)); !mass.empty()) out["mass_matrix"] = mass;
+  if (const auto r = rows_of(model.dissipation(trained.parameters)); !r.empty()) out["dissipation"] = r;
   if (outcome.measures) {
     const auto& found = *outcome.measures;
     out["held_out"] = {{"file", *outcome.options.test},
@@ -140,10 +194,12 @@ nlohmann::ordered_json training_json(const TrainingOutcome& outcome) {
                        {"mse", known(found.mse)},
                        {"rms_at_end", known(found.rms.back())},
                        {"energy_variation_rms", known(found.energy_rms)},
-                       {"energy_variation_largest", known(found.energy_largest)},
-                       {"momentum_change_learned", known(found.momentum_learned)},
-                       {"momentum_change_data", known(found.momentum_data)},
-                       {"lost", found.lost}};
+                       {"energy_variation_largest", known(found.energy_largest)}};
+    if (outcome.data.bodies > 0) {
+      out["held_out"]["momentum_change_learned"] = known(found.momentum_learned);
+      out["held_out"]["momentum_change_data"] = known(found.momentum_data);
+    }
+    out["held_out"]["lost"] = found.lost;
   }
   for (const std::string& note : notes_of(outcome)) out["notes"].push_back(note);
   return out;
@@ -152,9 +208,12 @@ nlohmann::ordered_json training_json(const TrainingOutcome& outcome) {
 std::string training_text(const TrainingOutcome& outcome) {
   const auto& trained = outcome.trained;
   const auto& options = outcome.options;
-  std::string out = fmt::format("{} on (T*S^2)^{}, through {} with {} substeps of {:g}: {}\n",
-                                outcome.learned.model->name(), outcome.data.bodies, options.integrator,
-                                options.substeps, outcome.data.interval / options.substeps, to_string(trained.outcome));
+  const auto& model = *outcome.learned.model;
+  const Eigen::MatrixXd dissipation = model.dissipation(trained.parameters);
+  std::string out =
+      fmt::format("{} on {}{}, through {} with {} substeps of {:g}: {}\n", model.name(), to_string(model.space()),
+                  dissipation.size() > 0 ? ", with dissipation" : "", *options.integrator, options.substeps,
+                  outcome.data.interval / options.substeps, to_string(trained.outcome));
   out += fmt::format("  data         {}: {} trajectories of {} points, {:g} apart\n", options.data,
                      outcome.data.count(), outcome.data.points, outcome.data.interval);
   out += fmt::format("  parameters   {}\n", trained.parameters.size());
@@ -162,12 +221,8 @@ std::string training_text(const TrainingOutcome& outcome) {
   const double share = share_explained(outcome);
   out += std::isfinite(share) ? fmt::format(", {:.6g} % of the motion explained\n", 100 * share) : std::string("\n");
   if (std::isfinite(trained.validation)) out += fmt::format("  validation   {:.2e}\n", trained.validation);
-  const Eigen::MatrixXd mass = outcome.learned.model->mass(trained.parameters);
-  for (Eigen::Index i = 0; i < mass.rows(); ++i) {
-    out += i == 0 ? "  mass matrix " : "              ";
-    for (Eigen::Index j = 0; j < mass.cols(); ++j) out += fmt::format(" {:12.8f}", mass(i, j));
-    out += "\n";
-  }
+  out += matrix_lines("mass matrix", model.mass(trained.parameters));
+  out += matrix_lines("R", dissipation);
   if (outcome.measures) {
     const auto& found = *outcome.measures;
     out += fmt::format("  held out     {}: {} trajectories of {} points, until t = {:g}\n", *options.test,
@@ -175,10 +230,11 @@ std::string training_text(const TrainingOutcome& outcome) {
     if (found.lost > 0) out += fmt::format("               {} of them could not be followed\n", found.lost);
     out += fmt::format("               mean squared error {:.2e}, root of it at the end {:.2e}\n", found.mse,
                        found.rms.back());
-    out += fmt::format("  learned H    varies along them by {:.1e} (rms), {:.1e} at most\n", found.energy_rms,
-                       found.energy_largest);
-    out += fmt::format("  momentum     about the vertical changes by {:.1e} on learned motions, {:.1e} in the data\n",
-                       found.momentum_learned, found.momentum_data);
+    out += fmt::format("  learned H    varies along them by {:.1e} (rms), {:.1e} at most{}\n", found.energy_rms,
+                       found.energy_largest, dissipation.size() > 0 ? ", what R takes included" : "");
+    if (outcome.data.bodies > 0)
+      out += fmt::format("  momentum     about the vertical changes by {:.1e} on learned motions, {:.1e} in the data\n",
+                         found.momentum_learned, found.momentum_data);
   }
   out += fmt::format("  iterations   {}, {} of the processor", trained.iterations, duration(trained.seconds));
   out += options.model.ends_with(".json") ? fmt::format("; from {}\n", options.model)
@@ -199,6 +255,10 @@ std::vector<fs::path> write_training(const TrainingOutcome& outcome, const fs::p
   const auto make = [&](const fs::path& staging) {
     std::vector<std::string> names{model_file_name, "history.csv", "summary.json", "summary.txt", "plot.gp"};
     write_text(model_text(outcome.learned), staging / model_file_name);
+    if (const std::string scene = learned_scene(outcome); !scene.empty()) {
+      write_text(scene, staging / scene_file_name);
+      names.emplace_back(scene_file_name);
+    }
     write_text(history_csv(outcome), staging / "history.csv");
     if (outcome.measures) {
       write_text(errors_csv(outcome), staging / "errors.csv");

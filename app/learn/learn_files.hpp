@@ -34,8 +34,8 @@ nlohmann::ordered_json training_json(const TrainingOutcome& outcome);
 /// The folder for the files, for this process alone; of the same data and model it is written anew. Throws as
 /// OutputFolder does.
 OutputFolder folder_for_training(const std::filesystem::path& folder, const TrainingOutcome& outcome);
-/// model.json, history.csv, errors.csv (with held-out data), summaries, plots; each whole or not at all. `note` says
-/// why there are no pictures.
+/// model.json, learned.toml (of a conservative model in R^n), history.csv, errors.csv (with held-out data), summaries,
+/// plots; each whole or not at all. `note` says why there are no pictures.
 std::vector<std::filesystem::path> write_training(const TrainingOutcome& outcome, const std::filesystem::path& folder,
                                                   std::string& note);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Trajectories on (T*S^2)^k in files (docs/learning.md).
+/// Trajectories on (T*S^2)^k and in R^2n in files (docs/learning.md).
 
 #include "../reading/data_set.hpp"
 
@@ -12,13 +12,21 @@
 
 namespace lagroid::app {
 
-/// Reads a .csv file with a header (trajectory, t, q1x, q1y, q1z, p1x, p1y, p1z, q2x, ..., and weight, if wanted) or an
-/// .h5 file with data sets of the same names, the states in one, z. Rows are numbered as lines of the file, or from 1
-/// in HDF5. Throws DataError.
-std::vector<learning::Observation> read_observations(const std::filesystem::path& file);
+/// Rows of a file, and where their states are.
+struct ObservedStates {
+  std::vector<learning::Observation> rows;
+  bool on_spheres = true;  ///< else in R^2n
+};
 
-/// The same, put together (learning::assemble). Throws DataError, which names file and row.
-learning::Trajectories read_trajectories(const std::filesystem::path& file, double noise);
+/// Reads a .csv file with a header (trajectory, t, q1x, q1y, q1z, p1x, p1y, p1z, q2x, ..., on spheres, or trajectory,
+/// t, q1, ..., qn, p1, ..., pn; and weight, if wanted), an .h5 file with data sets of the same names, states on spheres
+/// in one, z; or the trajectory.h5 of a run in R^n: time, position, momentum. Rows are numbered as lines of the file,
+/// or from 1 in HDF5. Throws DataError.
+ObservedStates read_observations(const std::filesystem::path& file);
+
+/// The same, put together (learning::assemble), in pieces of so many points (learning::pieces_of) unless that is zero.
+/// Throws DataError, which names file and row.
+learning::Trajectories read_trajectories(const std::filesystem::path& file, double noise, int points = 0);
 
 /// Throws DataError unless the name ends in .csv or .h5.
 void require_trajectory_file(const std::filesystem::path& file);

@@ -1,4 +1,4 @@
-/// Hamiltonians on (T*S^2)^k from trajectories.
+/// Hamiltonians on (T*S^2)^k and in R^2n from trajectories.
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -34,19 +34,22 @@ using app::LearnedHamiltonian;
 using learning::Observation, learning::Trained, learning::Trajectories;
 using States = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Trajectories of M points (N, M, 6k) at these times (M,).
-Trajectories assembled(const States& states, const States& time, double noise) {
+/// Trajectories of M points (N, M, 6k) at these times (M,), or (N, M, 2n) off spheres.
+Trajectories assembled(const States& states, const States& time, double noise, bool spheres) {
   if (states.ndim() != 3 || states.shape(2) == 0 || time.ndim() != 1 || time.shape(0) != states.shape(1))
     throw py::value_error("states: expected (trajectories, points, 6k), and the time of each point (points,)");
+  if (!spheres && states.shape(2) % 2 != 0)
+    throw py::value_error("states: expected (trajectories, points, 2n), as many momenta as coordinates");
   std::vector<Observation> rows;
   for (py::ssize_t i = 0; i < states.shape(0); ++i)
     for (py::ssize_t j = 0; j < states.shape(1); ++j)
       rows.push_back({long(rows.size()), long(i), time.at(j),
                       Eigen::Map<const Eigen::VectorXd>(states.data(i, j, 0), states.shape(2)), 1});
-  return learning::assemble(rows, noise);
+  if (spheres) return learning::assemble(rows, noise);
+  return learning::assemble(rows, learning::phase_space(int(states.shape(2) / 2)), noise);
 }
 
-/// Its states (N, M, 6k).
+/// Its states (N, M, 6k), or (N, M, 2n).
 py::array states_of(const Trajectories& data) {
   const Eigen::Index width = data.width();
   auto* kept = new Eigen::MatrixXd(width * data.points, data.count());
@@ -76,10 +79,14 @@ struct Learned {
   const Eigen::VectorXd& theta() const { return hamiltonian.parameters; }
 };
 
+learning::StateSpace space_of(const Trajectories& data) {
+  return data.bodies > 0 ? learning::cotangent_spheres(data.bodies) : learning::phase_space(int(data.width() / 2));
+}
+
 std::shared_ptr<Learned> learn(const Trajectories& data, const std::string& model,
                                const std::optional<std::shared_ptr<Learned>>& begin, const std::string& integrator,
                                int substeps, double validation, int starts, int iterations, unsigned seed,
-                               double enough, double seconds) {
+                               double enough, double seconds, bool dissipation) {
   const LieGroupMethod* method = lie_group_methods::named(integrator);
   if (method == nullptr) {
     std::string all;
@@ -92,10 +99,11 @@ std::shared_ptr<Learned> learn(const Trajectories& data, const std::string& mode
     out->hamiltonian = (*begin)->hamiltonian;
     training.begin = out->hamiltonian.parameters;
   } else {
-    out->hamiltonian.model = app::named_model(model, data.bodies);
+    out->hamiltonian.model = app::named_model(
+        model, space_of(data), dissipation ? learning::Dissipation::rayleigh : learning::Dissipation::none);
   }
-  if (out->model().bodies() != data.bodies)
-    throw py::value_error(fmt::format("the model is of {} bodies, the data of {}", out->model().bodies(), data.bodies));
+  if (const auto its = to_string(out->model().space()), given = to_string(space_of(data)); its != given)
+    throw py::value_error(fmt::format("the model is on {}, the data on {}", its, given));
   training.method = *method;
   training.substeps = substeps;
   training.seed = seed;
@@ -119,20 +127,27 @@ std::shared_ptr<Learned> load(const fs::path& file) {
 
 const Eigen::VectorXd& usable(const Learned& learned, const Eigen::VectorXd& z) {
   if (learned.theta().size() == 0) throw py::value_error("the training left no parameters: " + learned.trained.message);
-  if (z.size() != 6 * learned.model().bodies())
-    throw py::value_error(fmt::format("z: expected {} numbers, got {}", 6 * learned.model().bodies(), z.size()));
+  if (const Eigen::Index size = learned.model().space().size; z.size() != size)
+    throw py::value_error(fmt::format("z: expected {} numbers, got {}", size, z.size()));
   return learned.theta();
 }
 
 }  // namespace
 
 void bind_learning(py::module_& module) {
-  py::class_<Trajectories>(module, "Trajectories", "Pieces of motions on (T*S^2)^k at equal intervals.")
-      .def(py::init(&assembled), py::arg("states"), py::arg("time"), py::kw_only(), py::arg("noise") = 0.0,
-           "From states (trajectories, points, 6k), q_1, p_1, q_2, ... each, and times (points,), s. `noise`: the\n"
-           "size of their errors. Raises ValueError, naming the row, for what is off the spheres.")
-      .def_static("read", &app::read_trajectories, py::arg("file"), py::kw_only(), py::arg("noise") = 0.0,
-                  "Reads a .csv or .h5 file (docs/learning.md). Raises DataError.")
+  py::class_<Trajectories>(module, "Trajectories", "Pieces of motions on (T*S^2)^k or in R^2n at equal intervals.")
+      .def(
+          py::init(&assembled), py::arg("states"), py::arg("time"), py::kw_only(), py::arg("noise") = 0.0,
+          py::arg("spheres") = true,
+          "From states (trajectories, points, 6k), q_1, p_1, q_2, ... each, and times (points,), s; with "
+          "spheres=False\n"
+          "from (trajectories, points, 2n), (q, p) each. `noise`: the size of their errors. Raises ValueError, naming\n"
+          "the row, for what is off the spheres.")
+      .def_static(
+          "read", &app::read_trajectories, py::arg("file"), py::kw_only(), py::arg("noise") = 0.0,
+          py::arg("points") = 0,
+          "Reads a .csv or .h5 file (docs/learning.md), in pieces of so many points unless that is zero. Raises\n"
+          "DataError.")
       .def_static(
           "chain",
           [](const Eigen::VectorXd& masses, const Eigen::VectorXd& lengths, double gravity, int count, int points,
@@ -141,10 +156,10 @@ void bind_learning(py::module_& module) {
           py::arg("masses"), py::arg("lengths"), py::kw_only(), py::arg("gravity") = 1.0, py::arg("count") = 500,
           py::arg("points") = 5, py::arg("duration") = 0.1, py::arg("noise") = 0.0, py::arg("seed") = 0,
           "Random motions of a pendulum chain: masses (k,), kg, lengths (k,), m.")
-      .def_readonly("bodies", &Trajectories::bodies, "k")
+      .def_readonly("bodies", &Trajectories::bodies, "k; zero in R^2n.")
       .def_readonly("points", &Trajectories::points, "Of each trajectory, the first included.")
       .def_readonly("interval", &Trajectories::interval, "Between points, s.")
-      .def_property_readonly("states", states_of, "(trajectories, points, 6k).")
+      .def_property_readonly("states", states_of, "(trajectories, points, 6k), or (trajectories, points, 2n).")
       .def("__len__", &Trajectories::count);
 
   py::class_<learning::Measures>(module, "Measures", "How good a learned Hamiltonian is on data.")
@@ -159,16 +174,17 @@ void bind_learning(py::module_& module) {
       .def_readonly("lost", &learning::Measures::lost, "Trajectories that could not be followed.");
 
   py::class_<Learned, std::shared_ptr<Learned>>(module, "LearnedHamiltonian",
-                                                "H = p^T M(q)^{-1} p / 2 + V(q) on (T*S^2)^k; states z are (6k,).")
+                                                "H = p^T M(q)^{-1} p / 2 + V(q) on (T*S^2)^k, states z are (6k,);\n"
+                                                "H(q, p) in R^2n, states (2n,).")
       .def_static("read", load, py::arg("file"), "Reads a model.json. Raises DataError.")
       .def(
           "write",
           [](const Learned& l, const fs::path& file) { lagroid::write_text(app::model_text(l.hamiltonian), file); },
           py::arg("file"), "Writes a model.json, which a scene can run.")
       .def_property_readonly(
-          "name", [](const Learned& l) { return l.model().name(); }, "Of the potential.")
+          "name", [](const Learned& l) { return l.model().name(); }, "Of the potential, or of H.")
       .def_property_readonly(
-          "bodies", [](const Learned& l) { return l.model().bodies(); }, "k")
+          "bodies", [](const Learned& l) { return l.model().bodies(); }, "k; zero in R^2n.")
       .def_property_readonly(
           "parameters",
           [](const py::object& self) {
@@ -177,7 +193,10 @@ void bind_learning(py::module_& module) {
           },
           "theta, the mass matrix's first.")
       .def_property_readonly(
-          "mass", [](const Learned& l) { return l.model().mass(l.theta()); }, "m, (k, k).")
+          "mass", [](const Learned& l) { return l.model().mass(l.theta()); }, "m, (k, k); empty in R^2n.")
+      .def_property_readonly(
+          "dissipation", [](const Learned& l) { return l.model().dissipation(l.theta()); },
+          "R, (k, k) or (n, n); empty where none was declared.")
       .def_property_readonly(
           "status", [](const Learned& l) { return std::string(to_string(l.trained.outcome)); },
           "How the training ended.")
@@ -212,7 +231,10 @@ void bind_learning(py::module_& module) {
           py::arg("z"), "H(z).")
       .def(
           "field", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().field(usable(l, z), z); },
-          py::arg("z"), "The motion as an element of the algebra (xi_i, eta_i), (6k,).")
+          py::arg("z"), "The motion as an element of the algebra (xi_i, eta_i), (6k,); in R^2n z'.")
+      .def(
+          "rates", [](const Learned& l, const Eigen::VectorXd& z) { return l.model().rates(usable(l, z), z); },
+          py::arg("z"), "z'.")
       .def(
           "follow",
           [](const Learned& l, const Eigen::VectorXd& start, const std::vector<double>& times, double tolerance) {
@@ -233,13 +255,13 @@ void bind_learning(py::module_& module) {
           },
           py::arg("data"), py::kw_only(), py::arg("tolerance") = 1e-12, "On data that it was not trained on.")
       .def("__repr__", [](const Learned& l) {
-        return fmt::format("<{} of {} bodies: {}, mse {:.3g}>", l.model().name(), l.model().bodies(),
+        return fmt::format("<{} on {}: {}, mse {:.3g}>", l.model().name(), to_string(l.model().space()),
                            to_string(l.trained.outcome), l.trained.mse);
       });
 
   module.def("learn", learn, py::arg("data"), py::arg("model"), py::arg("begin"), py::arg("integrator"),
              py::arg("substeps"), py::arg("validation"), py::arg("starts"), py::arg("iterations"), py::arg("seed"),
-             py::arg("enough"), py::arg("seconds"));
+             py::arg("enough"), py::arg("seconds"), py::arg("dissipation"));
 }
 
 }  // namespace lagroid::python

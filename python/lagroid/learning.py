@@ -53,13 +53,14 @@ def learn(
     seed: int = 1,
     enough: float = 0.0,
     seconds: float = math.inf,
+    dissipation: bool = False,
 ) -> LearnedHamiltonian:
-    """Fits H = p^T M(q)^{-1} p / 2 + V(q), V "polynomial:DEGREE" or "network:UNITS[,UNITS...]", through an integrator
-    with so many substeps between points of the data. `begin`: a model to go on from, in place of `starts`. The other
-    keywords are the options of `lagroid learn`. Raises SolveError where nothing could be learned, KeyboardInterrupt
+    """Fits H = p^T M(q)^{-1} p / 2 + V(q) on spheres, H(q, p) in R^2n, V or H "polynomial:DEGREE" or
+    "network:UNITS[,UNITS...]", through an integrator with so many substeps between points of the data. `dissipation`: a
+    friction -R q' too. `begin`: a model to go on from, in place of `starts`. The other keywords are the options of `lagroid learn`. Raises SolveError where nothing could be learned, KeyboardInterrupt
     after Ctrl-C."""
     learned = _lagroid.learn(
-        data, model, begin, integrator, substeps, validation, starts, iterations, seed, enough, seconds
+        data, model, begin, integrator, substeps, validation, starts, iterations, seed, enough, seconds, dissipation
     )
     if not learned.usable:
         raise SolveError(learned.message, learned.status)

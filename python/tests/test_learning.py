@@ -45,6 +45,30 @@ class Learning(unittest.TestCase):
         again = lagroid.Trajectories(data.states, data.interval * np.arange(data.points))
         np.testing.assert_allclose(again.states, data.states, atol=1e-15)
 
+    def test_a_damped_oscillator_in_the_plane(self) -> None:
+        # q'' + 2 c q' + q = 0 in closed form, H = (p^2 + q^2) / 2 and R = 2 c.
+        c = 0.1
+        w = np.sqrt(1 - c * c)
+        time = 0.1 * np.arange(5)
+        start = np.random.default_rng(1).uniform(-1, 1, (30, 2, 1))
+        q0, p0 = start[:, 0], start[:, 1]
+        decay, cosine, sine = np.exp(-c * time), np.cos(w * time), np.sin(w * time)
+        q = decay * (q0 * cosine + (p0 + c * q0) / w * sine)
+        p = decay * (p0 * cosine - (q0 + c * p0) / w * sine)
+        data = lagroid.Trajectories(np.stack([q, p], axis=-1), time, spheres=False)
+        self.assertEqual((data.bodies, data.states.shape), (0, (30, 5, 2)))
+        learned = lagroid.learn(data, "polynomial:2", starts=1, substeps=8, dissipation=True)
+        np.testing.assert_allclose(learned.dissipation, [[2 * c]], atol=1e-7)
+        np.testing.assert_allclose(learned.parameters[:-1], [0, 0, 0.5, 0, 0.5], atol=1e-7)
+        np.testing.assert_allclose(learned.rates(np.array([1.0, 2.0])), [2, -1 - 2 * c * 2], atol=1e-6)
+        self.assertEqual(learned.mass.size, 0)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "model.json"
+            learned.write(file)
+            np.testing.assert_array_equal(lagroid.LearnedHamiltonian.read(file).dissipation, learned.dissipation)
+        with self.assertRaisesRegex(ValueError, "on R\\^2, the data on"):
+            lagroid.learn(lagroid.trajectories(count=4), begin=learned)
+
     def test_mistakes(self) -> None:
         data = lagroid.trajectories(count=4)
         with self.assertRaisesRegex(ValueError, "integrator"):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lagroid::learning {
 
@@ -11,11 +12,23 @@ double vertical_momentum(const Eigen::Ref<const Eigen::VectorXd>& z) {
   return sum;
 }
 
+double dissipated_power(const Model& model, const Eigen::VectorXd& theta, const Eigen::VectorXd& z) {
+  const Eigen::MatrixXd r = model.dissipation(theta);
+  if (r.size() == 0) return 0;
+  const Eigen::VectorXd rates = model.rates(theta, z);
+  // The velocities, one a row.
+  Eigen::MatrixXd v = rates.head(r.rows());
+  if (model.bodies() > 0) v = rates.reshaped(6, r.rows()).topRows<3>().transpose();
+  return (v.transpose() * r * v).trace();
+}
+
 Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance,
                  const std::function<bool()>& stop) {
   Measures out;
   const Eigen::Index later = data.points - 1;
   const Eigen::Index width = data.width();
+  const bool on_spheres = model.bodies() > 0;
+  if (!on_spheres) out.momentum_learned = out.momentum_data = std::numeric_limits<double>::quiet_NaN();
   for (Eigen::Index j = 0; j < later; ++j) out.times.push_back(double(j + 1) * data.interval);
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(later);
   double weighted = 0;
@@ -33,7 +46,7 @@ Measures measure(const Model& model, const Eigen::VectorXd& theta, const Traject
       continue;
     }
     const double energy = model.energy(theta, start);
-    const double momentum = vertical_momentum(start);
+    const double momentum = on_spheres ? vertical_momentum(start) : 0;
     for (Eigen::Index j = 0; j < later; ++j) {
       const Eigen::VectorXd truth = data.ends.col(n).segment(j * width, width);
       const double square = (z.col(j) - truth).squaredNorm();
@@ -43,6 +56,7 @@ Measures measure(const Model& model, const Eigen::VectorXd& theta, const Traject
       const double change = std::abs(model.energy(theta, truth) - energy);
       out.energy_largest = std::max(out.energy_largest, change);
       energies += change * change;
+      if (!on_spheres) continue;
       out.momentum_learned = std::max(out.momentum_learned, std::abs(vertical_momentum(z.col(j)) - momentum));
       out.momentum_data = std::max(out.momentum_data, std::abs(vertical_momentum(truth) - momentum));
     }

@@ -21,11 +21,12 @@ struct Measures {
   std::vector<double> times;
   std::vector<double> rms;  ///< at each of these: the root of the mean squared error, over all trajectories
   /// What the learned H varies by along a trajectory of the data, of the true motion therefore: the largest of
-  /// |H(z_j) - H(z_0)|, and the root of the mean square. Noise is in it, from the first point on.
+  /// |H(z_j) - H(z_0)|, and the root of the mean square. Noise is in it, from the first point on, and what dissipation
+  /// takes.
   double energy_largest = 0;
   double energy_rms = 0;
   /// The largest change of e_3 . sum_i q_i x p_i, the momentum about the vertical, along a learned motion: zero where
-  /// the learned V has the symmetry; and along the data.
+  /// the learned V has the symmetry; and along the data. Not a number where they are not on spheres.
   double momentum_learned = 0;
   double momentum_data = 0;
   long lost = 0;         ///< trajectories that could not be followed, left out of all
@@ -36,7 +37,11 @@ struct Measures {
 Measures measure(const Model& model, const Eigen::VectorXd& theta, const Trajectories& data, double tolerance = 1e-12,
                  const std::function<bool()>& stop = nullptr);
 
-/// e_3 . sum_i q_i x p_i.
+/// q'^T R q', of (T*S^2)^k sum_ij R_ij q_i'.q_j': what dissipation takes in a unit of time, dH/dt = -q'^T R q'. Zero
+/// where the model declares none.
+double dissipated_power(const Model& model, const Eigen::VectorXd& theta, const Eigen::VectorXd& z);
+
+/// e_3 . sum_i q_i x p_i, of a state on (T*S^2)^k.
 double vertical_momentum(const Eigen::Ref<const Eigen::VectorXd>& z);
 
 }  // namespace lagroid::learning

@@ -1,19 +1,23 @@
 #pragma once
-/// Hamiltonians with parameters theta on (T*S^2)^k,
+/// Hamiltonians with parameters theta behind one interface for those who train, measure and run them, whatever they
+/// are:
 ///
-///     H(q, p; theta) = 1/2 p^T M(q)^{-1} p + V(q; theta),
+///     H(q, p; theta) = 1/2 p^T M(q)^{-1} p + V(q; theta)    on (T*S^2)^k,
+///     H(q, p; theta)                                        on R^2n, or on T*Q in it,
 ///
-/// behind one interface for those who train, measure and run them, whatever the potential is.
+/// with dissipation where a model declares it, p' = ... - P^T R(theta) q'.
 ///
 ///     const auto model = learning::polynomial_model(1, 3);  // bodies, degree
 ///     const Eigen::VectorXd theta = model->start(1);  // seed
 ///     const double energy = model->energy(theta, Eigen::VectorXd{{0, 0, -1, 0.5, 0, 0}});
+///     const auto damped = learning::network_hamiltonian(2, {8}, learning::Dissipation::rayleigh);  // of (q, p) in R^4
 ///
-/// Requires theta of size() numbers and states of 6k numbers, (q_1, p_1, q_2, p_2, ...). polynomial_model and
-/// network_model throw std::invalid_argument for sizes out of range; `follow` returns false where the motion cannot be
-/// followed. [H]
+/// Requires theta of size() numbers and states of `space().size`: on (T*S^2)^k (q_1, p_1, q_2, p_2, ...), elsewhere
+/// (q, p). Those that are compiled throw std::invalid_argument for sizes out of range; `follow` returns false where the
+/// motion cannot be followed. [H]
 
 #include <lagroid/groupoids/spheres.hpp>
+#include <lagroid/solvers/learning/state_space.hpp>
 #include <lagroid/solvers/lie_group/method.hpp>
 
 #include <Eigen/Core>
@@ -34,7 +38,13 @@ struct Schedule {
   int substeps = 1;
 };
 
-/// Hamilton's equations of a model with its parameters, to be integrated by any Lie group method.
+/// Whether a model has a term beside Hamilton's equations, -P^T R q' in p', by which its energy falls.
+enum class Dissipation {
+  none,
+  rayleigh,  ///< R constant, symmetric and positive semidefinite, learned with the rest
+};
+
+/// Hamilton's equations of a model on spheres with its parameters, to be integrated by any Lie group method.
 class ModelField {
  public:
   using Points = CotangentSpheres<Eigen::Dynamic>::Point;
@@ -55,41 +65,57 @@ class IntegratedField {
   std::unique_ptr<ModelField> equations_;
 };
 
-/// H = 1/2 p^T M(q)^{-1} p + V(q) with parameters theta, the mass matrix's first (ParametricField). States are 6 x k
-/// matrices, column i (q_i, p_i), written one after the other in a column of 6k numbers.
+/// A Hamiltonian with parameters theta, and where its states are. States on (T*S^2)^k are 6 x k matrices, column i
+/// (q_i, p_i), written one after the other in a column of 6k numbers.
 class Model {
  public:
   virtual ~Model() = default;
   virtual std::string name() const = 0;
-  virtual int bodies() const = 0;
+  virtual StateSpace space() const = 0;
+  /// k on (T*S^2)^k; zero elsewhere.
+  int bodies() const { return space().bodies; }
   virtual Eigen::Index size() const = 0;
-  /// Where training may begin: unit masses up to a factor, and a random potential.
+  /// Where training may begin: on spheres unit masses up to a factor, and a random potential.
   virtual Eigen::VectorXd start(unsigned seed) const = 0;
 
-  /// m.
-  virtual Eigen::MatrixXd mass(const Eigen::VectorXd& theta) const = 0;
+  /// m of (mmatrp), whose parameters are the first (ParametricField); of no size where the model has none.
+  virtual Eigen::MatrixXd mass(const Eigen::VectorXd&) const { return {}; }
+  /// R, k x k on (T*S^2)^k, where it stands for R_ij times the identity, n x n elsewhere; of no size where the model
+  /// declares no dissipation. Then energy is conserved, else dH/dt = -q'^T R q'.
+  virtual Eigen::MatrixXd dissipation(const Eigen::VectorXd&) const { return {}; }
   virtual double energy(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
-  /// F[H], 6k numbers (xi_i, eta_i).
+  /// H as a formula of numbers with these names, in the words of scenes; empty where it has none.
+  virtual std::string formula(const Eigen::VectorXd&, std::span<const std::string>) const { return {}; }
+  /// The field as an integrator takes it: on (T*S^2)^k F[H], 6k numbers (xi_i, eta_i); elsewhere z' itself.
   virtual Eigen::VectorXd field(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
+  /// z', wherever states are.
+  virtual Eigen::VectorXd rates(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
 
-  virtual std::unique_ptr<ModelField> equations(const Eigen::VectorXd& theta) const = 0;
+  /// For scenes of spheres; null elsewhere.
+  virtual std::unique_ptr<ModelField> equations(const Eigen::VectorXd&) const { return nullptr; }
 
-  /// z <- the wanted states from each column of `starts`, 6k * intervals numbers a column.
+  /// z <- the wanted states from each column of `starts`, one after the other. On R^2n the methods that stay on spheres
+  /// are classical ones: commutator_free_4 is Kutta's, munthe_kaas_54 Dormand and Prince's.
   virtual void predict(const Eigen::VectorXd& theta, const Schedule& schedule,
                        const Eigen::Ref<const Eigen::MatrixXd>& starts, Eigen::Ref<Eigen::MatrixXd> z) const = 0;
   /// The same, and d z / d theta exactly: a row for each number of z, column after column.
   virtual void differentiate(const Eigen::VectorXd& theta, const Schedule& schedule,
                              const Eigen::Ref<const Eigen::MatrixXd>& starts, Eigen::Ref<Eigen::MatrixXd> z,
                              Eigen::Ref<Eigen::MatrixXd> derivative) const = 0;
-  /// The states at rising `times` > 0 under control of the error (Munthe-Kaas on Dormand and Prince's pair); false
-  /// where the motion cannot be followed, in 100 000 steps from one time to the next, and then nothing is known of z.
+  /// The states at rising `times` > 0 under control of the error (Munthe-Kaas on Dormand and Prince's pair, on R^2n
+  /// that pair itself); false where the motion cannot be followed, in 100 000 steps from one time to the next, and then
+  /// nothing is known of z.
   virtual bool follow(const Eigen::VectorXd& theta, const Eigen::VectorXd& start, std::span<const double> times,
                       double tolerance, Eigen::MatrixXd& z) const = 0;
 };
 
-/// The models that are compiled: V a polynomial of a degree, or a network with hidden layers. Throw
+/// The models that are compiled. On (T*S^2)^k: V a polynomial of a degree, or a network with hidden layers. Throw
 /// std::invalid_argument as PolynomialPotential and NetworkPotential do.
-std::unique_ptr<Model> polynomial_model(int bodies, int degree);
-std::unique_ptr<Model> network_model(int bodies, std::vector<int> hidden);
+std::unique_ptr<Model> polynomial_model(int bodies, int degree, Dissipation dissipation = Dissipation::none);
+std::unique_ptr<Model> network_model(int bodies, std::vector<int> hidden, Dissipation dissipation = Dissipation::none);
+/// On R^2n: H itself, of q and p together. Throw std::invalid_argument as Polynomial and Network do.
+std::unique_ptr<Model> polynomial_hamiltonian(int coordinates, int degree, Dissipation dissipation = Dissipation::none);
+std::unique_ptr<Model> network_hamiltonian(int coordinates, std::vector<int> hidden,
+                                           Dissipation dissipation = Dissipation::none);
 
 }  // namespace lagroid::learning

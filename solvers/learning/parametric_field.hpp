@@ -3,13 +3,16 @@
 ///
 ///     F = (q_i x v_i, dV/dq_i x q_i - tau_i q_i x v_i),    H = 1/2 p^T M(q)^{-1} p + V(q),
 ///
-/// with parameters of mass matrix and potential. Written for any scalar, so that derivatives in the parameters pass
-/// through an integrator. Requires `set` with size() parameters before anything is evaluated. [H] (mapfham), (mmatrp)
+/// with parameters of mass matrix and potential, and of dissipation where it is declared. Written for any scalar, so
+/// that derivatives in the parameters pass through an integrator. Requires `set` with size() parameters before anything
+/// is evaluated. [H] (mapfham), (mmatrp)
 
 #include <lagroid/groupoids/spheres.hpp>
+#include <lagroid/solvers/learning/functions/rayleigh_dissipation.hpp>
 #include <lagroid/solvers/learning/potentials/potential.hpp>
 
 #include <cmath>
+#include <concepts>
 #include <vector>
 
 namespace lagroid::learning {
@@ -28,11 +31,12 @@ constexpr int mass_size(int bodies) { return bodies * (bodies + 1) / 2; }
 ///
 ///     F = (q_i x v_i, dV/dq_i x q_i - tau_i q_i x v_i),
 ///
-/// which is F[H] up to what leaves (q_i, p_i) fixed.
+/// which is F[H] up to what leaves (q_i, p_i) fixed. Dissipation -P sum_j R_ij v_j in p_i' adds sum_j R_ij v_j to
+/// dV/dq_i.
 ///
 /// m = L L^T, L lower triangular with diagonal exp(s_i): every vector of parameters then is a positive definite m, each
 /// m belongs to one, and equal steps in s_i are equal factors, whatever the unit of mass. Parameters: the rows of L,
-/// one after the other, with s_i in place of L_ii; then those of the potential.
+/// one after the other, with s_i in place of L_ii; then those of the potential; then those of RayleighDissipation.
 template <class P, int K, class S = double> class ParametricField {
  public:
   using Space = CotangentSpheres<K, S>;
@@ -40,11 +44,12 @@ template <class P, int K, class S = double> class ParametricField {
   using V = Vector<S, 3>;
   using Square = Eigen::Matrix<S, K, K>;
 
-  ParametricField(P potential, int bodies)
+  ParametricField(P potential, int bodies, Dissipation dissipation = Dissipation::none)
       : potential_(std::move(potential)),
         bodies_(bodies),
         theta_(std::size_t(potential_.size())),
         scratch_(std::size_t(scratch_of(potential_))),
+        rayleigh_(bodies, dissipation),
         mass_(bodies, bodies),
         inverse_(bodies, bodies),
         gram_(bodies, bodies),
@@ -56,8 +61,12 @@ template <class P, int K, class S = double> class ParametricField {
   const P& potential() const { return potential_; }
   int bodies() const { return K == Eigen::Dynamic ? bodies_ : K; }
   Space space() const { return {bodies()}; }
-  int size() const { return mass_size(bodies()) + potential_.size(); }
+  int size() const { return mass_size(bodies()) + potential_.size() + rayleigh_.size(); }
   const Square& mass() const { return mass_; }
+  /// R; of no size where none is declared.
+  Eigen::MatrixXd dissipation() const requires std::same_as<S, double> {
+    return rayleigh_.declared() ? Eigen::MatrixXd(rayleigh_.matrix()) : Eigen::MatrixXd();
+  }
 
   /// `theta` has size() of them.
   void set(const S* theta) {
@@ -87,11 +96,13 @@ template <class P, int K, class S = double> class ParametricField {
         inverse_(i, j) = sum;
       }
     for (S& x : theta_) x = *theta++;
+    rayleigh_.set(theta);
   }
 
   [[gnu::noinline]] LAGROID_FLATTEN void operator()(double, const Z& z, Z& f) {
     solve(z);
     value_and_gradient<P, S, K>(potential_, place_, theta_.data(), scratch_.data(), gradient_);
+    rayleigh_.add(velocity_.data(), gradient_.data(), 3);
     for (int i = 0; i < bodies(); ++i) {
       const V q = place_.col(i);
       const V xi = cross(q, V(velocity_.col(i)));
@@ -147,6 +158,7 @@ template <class P, int K, class S = double> class ParametricField {
   P potential_;
   int bodies_;
   std::vector<S> theta_, scratch_;
+  RayleighDissipation<K, S> rayleigh_;
   Square mass_, inverse_, gram_;
   Vector<S, K> tau_;
   Positions<S, K> place_, gradient_, velocity_;

@@ -177,8 +177,9 @@ class Trainer final : public ceres::IterationCallback {
     const bool good = summary.IsSolutionUsable() && !cost.failed();
     if (!good) out_.end = TrainingStatus::not_finite;
     if (good && !session_.halt()) {
-      const Eigen::Index masses = model_.bodies() * (model_.bodies() + 1) / 2;
-      out_.mass_determined = determines_mass(cost.triangle(), data.total_weight(), masses);
+      const Eigen::Index k = model_.mass(at_).rows();
+      const Eigen::Index masses = k * (k + 1) / 2;
+      out_.mass_determined = masses == 0 || determines_mass(cost.triangle(), data.total_weight(), masses);
     }
     // Whether the last iterations lowered the error by more than round-off.
     out_.falls = !fallen_.empty() && fallen_.front() - fallen_.back() > 1e-12 * fallen_.front() + round_off_;
@@ -311,12 +312,12 @@ void require_training(const Model& model, const Trajectories& data, const Traini
   if (!(options.validation >= 0 && options.validation < 1) || !(options.share > 0 && options.share <= 1) ||
       !(options.damping_floor > 0 && options.damping_floor <= 1 / first_radius) || options.substeps < 1 ||
       options.starts < 1 || options.iterations < 0 || options.trial < 1 || options.patience < 1 ||
-      !(options.enough >= 0) || std::isnan(options.seconds) || data.bodies != model.bodies() ||
-      (options.begin.size() > 0 && options.begin.size() != model.size()))
+      !(options.enough >= 0) || std::isnan(options.seconds) || data.width() != model.space().size ||
+      data.bodies != model.bodies() || (options.begin.size() > 0 && options.begin.size() != model.size()))
     throw std::invalid_argument(fmt::format(
         "a training has starts, substeps and patience of one or more, shares between zero and one, a floor of the "
         "damping between zero and {:g}, errors and times that are numbers, parameters to begin with as many as the "
-        "model's, and data of as many bodies",
+        "model's, and data of as many bodies or coordinates",
         1 / first_radius));
 }
 
@@ -336,11 +337,10 @@ std::string too_little(const Model& model, const Trajectories& training, const T
 
 /// As few trajectories, the first ones, as are a share of all and have three free numbers for each parameter.
 Trajectories for_trials(const Trajectories& training, double share, Eigen::Index parameters) {
-  const Eigen::Index each = 4 * training.bodies;
   auto few = Eigen::Index(std::ceil(share * double(training.count())));
   Eigen::Index numbers = training.part(0, few).free_numbers();
   for (; few < training.count() && numbers < 3 * parameters; ++few)
-    numbers += each * (training.weights.col(few).array() > 0).count();
+    numbers += training.dimension * (training.weights.col(few).array() > 0).count();
   return training.part(0, few);
 }
 

@@ -11,7 +11,7 @@
 ///     const Trained trained = train(*polynomial_model(data.bodies, 3), data, {.starts = 4});
 ///     if (trained.usable()) std::cout << to_string(trained.outcome) << ' ' << trained.mse << '\n';
 ///
-/// Requires data from `assemble`, of as many bodies as the model, and options in range (std::invalid_argument).
+/// Requires data from `assemble`, of the model's space, and options in range (std::invalid_argument).
 /// Whatever numbers do is a TrainingStatus with a message that names the remedy. Throws MissingLibrary in a build
 /// without Ceres. [H]
 
@@ -106,7 +106,7 @@ struct Trained {
   double mse = std::numeric_limits<double>::quiet_NaN();
   double validation = std::numeric_limits<double>::quiet_NaN();
   /// Whether, at the end, a change of the mass matrix's parameters of size one moves the predictions by more than 1e-8,
-  /// whatever the potential does to make up for it.
+  /// whatever the potential does to make up for it; true where the model has none.
   bool mass_determined = true;
   unsigned start = 0;          ///< the seed of the start that was best
   int iterations = 0;          ///< of all stages

@@ -1,7 +1,6 @@
 #include <lagroid/solvers/learning/trajectories.hpp>
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include <cmath>
 #include <cstddef>
@@ -29,21 +28,17 @@ std::string place(const Observation& row) {
   return fmt::format("row {} (trajectory {}, t = {:g})", row.row, row.trajectory, row.time);
 }
 
-void require_state(const Observation& row, double noise) {
-  for (Eigen::Index i = 0; i < row.z.size(); ++i)
-    if (!std::isfinite(row.z(i)))
-      throw DataRefused(fmt::format("{}: {}_{} is {}; every number has to be finite", place(row), i % 6 < 3 ? 'q' : 'p',
-                                    i / 6 + 1, row.z(i)));
-  if (!(row.z.cwiseAbs().maxCoeff() <= largest_number))
-    throw DataRefused(
-        fmt::format("{}: a number above {:g}; take units in which they are smaller", place(row), largest_number));
-  if (!std::isfinite(row.time)) throw DataRefused(fmt::format("row {}: the time is not finite", row.row));
-  if (!(row.weight >= 0) || !std::isfinite(row.weight))
-    throw DataRefused(fmt::format("{}: weight {}; weights are zero or positive", place(row), row.weight));
+/// The name of the i-th number of a state.
+std::string component(const StateSpace& space, Eigen::Index i) {
+  if (space.bodies > 0) return fmt::format("{}_{}", i % 6 < 3 ? 'q' : 'p', i / 6 + 1);
+  const Eigen::Index n = space.size / 2;
+  return fmt::format("{}_{}", i < n ? 'q' : 'p', i % n + 1);
+}
+
+void require_on_spheres(const Observation& row, double allowed) {
   for (Eigen::Index i = 0; i < row.z.size(); i += 6) {
     const Eigen::Vector3d q = row.z.segment<3>(i);
     const Eigen::Vector3d p = row.z.segment<3>(i + 3);
-    const double allowed = written + spread * noise;
     const double off = std::abs(q.norm() - 1);
     if (!(off <= allowed))
       throw DataRefused(
@@ -59,21 +54,37 @@ void require_state(const Observation& row, double noise) {
   }
 }
 
-void require_first(const Observation& row) {
-  if (row.z.size() < 6 || row.z.size() % 6 != 0)
+void require_on_space(const Observation& row, const StateSpace& space, double allowed) {
+  Eigen::VectorXd nearest = row.z;
+  space.project(nearest);
+  const double off = (nearest - row.z).cwiseAbs().maxCoeff();
+  if (!(off <= allowed * (1 + row.z.norm())))
     throw DataRefused(
-        fmt::format("row {}: {} numbers are no state; each body has q and p, six numbers", row.row, row.z.size()));
+        fmt::format("{}: the state is off the constraints, or its momentum off their tangent space, by {:.1e}; give "
+                    "states on them, or the size of the noise",
+                    place(row), off));
+}
+
+void require_state(const Observation& row, const StateSpace& space, double noise) {
+  for (Eigen::Index i = 0; i < row.z.size(); ++i)
+    if (!std::isfinite(row.z(i)))
+      throw DataRefused(
+          fmt::format("{}: {} is {}; every number has to be finite", place(row), component(space, i), row.z(i)));
+  if (!(row.z.cwiseAbs().maxCoeff() <= largest_number))
+    throw DataRefused(
+        fmt::format("{}: a number above {:g}; take units in which they are smaller", place(row), largest_number));
+  if (!std::isfinite(row.time)) throw DataRefused(fmt::format("row {}: the time is not finite", row.row));
+  if (!(row.weight >= 0) || !std::isfinite(row.weight))
+    throw DataRefused(fmt::format("{}: weight {}; weights are zero or positive", place(row), row.weight));
+  const double allowed = written + spread * noise;
+  if (space.bodies > 0) {
+    require_on_spheres(row, allowed);
+  } else if (space.project) {
+    require_on_space(row, space, allowed);
+  }
 }
 
 }  // namespace
-
-void put_on_spheres(Eigen::Ref<Eigen::VectorXd> z) {
-  for (Eigen::Index i = 0; i < z.size(); i += 6) {
-    z.segment<3>(i).normalize();
-    const Eigen::Vector3d q = z.segment<3>(i);
-    z.segment<3>(i + 3) -= q * q.dot(z.segment<3>(i + 3));
-  }
-}
 
 Trajectories Trajectories::part(Eigen::Index first, Eigen::Index number) const {
   return {bodies,
@@ -81,7 +92,8 @@ Trajectories Trajectories::part(Eigen::Index first, Eigen::Index number) const {
           interval,
           starts.middleCols(first, number),
           ends.middleCols(first, number),
-          weights.middleCols(first, number)};
+          weights.middleCols(first, number),
+          dimension};
 }
 
 Trajectories Trajectories::shuffled(unsigned seed) const {
@@ -89,14 +101,26 @@ Trajectories Trajectories::shuffled(unsigned seed) const {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(count()));
   std::iota(order.begin(), order.end(), 0);
   for (std::size_t left = order.size(); left > 1; --left) std::swap(order[left - 1], order[generator() % left]);
-  return {bodies, points, interval, starts(Eigen::all, order), ends(Eigen::all, order), weights(Eigen::all, order)};
+  return {bodies,   points, interval, starts(Eigen::all, order), ends(Eigen::all, order), weights(Eigen::all, order),
+          dimension};
 }
 
 Trajectories assemble(std::span<const Observation> rows, double noise) {
+  if (rows.empty()) return assemble(rows, StateSpace{}, noise);
+  const Observation& first = rows.front();
+  if (first.z.size() < 6 || first.z.size() % 6 != 0)
+    throw DataRefused(
+        fmt::format("row {}: {} numbers are no state; each body has q and p, six numbers", first.row, first.z.size()));
+  return assemble(rows, cotangent_spheres(int(first.z.size() / 6)), noise);
+}
+
+Trajectories assemble(std::span<const Observation> rows, const StateSpace& space, double noise) {
   if (!(noise >= 0) || !std::isfinite(noise)) throw DataRefused("the size of the noise is zero or positive");
   if (rows.empty()) throw DataRefused("no rows; give one or more trajectories");
-  require_first(rows.front());
-  const Eigen::Index width = rows.front().z.size();
+  const Eigen::Index width = space.size;
+  if (rows.front().z.size() != width)
+    throw DataRefused(fmt::format("row {}: {} numbers, a state of the space has {}; give it as many", rows.front().row,
+                                  rows.front().z.size(), width));
   std::vector<std::size_t> begins;
   std::set<long> seen;
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -104,7 +128,7 @@ Trajectories assemble(std::span<const Observation> rows, double noise) {
     if (row.z.size() != width)
       throw DataRefused(
           fmt::format("row {}: {} numbers, the first row has {}; make them equal", row.row, row.z.size(), width));
-    require_state(row, noise);
+    require_state(row, space, noise);
     if (r > 0 && row.trajectory == rows[r - 1].trajectory) continue;
     if (!seen.insert(row.trajectory).second)
       throw DataRefused(
@@ -118,7 +142,8 @@ Trajectories assemble(std::span<const Observation> rows, double noise) {
     throw DataRefused(
         fmt::format("{}: a trajectory of one point says nothing of the motion; give two or more", place(rows.front())));
   Trajectories out;
-  out.bodies = int(width / 6);
+  out.bodies = space.bodies;
+  out.dimension = space.dimension;
   out.points = int(points);
   out.interval = (rows[points - 1].time - rows[0].time) / double(points - 1);
   if (!(out.interval > 0))
@@ -148,7 +173,7 @@ Trajectories assemble(std::span<const Observation> rows, double noise) {
                         place(row), expected, out.interval));
       if (j == 0) {
         out.starts.col(n) = row.z;
-        put_on_spheres(out.starts.col(n));
+        if (space.project) space.project(out.starts.col(n));
       } else {
         out.ends.col(n).segment(Eigen::Index(j - 1) * width, width) = row.z;
         out.weights(Eigen::Index(j - 1), n) = row.weight;
@@ -159,6 +184,25 @@ Trajectories assemble(std::span<const Observation> rows, double noise) {
   if (!(largest > 0)) throw DataRefused("all weights are zero; give some points a positive one");
   out.weights /= largest;  // their sum might overflow
   out.weights /= out.weights.mean();
+  return out;
+}
+
+std::vector<Observation> pieces_of(std::span<const Observation> rows, int points) {
+  if (points < 2) throw DataRefused("pieces of trajectories have two points or more");
+  const auto length = std::size_t(points);
+  std::vector<Observation> out;
+  long piece = 0;
+  for (std::size_t begin = 0, end = 0; begin < rows.size(); begin = end) {
+    while (end < rows.size() && rows[end].trajectory == rows[begin].trajectory) ++end;
+    if (end - begin < length)
+      throw DataRefused(fmt::format("{}: the trajectory has {} points, fewer than a piece of {}; cut shorter ones",
+                                    place(rows[begin]), end - begin, points));
+    for (std::size_t first = begin; first + length <= end; first += length - 1, ++piece)
+      for (const Observation& row : rows.subspan(first, length)) {
+        out.push_back(row);
+        out.back().trajectory = piece;
+      }
+  }
   return out;
 }
 

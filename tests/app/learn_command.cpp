@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -142,6 +143,85 @@ TEST_F(Learn, AModelRunsAsAScene) {
   EXPECT_NE(r.err.find("none.json: there is no such file"), std::string::npos) << r.err;
 }
 
+/// Motions of q' = p, p' = -q - 2 c p, in closed form.
+std::string oscillations(double c) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const double w = std::sqrt(1 - c * c);
+  std::ostringstream rows;
+  rows.precision(17);
+  rows << "trajectory,t,q1,p1\n";
+  for (int n = 0; n < 30; ++n) {
+    const double q = uniform(random);
+    const double p = uniform(random);
+    for (int j = 0; j < 9; ++j) {
+      const double t = 0.1 * j;
+      rows << n << ',' << t << ',' << std::exp(-c * t) * (q * std::cos(w * t) + (p + c * q) / w * std::sin(w * t))
+           << ',' << std::exp(-c * t) * (p * std::cos(w * t) - (q + c * p) / w * std::sin(w * t)) << '\n';
+    }
+  }
+  return rows.str();
+}
+
+TEST_F(Learn, FindsAFrictionInThePlane) {
+  const std::string data = file("damped.csv", oscillations(0.1));
+  const std::string out = path("out");
+  const std::string command = "learn " + data + " --points 5 --substeps 8 --model polynomial:2 --starts 1 ";
+  const auto found = summary(command + "--dissipation --test " + data + " --out " + out);
+  EXPECT_EQ(found.at("status"), "converged");
+  EXPECT_EQ(found.at("coordinates"), 1);
+  EXPECT_EQ(found.at("integrator"), "runge-kutta-4");
+  EXPECT_EQ(found.at("data").at("trajectories"), 60);
+  EXPECT_NEAR(found.at("dissipation")[0][0].get<double>(), 0.2, 1e-7);
+  EXPECT_LT(found.at("held_out").at("mse").get<double>(), 1e-14);
+  EXPECT_FALSE(found.contains("mass_matrix") || found.contains("bodies"));
+  EXPECT_FALSE(found.at("held_out").contains("momentum_change_data"));
+  const std::string text = read(out + "/summary.txt");
+  EXPECT_NE(text.find("polynomial:2 on R^2, with dissipation, through runge-kutta-4"), std::string::npos) << text;
+  EXPECT_NE(text.find("  R              0.2000000"), std::string::npos) << text;
+  EXPECT_FALSE(fs::exists(out + "/learned.toml"));
+  // Read again it is the same, damped; and without dissipation nothing moves like that.
+  const auto same = summary("learn " + data + " --points 5 --substeps 8 --iterations 0 --model " + out + "/model.json");
+  EXPECT_EQ(same.at("dissipation"), found.at("dissipation"));
+  EXPECT_GT(summary(command).at("training_mse").get<double>(), 1e-6);
+  expect_refused("learn " + drawn("spheres.csv") + " --model " + out + "/model.json", "give data of its system");
+}
+
+TEST_F(Learn, AModelInThePlaneRunsAsAFormula) {
+  const std::string out = path("out");
+  for (const char* model : {"polynomial:2", "network:6"}) {
+    const std::string data = file("free.csv", oscillations(0));
+    const auto found = summary("learn " + data + " --substeps 8 --model " + model + " --out " + out);
+    const auto ran = summary("run " + out + "/learned.toml --set time.steps=80");
+    const double q = found.at("training_mse").get<double>();
+    EXPECT_LT(q, 1e-7);
+    // A period is 2 pi: the radius stays, up to the error of the step and of the model.
+    const auto norm = [&](const char* when) {
+      return std::hypot(ran.at(when).at("position")[0].get<double>(), ran.at(when).at("momentum")[0].get<double>());
+    };
+    EXPECT_NEAR(norm("final"), norm("initial"), 2e-3) << model;
+    fs::remove_all(out);
+  }
+  // And the run is data again.
+  const std::string data = file("free.csv", oscillations(0));
+  summary("learn " + data + " --substeps 8 --model polynomial:2 --out " + out);
+  summary("run " + out + "/learned.toml --set time.steps=100 --out " + path("run"));
+  const auto again = summary("learn " + path("run/trajectory.h5") + " --points 5 --model polynomial:2");
+  EXPECT_EQ(again.at("data").at("trajectories"), 25);
+  EXPECT_LT(again.at("training_mse").get<double>(), 1e-9);
+  expect_refused("run " + file("learned.toml", "system = \"learned_hamiltonian\"\n[parameters]\nmodel = \"" + out +
+                                                   "/model.json\"\n[initial]\ntheta = [1.0]\nphi = [0.0]\n"
+                                                   "[time]\nstep = 0.01\nsteps = 2\n"),
+                 "run the learned.toml");
+}
+
+TEST_F(Learn, FindsAFrictionOnSpheres) {
+  // None in the data: R is found to be zero, and the rest as without.
+  const auto found = summary("learn " + drawn("data.csv") + " --model polynomial:1 --dissipation");
+  EXPECT_LT(found.at("dissipation")[0][0].get<double>(), 1e-6);
+  EXPECT_NEAR(found.at("mass_matrix")[0][0].get<double>(), 1, 1e-5);
+}
+
 TEST_F(Learn, AnInterruptLeavesTheBestModel) {
   const std::string data = drawn("data.csv", "--chain 2 --count 3000");
   const std::string out = path("out");
@@ -241,6 +321,9 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
       {"learn " + file("head.csv", header), "no rows"},
       {"learn " + file("columns.csv", "trajectory,t,q1x,q1y,q1z,p1x,p1y\n"), "no column p1z"},
       {"learn " + file("more.csv", "trajectory,t,q1x,q1y,q1z,p1x,p1y,p1z,mass\n"), "nobody knows the column mass"},
+      {"learn " + file("uneven.csv", "trajectory,t,q1,q2,p1\n"), "no column p2"},
+      {"learn " + file("mixed.csv", "trajectory,t,q1,p1,q1x\n"), "nobody knows the column q1x"},
+      {"learn " + data + " --points 9", "fewer than a piece of 9"},
       {"learn " + file("twice.csv", "trajectory,t,t,q1x,q1y,q1z,p1x,p1y,p1z\n"), "two columns t"},
       {"learn " + rows("nan.csv", good + "2,0,0,0,nan,1,0,0\n"), "row 4 (trajectory 2, t = 0): q_1 is nan"},
       {"learn " + rows("off.csv", good + "2,0,0,0,1.1,1,0,0\n"), "row 4 (trajectory 2, t = 0): q_1 is off the unit"},
@@ -270,6 +353,13 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
        "parameters[3] is no number"},
       {model("i.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [1e6, 2, 3, 4]}"),
        "i.json: the mass matrix of its parameters is not finite and positive"},
+      {model("j.json", kind + ", \"coordinates\": 0}"), "coordinates is no number of coordinates"},
+      {model("k.json", kind + ", \"coordinates\": 1, \"dissipation\": 1}"), "dissipation is neither true nor false"},
+      {model("l.json", kind + ", \"coordinates\": 1, \"model\": \"polynomial:1\", \"parameters\": [1, 2]}"),
+       "give data of its system"},
+      {model("m.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [0, 0, 0, 1]}") +
+           " --dissipation",
+       "declares no dissipation"},
       {model("h.json", kind + ", \"bodies\": 2, \"model\": \"polynomial:1\", \"parameters\": [0,0,0,0,0,0,0,0,0]}"),
        "give data of its system"},
       {"learn " + data + " --integrator leapfrog", "commutator-free-4"},

@@ -16,16 +16,18 @@ TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathem
 
 TEST(Mathematics, ItNamesEveryLaw) {
   // It and the pages of what is not [G]'s.
-  const auto named = matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +
-                                 read("docs/higher_order.md") + read("docs/multibody.md") +
-                                 read("docs/lie_group_integrators.md") + read("docs/extrapolation.md") +
-                                 read("docs/ensembles.md") + read("docs/poisson.md") + read("docs/any_lagrangian.md") +
-                                 prose_of(read("docs/optimisation.md")) + prose_of(read("docs/optimal_control.md")),
-                             "\"([^\"]+)\"");
-  const auto laws = matches(text_of({"core/testing", "solvers/testing", "solvers/optimisation/testing",
-                                     "solvers/galerkin/testing", "systems/multibody/testing", "systems/testing"},
-                                    ".hpp"),
-                            "law\\( ?\"([^\"]+)\",");
+  const auto named =
+      matches(read("docs/mathematics.md") + read("docs/nonholonomic.md") + read("docs/time.md") +
+                  read("docs/higher_order.md") + read("docs/multibody.md") + read("docs/lie_group_integrators.md") +
+                  read("docs/extrapolation.md") + read("docs/ensembles.md") + read("docs/poisson.md") +
+                  read("docs/any_lagrangian.md") + prose_of(read("docs/optimisation.md")) +
+                  prose_of(read("docs/optimal_control.md")) + prose_of(read("docs/learning.md")),
+              "\"([^\"]+)\"");
+  const auto laws =
+      matches(text_of({"core/testing", "solvers/testing", "solvers/optimisation/testing", "solvers/galerkin/testing",
+                       "solvers/learning/testing", "systems/multibody/testing", "systems/testing"},
+                      ".hpp"),
+              "law\\( ?\"([^\"]+)\",");
   EXPECT_GT(laws.size(), 50U);
   for (const auto& law : laws) EXPECT_NE(std::find(named.begin(), named.end(), law), named.end()) << law;
 }

@@ -109,12 +109,14 @@ TEST(LieGroupPage, ItsCodeIsThatOfTheExample) {
 }
 
 TEST(LearningPage, WhatItNamesExists) {
-  for (const char* heading : {"## How well", "## A potential of your own"})
+  for (const char* heading : {"## How well", "## A potential of your own", "## Any Hamiltonian", "## Dissipation"})
     EXPECT_EQ(unknown_names(prose_of(section(read("docs/learning.md"), heading))), none) << heading;
 }
 
 TEST(LearningPage, ItsCodeIsThatOfTheExample) {
-  EXPECT_EQ(foreign_blocks(read("docs/learning.md"), "cpp", read("examples/my_potential.cpp")), none);
+  EXPECT_EQ(foreign_blocks(read("docs/learning.md"), "cpp",
+                           read("examples/my_potential.cpp") + read("examples/my_learned_hamiltonian.cpp")),
+            none);
 }
 
 TEST(Newton, WhatItNamesExists) { EXPECT_EQ(unknown_names(prose_of(read("docs/newton.md"))), none); }

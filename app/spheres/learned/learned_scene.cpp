@@ -65,7 +65,12 @@ std::unique_ptr<SphereSystem> read_learned_hamiltonian(const Section& scene) {
     std::filesystem::path file = std::filesystem::path(scene.file()).parent_path() / name;
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) file = name;
-    return std::make_unique<LearnedSystem>(read_model(file), file);
+    LearnedHamiltonian learned = read_model(file);
+    if (learned.model->bodies() == 0)
+      throw ModelError(
+          fmt::format("{}: a model on {}, no spheres; run the learned.toml that lagroid learn left beside it",
+                      file.string(), to_string(learned.model->space())));
+    return std::make_unique<LearnedSystem>(std::move(learned), file);
   } catch (const ModelError& error) {
     parameters.fail("model", error.what());
   }

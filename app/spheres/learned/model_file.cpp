@@ -18,6 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kind = "learned_hamiltonian";
 constexpr int most_bodies = 1000;
+constexpr int most_coordinates = 1000;
 constexpr int most_units = 10000;
 
 /// The whole numbers after the colon.
@@ -37,13 +38,20 @@ std::vector<int> sizes(std::string_view text) {
 
 }  // namespace
 
-std::unique_ptr<learning::Model> named_model(const std::string& name, int bodies) {
+std::unique_ptr<learning::Model> named_model(const std::string& name, const learning::StateSpace& space,
+                                             learning::Dissipation dissipation) {
+  const int bodies = space.bodies;
+  const int coordinates = int(space.size / 2);
   const auto colon = name.find(':');
   const std::string form = name.substr(0, colon);
   const auto numbers = colon == name.npos ? std::vector<int>() : sizes(std::string_view(name).substr(colon + 1));
   try {
-    if (form == "polynomial" && numbers.size() == 1) return learning::polynomial_model(bodies, numbers.front());
-    if (form == "network" && !numbers.empty()) return learning::network_model(bodies, numbers);
+    if (form == "polynomial" && numbers.size() == 1)
+      return bodies > 0 ? learning::polynomial_model(bodies, numbers.front(), dissipation)
+                        : learning::polynomial_hamiltonian(coordinates, numbers.front(), dissipation);
+    if (form == "network" && !numbers.empty())
+      return bodies > 0 ? learning::network_model(bodies, numbers, dissipation)
+                        : learning::network_hamiltonian(coordinates, numbers, dissipation);
   } catch (const std::invalid_argument& error) {
     throw ModelError(fmt::format("model {}: {}", name, error.what()));
   }
@@ -54,8 +62,14 @@ std::unique_ptr<learning::Model> named_model(const std::string& name, int bodies
 std::string model_text(const LearnedHamiltonian& learned) {
   nlohmann::ordered_json out;
   out["kind"] = kind;
-  out["bodies"] = learned.model->bodies();
+  const learning::StateSpace space = learned.model->space();
+  if (space.bodies > 0) {
+    out["bodies"] = space.bodies;
+  } else {
+    out["coordinates"] = space.size / 2;
+  }
   out["model"] = learned.model->name();
+  if (learned.model->dissipation(learned.parameters).size() > 0) out["dissipation"] = true;
   out["parameters"] = std::vector<double>(learned.parameters.begin(), learned.parameters.end());
   return out.dump(2) + "\n";
 }
@@ -70,27 +84,35 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   if (!read || !read->is_object()) fail("no JSON object");
   const Json& json = *read;
   if (json.value("kind", Json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
-  const auto bodies = json.value("bodies", Json());
-  if (!bodies.is_number_integer() || bodies < 1 || bodies > most_bodies) fail("bodies is no number of bodies");
+  const bool on_spheres = !json.contains("coordinates");
+  const auto count = json.value(on_spheres ? "bodies" : "coordinates", Json());
+  if (!count.is_number_integer() || count < 1 || count > (on_spheres ? most_bodies : most_coordinates))
+    fail(on_spheres ? "bodies is no number of bodies" : "coordinates is no number of coordinates");
+  const auto damped = json.value("dissipation", Json(false));
+  if (!damped.is_boolean()) fail("dissipation is neither true nor false");
   const auto name = json.value("model", Json());
   if (!name.is_string()) fail("model is no name");
   LearnedHamiltonian out;
   try {
-    out.model = named_model(name.get<std::string>(), bodies.get<int>());
+    out.model = named_model(
+        name.get<std::string>(),
+        on_spheres ? learning::cotangent_spheres(count.get<int>()) : learning::phase_space(count.get<int>()),
+        damped.get<bool>() ? learning::Dissipation::rayleigh : learning::Dissipation::none);
   } catch (const ModelError& error) {
     throw ModelError(fmt::format("{}: {}", file.string(), error.what()));
   }
   const auto parameters = json.value("parameters", Json());
   if (!parameters.is_array() || Eigen::Index(parameters.size()) != out.model->size())
-    fail(fmt::format("parameters are not the {} numbers of {} for {} bodies", out.model->size(), out.model->name(),
-                     out.model->bodies()));
+    fail(fmt::format("parameters are not the {} numbers of {} on {}", out.model->size(), out.model->name(),
+                     to_string(out.model->space())));
   out.parameters.resize(out.model->size());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (!parameters[i].is_number()) fail(fmt::format("parameters[{}] is no number", i));
     out.parameters(Eigen::Index(i)) = parameters[i].get<double>();
   }
+  if (!out.parameters.allFinite()) fail("its parameters are not finite");
   const Eigen::MatrixXd mass = out.model->mass(out.parameters);
-  if (!out.parameters.allFinite() || !mass.allFinite() || !(mass.diagonal().minCoeff() > 0))
+  if (mass.size() > 0 && !(mass.allFinite() && mass.diagonal().minCoeff() > 0))
     fail("the mass matrix of its parameters is not finite and positive");
   return out;
 }

@@ -24,8 +24,10 @@ struct LearnedHamiltonian {
   Eigen::VectorXd parameters;
 };
 
-/// "polynomial:2", of degree 2; "network:8", one layer of 8 units; "network:8,8", two. Throws ModelError.
-std::unique_ptr<learning::Model> named_model(const std::string& name, int bodies);
+/// "polynomial:2", of degree 2; "network:8", one layer of 8 units; "network:8,8", two: on (T*S^2)^k potentials, in R^2n
+/// Hamiltonians of (q, p). Throws ModelError.
+std::unique_ptr<learning::Model> named_model(const std::string& name, const learning::StateSpace& space,
+                                             learning::Dissipation dissipation);
 
 /// The text of model.json, every bit kept.
 std::string model_text(const LearnedHamiltonian& learned);

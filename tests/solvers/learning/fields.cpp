@@ -124,7 +124,7 @@ TEST(Polynomials, HaveEveryMonomialOnce) {
   for (int a = 0; a < v.size(); ++a)
     sum += theta(a) * std::pow(q(0), all[std::size_t(a)][0]) * std::pow(q(1), all[std::size_t(a)][1]) *
            std::pow(q(2), all[std::size_t(a)][2]);
-  EXPECT_NEAR((v.gradient<double, 1>(q, theta.data(), scratch.data(), g)), sum, 1e-15);
+  EXPECT_NEAR(v.gradient(q, theta.data(), scratch.data(), g), sum, 1e-15);
   EXPECT_THROW(PolynomialPotential(20, 4), std::invalid_argument);
   EXPECT_THROW(PolynomialPotential(1, 0), std::invalid_argument);
   EXPECT_THROW(NetworkPotential(1, {}), std::invalid_argument);
