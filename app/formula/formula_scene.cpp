@@ -88,32 +88,14 @@ Eigen::VectorXd numbers_of(const Section& section, const KeyOf<NumberList>& key,
 
 constexpr double on_it = 1e-8;
 
-/// Which constraint, counted from one, q is farthest off, and how far, relative to its distance from the origin; of a
-/// velocity the part of it that leaves the constraint.
-struct OffBy {
-  double distance = 0;
-  std::size_t which = 0;
-};
-OffBy off_by(const FormulaSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd* v) {
-  const Eigen::MatrixXd c = system.constraint_rows(q);
-  OffBy worst;
-  for (Eigen::Index a = 0; a < c.rows(); ++a) {
-    const Eigen::VectorXd slope = c.row(a).tail(q.size());
-    const double off = v ? slope.dot(*v) : c(a, 0);
-    const double distance = off == 0 ? 0 : std::abs(off) / (slope.norm() * (v ? *v : q).norm());
-    if (!(distance <= worst.distance)) worst = {distance, std::size_t(a + 1)};
-  }
-  return worst;
-}
-
 /// Position and momentum, and the velocity where a Lagrangian scene gives it.
 SizedState read_start(const Section& initial, const FormulaSystem& system, const FormulaLagrangian* l, double t) {
   const std::size_t n = system.coordinates().size();
   SizedState start;
   start.position = numbers_of(initial, position_key, n);
-  if (const OffBy off = off_by(system, start.position, nullptr); !(off.distance <= on_it))
-    initial.fail(position_key.name, fmt::format("is off constraint {}, by {:.3g} of its distance from the origin",
-                                                off.which, off.distance));
+  if (const OffConstraint off = system.off_constraints(start.position, start.position.norm()); !(off.share <= on_it))
+    initial.fail(position_key.name,
+                 fmt::format("is off constraint {}, by {:.3g} of its distance from the origin", off.which, off.share));
   if (!l || !initial.has(velocity_key.name)) {
     if (l && !initial.has(momentum_key.name)) initial.fail(velocity_key.name, "or momentum is to be given");
     start.momentum = numbers_of(initial, momentum_key, n);
@@ -121,9 +103,8 @@ SizedState read_start(const Section& initial, const FormulaSystem& system, const
   }
   if (initial.has(momentum_key.name)) initial.fail(momentum_key.name, "is that of the velocity: leave one of them out");
   start.velocity = numbers_of(initial, velocity_key, n);
-  if (const OffBy off = off_by(system, start.position, &start.velocity); !(off.distance <= on_it))
-    initial.fail(velocity_key.name,
-                 fmt::format("leaves constraint {}, by {:.3g} of its size", off.which, off.distance));
+  if (const OffConstraint off = system.leaving_constraints(start.position, start.velocity); !(off.share <= on_it))
+    initial.fail(velocity_key.name, fmt::format("leaves constraint {}, by {:.3g} of its size", off.which, off.share));
   std::vector<double> numbers(l->lagrangian_numbers());
   l->lagrangian(t, start.position.data(), start.velocity.data(), numbers.data());
   start.momentum = Eigen::Map<const Eigen::VectorXd>(numbers.data() + 1 + n, Eigen::Index(n));
@@ -143,7 +124,7 @@ void require_regular(const Section& scene, const FormulaSystem& system, const Si
   }
   TangentState tangent;
   step.find_velocity(start, t, tangent);
-  if (!std::isfinite(tangent.momentum.sum()) || (tangent.found && !std::isfinite(tangent.energy)))
+  if (!std::isfinite(tangent.momentum.sum()) || !std::isfinite(tangent.energy))
     initial.fail(position_key.name, "is where a formula or its slope is no finite number");
   if (!tangent.found)
     table.fail(of_lagrangian(scene) ? lagrangian_key.name : hamiltonian_key.name,

@@ -134,19 +134,26 @@ void set_growth(GradientTable& table, double growth) {
   table.digits_left = propagated.digits_left();
 }
 
+/// That of what a row shows; rows of a group have one unit.
+std::string group_of_row(const GradientSubject& subject, const GradientTable& table, std::size_t row) {
+  const int column = table.event_rows.empty() ? table.observed[row] : table.event_rows[row].column;
+  return column < 0 ? "t" : subject.observed[std::size_t(column)].group;
+}
+
+constexpr double usual_size = 1e-2;
 /// The change of column j by which some group of rows changes by a hundredth of its largest value: the unit of a number
 /// that is zero.
 double size_by_what_it_does(const GradientSubject& subject, const GradientTable& table, Eigen::Index j) {
   std::map<std::string, std::pair<double, double>> groups;  // the largest value, the largest derivative
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    auto& [value, slope] = groups[subject.observed[std::size_t(table.observed[i])].group];
+    auto& [value, slope] = groups[group_of_row(subject, table, i)];
     value = std::max(value, std::abs(table.values(Eigen::Index(i))));
     slope = std::max(slope, std::abs(table.derivatives(Eigen::Index(i), j)));
   }
   double size = std::numeric_limits<double>::infinity();
   for (const auto& [group, largest] : groups)
     if (largest.first > 0 && largest.second > 0) size = std::min(size, 1e-2 * largest.first / largest.second);
-  return std::isfinite(size) ? size : 1e-2;
+  return std::isfinite(size) ? size : usual_size;
 }
 /// That of a number of the start, or a hundredth of the largest in its group: their unit is one. Zero where all are.
 double size_of_start(const GradientSubject& subject, std::size_t index) {
@@ -173,32 +180,49 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
     const auto at = Eigen::Index(j);
     sizes(at) = of_start ? size_of_start(subject, std::size_t(index))
                          : std::abs(subject.sizes[subject.start.size() + std::size_t(index)]);
-    if (sizes(at) == 0) sizes(at) = size_by_what_it_does(subject, table, at);
     const auto nudged = [&](double by) {
       nudge.by = by;
       return values({nudge});
     };
     auto column = table.differences.col(at);
     const auto exact = table.derivatives.col(at).array();
-    bool is_first = true;
-    for (const double width : widths)
-      if (const auto next = difference(nudged, width * sizes(at))) {
-        if (std::exchange(is_first, false)) column = *next;
-        column = ((next->array() - exact).abs() < (column.array() - exact).abs()).select(*next, column).eval();
-      }
-    if (is_first)
+    const auto compare = [&](double size) {
+      sizes(at) = size;
+      bool is_first = true;
+      for (const double width : widths)
+        if (const auto next = difference(nudged, width * size)) {
+          if (std::exchange(is_first, false)) column = *next;
+          column = ((next->array() - exact).abs() < (column.array() - exact).abs()).select(*next, column).eval();
+        }
+      return !is_first;
+    };
+    bool compared = sizes(at) != 0 && compare(sizes(at));
+    if (sizes(at) == 0) {
+      // A derivative that is rounding says nothing of sizes: no digit agrees then.
+      compared = compare(size_by_what_it_does(subject, table, at)) &&
+                 ((column.array() - exact).abs() < 0.1 * exact.abs()).any();
+      compared = compared || compare(usual_size);
+    }
+    if (!compared)
       throw GradientRefused(
           fmt::format("--check: runs beside this one, from another {}, end early or have other events; leave it out",
                       table.columns[j]));
   }
-  // By how much a row changes where a number changes by its own size, beside what rounding is of.
-  const double rounding = 1e-13 * table.values.cwiseAbs().maxCoeff();
+  // By how much a row changes where a number changes by its own size, beside what rounding is of differences that
+  // narrow.
+  std::map<std::string, double> rounding;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    double& most = rounding[group_of_row(subject, table, i)];
+    most = std::max(most, 1e-12 * std::abs(table.values(Eigen::Index(i))));
+  }
   const Eigen::MatrixXd changes = table.derivatives * sizes.asDiagonal();
   const Eigen::MatrixXd off = (table.derivatives - table.differences) * sizes.asDiagonal();
   table.digits_agreed = 16;
   for (Eigen::Index i = 0; i < off.rows(); ++i) {
     const double most = off.row(i).cwiseAbs().maxCoeff(), size = changes.row(i).cwiseAbs().maxCoeff();
-    if (most > rounding) table.digits_agreed = std::min(table.digits_agreed, std::max(0.0, std::log10(size / most)));
+    const double of_group = rounding[group_of_row(subject, table, std::size_t(i))];
+    if (most > (of_group > 0 ? of_group : 1e-12 * table.values.cwiseAbs().maxCoeff()))
+      table.digits_agreed = std::min(table.digits_agreed, std::max(0.0, std::log10(size / most)));
   }
 }
 

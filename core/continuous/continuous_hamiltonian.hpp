@@ -15,7 +15,8 @@
 ///     inline const Midpoint<Spring> system{Spring{}, /*h*/ 0.1};  // rules_of_order_two.hpp
 ///
 /// Requires an H over any scalar that is regular in mu. mu is a momentum in A*_qG in the basis that the retraction
-/// fixes: p on the pair groupoid, the body momentum on a Lie group.
+/// fixes: p on the pair groupoid, the body momentum on a Lie group. Where several momenta have one velocity, as of an H
+/// that is not convex, l is that of the one which Newton's method reaches from zero.
 ///
 /// Errors: l is not a number (NaN) where Newton's method, from zero, finds no momentum of the velocity.
 

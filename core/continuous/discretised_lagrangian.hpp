@@ -116,8 +116,9 @@ struct DiscretisedLagrangian : System<Derived, typename L::GroupoidType, L::arro
 
   const L& continuous() const { return *this; }
 
-  /// E = <mu, xi> - l(q, xi) at mu = dl/dxi: the energy of the continuous system.
+  /// E = <mu, xi> - l(q, xi) at mu = dl/dxi: the energy of the continuous system. H(q, mu) where it is known.
   double energy(const State<GroupoidType>& s) const {
+    if constexpr (HasHamiltonian<L>) return this->hamiltonian(s.object, s.momentum);
     const auto [xi, lambda] = velocity_of(continuous(), this->groupoid, s);
     return s.momentum.dot(xi) - this->l(s.object, xi);
   }

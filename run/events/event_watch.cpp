@@ -270,6 +270,7 @@ bool EventWatch::change(Group together) {
                        })->share;
   MotionChange change;
   std::vector<QuantityWithin> before;
+  std::vector<Watch*> changing;
   for (const Found& found : together) {
     Watch& watch = watches_[found.event];
     if (!watch.event.changes_motion() || found.passing == Passing::touching) continue;
@@ -277,16 +278,17 @@ bool EventWatch::change(Group together) {
     const Observables& inside = within(share);
     add_change(watch, inside, change);
     before = quantities_within(inside);
-    ++watch.changes;
+    changing.push_back(&watch);
   }
   if (change.empty()) return false;
   if (const std::string why = motion_.refused(share, change); !why.empty())
     throw NoChange{fmt::format("between t = {:.6g} and {:.6g}: {}", time_, arrived_, why)};
-  if (!motion_.change_within(share, change).converged())
+  if (const StepReport report = motion_.change_within(share, change); !report.converged())
     throw NoChange{fmt::format(
-        "after its change, between t = {:.6g} and {:.6g}, the rest of the step does not converge; use a smaller one "
-        "or a smaller time.step",
-        time_, arrived_)};
+        "after its change, between t = {:.6g} and {:.6g}, the rest of the step does not converge ({}); use a smaller "
+        "one or a smaller time.step",
+        time_, arrived_, to_string(report.status))};
+  for (Watch* each : changing) ++each->changes;
   const Observables& changed = within(0);
   measure_change(before, changed);
   begun_ = changed.time();

@@ -173,14 +173,17 @@ void FormulaMotion::keep_node() {
   rest_ = 1;
 }
 
-bool FormulaMotion::go_within(double share) {
+StepReport FormulaMotion::go_within(double share) {
   inside_ = kept_;
   const double size = share * rest_ * size_;
-  return size == 0 || method_.step->take(inside_, kept_time_, size).converged();
+  if (size != 0) return method_.step->take(inside_, kept_time_, size);
+  StepReport nothing_to_solve;
+  nothing_to_solve.status = SolveStatus::converged;
+  return nothing_to_solve;
 }
 
 const Observables* FormulaMotion::look_within(double share) {
-  if (!go_within(share)) return nullptr;
+  if (!go_within(share).converged()) return nullptr;
   node_.see(index_, kept_time_ + share * rest_ * size_, inside_, *method_.step);
   return &node_;
 }
@@ -203,38 +206,51 @@ SizedState FormulaMotion::kicked(const MotionChange& change) const {
   return out;
 }
 
-std::string FormulaMotion::refused(double share, const MotionChange& change) {
-  if (!go_within(share)) return "a part of the step does not converge; use a smaller time.step";
-  if (!kicked(change).momentum.allFinite()) return "the kick is no number there";
-  for (const ParameterValue& each : change.parameters)
-    if (!std::isfinite(each.value)) return fmt::format("{} becomes {:g}, and is to be finite", each.name, each.value);
-  if (system_->constraint_count() == 0 || change.parameters.empty()) return "";
-  const std::unique_ptr<FormulaSystem> after = system_->clone();
-  for (const ParameterValue& each : change.parameters) after->set_parameter(each.name, each.value);
-  constexpr double rounding = 1e-10;
-  const Eigen::MatrixXd rows = after->constraint_rows(inside_.position);
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    const double size = rows.row(i).tail(rows.cols() - 1).cwiseAbs().dot(inside_.position.cwiseAbs().transpose());
-    if (!(std::abs(rows(i, 0)) <= rounding * size))
-      return fmt::format("constraint {} is {:.3g} there with these parameters, and the motion would leave it", i + 1,
-                         rows(i, 0));
-  }
+std::string FormulaMotion::refused_by(const FormulaSystem& after, double t) const {
+  constexpr double rounding = 1e-9;
+  const double size = inside_.position.norm() + (inside_.position - kept_.position).norm();
+  if (const OffConstraint off = after.off_constraints(inside_.position, size); !(off.share <= rounding))
+    return fmt::format("with these parameters it is off constraint {}, by {:.3g} of its size", off.which, off.share);
+  TangentState tangent;
+  method_.step->find_velocity(inside_, t, tangent);
+  if (const OffConstraint off = after.leaving_constraints(inside_.position, tangent.velocity); !(off.share <= rounding))
+    return fmt::format(
+        "with these parameters its velocity leaves constraint {}, by {:.3g} of its size: let the event stop the run, "
+        "and "
+        "begin another from there",
+        off.which, off.share);
+  const Eigen::VectorXd& along = after.by_velocity() ? tangent.velocity : tangent.momentum;
+  for (std::size_t i = 0; i < after.symmetries().size(); ++i)
+    if (const double defect = after.symmetry_defect(i, t, inside_.position.data(), along.data()); !(defect <= rounding))
+      return fmt::format(
+          "with these parameters \"{}\" is no symmetry, by {:.3g} of the terms: leave it out of the scene",
+          after.symmetries()[i].name, defect);
   return "";
 }
 
+std::string FormulaMotion::refused(double share, const MotionChange& change) {
+  if (!go_within(share).converged()) return "a part of the step does not converge; use a smaller time.step";
+  if (!kicked(change).momentum.allFinite()) return "the kick is no number there";
+  for (const ParameterValue& each : change.parameters)
+    if (!std::isfinite(each.value)) return fmt::format("{} becomes {:g}, and is to be finite", each.name, each.value);
+  if (change.parameters.empty()) return "";
+  const std::unique_ptr<FormulaSystem> after = system_->clone();
+  for (const ParameterValue& each : change.parameters) after->set_parameter(each.name, each.value);
+  return refused_by(*after, kept_time_ + share * rest_ * size_);
+}
+
 StepReport FormulaMotion::change_within(double share, const MotionChange& change) {
-  StepReport report;
-  if (!go_within(share)) return report;
+  if (const StepReport report = go_within(share); !report.converged()) return report;
   kept_ = kicked(change);
   kept_time_ += share * rest_ * size_;
   rest_ *= 1 - share;
   const auto before = set(change.parameters);
-  if (!go_within(1)) {
+  const StepReport report = go_within(1);
+  if (report.converged()) {
+    state_ = inside_;
+  } else {
     for (const auto& [name, value] : before) system_->set_parameter(name, value);
-    return report;
   }
-  state_ = inside_;
-  report.status = SolveStatus::converged;
   return report;
 }
 

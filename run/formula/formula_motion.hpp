@@ -85,7 +85,9 @@ class FormulaMotion final : public Motion {
   void serialize(NumberArchive& archive) override;
 
  private:
-  bool go_within(double share);
+  StepReport go_within(double share);
+  /// Why a motion that is inside of its step cannot go on as that of another system; empty where it can.
+  std::string refused_by(const FormulaSystem& after, double t) const;
   SizedState kicked(const MotionChange& change) const;
   /// Sets parameters; returns what they were.
   std::vector<std::pair<std::string, double>> set(const std::vector<ParameterValue>& parameters);

@@ -219,6 +219,28 @@ void FormulaSystem::momentum_slopes(const double* q, const double* p, double* ou
   }
 }
 
+namespace {
+
+OffConstraint worst_of(const Eigen::MatrixXd& rows, const Eigen::VectorXd& off, double size) {
+  OffConstraint worst;
+  for (Eigen::Index a = 0; a < rows.rows(); ++a) {
+    const double share = off(a) == 0 ? 0 : std::abs(off(a)) / (rows.row(a).tail(rows.cols() - 1).norm() * size);
+    if (!(share <= worst.share)) worst = {share, std::size_t(a + 1)};
+  }
+  return worst;
+}
+
+}  // namespace
+
+OffConstraint FormulaSystem::off_constraints(const Eigen::VectorXd& q, double size) const {
+  const Eigen::MatrixXd rows = constraint_rows(q);
+  return worst_of(rows, rows.col(0), size);
+}
+OffConstraint FormulaSystem::leaving_constraints(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
+  const Eigen::MatrixXd rows = constraint_rows(q);
+  return worst_of(rows, rows.rightCols(q.size()) * v, v.norm());
+}
+
 void FormulaSystem::set_parameter(const std::string& name, double value) {
   for (std::size_t i = 0; i < parameters_.size(); ++i)
     if (parameters_[i].first == name) variables_[variable_of_parameter(i)] = parameters_[i].second = value;

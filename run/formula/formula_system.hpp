@@ -44,6 +44,13 @@ struct ReadSymmetry {
   bool affine;  ///< in q: curves of polynomials are carried to such, and steps along them keep J
 };
 
+/// By how much of its size the worst constraint is off, and which it is, from one on; zero up to rounding where all
+/// hold.
+struct OffConstraint {
+  double share = 0;
+  std::size_t which = 0;
+};
+
 /// The texts that all of them have.
 struct FormulaTexts {
   std::vector<std::string> coordinates = {};
@@ -82,12 +89,16 @@ class FormulaSystem {
   std::size_t constraint_numbers() const { return constraint_.count(); }
   /// C and its n derivatives, a row for each component.
   Eigen::MatrixXd constraint_rows(const Eigen::VectorXd& q) const;
+  /// |C| over |C'| times `size`, that of places; and |C' v| over |C'| |v|.
+  OffConstraint off_constraints(const Eigen::VectorXd& q, double size) const;
+  OffConstraint leaving_constraints(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
   /// The fields xi of all symmetries, one after another.
   void fields(const double* q, double* out) const;
   /// How much the system changes along symmetry i at (q, w), w the velocity of a Lagrangian or the momentum of a
   /// Hamiltonian: the largest of l or H, C and the work of the force, relative to their terms. Zero up to rounding
   /// where it is one.
   double symmetry_defect(std::size_t i, double t, const double* q, const double* w) const;
+  bool by_velocity() const { return by_velocity_; }
 
  protected:
   using Node = FormulaGraph::Node;

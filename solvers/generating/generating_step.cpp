@@ -83,7 +83,7 @@ void GeneratingStep::write_equations(const Eigen::VectorXd& q, const Eigen::Vect
       to_(i) = end_q[i] - sigma(i);
     } else {
       newton_.residual(starts) = end_q[i] - sigma(i) - q(i);
-      newton_.terms(starts) = std::abs(end_q[i]) + std::abs(sigma(i)) + std::abs(q(i));
+      newton_.terms(starts) = std::abs(end_q[i]) + std::abs(sigma(i)) + std::abs(q(i)) + std::abs(base_(i));
       newton_.matrix(starts, n_ + i) = -1;
       for (int j = 0; j < n_; ++j) {
         newton_.matrix(stationary, 2 * n_ + j) = w.second(j, n_ + i);

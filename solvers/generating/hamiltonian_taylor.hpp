@@ -20,6 +20,8 @@
 /// Requires what has `hamiltonian(q, mu)` over any scalar, regular in mu: a ContinuousHamiltonian. Derivatives are
 /// exact up to the second; over scalars with higher ones it does not compile. No allocation.
 ///
+/// Where several momenta are stationary, L takes the one that Newton's method reaches from zero.
+///
 /// Errors: the Lagrangian is not a number where no momentum is stationary, so that a step ends with `not_finite` and is
 /// not taken. Nothing throws.
 ///

@@ -109,6 +109,18 @@ TEST(FormulaHamiltonians, OfTheTimeAreThoseWithTimeAsACoordinate) {
   EXPECT_GT(away_from_time_as_a_coordinate<1>(quadrature_rules::trapezoid, 0.1), 1e-4) << "a late clock is seen";
 }
 
+// From where everything is zero but a momentum: the rounding of an equation is that of what the step adds to it.
+TEST(FormulaHamiltonians, LeaveTheOrigin) {
+  const FormulaHamiltonian system({.coordinates = {"q"}}, {"p"}, "p^2/2 - cos(q)", {1, quadrature_rules::trapezoid});
+  for (const GeneratingType type : {GeneratingType::two, GeneratingType::three})
+    for (const double h : {0.1, 0.01, 0.001}) {
+      GeneratingStep step(system, type);
+      SizedState z{Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
+      EXPECT_EQ(step.take(z, 0, h).status, SolveStatus::converged) << h;
+      EXPECT_NEAR(z.position(0), h, h * h);
+    }
+}
+
 // A step of type III back undoes one of type II, and the product of both is symmetric.
 TEST(FormulaHamiltonians, TypesAreEachOthersAdjoints) {
   const FormulaHamiltonian system = swing({3, quadrature_rules::gauss_2});

@@ -197,6 +197,25 @@ TEST(FormulaMotions, DoNotLeaveTheirConstraintsByOtherParameters) {
   ASSERT_TRUE(motion.advance().converged());
   EXPECT_EQ(motion.refused(0.5, {.parameters = {{"r", 1.0}}}), "");
   EXPECT_NE(motion.refused(0.5, {.parameters = {{"r", 1.1}}}), "");
+  // Turned where it is met, a line takes away what goes across it; near zero rounding is that of the step.
+  const Written line{{.coordinates = {"x", "y"}, .constraints = {"y - a*x"}, .parameters = {{"a", 0.0}}},
+                     "(x'^2 + y'^2)/2"};
+  FormulaMotion turned =
+      motion_of(line, {CurveQuadrature::lobatto, 1}, Eigen::Vector2d(-0.05, 0), Eigen::Vector2d(1, 0), 0.1);
+  turned.keep_node();
+  ASSERT_TRUE(turned.advance().converged());
+  EXPECT_EQ(turned.refused(0.5, {.parameters = {{"a", 0.0}}}), "");
+  EXPECT_NE(turned.refused(0.5, {.parameters = {{"a", 1.0}}}).find("velocity leaves constraint 1"), std::string::npos);
+}
+TEST(FormulaMotions, DoNotLoseTheirSymmetriesByOtherParameters) {
+  const Written orbit_of{{.coordinates = {"x", "y"}, .symmetries = {{"turn", {"-y", "x"}}}, .parameters = {{"k", 1.0}}},
+                         "(x'^2 + y'^2)/2 - (k*x^2 + y^2)/2"};
+  FormulaMotion motion =
+      motion_of(orbit_of, {CurveQuadrature::gauss, 1}, Eigen::Vector2d(1, 0.2), Eigen::Vector2d(0, 1), 0.1);
+  motion.keep_node();
+  ASSERT_TRUE(motion.advance().converged());
+  EXPECT_EQ(motion.refused(0.5, {.parameters = {{"k", 1.0}}}), "");
+  EXPECT_NE(motion.refused(0.5, {.parameters = {{"k", 4.0}}}).find("\"turn\" is no symmetry"), std::string::npos);
 }
 
 TEST(FormulaMotions, StepsAllocateNothing) {

@@ -47,6 +47,18 @@ TEST(TypesOnGroupoids, OnPairsAreThoseOfVectors) {
   EXPECT_LT((away_from_the_map_of_vectors<3, two, gauss_2>()), agreement);
 }
 
+struct TwoWells : ContinuousHamiltonian<TwoWells, Pair<1>> {
+  template <class S> S hamiltonian(const Vector<S, 1>&, const Vector<S, 1>& p) const {
+    return p(0) * p(0) * p(0) * p(0) * 0.25 - p(0) * p(0) * 0.5;
+  }
+};
+TEST(TypesOnGroupoids, EnergyIsTheHamiltonianWhereItIsNotConvexToo) {
+  for (const double p : {0.3, 0.9, 1.1}) {
+    const Vector<double, 1> q(0.0), momentum(p);
+    EXPECT_EQ((HamiltonianTaylor<TwoWells, 1>{{}, h}.energy({q, momentum})), TwoWells{}.hamiltonian(q, momentum)) << p;
+  }
+}
+
 struct Bounded : ContinuousHamiltonian<Bounded, Pair<1>> {
   template <class S> S hamiltonian(const Vector<S, 1>&, const Vector<S, 1>& p) const {
     using std::sqrt;

@@ -35,6 +35,24 @@ TEST(TypesOnGroupoids, OnADualOfAnAlgebraArePointsOfTheExactChart) {
   EXPECT_GT((side(x) - side(-x)).norm(), 1e-3);
 }
 
+template <class H> double way_back(const State<typename H::GroupoidType>& start, double back) {
+  auto ahead = make(HamiltonianTaylor<H, 1>{{}, h}, start);
+  EXPECT_TRUE(ahead.advance().converged());
+  const auto& there = ahead.point().state;
+  HamiltonianTaylor<H, 1, GeneratingType::three> undone{{}, back};
+  auto home = make(undone, there);
+  EXPECT_TRUE(home.advance().converged());
+  const auto& s = home.point().state;
+  return (s.momentum - start.momentum).norm() +
+         (undone.groupoid.coordinates_of_object(s.object) - undone.groupoid.coordinates_of_object(start.object)).norm();
+}
+TEST(TypesOnGroupoids, AreEachOthersAdjoints) {
+  const State<SO3> body{{}, {0.3, 1.5, 0.4}};
+  EXPECT_LT(way_back<FreeBodyByMomentum<SO3>>(body, -h), 1e-14);
+  EXPECT_LT(way_back<TopByMomentum>(top_start, -h), 1e-14);
+  EXPECT_GT(way_back<TopByMomentum>(top_start, -0.9 * h), 1e-3);
+}
+
 // A discrete Lagrangian as a function on A*G and back.
 TEST(TypesOnGroupoids, AreChangedIntoTypeOneAndBack) {
   const Trapezoidal<Top> system{{}, h};

@@ -24,4 +24,11 @@ TEST(TypesOnGroupoids, OrdersOnThePendulum) {
   expect_order(swing<HamiltonianTaylor<H, 3, two, gauss_2>>(), 20);
 }
 
+TEST(TypesOnGroupoids, OrderOnASphereIsTwo) {
+  const Vector<double, 3> end = bead_end(2);
+  const auto bead = [&]<class Sys>(Sys system) { return Case<Sys>{system, bead_start, 2, end}; };
+  expect_order(bead(HamiltonianTaylor<BeadByMomentum, 1>{}), 20, 0.1, 1e-6);
+  expect_order(bead(HamiltonianTaylor<BeadByMomentum, 3, two, gauss_2>{}), 20, 0.1, 1e-6);
+}
+
 }  // namespace
