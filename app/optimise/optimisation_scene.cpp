@@ -33,8 +33,8 @@ const KeyOf<Number> relative_gradient{"relative_gradient",
                                       "stop at this norm of it over that at the start",
                                       {},
                                       "1e-8 where nothing else stops, else 0"};
-const KeyOf<Number> gap_key{"gap", {positive}, "", "stop so far above the least value, found by linear algebra",
-                            {},    "none"};
+const KeyOf<Number> gap_key{
+    "gap", {positive}, "", "stop so far above the least value, where it is known without optimisation", {}, "none"};
 const KeyOf<Number> value{"value", {}, "", "stop at this value", {}, "none"};
 const KeyOf<Whole> iterations{"iterations", {1, 1'000'000'000}, "", "at most", long(Stopping().iterations)};
 const KeyOf<Number> seconds{"seconds", {positive}, "s", "at most", {}, "any number"};
@@ -44,7 +44,9 @@ const KeyOf<Whole> patience{"patience",
                             "iterations without progress, at most; 0: any number",
                             long(Stopping().patience)};
 const KeyOf<Flag> reference_key{
-    "reference", {}, "", "ask linear algebra for the least value", {}, "true with `gap` of [stop]"};
+    "reference", {},
+    "",          "compare with the least value that linear algebra finds, of means of two points their distance",
+    {},          "true with `gap` of [stop]"};
 
 /// Start: a file, or else the problem's, or else a random point; of O(n), in the component that is asked for.
 Point read_start(const Section& scene, const Instance& instance, const std::filesystem::path& folder) {

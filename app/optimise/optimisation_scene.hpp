@@ -19,7 +19,7 @@ struct OptimisationScene {
   optimisation::Point start;
   std::unique_ptr<optimisation::DescentMethod> method;
   optimisation::Stopping stopping;
-  std::optional<double> least;    ///< where linear algebra was asked for it
+  std::optional<double> least;    ///< where `reference` or `gap` asked for it
   std::optional<double> penalty;  ///< the weight, with constraint = "penalty"
 };
 

@@ -10,10 +10,13 @@
 #include <optimise/optimisation_scene.hpp>
 
 #include <lagroid/python/numbers.hpp>
+#include <lagroid/solvers/optimisation/manifolds/hyperbolic_space.hpp>
+#include <lagroid/solvers/optimisation/manifolds/positive_definite.hpp>
 #include <lagroid/solvers/optimisation/manifolds/product.hpp>
 #include <lagroid/solvers/optimisation/manifolds/sphere.hpp>
 #include <lagroid/solvers/optimisation/manifolds/stiefel.hpp>
 #include <lagroid/solvers/optimisation/penalised.hpp>
+#include <lagroid/systems/optimisation/frechet_mean.hpp>
 #include <lagroid/systems/optimisation/instances.hpp>
 
 #include <fmt/format.h>
@@ -58,6 +61,15 @@ struct Layout {
 struct ManifoldMaker {
   std::function<std::unique_ptr<Manifold>()> make;
   Layout layout;
+};
+
+/// A Frechet mean that is made anew for each minimisation, on the manifold of it.
+struct MeanMaker {
+  ManifoldMaker manifold;
+  std::vector<Point> points;
+  Eigen::VectorXd weights;
+
+  FrechetMean on(const Manifold& made) const { return {made, points, weights}; }
 };
 
 struct Optimum {
@@ -125,16 +137,32 @@ Callback watch() {
   return [](const Iterate&, const Point&) { return !lagroid::InterruptGuard::interrupted(); };
 }
 
+MeanMaker mean_python(const ManifoldMaker& maker, const std::vector<py::object>& points,
+                      const std::optional<Eigen::VectorXd>& weights) {
+  MeanMaker out{maker, {}, weights.value_or(Eigen::VectorXd())};
+  for (const auto& point : points) out.points.push_back(flat(point, maker.layout, "points"));
+  out.on(*maker.make());
+  return out;
+}
+
 std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::function& fun,
                                          const std::optional<py::object>& start, const std::string& method,
                                          const std::optional<py::function>& hessian, unsigned seed, double gradient,
                                          double relative_gradient, long iterations, double seconds, bool history) {
   const auto manifold = maker.make();
-  const PythonObjective objective(fun, hessian, maker.layout);
+  const auto* mean = py::isinstance<MeanMaker>(fun) ? fun.cast<const MeanMaker*>() : nullptr;
+  if (mean && hessian) throw py::value_error("hessian: a FrechetMean has its own");
+  std::unique_ptr<Objective> objective;
+  if (mean)
+    objective = std::make_unique<FrechetMean>(mean->on(*manifold));
+  else
+    objective = std::make_unique<PythonObjective>(fun, hessian, maker.layout);
   const app::Section keys = app::parse_scene(method, "method", {});
   const auto by = app::read_optimiser(keys);
   keys.finish();
-  const Point from = start ? flat(*start, maker.layout, "start") : random_start(*manifold, seed);
+  const Point from = start  ? flat(*start, maker.layout, "start")
+                     : mean ? mean->points.front()
+                            : random_start(*manifold, seed);
   Stopping stopping;
   stopping.gradient = finite("gradient", gradient, nonnegative);
   stopping.relative_gradient =
@@ -144,7 +172,7 @@ std::shared_ptr<Optimum> minimise_python(const ManifoldMaker& maker, const py::f
   stopping.seconds = held("seconds", seconds, positive);
   return std::make_shared<Optimum>(
       Optimum{computing([&] {
-                return optimisation::minimise(*manifold, objective, from, *by, stopping, {history, watch()});
+                return optimisation::minimise(*manifold, *objective, from, *by, stopping, {history, watch()});
               }),
               maker.layout,
               {}});
@@ -210,6 +238,20 @@ void bind_optimisation(py::module_& module) {
       },
       py::arg("n"), py::arg("m"), "The n x m matrices with orthonormal columns; points (n, m). O(n) for m = n.");
   module.def(
+      "HyperbolicSpace",
+      [](Eigen::Index n) {
+        HyperbolicSpace{n};
+        return ManifoldMaker{[n] { return std::make_unique<HyperbolicSpace>(n); }, {n + 1, 1, false}};
+      },
+      py::arg("n"), "H^n of curvature -1; points (n + 1,) with -x_0^2 + x_1^2 + ... + x_n^2 = -1, x_0 > 0.");
+  module.def(
+      "PositiveDefinite",
+      [](Eigen::Index n) {
+        PositiveDefinite{n};
+        return ManifoldMaker{[n] { return std::make_unique<PositiveDefinite>(n); }, {n, n, true}};
+      },
+      py::arg("n"), "The symmetric positive definite n x n matrices; points (n, n).");
+  module.def(
       "ProductManifold",
       [](const std::vector<ManifoldMaker>& factors) {
         const auto make = [factors]() -> std::unique_ptr<Manifold> {
@@ -220,6 +262,19 @@ void bind_optimisation(py::module_& module) {
         return ManifoldMaker{make, {make()->size(), 1, false}};
       },
       py::arg("factors"), "A product; points one after another, (size,), matrices by columns.");
+
+  py::class_<MeanMaker>(module, "FrechetMean",
+                        "f(x) = sum w_i d(x, y_i)^2 / 2, whose minimum is the mean of the points.")
+      .def(py::init(&mean_python), py::arg("manifold"), py::arg("points"), py::arg("weights") = py::none())
+      .def(
+          "__call__",
+          [](const MeanMaker& mean, const py::object& x) {
+            const auto manifold = mean.manifold.make();
+            Vector gradient;
+            const double value = mean.on(*manifold).evaluate(flat(x, mean.manifold.layout, "x"), gradient);
+            return py::make_tuple(value, mean.manifold.layout.copy_of(gradient));
+          },
+          py::arg("x"), "Value and gradient, as a function to minimise returns them.");
 
   py::class_<Optimum, std::shared_ptr<Optimum>>(module, "Optimum", "What a minimisation came to.")
       .def_property_readonly(

@@ -26,7 +26,18 @@ from .errors import DataError, Error, Interrupted, OutputError, ProgramError, Sc
 from .groupoids import SE2, SE3, SO3, Groupoid, MatrixGroup, Pair
 from .learning import LearnedHamiltonian, Measures, Trajectories, learn, trajectories
 from .optimal_control import ControlLoop, ControlResult, control, control_loop
-from .optimisation import Manifold, Optimum, ProductManifold, Sphere, Stiefel, minimise, optimize
+from .optimisation import (
+    FrechetMean,
+    HyperbolicSpace,
+    Manifold,
+    Optimum,
+    PositiveDefinite,
+    ProductManifold,
+    Sphere,
+    Stiefel,
+    minimise,
+    optimize,
+)
 from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
 from .scenes import require, resume, run, scene_text, systems
 from .studies import GradientTable, Method, Uncertainty, check, fit, gradient, methods, study, uncertainty
@@ -41,8 +52,10 @@ __all__ = [
     "Endpoint",
     "Error",
     "EventNode",
+    "FrechetMean",
     "GradientTable",
     "Groupoid",
+    "HyperbolicSpace",
     "Integrator",
     "Interrupted",
     "LearnedHamiltonian",
@@ -55,6 +68,7 @@ __all__ = [
     "OutputError",
     "Pair",
     "Panel",
+    "PositiveDefinite",
     "ProductManifold",
     "ProgramError",
     "PrototypeIntegrator",

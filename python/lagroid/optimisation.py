@@ -11,10 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _lagroid
-from ._lagroid import Manifold, Optimum, ProductManifold, Sphere, Stiefel
+from ._lagroid import FrechetMean, HyperbolicSpace, Manifold, Optimum, PositiveDefinite, ProductManifold, Sphere, Stiefel
 from .scenes import SceneLike, made, scene_text
 
-__all__ = ["Manifold", "Optimum", "ProductManifold", "Sphere", "Stiefel", "minimise", "optimize"]
+__all__ = [
+    "FrechetMean",
+    "HyperbolicSpace",
+    "Manifold",
+    "Optimum",
+    "PositiveDefinite",
+    "ProductManifold",
+    "Sphere",
+    "Stiefel",
+    "minimise",
+    "optimize",
+]
 
 Array = NDArray[np.float64]
 
@@ -49,9 +60,9 @@ def minimise(
 
     `fun(x)` returns the value and the gradient in the space around the manifold, an array of the shape of x: (n,) on a
     sphere, (n, m) on a Stiefel manifold, (size,) on a product. It may keep x. `hessian(x, v)`, of the same shape,
-    is by default the central difference of gradients. What it raises is raised here.
+    is by default the central difference of gradients. What it raises is raised here. A FrechetMean is computed in C++.
 
-    `start` is a point, or drawn by `seed`. `method` is the name of one, or what [method] of a scene holds
+    `start` is a point, or drawn by `seed`; of a FrechetMean it is the first of its points. `method` is the name of one, or what [method] of a scene holds
     (docs/optimisation.md). It stops where the norm of the Riemannian gradient is at most `gradient`, or
     `relative_gradient` times the one at the start. Ctrl-C raises KeyboardInterrupt."""
     keys = {"name": method} if isinstance(method, str) else method

@@ -75,6 +75,36 @@ class Optimisation(unittest.TestCase):
         found = lagroid.minimise(manifold, energy, seed=3)
         self.assertAlmostEqual(found.value, 0.5, places=9)
 
+    def test_mean_of_matrices(self) -> None:
+        """Of matrices that commute it is the exponential of the mean logarithm."""
+        manifold = lagroid.PositiveDefinite(2)
+        points = [np.diag([1.0, 4.0]), np.diag([16.0, 4.0])]
+        mean = lagroid.FrechetMean(manifold, points)
+        found = lagroid.minimise(manifold, mean)
+        self.assertTrue(found.converged, found.message)
+        np.testing.assert_allclose(found.x, np.diag([4.0, 4.0]), atol=1e-7)
+        weighted = lagroid.minimise(manifold, lagroid.FrechetMean(manifold, points, [3, 1]))
+        np.testing.assert_allclose(weighted.x, np.diag([2.0, 4.0]), atol=1e-7)
+        # Called from Python it is the same function, and one point is the mean of itself.
+        slow = lagroid.minimise(manifold, lambda x: mean(x), points[0])
+        self.assertAlmostEqual(slow.value, found.value, places=9)
+        alone = lagroid.minimise(manifold, lagroid.FrechetMean(manifold, points[:1]))
+        self.assertEqual((alone.status, alone.iterations), ("converged", 0))
+        with self.assertRaisesRegex(ValueError, "point 1 is not on the"):
+            lagroid.FrechetMean(manifold, [np.diag([1.0, -1.0])])
+        with self.assertRaisesRegex(ValueError, r"points: expected shape \(2, 2\), got \(2,\)"):
+            lagroid.FrechetMean(manifold, [[1.0, 2.0]])
+        with self.assertRaisesRegex(ValueError, "hessian: a FrechetMean has its own"):
+            lagroid.minimise(manifold, mean, hessian=lambda x, v: v)
+
+    def test_mean_in_hyperbolic_space(self) -> None:
+        manifold = lagroid.HyperbolicSpace(2)
+        self.assertEqual((manifold.size, manifold.dimension), (3, 2))
+        points = [[np.cosh(1), np.sinh(1), 0], [np.cosh(1), -np.sinh(1), 0]]
+        found = lagroid.minimise(manifold, lagroid.FrechetMean(manifold, points))
+        np.testing.assert_allclose(found.x, [1, 0, 0], atol=1e-7)
+        self.assertAlmostEqual(found.value, 0.5, places=12)
+
     def test_what_python_raises_is_raised(self) -> None:
         with self.assertRaises(ZeroDivisionError):
             lagroid.minimise(lagroid.Sphere(3), lambda x: (1 / 0, x))

@@ -118,10 +118,11 @@ Result minimise(const Manifold& manifold, const Objective& objective, const Poin
     return end(MinimisationStatus::not_finite, "value or gradient at the start are not finite; look at the data");
   out.value = state.value;
   out.gradient = manifold.norm(state.x, state.gradient);
-  // What rounding leaves of a gradient that vanishes.
-  const double rounding = 4e-15 * std::sqrt(double(manifold.size())) * state.euclidean.norm();
+  // What rounding leaves of a gradient that vanishes; with a metric of its own its norm has not the unit of |D f|.
+  const double rounding =
+      manifold.has_own_metric() ? 0 : 4e-15 * std::sqrt(double(manifold.size())) * state.euclidean.norm();
   if (out.gradient <= rounding)
-    return out.value <= stopping.value
+    return out.value <= stopping.value || objective.convex()
                ? end(MinimisationStatus::converged)
                : end(MinimisationStatus::stationary_start,
                      "the gradient vanishes at the start, which need not be a minimum; begin elsewhere");

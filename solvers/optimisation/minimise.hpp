@@ -26,7 +26,7 @@ namespace lagroid::optimisation {
 enum class MinimisationStatus {
   converged,         ///< the gradient, or the value, is as small as the stopping criteria want it
   stagnated,         ///< neither falls any more: what is left is rounding
-  stationary_start,  ///< the gradient vanishes where it starts, which need not be a minimum
+  stationary_start,  ///< the gradient vanishes where it starts, which need not be a minimum unless f is convex
   iteration_limit,   ///< as many iterations as were allowed
   time_limit,        ///< as long as was allowed
   interrupted,       ///< the callback said so

@@ -33,6 +33,8 @@ class Objective {
   virtual void hessian(const Point& x, const Vector& v, Vector& h) const;
   /// A Lipschitz constant of the Riemannian gradient of the restriction, where one is known.
   virtual std::optional<double> lipschitz() const { return std::nullopt; }
+  /// Whether the restriction is geodesically convex on all of the manifold: a point without slope is then a minimum.
+  virtual bool convex() const { return false; }
 
  private:
   mutable Point moved_;

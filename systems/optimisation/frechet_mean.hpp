@@ -33,6 +33,8 @@ class FrechetMean final : public Objective {
   FrechetMean(const Manifold& manifold, std::vector<Point> points, const Eigen::VectorXd& weights = {});
 
   std::string name() const override { return "Frechet mean"; }
+  /// On manifolds with `is_hadamard`.
+  bool convex() const override { return manifold_.is_hadamard(); }
   double evaluate(const Point& x, Vector& gradient) const override;
   /// By central differences along the geodesic, whose lengths are the manifold's own.
   void hessian(const Point& x, const Vector& v, Vector& h) const override;

@@ -1,5 +1,6 @@
 #include <lagroid/systems/optimisation/instances.hpp>
 
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/solvers/optimisation/manifolds/hyperbolic_space.hpp>
 #include <lagroid/solvers/optimisation/manifolds/positive_definite.hpp>
 #include <lagroid/solvers/optimisation/manifolds/sphere.hpp>
@@ -108,9 +109,16 @@ Instance positive_definite_mean_instance(const Eigen::MatrixXd& matrices) {
   for (Eigen::Index i = 0; i < matrices.rows(); i += n) {
     constexpr double rounding = 1e-12;
     const Eigen::MatrixXd matrix = matrices.middleRows(i, n);
+    const double skew = (matrix - matrix.transpose()).norm();
+    if (!(skew <= rounding * matrix.norm()))
+      throw std::invalid_argument(fmt::format("matrix {} is not symmetric, by {:.1e} of its size; give (A + A^T) / 2",
+                                              i / n + 1, skew / matrix.norm()));
     Point& point = each.emplace_back(matrix.reshaped());
-    if (!((matrix - matrix.transpose()).norm() <= rounding * matrix.norm()) || !out.manifold->nearest(point))
-      throw std::invalid_argument(fmt::format("matrix {} is not symmetric and positive definite", i / n + 1));
+    if (!out.manifold->nearest(point))
+      throw std::invalid_argument(
+          fmt::format("matrix {} is not positive definite, its smallest eigenvalue is {:.1e}; leave it out, or add a "
+                      "multiple of the identity to all",
+                      i / n + 1, symmetric_eigenvalues(matrix)(0)));
   }
   take_mean(out, std::move(each));
   return out;
@@ -118,7 +126,8 @@ Instance positive_definite_mean_instance(const Eigen::MatrixXd& matrices) {
 
 Point random_start(const Manifold& manifold, unsigned seed) {
   Point x = random_matrix(manifold.size(), 1, seed);
-  if (!manifold.nearest(x)) throw std::runtime_error("a random matrix has no nearest point; take another seed");
+  if (!manifold.nearest(x))
+    throw std::runtime_error("a random matrix has no nearest point; give a start, or take another seed");
   return x;
 }
 

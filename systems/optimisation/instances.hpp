@@ -1,5 +1,6 @@
 #pragma once
-/// Problems with their manifold and, where linear algebra knows it, their minimum: what optimisation is measured on.
+/// Problems with their manifold and, where it is known without optimisation, their minimum: what optimisation is
+/// measured on.
 ///
 ///     const Eigen::MatrixXd a = optimisation::random_symmetric(100, 1);  // size, seed
 ///     const auto problem = optimisation::rayleigh_instance(optimisation::SymmetricOperator::of(a));

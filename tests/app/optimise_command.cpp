@@ -91,6 +91,18 @@ TEST_F(Optimise, EveryMethodFindsTheMeanOfTwoPoints) {
     }
 }
 
+TEST_F(Optimise, FindsMeansFarOutAndWhereTheyBegin) {
+  const std::string far = file("far.toml",
+                               "problem = \"hyperbolic-mean\"\n[data]\npoints = \"far.csv\"\n"
+                               "[method]\nname = \"trust-region\"\n[stop]\ngradient = 1e-9\n");
+  file("far.csv", "1e8, 0\n-1e8, 0\n");
+  EXPECT_LT(summary("optimize " + far).at("gradient").get<double>(), 1e-9);
+  const std::string equal =
+      file("equal.toml", "problem = \"positive-definite-mean\"\n[data]\nmatrices = \"equal.csv\"\n");
+  file("equal.csv", "2, 1\n1, 3\n2, 1\n1, 3\n");
+  EXPECT_EQ(summary("optimize " + equal).at("status"), "converged");
+}
+
 TEST_F(Optimise, APenaltyComesNear) {
   const auto found = summary("optimize " + endless() +
                              " --set method.name=robust --set method.constraint=penalty --set method.penalty=1e6"
@@ -179,6 +191,7 @@ TEST_F(Optimise, BadInputIsOneLineThatNamesTheRemedy) {
   file("off.csv", "1\n1\n");
   file("two.csv", "1, 0\n0, 2\n");
   file("indefinite.csv", "1, 0\n0, 1\n1, 2\n2, 1\n");
+  file("crooked.csv", "1, 0\n0, 1\n2, 1\n0.5, 2\n");
   file("three.csv", "1, 0\n0, 1\n1, 2\n");
   file("a.bin", "");
   file("b.h5", "no HDF5");
@@ -221,7 +234,9 @@ TEST_F(Optimise, BadInputIsOneLineThatNamesTheRemedy) {
       {scene("tensors") + " --set method.retraction=qr", "take one of: exponential"},
       {scene("tensors") + " --set method.name=euler-lagrange", "or lambda"},
       {scene("tensors") + " --set start.seed=2", "first point"},
-      {scene("tensors") + " --set data.matrices=\\\"" + path + "indefinite.csv\\\"", "matrix 2 is not symmetric"},
+      {scene("tensors") + " --set data.matrices=\\\"" + path + "indefinite.csv\\\"",
+       "matrix 2 is not positive definite, its smallest eigenvalue is -1.0e+00; leave it out"},
+      {scene("tensors") + " --set data.matrices=\\\"" + path + "crooked.csv\\\"", "give (A + A^T) / 2"},
       {scene("tensors") + " --set data.matrices=\\\"" + path + "three.csv\\\"", "one below the other"},
       {scene("tensors") + " --set data.matrices=\\\"" + path + "missing.csv\\\"", "no such file"},
       {scene("hyperbolic_mean") + " --set method.diameter=-1", "positive"},

@@ -39,6 +39,7 @@ class FlatSpace final : public Manifold {
   void hessian(const Point&, const Vector&, const Vector&, Vector&) const override {}
   double least_curvature() const override { return 0; }
   double diameter() const override { return std::numeric_limits<double>::infinity(); }
+  bool is_hadamard() const override { return true; }
 
  private:
   Eigen::Index n_;

@@ -12,6 +12,18 @@ namespace {
 auto space(Vector& v) { return v.tail(v.size() - 1); }
 auto space(const Vector& v) { return v.tail(v.size() - 1); }
 
+/// v = a at + what is orthogonal to it, which is left; returns a. `square` = |at|^2 > 0. Twice, since far out the
+/// radial part is the longer one by far.
+template <class At, class V> double take_radial_part(const At& at, double square, V&& v) {
+  double a = 0;
+  for (int k = 0; k < 2; ++k) {
+    const double share = at.dot(v) / square;
+    v -= share * at;
+    a += share;
+  }
+  return a;
+}
+
 /// sinh^2(d / 2) of the distance d.
 double half_distance(const Point& x, const Point& y) {
   const double here = space(x).norm();
@@ -67,8 +79,12 @@ void HyperbolicSpace::gradient(const Point& x, Vector& differential) const {
 }
 
 void HyperbolicSpace::differential(const Point& x, Vector& gradient) const {
-  space(gradient) -= gradient(0) / x(0) * space(x);
+  const auto at = space(x);
+  const double square = at.squaredNorm();
   gradient(0) = 0;
+  if (square == 0) return;
+  const double outwards = take_radial_part(at, square, space(gradient));
+  space(gradient) += outwards / (1 + square) * at;
 }
 
 bool HyperbolicSpace::retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const {
@@ -76,11 +92,8 @@ bool HyperbolicSpace::retract(ManifoldRetraction retraction, const Point& x, con
   const auto at = space(x);
   const double r = at.norm();
   const double time = std::hypot(1.0, r);
-  const double outwards = r > 0 ? at.dot(space(v)) / r : 0;
   to = v;
-  // Twice, since far out the radial part is the longer one by far.
-  for (int k = 0; k < 2 && r > 0; ++k) space(to) -= at.dot(space(to)) / (r * r) * at;
-  const double along = outwards / time;
+  const double along = r > 0 ? take_radial_part(at, r * r, space(to)) * r / time : 0;
   const double across = space(to).norm();
   const double length = std::hypot(along, across);
   const double share = length > 0 ? std::sinh(length) / length : 1;
@@ -95,11 +108,10 @@ bool HyperbolicSpace::retract(ManifoldRetraction retraction, const Point& x, con
 
 bool HyperbolicSpace::logarithm(const Point& x, const Point& y, Vector& v) const {
   const double half = half_distance(x, y);
-  const double sine = 2 * std::sqrt(half * (1 + half));
-  const double share = half > 0 ? 2 * std::asinh(std::sqrt(half)) / sine : 1;
-  v = y - x;
-  space(v) -= 2 * half * space(x);
-  v *= share;
+  const double distance = 2 * std::asinh(std::sqrt(half));
+  const double share = half > 0 ? distance / (2 * std::sqrt(half) * std::sqrt(1 + half)) : 1;
+  v = share * (y - x);
+  space(v) -= distance * std::sqrt(half / (1 + half)) * space(x);
   project(x, v);
   return v.allFinite();
 }

@@ -24,8 +24,9 @@ namespace lagroid::optimisation {
 ///
 ///     sinh^2(d / 2) = sinh^2((R_x - R_y) / 2) + sinh R_x sinh R_y sin^2(w / 2),
 ///
-/// and <u, v> is taken by its radial part, which is smaller by 1 / x_0^2 than that of the space parts, and the rest.
-/// Where a point has the radius R rounding leaves about e^R times 1e-16 of a direction, as the numbers of the point do.
+/// and <u, v> and differentials are taken by their radial part, which is smaller by 1 / x_0^2 than that of the space
+/// parts, and the rest. Where a point has the radius R rounding leaves about e^R times 1e-16 of a direction, as the
+/// numbers of the point do.
 class HyperbolicSpace final : public Manifold {
  public:
   /// Throws std::invalid_argument for n < 1.
@@ -51,6 +52,7 @@ class HyperbolicSpace final : public Manifold {
   /// exponential, at every point and of every vector.
   bool offers(ManifoldRetraction retraction) const override { return retraction == ManifoldRetraction::exponential; }
   bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const override;
+  /// False where numbers overflow: where distances exceed 700 or so.
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   /// v + (x + y) <log_x y, v> tanh(d / 2) / d.
   bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
@@ -58,6 +60,7 @@ class HyperbolicSpace final : public Manifold {
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 1 ? -1 : 0; }
   double diameter() const override { return std::numeric_limits<double>::infinity(); }
+  bool is_hadamard() const override { return true; }
 
  private:
   Eigen::Index n_;

@@ -105,6 +105,9 @@ class Manifold {
   /// A lower bound of the sectional curvature and an upper bound of the diameter, for (5.1).
   virtual double least_curvature() const = 0;
   virtual double diameter() const = 0;
+  /// Whether any two points are joined by one geodesic and curvatures are not positive (a Hadamard manifold): squared
+  /// distances are then geodesically convex.
+  virtual bool is_hadamard() const { return false; }
 
   /// Throws std::invalid_argument that names what is offered: for a retraction that is not.
   [[noreturn]] void refuse(ManifoldRetraction retraction) const;

@@ -59,6 +59,7 @@ class PositiveDefinite final : public Manifold {
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 1 ? -0.5 : 0; }
   double diameter() const override { return std::numeric_limits<double>::infinity(); }
+  bool is_hadamard() const override { return true; }
 
  private:
   using Matrix = Eigen::MatrixXd;

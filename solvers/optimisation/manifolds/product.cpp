@@ -215,4 +215,8 @@ double ProductManifold::diameter() const {
   return std::sqrt(square);
 }
 
+bool ProductManifold::is_hadamard() const {
+  return std::all_of(factors_.begin(), factors_.end(), [](const auto& factor) { return factor->is_hadamard(); });
+}
+
 }  // namespace lagroid::optimisation

@@ -48,6 +48,8 @@ class ProductManifold final : public Manifold {
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override;
   double diameter() const override;
+  /// Where all factors are.
+  bool is_hadamard() const override;
 
  private:
   template <class F> bool each(const F& f) const;

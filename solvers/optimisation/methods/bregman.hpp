@@ -28,9 +28,11 @@ struct Bregman {
   enum class Kind { direct, adaptive };
   Kind kind = Kind::adaptive;
   double p = 6;
-  double po = 2;                      ///< p-ring; of `adaptive` alone
-  double c = 1;                       ///< C > 0
-  std::optional<double> lambda = {};  ///< at least 1; without it zeta of the manifold, in a vector space 1
+  double po = 2;  ///< p-ring; of `adaptive` alone
+  double c = 1;   ///< C > 0
+  /// At least 1; without it zeta of the manifold, in a vector space 1. On Stiefel manifolds zeta grows like the square
+  /// root of the number of columns: with many, lambda = 1 takes fewer iterations.
+  std::optional<double> lambda = {};
 };
 
 /// Throws std::invalid_argument, with the remedy, for p, po, C <= 0 or lambda < 1.

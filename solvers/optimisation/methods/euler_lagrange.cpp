@@ -21,7 +21,7 @@ std::string EulerLagrange::name() const { return options_.version == 1 ? "Euler-
 void EulerLagrange::begin(Problem& problem, const EvaluatedPoint& state) {
   retraction_ = chosen_retraction(problem.manifold(), options_.retraction);
   lambda_ = options_.lambda ? *options_.lambda : zeta(problem.manifold(), options_.diameter);
-  k_ = 0;
+  k_ = lambda_ > 1 ? std::ceil(lambda_ * options_.p) : 0;
   largest_ = options_.cap;
   if (std::isfinite(largest_)) largest_ /= options_.h * options_.h * lipschitz_bound(problem, state);
   velocity_.setZero(state.x.size());
@@ -32,7 +32,7 @@ void EulerLagrange::begin(Problem& problem, const EvaluatedPoint& state) {
 
 StepOutcome EulerLagrange::advance(Problem& problem, EvaluatedPoint& state) {
   const Manifold& manifold = problem.manifold();
-  const double k = double(++k_);
+  const double k = ++k_;
   const double h = options_.h;
   const double b = 1 - (lambda_ * options_.p + 1) / k;
   const double c = std::min(options_.c * options_.p * options_.p * std::pow(k * h, options_.p - 2), largest_);

@@ -36,6 +36,9 @@ struct EulerLagrangeOptions {
 ///     a = b_k V - h c_k grad f(X),   X+ = R_X(h a),   V+ = a transported,
 ///
 /// version 2 with the gradient at R_X(h b_k V), transported back.
+///
+/// With lambda > 1 it begins at the first k with b_k >= 0, k = ceil(lambda p) + 1: the b_k before are negative, and the
+/// product of their sizes reaches about 2^(lambda p). With lambda = 1 it begins at k = 1, as [V] does.
 class EulerLagrange final : public DescentMethod {
  public:
   /// Throws std::invalid_argument, with the remedy, for options out of range.
@@ -49,7 +52,7 @@ class EulerLagrange final : public DescentMethod {
   EulerLagrangeOptions options_;
   ManifoldRetraction retraction_ = ManifoldRetraction::qr;
   double lambda_ = 1;
-  long k_ = 0;
+  double k_ = 0;
   double largest_ = 0;
   Vector velocity_, v_;
   Point to_;

@@ -122,8 +122,9 @@ inline void metric_laws(const optimisation::Manifold& manifold, const PointDraw&
     manifold.differential(x, back);
     const double lowered = std::abs(back.dot(gradient) - manifold.inner(x, v, gradient));
     manifold.gradient(x, back);
-    return worst({std::abs(manifold.inner(x, gradient, v) - differential.dot(v)) / v.norm(), lowered / v.norm(),
-                  (back - v).norm() / v.norm()});
+    const double scale = manifold.norm(x, gradient) + differential.norm() * v.norm();
+    return worst({std::abs(manifold.inner(x, gradient, v) - differential.dot(v)) / scale, lowered / scale,
+                  manifold.norm(x, back - v)});
   });
 }
 
@@ -282,7 +283,8 @@ inline LawReport manifold_laws(const optimisation::Manifold& manifold, const Poi
 }
 
 /// "the gradient is that of the value", "the Hessian is that of the gradient", and where a Lipschitz constant of the
-/// Riemannian gradient is declared, "curvatures stay below the Lipschitz constant": at random points of the manifold.
+/// Riemannian gradient is declared, "curvatures stay below the Lipschitz constant", where it says that it is convex, "a
+/// convex function lies above its tangents": at random points of the manifold.
 inline LawReport objective_laws(const optimisation::Manifold& manifold, const optimisation::Objective& objective,
                                 const PointDraw& draw = {}) {
   using optimisation::Problem, optimisation::EvaluatedPoint, optimisation::Vector;
@@ -322,6 +324,13 @@ inline LawReport objective_laws(const optimisation::Manifold& manifold, const op
       Vector h(v.size());
       problem.hessian(state, v, h);
       return manifold.norm(state.x, h) / *lipschitz;
+    }));
+  if (objective.convex() && manifold.offers(optimisation::ManifoldRetraction::exponential))
+    report.laws.push_back(check_law("a convex function lies above its tangents", 1e-12, [&] {
+      const EvaluatedPoint state = at();
+      const Vector v = draw_tangent(manifold, state.x, 1);
+      const double tangent = state.value + manifold.inner(state.x, state.gradient, v);
+      return (tangent - objective.value(geodesic_end(manifold, state.x, v))) / (1 + std::abs(state.value));
     }));
   return report;
 }

@@ -204,6 +204,7 @@ class Misread final : public Objective {
   }
   void hessian(const Point& x, const Vector& v, Vector& h) const override { h = x.array().sin() * v.array(); }
   std::optional<double> lipschitz() const override { return 1e-3; }
+  bool convex() const override { return true; }
 };
 
 TEST(ObjectiveLaws, Hold) {

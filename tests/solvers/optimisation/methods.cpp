@@ -118,6 +118,19 @@ TEST(Accelerated, WithLambdaOfTheCurvatureTakesHalfTheIterations) {
     }
 }
 
+TEST(Accelerated, WithManyColumnsLambdaOfTheCurvatureTakesMoreIterations) {
+  const RandomInstance problem(
+      brockett_instance(SymmetricOperator::of(random_symmetric(40, 1)), VectorXd::LinSpaced(20, 1, 20)), 101);
+  HamiltonianDescent paper = hamiltonian(Bregman::Kind::adaptive);
+  HamiltonianDescent curved({}, {});
+  const auto to_12 = [&](DescentMethod& method) {
+    return count(*problem.manifold, *problem.objective, problem.start, problem.minimum, method, 10000).to_12;
+  };
+  const long with_one = to_12(paper);
+  EXPECT_GT(with_one, 0);
+  EXPECT_GT(to_12(curved), with_one);
+}
+
 TEST(EulerLagrange, LosesConvergenceWithoutACap) {
   const RandomInstance problem = rayleigh(1);
   EulerLagrange uncapped({.cap = std::numeric_limits<double>::infinity()});

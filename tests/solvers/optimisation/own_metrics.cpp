@@ -3,6 +3,7 @@
 
 #include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/matrices/matrix_functions.hpp>
+#include <lagroid/solvers/optimisation/manifolds/flat.hpp>
 #include <lagroid/solvers/optimisation/manifolds/hyperbolic_space.hpp>
 #include <lagroid/solvers/optimisation/manifolds/positive_definite.hpp>
 #include <lagroid/solvers/optimisation/manifolds/product.hpp>
@@ -11,6 +12,7 @@
 #include <lagroid/solvers/optimisation/methods/conjugate_gradient.hpp>
 #include <lagroid/solvers/optimisation/methods/euler_lagrange.hpp>
 #include <lagroid/solvers/optimisation/methods/gradient_descent.hpp>
+#include <lagroid/solvers/optimisation/methods/trust_region.hpp>
 #include <lagroid/solvers/optimisation/testing/manifold_laws.hpp>
 #include <lagroid/systems/optimisation/frechet_mean.hpp>
 
@@ -20,6 +22,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -43,15 +46,45 @@ TEST(HyperbolicSpace, DistancesKeepTheirDigits) {
   };
   for (const double radius : {1e-9, 1e-3, 1.0, 10.0, 17.0})
     for (const double apart : {1e-12, 1e-6, 1.0, 10.0}) {
-      // Along a ray, and as a chord by the law of cosines.
+      // Along an axis, from which rounding does not turn it, and as a chord by the law of cosines.
       const double there = radius + apart;
-      EXPECT_NEAR(distance(polar(radius, 0.3), polar(there, 0.3)), there - radius, 4e-15 * (apart + std::exp(radius)))
-          << radius << ' ' << apart;
+      EXPECT_NEAR(distance(polar(radius, 0), polar(there, 0)), there - radius, 1e-15 * there) << radius << ' ' << apart;
       const double angle = apart / std::sinh(radius);
       if (angle > 3) continue;
-      EXPECT_NEAR(distance(polar(radius, 0), polar(radius, angle)),
-                  2 * std::asinh(std::sinh(radius) * std::sin(0.5 * angle)), 1e-15 * std::exp(radius))
-          << radius << ' ' << apart;
+      const double chord = 2 * std::asinh(std::sinh(radius) * std::sin(0.5 * angle));
+      EXPECT_NEAR(distance(polar(radius, 0), polar(radius, angle)), chord, 4e-15 * chord) << radius << ' ' << apart;
+    }
+}
+
+TEST(HyperbolicSpace, LogarithmsOfPointsFarApartAreRightOrNone) {
+  const HyperbolicSpace plane(2);
+  Vector v;
+  for (const double radius : {100.0, 180.0, 340.0}) {
+    const Point x = polar(radius, 0);
+    Point y = x;
+    y(1) = -y(1);
+    ASSERT_TRUE(plane.logarithm(x, y, v)) << radius;
+    // Straight inwards: of the length 2 radius at x, where the norm itself has lost its digits.
+    EXPECT_NEAR(v(1) / (-2 * radius * x(0)), 1, 1e-14) << radius;
+    EXPECT_EQ(v(2), 0);
+  }
+  EXPECT_FALSE(plane.logarithm(polar(355, 0), polar(355, 3), v));
+}
+
+TEST(HyperbolicSpace, GradientsAreThoseOfTheirDifferentialsFarOut) {
+  const HyperbolicSpace plane(2);
+  for (const double radius : {1.0, 8.0, 17.0})
+    for (const double angle : {0.0, 0.3, 2.0}) {
+      const Point x = polar(radius, angle);
+      // Of length sqrt(2), as much along the radius as across.
+      Vector v(3);
+      v << 0, std::cosh(radius) * std::cos(angle) - std::sin(angle),
+          std::cosh(radius) * std::sin(angle) + std::cos(angle);
+      plane.project(x, v);
+      Vector back = v;
+      plane.differential(x, back);
+      plane.gradient(x, back);
+      EXPECT_LT(plane.norm(x, back - v), 4e-16 * std::exp(radius)) << radius << ' ' << angle;
     }
 }
 
@@ -78,7 +111,7 @@ TEST(HyperbolicSpace, LawsHoldFarOut) {
     return Point(std::sinh(8.0) * x);
   });
   for (const char* law : {"nearest points lie on it", "retraction exponential lands on it",
-                          "the metric is symmetric, linear and positive"})
+                          "the metric is symmetric, linear and positive", "the gradient is that of the metric"})
     EXPECT_TRUE(report.law(law).holds()) << report;
   EXPECT_LT(report.law("the logarithm inverts the exponential").worst, 1e-11) << report;
   EXPECT_LT(report.law("parallel transport is an isometry that carries geodesics along").worst, 1e-10) << report;
@@ -163,6 +196,52 @@ TEST(FrechetMean, OfTwoPointsLiesBetweenThem) {
   expect(Stiefel(3, 3), Eigen::Matrix3d::Identity().reshaped(), turned.reshaped(), turned.transpose().reshaped());
 }
 
+TEST(FrechetMean, IsFoundFarOut) {
+  const HyperbolicSpace plane(2);
+  Point x(3);
+  x << 0, 1e8, 0;
+  Point y(3);
+  y << 0, -1e8, 0;
+  ASSERT_TRUE(plane.nearest(x) && plane.nearest(y));
+  TrustRegion method;
+  const Result r = minimise(plane, FrechetMean(plane, {x, y}), x, method, {.gradient = 1e-10});
+  ASSERT_TRUE(r.converged()) << r.message;
+  EXPECT_LT(r.x.tail(2).norm(), 1e-9);
+}
+
+TEST(FrechetMean, OfOnePointIsFoundAtTheStart) {
+  const HyperbolicSpace plane(2);
+  const PositiveDefinite matrices(2);
+  const Sphere sphere(3);
+  const auto outcome = [](const Manifold& manifold, const std::vector<Point>& points) {
+    TrustRegion method;
+    return minimise(manifold, FrechetMean(manifold, points), points[0], method, {.relative_gradient = 1e-8}).outcome;
+  };
+  const Point x = polar(1.5, 0.3);
+  const Point ellipse = Eigen::Vector4d(2, 1, 1, 3);
+  EXPECT_EQ(outcome(plane, {x}), MinimisationStatus::converged);
+  EXPECT_EQ(outcome(plane, {x, x, x}), MinimisationStatus::converged);
+  EXPECT_EQ(outcome(matrices, {ellipse, ellipse}), MinimisationStatus::converged);
+  // Where a mean is not convex, a point without slope need not be one.
+  EXPECT_EQ(outcome(sphere, {Eigen::Vector3d(1, 0, 0)}), MinimisationStatus::stationary_start);
+
+  std::vector<std::unique_ptr<Manifold>> factors;
+  factors.push_back(std::make_unique<HyperbolicSpace>(2));
+  factors.push_back(std::make_unique<PositiveDefinite>(2));
+  const ProductManifold both(std::move(factors));
+  Point pair(7);
+  pair << x, ellipse;
+  EXPECT_TRUE(FrechetMean(both, {pair}).convex());
+  factors.clear();
+  factors.push_back(std::make_unique<HyperbolicSpace>(2));
+  factors.push_back(std::make_unique<Sphere>(3));
+  const ProductManifold mixed(std::move(factors));
+  Point other(6);
+  other << x, 1, 0, 0;
+  EXPECT_FALSE(FrechetMean(mixed, {other}).convex());
+  EXPECT_TRUE(FrechetMean(FlatSpace(2), {Eigen::Vector2d(1, 2)}).convex());
+}
+
 TEST(FrechetMean, OfMatricesThatCommuteIsTheExponentialOfTheMeanLogarithm) {
   const PositiveDefinite manifold(3);
   const MatrixXd axes = orthogonal_factor(random_matrix(3, 3, 1));
@@ -181,7 +260,7 @@ TEST(FrechetMean, OfMatricesThatCommuteIsTheExponentialOfTheMeanLogarithm) {
 }
 
 TEST(FrechetMean, KnowsNoUnits) {
-  // Of matrices a million times as large: the same iterations, and the same mean but for that.
+  // Of matrices a million times as large, and more: the same iterations, and the same mean but for that.
   const PositiveDefinite manifold(2);
   const auto found = [&](double scale) {
     const std::vector<Point> points{scale * Eigen::Vector4d(2, 1, 1, 3), scale * Eigen::Vector4d(1, 0, 0, 5),
@@ -191,10 +270,11 @@ TEST(FrechetMean, KnowsNoUnits) {
   };
   const Result one = found(1);
   ASSERT_TRUE(one.converged()) << one.message;
-  for (const double scale : {1e-6, 1e6}) {
+  for (const double scale : {1e-20, 1e-14, 1e-6, 1e6, 1e20}) {
     const Result other = found(scale);
-    EXPECT_EQ(other.iterations, one.iterations);
-    EXPECT_LT((other.x / scale - one.x).norm(), 1e-9);
+    EXPECT_TRUE(other.converged()) << scale << ": " << other.message;
+    EXPECT_EQ(other.iterations, one.iterations) << scale;
+    EXPECT_LT((other.x / scale - one.x).norm(), 1e-9) << scale;
   }
 }
 
@@ -203,6 +283,7 @@ TEST(FrechetMean, IsAnObjective) {
   const FrechetMean hyperbolic(plane, {polar(1, 0), polar(2, 1), polar(1.5, 3)});
   const auto report = laws::objective_laws(plane, hyperbolic);
   EXPECT_TRUE(report.holds()) << report;
+  EXPECT_TRUE(report.law("a convex function lies above its tangents").holds());
   const PositiveDefinite matrices(2);
   const FrechetMean mean(matrices, {Eigen::Vector4d(2, 1, 1, 3), Eigen::Vector4d(1, 0, 0, 5)});
   const auto definite = laws::objective_laws(matrices, mean, [] {
@@ -260,6 +341,24 @@ TEST(OwnMetrics, LambdaIsZetaUnlessItIsGiven) {
   const RandomInstance problem = rayleigh(1);
   EXPECT_EQ(found(*problem.manifold, *problem.objective, problem.start, {}, 0),
             found(*problem.manifold, *problem.objective, problem.start, {.lambda = 1}, 0));
+
+  const auto by_euler_lagrange = [&](std::optional<double> lambda, double diameter) {
+    EulerLagrange method({.h = 0.02, .lambda = lambda, .diameter = diameter});
+    return minimise(plane, mean, start, method, {.iterations = 50}).x;
+  };
+  EXPECT_EQ(by_euler_lagrange({}, 3), by_euler_lagrange(zeta(-1, 3), 0));
+  EXPECT_NE(by_euler_lagrange({}, 3), by_euler_lagrange(1, 3));
+}
+
+TEST(EulerLagrange, ConvergesWithALargeLambda) {
+  // Not where its coefficient b_k is negative: there the first velocities would grow by 2^(lambda p).
+  const HyperbolicSpace plane(2);
+  const FrechetMean mean(plane, {polar(1, 0), polar(2, 1), polar(1.5, 3)});
+  for (const int version : {1, 2}) {
+    EulerLagrange method({.h = 0.02, .version = version, .diameter = 10});
+    const Result r = minimise(plane, mean, polar(1, 0), method, {.gradient = 1e-8});
+    EXPECT_TRUE(r.converged()) << version << ": " << r.message;
+  }
 }
 
 }  // namespace
