@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include <new>
+#include <utility>
 
 namespace lagroid::app {
 
@@ -44,22 +45,22 @@ int exit_code(TrainingStatus outcome) {
   }
 }
 
-learning::StateSpace space_of(const learning::Trajectories& data) {
-  return data.bodies > 0 ? learning::cotangent_spheres(data.bodies) : learning::phase_space(int(data.width() / 2));
-}
-
 /// Reads what the options name. Throws DataError and ModelError.
 TrainingOutcome prepare(const LearnOptions& options) {
   TrainingOutcome outcome;
   outcome.options = options;
-  outcome.data = read_trajectories(options.data, options.noise, options.points);
+  ReadTrajectories given = read_trajectories(options.data, options.noise, options.points);
+  outcome.data = std::move(given.trajectories);
+  if (given.left_out > 0)
+    outcome.notes.push_back(
+        fmt::format("{} points at the ends of trajectories are left out: they make no whole piece", given.left_out));
   const std::string space = to_string(space_of(outcome.data));
   if (options.model.ends_with(".json")) {
     outcome.learned = read_model(options.model);
     if (const std::string its = to_string(outcome.learned.model->space()); its != space)
       throw DataError(
           fmt::format("{} is on {}, {} on {}; give data of its system", options.model, its, options.data, space));
-    if (options.dissipation && outcome.learned.model->dissipation(outcome.learned.parameters).size() == 0)
+    if (options.dissipation && !outcome.learned.model->damped())
       throw ModelError(
           fmt::format("{} declares no dissipation; leave --dissipation out, or begin anew with it", options.model));
   } else {
@@ -69,7 +70,7 @@ TrainingOutcome prepare(const LearnOptions& options) {
   }
   if (!options.integrator) outcome.options.integrator = outcome.data.bodies > 0 ? "commutator-free-4" : "runge-kutta-4";
   if (options.test) {
-    outcome.test = read_trajectories(*options.test, options.test_noise);
+    outcome.test = read_trajectories(*options.test, options.test_noise).trajectories;
     if (const std::string its = to_string(space_of(*outcome.test)); its != space)
       throw DataError(
           fmt::format("{} is on {}, {} on {}; give data of one system", *options.test, its, options.data, space));
@@ -140,6 +141,8 @@ int serve(const LearnOptions& options) {
   if (!outcome.trained.mass_determined)
     outcome.notes.emplace_back(
         "the data do not determine the mass matrix; give motions that differ more, or go on longer");
+  if (!outcome.trained.dissipation_determined)
+    outcome.notes.emplace_back("the data do not determine the friction; give more and different motions");
   if (outcome.test) measure(outcome);
   const bool unmeasured = outcome.test && !outcome.measures;
   const int code = unmeasured ? exit_interrupted : exit_code(outcome.trained.outcome);
@@ -163,15 +166,20 @@ int serve(const LearnOptions& options) {
 void add_learn_options(CLI::App& command, LearnOptions& options) {
   const auto share = number_that_is("a share from 0 to 0.9", [](double x) { return x >= 0 && x <= 0.9; });
   command
-      .add_option("data", options.data,
-                  "trajectories, a .csv or .h5 file, or the trajectory.h5 of a run in R^n (see docs/learning.md)")
+      .add_option(
+          "data", options.data,
+          "trajectories, a .csv or .h5 file (several in R^n by .csv alone), or the trajectory.h5 of a run in R^n "
+          "(see docs/learning.md)")
       ->required();
   command.add_option(
       "--model", options.model,
       "of the potential on spheres, of H(q, p) in R^n: polynomial:DEGREE, or network:UNITS[,UNITS...] (default "
       "network:8); or a model.json to go on from");
   command.add_flag("--dissipation", options.dissipation, "learn a friction -R q' too, R constant and semidefinite");
-  command.add_option("--points", options.points, "cut trajectories into pieces of so many (default: as they are)")
+  command
+      .add_option("--points", options.points,
+                  "cut trajectories into pieces of so many, and leave out what is left at their ends (default: as they "
+                  "are); --test is not cut")
       ->check(CLI::Range(2, 1'000'000));
   command.add_option("--integrator", options.integrator,
                      fmt::format("trained through: {} (default commutator-free-4 on spheres, runge-kutta-4 in R^n)",

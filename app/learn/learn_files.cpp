@@ -43,18 +43,35 @@ std::string errors_csv(const TrainingOutcome& outcome) {
   return out;
 }
 
-/// A scene of the learned H as a formula, from where the first trajectory starts. Empty where scenes have no such
-/// system, as with dissipation, or nobody would read it.
-std::string learned_scene(const TrainingOutcome& outcome) {
-  constexpr std::size_t longest = 20'000;
-  const auto& [model, parameters] = outcome.learned;
-  if (model->bodies() > 0 || model->dissipation(parameters).size() > 0) return {};
-  const auto n = std::size_t(outcome.data.width()) / 2;
+/// What coordinates and momenta are called in learned.toml: q1, ..., qn, p1, ..., pn.
+std::vector<std::string> names_of_state(std::size_t n) {
   std::vector<std::string> names;
   for (const char which : {'q', 'p'})
     for (std::size_t i = 1; i <= n; ++i) names.push_back(fmt::format("{}{}", which, i));
-  const std::string formula = model->formula(parameters, names);
-  if (formula.empty() || formula.size() > longest) return {};
+  return names;
+}
+
+/// The learned H as a formula that a scene takes. Empty where there is none, as on spheres.
+std::string scene_formula(const TrainingOutcome& outcome) {
+  const auto& [model, parameters] = outcome.learned;
+  return model->formula(parameters, names_of_state(std::size_t(outcome.data.width()) / 2), longest_text);
+}
+
+/// Why a model in R^n leaves no scene; empty where it leaves one, and on spheres, whose scenes name the model's file.
+std::string why_no_scene(const TrainingOutcome& outcome) {
+  if (outcome.data.bodies > 0) return "";
+  if (outcome.learned.model->damped())
+    return fmt::format("no {}: scenes of formulas have no friction of this kind", scene_file_name);
+  if (scene_formula(outcome).empty())
+    return fmt::format("no {}: H as a formula has more than the {} characters that scenes allow; take a smaller model",
+                       scene_file_name, longest_text);
+  return "";
+}
+
+/// A scene of the learned H as a formula, from where the first trajectory starts.
+std::string learned_scene(const TrainingOutcome& outcome) {
+  const std::size_t n = std::size_t(outcome.data.width()) / 2;
+  const std::vector<std::string> names = names_of_state(n);
   const auto quoted = [&](std::size_t from) {
     return fmt::format("[\"{}\"]", fmt::join(names.begin() + long(from), names.begin() + long(from + n), "\", \""));
   };
@@ -64,9 +81,9 @@ std::string learned_scene(const TrainingOutcome& outcome) {
       "\"hamiltonian\"\n\n"
       "[hamiltonian]\ncoordinates = {}\nmomenta = {}\nH = \"{}\"\n\n"
       "[initial]\nposition = [{}]\nmomentum = [{}]\n\n[time]\nstep = {}\nsteps = 1000\n",
-      outcome.options.data, model->name(), scene_file_name, quoted(0), quoted(n), formula,
-      fmt::join(start.begin(), start.begin() + long(n), ", "), fmt::join(start.begin() + long(n), start.end(), ", "),
-      outcome.data.interval / outcome.options.substeps);
+      visible(outcome.options.data), outcome.learned.model->name(), scene_file_name, quoted(0), quoted(n),
+      scene_formula(outcome), fmt::join(start.begin(), start.begin() + long(n), ", "),
+      fmt::join(start.begin() + long(n), start.end(), ", "), outcome.data.interval / outcome.options.substeps);
 }
 
 std::string gnuplot_script(const TrainingOutcome& outcome) {
@@ -118,6 +135,8 @@ std::string little_explained(const TrainingOutcome& outcome) {
 std::vector<std::string> notes_of(const TrainingOutcome& outcome) {
   std::vector<std::string> out = outcome.notes;
   if (const std::string note = little_explained(outcome); !note.empty()) out.push_back(note);
+  if (outcome.options.out)
+    if (const std::string note = why_no_scene(outcome); !note.empty()) out.push_back(note);
   return out;
 }
 
@@ -130,7 +149,6 @@ nlohmann::ordered_json known(double x) {
 std::string as_text(const LearnOptions& o) {
   std::string out = fmt::format("{} {} {:.17g} {:.17g} {} {} {} {:.17g}", *o.integrator, o.substeps, o.noise,
                                 o.validation.value_or(-1), o.starts, o.iterations, o.seed, o.enough);
-  if (o.dissipation) out += " dissipation";
   if (o.points > 0) out += fmt::format(" pieces of {}", o.points);
   return out;
 }
@@ -245,8 +263,9 @@ std::string training_text(const TrainingOutcome& outcome) {
 }
 
 OutputFolder folder_for_training(const fs::path& folder, const TrainingOutcome& outcome) {
+  const learning::Model& model = *outcome.learned.model;
   const OutputSource source{{"data", contents(outcome.options.data).value_or("")},
-                            {"model", outcome.learned.model->name()},
+                            {"model", model.name() + (model.damped() ? ", with dissipation" : "")},
                             {"options", as_text(outcome.options)}};
   return {folder, OutputKind::model, source, files};
 }
@@ -255,8 +274,8 @@ std::vector<fs::path> write_training(const TrainingOutcome& outcome, const fs::p
   const auto make = [&](const fs::path& staging) {
     std::vector<std::string> names{model_file_name, "history.csv", "summary.json", "summary.txt", "plot.gp"};
     write_text(model_text(outcome.learned), staging / model_file_name);
-    if (const std::string scene = learned_scene(outcome); !scene.empty()) {
-      write_text(scene, staging / scene_file_name);
+    if (outcome.data.bodies == 0 && why_no_scene(outcome).empty()) {
+      write_text(learned_scene(outcome), staging / scene_file_name);
       names.emplace_back(scene_file_name);
     }
     write_text(history_csv(outcome), staging / "history.csv");

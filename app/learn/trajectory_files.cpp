@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -23,19 +25,34 @@ namespace {
 namespace fs = std::filesystem;
 using learning::Observation;
 
+/// What `lagroid run` leaves of a motion.
+constexpr const char* run_file_name = "trajectory.h5";
+
 /// The name of the i-th number of a state on spheres.
 std::string component(std::size_t i) { return fmt::format("{}{}{}", i % 6 < 3 ? 'q' : 'p', i / 6 + 1, "xyz"[i % 3]); }
 
 using Columns = std::map<std::string, std::size_t, std::less<>>;
 
-/// The names of a state's numbers, in their order: of (q, p) in R^2n where there is a q1, else on spheres.
-std::vector<std::string> state_names(const Columns& at, bool on_spheres) {
+/// n, in R^2n: the largest number of a column q1, q2, ... or p1, p2, ...; zero on spheres.
+std::size_t coordinates_of(const Columns& at) {
+  std::size_t n = 0;
+  for (const auto& [name, column] : at) {
+    if (name.size() < 2 || (name[0] != 'q' && name[0] != 'p')) continue;
+    std::size_t i = 0;
+    const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), i);
+    if (error == std::errc() && end == name.data() + name.size()) n = std::max(n, i);
+  }
+  return std::min(n, at.size());  // of so many one is missing anyway
+}
+
+/// The names of a state's numbers, in their order: of (q, p) in R^2n, else on spheres.
+std::vector<std::string> state_names(const Columns& at, std::size_t coordinates) {
   std::vector<std::string> out;
-  if (on_spheres) {
+  if (coordinates == 0) {
     for (std::size_t i = 0; i == 0 || i % 6 != 0 || at.contains(component(i)); ++i) out.push_back(component(i));
   } else {
-    for (int i = 1; at.contains(fmt::format("q{}", i)); ++i) out.push_back(fmt::format("q{}", i));
-    for (std::size_t n = out.size(), i = 1; i <= n; ++i) out.push_back(fmt::format("p{}", i));
+    for (const char which : {'q', 'p'})
+      for (std::size_t i = 1; i <= coordinates; ++i) out.push_back(fmt::format("{}{}", which, i));
   }
   return out;
 }
@@ -53,7 +70,8 @@ Header header_of(const CsvTable& table, const std::string& file) {
   Columns at;
   for (const std::string& name : table.names) at.emplace(name, at.size());
   Header out;
-  out.on_spheres = !at.contains("q1");
+  const std::size_t coordinates = coordinates_of(at);
+  out.on_spheres = coordinates == 0;
   const auto take = [&](const std::string& name) {
     const auto found = at.find(name);
     if (found == at.end())
@@ -67,7 +85,7 @@ Header header_of(const CsvTable& table, const std::string& file) {
   };
   out.trajectory = take("trajectory");
   out.time = take("t");
-  const std::vector<std::string> names = state_names(at, out.on_spheres);
+  const std::vector<std::string> names = state_names(at, coordinates);
   for (const std::string& name : names) out.state.push_back(take(name));
   if (at.contains("weight")) out.weight = take("weight");
   if (!at.empty())
@@ -85,6 +103,9 @@ long label(double x, const std::string& file, long row) {
 ObservedStates read_csv(const fs::path& path) {
   const std::string file = path.string();
   const CsvTable table = read_csv_table(path, "trajectory, t, q1x, q1y, q1z, p1x, ...", Gaps::refused);
+  const bool has_labels = std::find(table.names.begin(), table.names.end(), "trajectory") != table.names.end();
+  if (const fs::path of_run = path.parent_path() / run_file_name; !has_labels && fs::exists(of_run))
+    throw DataError(fmt::format("{}: the table of a run is not read; give {}", file, of_run.string()));
   const Header header = header_of(table, file);
   std::vector<Observation> out;
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
@@ -109,6 +130,17 @@ void require_column(const Eigen::MatrixXd& column, const char* name, Eigen::Inde
     throw DataError(fmt::format("{}: {} has {} rows, z {}; make them equal", file, name, column.rows(), rows));
 }
 
+/// Throws unless a run made equal steps.
+void require_equal_steps(const Eigen::MatrixXd& time, const std::string& file) {
+  constexpr double even = 1e-6;
+  if (time.size() < 2) return;
+  const double h = (time(time.size() - 1) - time(0)) / double(time.size() - 1);
+  for (Eigen::Index i = 0; i < time.size(); ++i)
+    if (!(std::abs(time(i) - time(0) - double(i) * h) <= even * std::abs(h) + 1e-15 * std::abs(time(i))))
+      throw DataError(fmt::format(
+          "{}: the steps of the run differ, adaptive ones or cut by events; give a run with equal steps", file));
+}
+
 /// What lagroid run left of a motion in R^n.
 ObservedStates read_run(const fs::path& path, const std::set<std::string>& sets) {
   const std::string file = path.string();
@@ -123,6 +155,7 @@ ObservedStates read_run(const fs::path& path, const std::set<std::string>& sets)
   const auto time = dataset(path, "time");
   if (q.cols() != p.cols() || q.rows() != p.rows() || time.rows() != q.rows())
     throw DataError(fmt::format("{}: /time, /position and /momentum are not of one size; give a run in R^n", file));
+  require_equal_steps(time, file);
   std::vector<Observation> out;
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     Eigen::VectorXd z(2 * q.cols());
@@ -143,6 +176,11 @@ ObservedStates read_hdf5(const fs::path& path) {
     throw DataError(fmt::format("{}: HDF5 cannot read it; give an HDF5 file, or one that ends in .csv", file));
   }
   if (!sets.contains("z") && sets.contains("position") && sets.contains("momentum")) return read_run(path, sets);
+  if (!sets.contains("z") && sets.contains("time"))
+    throw DataError(fmt::format(
+        "{}: a run without /position and /momentum cannot be learned from; give a run in R^n, or its states "
+        "as columns of a .csv file (docs/learning.md)",
+        file));
   const auto z = dataset(path, "z");
   const auto trajectory = dataset(path, "trajectory");
   const auto time = dataset(path, "t");
@@ -195,21 +233,35 @@ void require_trajectory_file(const fs::path& file) {
 
 ObservedStates read_observations(const fs::path& file) {
   std::error_code ignored;
+  if (fs::is_regular_file(file / run_file_name, ignored))
+    throw DataError(fmt::format("{}: a run's folder; give {}", file.string(), (file / run_file_name).string()));
   if (!fs::is_regular_file(file, ignored)) throw DataError(fmt::format("{}: there is no such file", file.string()));
   if (!std::ifstream(file)) throw DataError(fmt::format("{}: cannot be read", file.string()));
   require_trajectory_file(file);
   return file.extension() == ".csv" ? read_csv(file) : read_hdf5(file);
 }
 
-learning::Trajectories read_trajectories(const fs::path& file, double noise, int points) {
-  ObservedStates observed = read_observations(file);
+ReadTrajectories read_trajectories(const fs::path& file, double noise, int points) {
+  const ObservedStates observed = read_observations(file);
+  const std::vector<Observation>& rows = observed.rows;
+  const auto assembled = [&](std::span<const Observation> of) {
+    if (observed.on_spheres || of.empty()) return learning::assemble(of, noise);
+    return learning::assemble(of, learning::phase_space(int(of.front().z.size() / 2)), noise);
+  };
   try {
-    if (points > 0) observed.rows = learning::pieces_of(observed.rows, points);
-    if (observed.on_spheres || observed.rows.empty()) return learning::assemble(observed.rows, noise);
-    return learning::assemble(observed.rows, learning::phase_space(int(observed.rows.front().z.size() / 2)), noise);
+    if (points == 0) return {assembled(rows)};
+    const std::vector<Observation> pieces = learning::pieces_of(rows, points);
+    // A piece begins at the last point of the one before, but for the first of a trajectory.
+    long used = long(pieces.size()) / points * (points - 1);
+    for (std::size_t r = 0; r < rows.size(); ++r) used += r == 0 || rows[r].trajectory != rows[r - 1].trajectory;
+    return {assembled(pieces), long(rows.size()) - used};
   } catch (const learning::DataRefused& refused) {
     throw DataError(fmt::format("{}: {}", file.string(), refused.what()));
   }
+}
+
+learning::StateSpace space_of(const learning::Trajectories& data) {
+  return data.bodies > 0 ? learning::cotangent_spheres(data.bodies) : learning::phase_space(int(data.width() / 2));
 }
 
 void write_observations(std::span<const Observation> rows, const fs::path& file) {

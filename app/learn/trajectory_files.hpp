@@ -24,9 +24,18 @@ struct ObservedStates {
 /// or from 1 in HDF5. Throws DataError.
 ObservedStates read_observations(const std::filesystem::path& file);
 
+/// Trajectories of a file.
+struct ReadTrajectories {
+  learning::Trajectories trajectories;
+  long left_out = 0;  ///< points at the ends of trajectories that make no whole piece
+};
+
 /// The same, put together (learning::assemble), in pieces of so many points (learning::pieces_of) unless that is zero.
 /// Throws DataError, which names file and row.
-learning::Trajectories read_trajectories(const std::filesystem::path& file, double noise, int points = 0);
+ReadTrajectories read_trajectories(const std::filesystem::path& file, double noise, int points = 0);
+
+/// Where trajectories of a file are: on spheres, or in R^2n.
+learning::StateSpace space_of(const learning::Trajectories& data);
 
 /// Throws DataError unless the name ends in .csv or .h5.
 void require_trajectory_file(const std::filesystem::path& file);

@@ -37,7 +37,13 @@ using States = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// Trajectories of M points (N, M, 6k) at these times (M,), or (N, M, 2n) off spheres.
 Trajectories assembled(const States& states, const States& time, double noise, bool spheres) {
   if (states.ndim() != 3 || states.shape(2) == 0 || time.ndim() != 1 || time.shape(0) != states.shape(1))
-    throw py::value_error("states: expected (trajectories, points, 6k), and the time of each point (points,)");
+    throw py::value_error(
+        "states: expected (trajectories, points, 6k), or with spheres=False (trajectories, points, 2n), and the time "
+        "of "
+        "each point (points,)");
+  if (spheres && states.shape(2) % 6 != 0)
+    throw py::value_error(
+        "states: expected (trajectories, points, 6k); for (trajectories, points, 2n) give spheres=False");
   if (!spheres && states.shape(2) % 2 != 0)
     throw py::value_error("states: expected (trajectories, points, 2n), as many momenta as coordinates");
   std::vector<Observation> rows;
@@ -79,10 +85,6 @@ struct Learned {
   const Eigen::VectorXd& theta() const { return hamiltonian.parameters; }
 };
 
-learning::StateSpace space_of(const Trajectories& data) {
-  return data.bodies > 0 ? learning::cotangent_spheres(data.bodies) : learning::phase_space(int(data.width() / 2));
-}
-
 std::shared_ptr<Learned> learn(const Trajectories& data, const std::string& model,
                                const std::optional<std::shared_ptr<Learned>>& begin, const std::string& integrator,
                                int substeps, double validation, int starts, int iterations, unsigned seed,
@@ -97,12 +99,14 @@ std::shared_ptr<Learned> learn(const Trajectories& data, const std::string& mode
   learning::Training training;
   if (begin) {
     out->hamiltonian = (*begin)->hamiltonian;
+    if (dissipation && !out->model().damped())
+      throw py::value_error("dissipation: the model of begin declares none; leave it out, or begin anew with it");
     training.begin = out->hamiltonian.parameters;
   } else {
     out->hamiltonian.model = app::named_model(
-        model, space_of(data), dissipation ? learning::Dissipation::rayleigh : learning::Dissipation::none);
+        model, app::space_of(data), dissipation ? learning::Dissipation::rayleigh : learning::Dissipation::none);
   }
-  if (const auto its = to_string(out->model().space()), given = to_string(space_of(data)); its != given)
+  if (const auto its = to_string(out->model().space()), given = to_string(app::space_of(data)); its != given)
     throw py::value_error(fmt::format("the model is on {}, the data on {}", its, given));
   training.method = *method;
   training.substeps = substeps;
@@ -144,10 +148,15 @@ void bind_learning(py::module_& module) {
           "from (trajectories, points, 2n), (q, p) each. `noise`: the size of their errors. Raises ValueError, naming\n"
           "the row, for what is off the spheres.")
       .def_static(
-          "read", &app::read_trajectories, py::arg("file"), py::kw_only(), py::arg("noise") = 0.0,
-          py::arg("points") = 0,
-          "Reads a .csv or .h5 file (docs/learning.md), in pieces of so many points unless that is zero. Raises\n"
-          "DataError.")
+          "read",
+          [](const fs::path& file, double noise, int points) {
+            if (points != 0 && points < 2) throw py::value_error("points: pieces have two or more; 0 cuts none");
+            return app::read_trajectories(file, noise, points).trajectories;
+          },
+          py::arg("file"), py::kw_only(), py::arg("noise") = 0.0, py::arg("points") = 0,
+          "Reads a .csv or .h5 file (docs/learning.md), in pieces of so many points unless that is zero; what is left "
+          "at\n"
+          "the end of a trajectory is left out. Raises DataError.")
       .def_static(
           "chain",
           [](const Eigen::VectorXd& masses, const Eigen::VectorXd& lengths, double gravity, int count, int points,
@@ -180,7 +189,7 @@ void bind_learning(py::module_& module) {
       .def(
           "write",
           [](const Learned& l, const fs::path& file) { lagroid::write_text(app::model_text(l.hamiltonian), file); },
-          py::arg("file"), "Writes a model.json, which a scene can run.")
+          py::arg("file"), "Writes a model.json, which a scene can run if it is on spheres.")
       .def_property_readonly(
           "name", [](const Learned& l) { return l.model().name(); }, "Of the potential, or of H.")
       .def_property_readonly(
@@ -211,6 +220,9 @@ void bind_learning(py::module_& module) {
       .def_property_readonly(
           "mass_determined", [](const Learned& l) { return l.trained.mass_determined; },
           "Whether the data determine the mass matrix.")
+      .def_property_readonly(
+          "dissipation_determined", [](const Learned& l) { return l.trained.dissipation_determined; },
+          "Whether the data determine R.")
       .def_property_readonly(
           "iterations", [](const Learned& l) { return l.trained.iterations; }, "Of all stages.")
       .def_property_readonly(

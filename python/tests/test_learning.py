@@ -62,6 +62,7 @@ class Learning(unittest.TestCase):
         np.testing.assert_allclose(learned.parameters[:-1], [0, 0, 0.5, 0, 0.5], atol=1e-7)
         np.testing.assert_allclose(learned.rates(np.array([1.0, 2.0])), [2, -1 - 2 * c * 2], atol=1e-6)
         self.assertEqual(learned.mass.size, 0)
+        self.assertTrue(learned.dissipation_determined)
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "model.json"
             learned.write(file)
@@ -82,6 +83,12 @@ class Learning(unittest.TestCase):
             lagroid.Trajectories(2 * data.states, data.interval * np.arange(data.points))
         with self.assertRaisesRegex(ValueError, "states: expected"):
             lagroid.Trajectories(np.zeros((2, 2, 0)), [0, 1])
+        with self.assertRaisesRegex(ValueError, "spheres=False"):
+            lagroid.Trajectories(np.zeros((2, 2, 4)), [0, 1])
+        with self.assertRaisesRegex(ValueError, "declares none"):
+            lagroid.learn(data, begin=lagroid.learn(data, "polynomial:1", starts=1, iterations=2), dissipation=True)
+        with self.assertRaisesRegex(ValueError, "points"):
+            lagroid.Trajectories.read("missing.csv", points=-5)
         with self.assertRaises(lagroid.DataError):
             lagroid.Trajectories.read("missing.csv")
 

@@ -27,6 +27,9 @@ FormulaNode::FormulaNode(const FormulaSystem& system, bool symplectic)
     watch(each.name, "J " + each.name, Promise::conserved, each.affine, "<p, xi(q)>");
   for (std::size_t i = 0; i < watched_.size(); ++i)
     fields_.push_back(drift_field(i, watched_[i].name, watched_[i].components.front()));
+  // No name of a coordinate has a blank.
+  if (system.constraint_count() > 0)
+    fields_.push_back({.columns = {"constraint_residual", {"constraint residual"}, "1", "largest |g|", false, {}}});
 }
 
 void FormulaNode::see(long index, double time, const SizedState& state, const SizedStep& step) {
@@ -58,6 +61,8 @@ void FormulaNode::read(std::size_t field, double* row) const {
     copy(tangent_.velocity);
   } else if (field == 2) {
     copy(tangent_.momentum);
+  } else if (fields_[field].columns.name == "constraint_residual") {
+    *row = residual_;
   } else {
     measure(field - 3, row);
   }

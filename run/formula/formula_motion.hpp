@@ -24,7 +24,8 @@ struct FormulaMethod {
   MethodTraits traits;
 };
 
-/// What is to be seen of one. Fields: position, velocity, tangent momentum, energy, momenta of symmetries, drifts.
+/// What is to be seen of one. Fields: position, velocity, tangent momentum, energy, momenta of symmetries, drifts, and
+/// with constraints the residual of these.
 class FormulaNode final : public Observables {
  public:
   explicit FormulaNode(const FormulaSystem& system, bool symplectic);

@@ -22,6 +22,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -83,9 +84,14 @@ class Model {
   /// R, k x k on (T*S^2)^k, where it stands for R_ij times the identity, n x n elsewhere; of no size where the model
   /// declares no dissipation. Then energy is conserved, else dH/dt = -q'^T R q'.
   virtual Eigen::MatrixXd dissipation(const Eigen::VectorXd&) const { return {}; }
+  /// Whether the model declares dissipation, whatever its parameters.
+  bool damped() const { return dissipation(Eigen::VectorXd::Zero(size())).size() > 0; }
   virtual double energy(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
-  /// H as a formula of numbers with these names, in the words of scenes; empty where it has none.
-  virtual std::string formula(const Eigen::VectorXd&, std::span<const std::string>) const { return {}; }
+  /// H as a formula of numbers with these names, in the words of scenes; empty where it has none of at most `longest`
+  /// characters.
+  virtual std::string formula(const Eigen::VectorXd&, std::span<const std::string>, std::size_t /*longest*/) const {
+    return {};
+  }
   /// The field as an integrator takes it: on (T*S^2)^k F[H], 6k numbers (xi_i, eta_i); elsewhere z' itself.
   virtual Eigen::VectorXd field(const Eigen::VectorXd& theta, const Eigen::VectorXd& z) const = 0;
   /// z', wherever states are.

@@ -88,18 +88,60 @@ class TrajectoryCost final : public ceres::CostFunction {
   mutable bool failed_ = false;
 };
 
+/// The least singular value of `moved`, derivatives by some parameters, when the others make up for them as well as
+/// they can; zero where they are too few for one.
+double least_moved(const Eigen::MatrixXd& moved, const Eigen::MatrixXd& others) {
+  constexpr double dependent = 1e-10;  // a column of the others, on the rest of them
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(others);
+  qr.setThreshold(dependent);
+  const Eigen::MatrixXd turned = qr.householderQ().adjoint() * moved;
+  const Eigen::MatrixXd left = turned.bottomRows(turned.rows() - qr.rank());
+  if (left.rows() < moved.cols() || !left.allFinite()) return 0;
+  return singular_values(left)(moved.cols() - 1);
+}
+
+/// A change of size one moves predictions by more than that.
+constexpr double felt = 1e-8;
+
 /// Trained::mass_determined. `triangle` is (R s), `total` the sum of the weights of all numbers, `masses` how many of
 /// the parameters, the first ones, are the mass matrix's.
 bool determines_mass(const Eigen::MatrixXd& triangle, double total, Eigen::Index masses) {
-  constexpr double dependent = 1e-10;  // a column of the potential, on others
-  constexpr double felt = 1e-8;
   const Eigen::Index others = triangle.cols() - 1 - masses;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(triangle.middleCols(masses, others));
-  qr.setThreshold(dependent);
-  const Eigen::MatrixXd turned = qr.householderQ().adjoint() * triangle.leftCols(masses);
-  const Eigen::MatrixXd left = turned.bottomRows(turned.rows() - qr.rank());
-  if (left.rows() < masses) return false;
-  return singular_values(left)(masses - 1) > felt * std::sqrt(total);
+  return least_moved(triangle.leftCols(masses), triangle.middleCols(masses, others)) > felt * std::sqrt(total);
+}
+
+/// d(rows of L) by the entries of R = L L^T on and below the diagonal, in the order of RayleighDissipation:
+/// dL = L low(L^{-1} dR L^{-T}), of which `low` takes the lower triangle and half of the diagonal (Murray,
+/// *Differentiation of the Cholesky decomposition*, 2016). Not finite where L has no inverse.
+Eigen::MatrixXd factor_by_dissipation(const Eigen::Ref<const Eigen::VectorXd>& rows, Eigen::Index k) {
+  Eigen::MatrixXd l = Eigen::MatrixXd::Zero(k, k);
+  for (Eigen::Index i = 0, at = 0; i < k; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) l(i, j) = rows(at++);
+  const auto lower = l.triangularView<Eigen::Lower>();
+  Eigen::MatrixXd out(rows.size(), rows.size());
+  for (Eigen::Index i = 0, entry = 0; i < k; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j, ++entry) {
+      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(k, k);
+      change(i, j) = change(j, i) = 1;
+      lower.solveInPlace(change);
+      change = lower.solve(change.transpose().eval());
+      change.diagonal() /= 2;
+      const Eigen::MatrixXd moved = l * Eigen::MatrixXd(change.triangularView<Eigen::Lower>());
+      for (Eigen::Index a = 0, at = 0; a < k; ++a)
+        for (Eigen::Index b = 0; b <= a; ++b) out(at++, entry) = moved(a, b);
+    }
+  return out;
+}
+
+/// Trained::dissipation_determined, at theta, whose last parameters are those of R, k x k; `mse` is the error left.
+bool determines_dissipation(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& theta, double total, double mse,
+                            Eigen::Index k) {
+  constexpr double known = 0.01;  // R's entries, to two standard deviations
+  const Eigen::Index size = k * (k + 1) / 2;
+  const Eigen::Index others = theta.size() - size;
+  const Eigen::MatrixXd by_entries = triangle.middleCols(others, size) * factor_by_dissipation(theta.tail(size), k);
+  const double moved = least_moved(by_entries, triangle.leftCols(others));
+  return moved > felt * std::sqrt(total) && 2 * std::sqrt(mse) < known * moved;
 }
 
 constexpr double first_radius = 0.1;
@@ -118,6 +160,7 @@ struct Descent {
   std::vector<Stage> history;
   int iterations = 0;
   bool mass_determined = true;
+  bool dissipation_determined = true;
   bool falls = false;  ///< the last iterations lowered the error by more than round-off
 };
 
@@ -180,6 +223,9 @@ class Trainer final : public ceres::IterationCallback {
       const Eigen::Index k = model_.mass(at_).rows();
       const Eigen::Index masses = k * (k + 1) / 2;
       out_.mass_determined = masses == 0 || determines_mass(cost.triangle(), data.total_weight(), masses);
+      const Eigen::Index damped = model_.dissipation(at_).rows();
+      out_.dissipation_determined =
+          damped == 0 || determines_dissipation(cost.triangle(), at_, data.total_weight(), mse_, damped);
     }
     // Whether the last iterations lowered the error by more than round-off.
     out_.falls = !fallen_.empty() && fallen_.front() - fallen_.back() > 1e-12 * fallen_.front() + round_off_;
@@ -313,11 +359,12 @@ void require_training(const Model& model, const Trajectories& data, const Traini
       !(options.damping_floor > 0 && options.damping_floor <= 1 / first_radius) || options.substeps < 1 ||
       options.starts < 1 || options.iterations < 0 || options.trial < 1 || options.patience < 1 ||
       !(options.enough >= 0) || std::isnan(options.seconds) || data.width() != model.space().size ||
-      data.bodies != model.bodies() || (options.begin.size() > 0 && options.begin.size() != model.size()))
+      data.bodies != model.bodies() || data.dimension != model.space().dimension ||
+      (options.begin.size() > 0 && options.begin.size() != model.size()))
     throw std::invalid_argument(fmt::format(
         "a training has starts, substeps and patience of one or more, shares between zero and one, a floor of the "
         "damping between zero and {:g}, errors and times that are numbers, parameters to begin with as many as the "
-        "model's, and data of as many bodies or coordinates",
+        "model's, and data that were put together on the model's space",
         1 / first_radius));
 }
 
@@ -406,6 +453,7 @@ Trained train(const Model& model, const Trajectories& data, const Training& opti
   out.mse = best.found.mse;
   out.validation = best.found.validation;
   out.mass_determined = best.mass_determined;
+  out.dissipation_determined = best.dissipation_determined;
   out.message = message_of(out.outcome, options, out.mse, best.falls);
   return out;
 }

@@ -108,6 +108,9 @@ struct Trained {
   /// Whether, at the end, a change of the mass matrix's parameters of size one moves the predictions by more than 1e-8,
   /// whatever the potential does to make up for it; true where the model has none.
   bool mass_determined = true;
+  /// The same of the entries of R, whatever the rest of the model does to make up for it; and whether two standard
+  /// deviations of each combination of them, as the error that is left gives them, are less than a hundredth.
+  bool dissipation_determined = true;
   unsigned start = 0;          ///< the seed of the start that was best
   int iterations = 0;          ///< of all stages
   double seconds = 0;          ///< of processors

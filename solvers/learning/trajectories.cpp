@@ -57,12 +57,20 @@ void require_on_spheres(const Observation& row, double allowed) {
 void require_on_space(const Observation& row, const StateSpace& space, double allowed) {
   Eigen::VectorXd nearest = row.z;
   space.project(nearest);
-  const double off = (nearest - row.z).cwiseAbs().maxCoeff();
-  if (!(off <= allowed * (1 + row.z.norm())))
+  if (!nearest.allFinite())
     throw DataRefused(
-        fmt::format("{}: the state is off the constraints, or its momentum off their tangent space, by {:.1e}; give "
-                    "states on them, or the size of the noise",
-                    place(row), off));
+        fmt::format("{}: the constraint has no full rank there; give states where its derivative has", place(row)));
+  const Eigen::Index n = space.size / 2;
+  const Eigen::VectorXd off = (nearest - row.z).cwiseAbs();
+  if (const double by = off.head(n).maxCoeff(); !(by <= allowed * (1 + row.z.head(n).norm())))
+    throw DataRefused(
+        fmt::format("{}: the state is off the constraints by {:.1e}; give states on them, or the size of the noise",
+                    place(row), by));
+  if (const double by = off.tail(n).maxCoeff(); !(by <= allowed * (1 + row.z.tail(n).norm())))
+    throw DataRefused(
+        fmt::format("{}: the momentum is off the tangent space of the constraints by {:.1e}; give tangent momenta, or "
+                    "the size of the noise",
+                    place(row), by));
 }
 
 void require_state(const Observation& row, const StateSpace& space, double noise) {
@@ -179,6 +187,11 @@ Trajectories assemble(std::span<const Observation> rows, const StateSpace& space
         out.weights(Eigen::Index(j - 1), n) = row.weight;
       }
     }
+    if (rows[begin].weight == 0 && out.weights.col(n).maxCoeff() > 0)
+      throw DataRefused(
+          fmt::format("{}: a trajectory, or a piece of one, begins at a point of weight zero, and first points are "
+                      "taken for exact; cut it elsewhere, or give the point a weight",
+                      place(rows[begin])));
   }
   const double largest = out.weights.maxCoeff();
   if (!(largest > 0)) throw DataRefused("all weights are zero; give some points a positive one");

@@ -65,9 +65,10 @@ struct Trajectories {
 /// then taken for exact: its noise is not modelled, and adds to the error of all points that follow.
 ///
 /// Throws DataRefused, naming the row: no rows, numbers that are not as many as the space has, a number that is not
-/// finite or above 1e100, a state off the space, a negative weight, times that do not rise, are not equally spaced (to
-/// 1e-6 of the interval, and round-off) or differ between trajectories, trajectories of unequal length or of one point,
-/// or one that is not in one piece.
+/// finite or above 1e100, a state off the space, a negative weight, a weight of zero for the first point of a
+/// trajectory whose other points have some, times that do not rise, are not equally spaced (to 1e-6 of the interval,
+/// and round-off) or differ between trajectories, trajectories of unequal length or of one point, or one that is not in
+/// one piece.
 Trajectories assemble(std::span<const Observation> rows, const StateSpace& space, double noise = 0);
 /// The same on (T*S^2)^k, with k such that the first row fits.
 Trajectories assemble(std::span<const Observation> rows, double noise = 0);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <vector>
@@ -69,7 +71,7 @@ std::string model_text(const LearnedHamiltonian& learned) {
     out["coordinates"] = space.size / 2;
   }
   out["model"] = learned.model->name();
-  if (learned.model->dissipation(learned.parameters).size() > 0) out["dissipation"] = true;
+  if (learned.model->damped()) out["dissipation"] = true;
   out["parameters"] = std::vector<double>(learned.parameters.begin(), learned.parameters.end());
   return out.dump(2) + "\n";
 }
@@ -84,7 +86,11 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   if (!read || !read->is_object()) fail("no JSON object");
   const Json& json = *read;
   if (json.value("kind", Json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
+  constexpr std::array known{"kind", "bodies", "coordinates", "model", "dissipation", "parameters"};
+  for (const auto& [key, value] : json.items())
+    if (std::find(known.begin(), known.end(), key) == known.end()) fail(fmt::format("nobody knows its key {}", key));
   const bool on_spheres = !json.contains("coordinates");
+  if (!on_spheres && json.contains("bodies")) fail("it has both bodies and coordinates");
   const auto count = json.value(on_spheres ? "bodies" : "coordinates", Json());
   if (!count.is_number_integer() || count < 1 || count > (on_spheres ? most_bodies : most_coordinates))
     fail(on_spheres ? "bodies is no number of bodies" : "coordinates is no number of coordinates");

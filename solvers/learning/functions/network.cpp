@@ -50,7 +50,8 @@ Eigen::VectorXd Network::start(unsigned seed) const {
   return theta;
 }
 
-std::string Network::formula(const Eigen::VectorXd& theta, std::span<const std::string> names) const {
+std::string Network::formula(const Eigen::VectorXd& theta, std::span<const std::string> names,
+                             std::size_t longest) const {
   Eigen::Index at = 0;
   const auto combined = [&](const std::vector<std::string>& terms) {
     std::string out;
@@ -63,10 +64,12 @@ std::string Network::formula(const Eigen::VectorXd& theta, std::span<const std::
     for (int u = 0; u < width; ++u) {
       const std::string sum = combined(below);
       units.push_back(fmt::format("tanh({} + ({}))", sum, theta(at++)));
+      if (units.back().size() > longest) return {};  // layer upon layer it grows beyond all memory
     }
     below = std::move(units);
   }
-  return combined(below);
+  std::string out = combined(below);
+  return out.size() > longest ? std::string() : out;
 }
 
 }  // namespace lagroid::learning

@@ -39,8 +39,8 @@ class Network {
   /// Random parameters. Inner ones are small, so that f begins near its linear part with all units at work.
   Eigen::VectorXd start(unsigned seed) const;
   /// As a formula of numbers with these names, in the words of scenes, every bit kept: of several layers the units of
-  /// one stand in each unit of the next.
-  std::string formula(const Eigen::VectorXd& theta, std::span<const std::string> names) const;
+  /// one stand in each unit of the next. Empty where it has more than `longest` characters.
+  std::string formula(const Eigen::VectorXd& theta, std::span<const std::string> names, std::size_t longest) const;
 
   /// The value, and g <- df/dx.
   template <class X>

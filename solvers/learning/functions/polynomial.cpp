@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <random>
 #include <stdexcept>
 
 namespace lagroid::learning {
@@ -33,14 +34,27 @@ std::vector<int> Polynomial::powers(int a) const {
   return out;
 }
 
-std::string Polynomial::formula(const Eigen::VectorXd& theta, std::span<const std::string> names) const {
+std::string Polynomial::formula(const Eigen::VectorXd& theta, std::span<const std::string> names,
+                                std::size_t longest) const {
   std::string out;
   for (int a = 0; a < size(); ++a) {
     out += fmt::format("{}({})", a == 0 ? "" : " + ", theta(a));
     for (int at = a; at >= 0; at = monomials_[std::size_t(at)].parent)
       out += "*" + names[std::size_t(monomials_[std::size_t(at)].variable)];
   }
-  return out;
+  return out.size() > longest ? std::string() : out;
+}
+
+Eigen::VectorXd Polynomial::start(unsigned seed) const {
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(size());
+  if (seed == 0) return theta;
+  std::mt19937 generator(seed);
+  for (int a = 0; a < size(); ++a) {
+    const int parent = monomials_[std::size_t(a)].parent;
+    const bool quadratic = parent >= 0 && monomials_[std::size_t(parent)].parent < 0;
+    if (quadratic) theta(a) = 0.5 * (double(generator()) / 4294967296.0) - 0.25;
+  }
+  return theta;
 }
 
 }  // namespace lagroid::learning

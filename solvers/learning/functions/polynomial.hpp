@@ -33,8 +33,11 @@ class Polynomial {
   int scratch() const { return 2 * size(); }
   /// The powers of x in the a-th monomial.
   std::vector<int> powers(int a) const;
-  /// As a formula of numbers with these names, in the words of scenes, every bit kept.
-  std::string formula(const Eigen::VectorXd& theta, std::span<const std::string> names) const;
+  /// As a formula of numbers with these names, in the words of scenes, every bit kept. Empty where it has more than
+  /// `longest` characters.
+  std::string formula(const Eigen::VectorXd& theta, std::span<const std::string> names, std::size_t longest) const;
+  /// Parameters to begin with: none for seed 0, else small random ones of degree two, by which starts differ.
+  Eigen::VectorXd start(unsigned seed) const;
 
   /// The value, and g <- df/dx. Each monomial is one before it times a number, so that both are a sweep there and one
   /// back.

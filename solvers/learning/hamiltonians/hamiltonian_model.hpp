@@ -18,6 +18,7 @@
 #include <lagroid/solvers/learning/field_model.hpp>
 #include <lagroid/solvers/learning/hamiltonians/hamiltonian_equations.hpp>
 
+#include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -46,6 +47,9 @@ template <class H, int N> struct HamiltonianFields {
 /// `start` takes the Hamiltonian's own start(seed) where it has one; else its parameters begin at zero. Throws
 /// std::invalid_argument for a number of coordinates that is none or does not fit.
 template <class H, int N> class HamiltonianModel : public FieldModel<HamiltonianFields<H, N>> {
+  static_assert(ParametricHamiltonian<H, N>,
+                "the Hamiltonian has int size() const and a const template hamiltonian(q, p, theta), or gradient and "
+                "scratch in its place and not both; see ParametricHamiltonian");
   using Base = FieldModel<HamiltonianFields<H, N>>;
 
  public:
@@ -77,9 +81,10 @@ template <class H, int N> class HamiltonianModel : public FieldModel<Hamiltonian
     return out;
   }
 
-  std::string formula(const Eigen::VectorXd& theta, std::span<const std::string> names) const override {
-    if constexpr (requires { hamiltonian().formula(theta, names); }) {
-      return hamiltonian().formula(theta, names);
+  std::string formula(const Eigen::VectorXd& theta, std::span<const std::string> names,
+                      std::size_t longest) const override {
+    if constexpr (requires { hamiltonian().formula(theta, names, longest); }) {
+      return hamiltonian().formula(theta, names, longest);
     } else {
       return {};
     }

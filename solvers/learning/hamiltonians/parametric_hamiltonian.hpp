@@ -16,31 +16,17 @@
 /// Requires a Hamiltonian in any scalars, or value and gradient in any scalar, where a formula by hand is faster
 /// (Polynomial, Network).
 
-#include <lagroid/core/scalars/dual.hpp>
+#include <lagroid/core/member_name.hpp>
 #include <lagroid/core/types.hpp>
 
 #include <concepts>
+#include <type_traits>
 #include <utility>
 
 namespace lagroid::learning {
 
 /// 2n of n, of run-time size or not.
 constexpr int twice(int n) { return n == Eigen::Dynamic ? Eigen::Dynamic : 2 * n; }
-
-/// H(q, p; theta). N is n, or Eigen::Dynamic. Supplied by the user:
-///
-///     int size() const                                                 how many parameters
-///     template <class S, class T>
-///     S hamiltonian(const Vector<S, N>& q, const Vector<S, N>& p, const T* theta) const
-///     template <class S> Vector<S, M> constraint(const Vector<S, N>& q) const
-///
-/// in any scalars: S carries derivatives in q, p and theta, T those in theta alone; S(theta[i]) makes a parameter an S.
-/// Without a constraint Q is R^n, else Q = {constraint(q) = 0}, its derivative of full rank, and n is not Dynamic.
-/// Instead of a Hamiltonian, it may write value and gradient in z = (q, p) (GivesStateGradient).
-template <class H>
-concept ParametricHamiltonian = requires(const H& h) {
-  { h.size() } -> std::convertible_to<int>;
-};
 
 /// A Hamiltonian that writes its own gradient, g <- dH/dz, z = (q, p), and returns H; `scratch` has room for
 /// h.scratch() scalars.
@@ -51,10 +37,54 @@ concept GivesStateGradient = requires(const H& h, const Vector<S, twice(N)>& z, 
   { h.scratch() } -> std::convertible_to<int>;
 };
 
-/// m, of Q = {constraint(q) = 0} in R^n.
+namespace detail {
+LAGROID_MEMBER_NAME(NamesConstraint, constraint);
+LAGROID_MEMBER_NAME(NamesHamiltonian, hamiltonian);
+
+template <class H, int N>
+concept WritesHamiltonian = requires(const H& h, const Vector<double, N>& q, const Vector<double, N>& p,
+                                     const double* theta) {
+  { h.hamiltonian(q, p, theta) } -> std::convertible_to<double>;
+};
+/// Of a number of components that is known.
+template <class H, int N>
+concept WritesConstraint = requires(const H& h, const Vector<double, N>& q) {
+  requires std::remove_cvref_t<decltype(h.constraint(q))>::RowsAtCompileTime >
+  0;
+};
+/// What is there under these names is what will be used: another `constraint`, or a `hamiltonian` beside a gradient,
+/// would be ignored.
+template <class H, int N> inline constexpr bool constraint_fits = WritesConstraint<H, N> || !NamesConstraint<H>;
+template <class H, int N>
+inline constexpr bool energy_fits = GivesStateGradient<H, double, N> ? !NamesHamiltonian<H> : WritesHamiltonian<H, N>;
+}  // namespace detail
+
+/// H(q, p; theta). N is n, or Eigen::Dynamic. Supplied by the user:
+///
+///     int size() const                                                 how many parameters
+///     template <class S, class T>
+///     S hamiltonian(const Vector<S, N>& q, const Vector<S, N>& p, const T* theta) const
+///     template <class S> Vector<S, M> constraint(const Vector<S, N>& q) const
+///
+/// in any scalars: S carries derivatives in q, p and theta, T those in theta alone; S(theta[i]) makes a parameter an S.
+/// Without a constraint Q is R^n, else Q = {constraint(q) = 0}, its derivative of full rank, and n is not Dynamic.
+/// Instead of a Hamiltonian, it may write value and gradient in z = (q, p) (GivesStateGradient). A `constraint` of
+/// another kind (not const, of other arguments, or of a number of components that no type says), or both a Hamiltonian
+/// and a gradient, are refused.
+template <class H, int N>
+concept ParametricHamiltonian = requires(const H& h) {
+  { h.size() } -> std::convertible_to<int>;
+}
+&&detail::energy_fits<H, N>&& detail::constraint_fits<H, N>;
+
+/// m, of Q = {constraint(q) = 0} in R^n; zero without a constraint.
 template <class H, int N> constexpr int constraints_of() {
-  if constexpr (requires(const H& h, const Vector<double, N>& q) { h.constraint(q); }) {
-    return decltype(std::declval<const H&>().constraint(std::declval<const Vector<double, N>&>()))::RowsAtCompileTime;
+  static_assert(detail::constraint_fits<H, N>,
+                "constraint(q) does not fit: a const template on the scalar, of Vector<S, N> with N a number, that "
+                "returns Vector<S, M> with M a number");
+  if constexpr (detail::WritesConstraint<H, N>) {
+    return std::remove_cvref_t<decltype(std::declval<const H&>().constraint(
+        std::declval<const Vector<double, N>&>()))>::RowsAtCompileTime;
   } else {
     return 0;
   }

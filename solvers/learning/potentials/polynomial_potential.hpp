@@ -20,6 +20,8 @@ class PolynomialPotential : public Polynomial {
  public:
   /// Throws std::invalid_argument for no bodies, degree 0, or more than `most` monomials.
   PolynomialPotential(int bodies, int degree) : Polynomial(3 * bodies, degree) {}
+  /// None: starts differ by their masses.
+  Eigen::VectorXd start(unsigned) const { return Eigen::VectorXd::Zero(size()); }
 };
 
 }  // namespace lagroid::learning

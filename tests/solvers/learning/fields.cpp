@@ -1,7 +1,9 @@
-// Learned fields and the derivatives of their predictions.
+// Learned fields, the derivatives of their predictions, and the functions that they are made of.
 #include "chains.hpp"
 
 #include <lagroid/solvers/learning/compressed.hpp>
+#include <lagroid/solvers/learning/functions/network.hpp>
+#include <lagroid/solvers/learning/functions/polynomial.hpp>
 #include <lagroid/solvers/learning/parametric_model.hpp>
 #include <lagroid/solvers/learning/potentials/network_potential.hpp>
 #include <lagroid/solvers/learning/potentials/polynomial_potential.hpp>
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace lagroid::learning_tests {
@@ -203,6 +206,36 @@ TEST(Compressed, KeepsWhatLeastSquaresNeeds) {
   all.col(1) = all.col(0) + 1e-10 * all.col(2);
   compressed.add(all);
   EXPECT_NEAR(std::abs(compressed.triangle()(1, 1)) / (1e-10 * all.col(2).norm()), 1, 1e-1);
+}
+
+TEST(Formulas, AreTheHamiltonians) {
+  const Polynomial polynomial(2, 2);
+  const std::vector<std::string> names{"q", "p"};
+  const std::string quadratic = "(1)*q + (2)*p + (3)*q*q + (-4.5)*q*p + (5)*p*p";
+  const VectorXd coefficients{{1, 2, 3, -4.5, 5}};
+  EXPECT_EQ(polynomial.formula(coefficients, names, quadratic.size()), quadratic);
+  EXPECT_EQ(polynomial.formula(coefficients, names, quadratic.size() - 1), "");
+  const Network network(2, {2});
+  const std::string units = "(7)*tanh((1)*q + (2)*p + (3)) + (8)*tanh((4)*q + (5)*p + (6))";
+  const VectorXd weights{{1, 2, 3, 4, 5, 6, 7, 8}};
+  EXPECT_EQ(network.formula(weights, names, units.size()), units);
+  EXPECT_EQ(network.formula(weights, names, units.size() - 1), "");
+  // Written out it would have more characters than any memory.
+  const Network deep(2, std::vector<int>(20, 10));
+  EXPECT_EQ(deep.formula(deep.start(1), names, 4096), "");
+}
+
+TEST(Starts, OfAPolynomialDifferBySeed) {
+  const auto model = polynomial_hamiltonian(2, 3);
+  EXPECT_EQ(model->start(0), VectorXd::Zero(model->size()));
+  EXPECT_NE(model->start(1), model->start(2));
+  EXPECT_EQ(model->start(1), model->start(1));
+  const Polynomial h(4, 3);
+  for (int a = 0; a < h.size(); ++a) {
+    int degree = 0;
+    for (const int power : h.powers(a)) degree += power;
+    EXPECT_EQ(model->start(1)(a) != 0, degree == 2) << a;
+  }
 }
 
 }  // namespace

@@ -307,6 +307,7 @@ TEST(Recovery, OfADampedPendulum) {
   const Trajectories undamped = motions(model, VectorXd{{0.8, 1.7, 0}}, 2 * random_starts(model, 30, 1), 5, 0.05);
   const Trained none = train(model, undamped, {.substeps = 8, .starts = 1});
   EXPECT_LT(model.dissipation(none.parameters)(0, 0), 1e-9);
+  EXPECT_TRUE(none.dissipation_determined);
 }
 
 TEST(Recovery, OfADampedChain) {
@@ -320,6 +321,7 @@ TEST(Recovery, OfADampedChain) {
   EXPECT_LT((model->dissipation(trained.parameters) - r).norm(), 1e-9);
   EXPECT_LT((model->mass(trained.parameters) - model->mass(truth)).norm(), 1e-9);
   EXPECT_TRUE(trained.mass_determined);
+  EXPECT_TRUE(trained.dissipation_determined);
 }
 
 TEST(Recovery, OnAnEllipsoidWithDamping) {
@@ -331,6 +333,27 @@ TEST(Recovery, OnAnEllipsoidWithDamping) {
   const Trained trained = train(model, data, {.substeps = 8, .starts = 2});
   EXPECT_LT((trained.parameters - truth).head(4).norm(), 1e-7) << trained.message;
   EXPECT_LT((model.dissipation(trained.parameters) - model.dissipation(truth)).norm(), 1e-6);
+}
+
+TEST(Recovery, SaysWhereTheDataDoNotDetermineFriction) {
+  // Of an H that can be anything along a curve, one curve that does not cross itself fits any R.
+  const auto model = polynomial_hamiltonian(1, 6, Dissipation::rayleigh);
+  VectorXd truth = VectorXd::Zero(model->size());
+  truth(2) = truth(4) = 0.5;  // q^2 and p^2
+  truth(truth.size() - 1) = 0.5;
+  const Trajectories curve = motions(*model, truth, VectorXd{{1, 0}}, 41, 0.05);
+  const Trajectories pieces = motions(*model, truth, curve.ends.reshaped(2, 40), 3, 0.05);
+  const Trained one = train(*model, pieces, {.starts = 1});
+  EXPECT_LT(one.mse, 1e-8) << one.message;
+  EXPECT_FALSE(one.dissipation_determined);
+  const Trained many = train(*model, motions(*model, truth, random_starts(*model, 30, 1), 5, 0.05), {.starts = 1});
+  EXPECT_TRUE(many.dissipation_determined) << many.message;
+  EXPECT_NEAR(model->dissipation(many.parameters)(0, 0), 0.25, 1e-6);
+  // A model that declares none has nothing to say.
+  const auto conservative = polynomial_hamiltonian(1, 2);
+  EXPECT_TRUE(
+      train(*conservative, motions(*conservative, VectorXd::Zero(5), MatrixXd::Ones(2, 5), 3, 0.1), {.starts = 1})
+          .dissipation_determined);
 }
 
 TEST(LearnedMotions, LoseWhatDissipationTakesAndKeepTheRest) {
@@ -400,26 +423,29 @@ TEST(LearnedMotions, InRnAreThoseOfRungeAndKutta) {
   EXPECT_LT((by(lie_group_methods::runge_kutta_4) - start - 0.05 * (k1 + 2 * k2 + 2 * k3 + k4)).norm(), 1e-15);
 }
 
-TEST(Formulas, AreTheHamiltonians) {
-  const Polynomial polynomial(2, 2);
-  const std::vector<std::string> names{"q", "p"};
-  EXPECT_EQ(polynomial.formula(VectorXd{{1, 2, 3, -4.5, 5}}, names), "(1)*q + (2)*p + (3)*q*q + (-4.5)*q*p + (5)*p*p");
-  const Network network(2, {2});
-  EXPECT_EQ(network.formula(VectorXd{{1, 2, 3, 4, 5, 6, 7, 8}}, names),
-            "(7)*tanh((1)*q + (2)*p + (3)) + (8)*tanh((4)*q + (5)*p + (6))");
-}
-
-TEST(Pieces, BeginWhereTheOneBeforeEnds) {
-  std::vector<Observation> rows;
-  for (int j = 0; j < 8; ++j) rows.push_back({j, 5, 0.1 * j, VectorXd{{double(j), 0}}});
-  const Trajectories data = assemble(pieces_of(rows, 3), phase_space(1));
-  ASSERT_EQ(data.count(), 3);
-  EXPECT_EQ(data.starts.row(0), Eigen::RowVector3d(0, 2, 4));
-  EXPECT_EQ(data.ends.row(2), Eigen::RowVector3d(2, 4, 6));
-  EXPECT_EQ(data.bodies, 0);
-  EXPECT_THROW(pieces_of(rows, 9), DataRefused);
-  EXPECT_THROW(pieces_of(rows, 1), DataRefused);
-}
+// What would be ignored is refused.
+struct NotConst : Turning {
+  template <class S> Vector<S, 1> constraint(const Vector<S, 3>& q) { return Vector<S, 1>(q(0)); }
+};
+struct OfTheWrongSize : Turning {
+  template <class S> Vector<S, 1> constraint(const Vector<S, 2>& q) const { return Vector<S, 1>(q(0)); }
+};
+struct OfRunTimeSize : Turning {
+  template <class S> Vector<S, Eigen::Dynamic> constraint(const Vector<S, 3>& q) const { return q.head(1); }
+};
+struct OfANumber : Turning {
+  template <class S> S constraint(const Vector<S, 3>& q) const { return q(0); }
+};
+struct WithTwoHamiltonians : Polynomial {
+  using Polynomial::Polynomial;
+  template <class S, class T> S hamiltonian(const Vector<S, 3>& q, const Vector<S, 3>&, const T*) const { return q(0); }
+};
+static_assert(ParametricHamiltonian<Turning, 3> && ParametricHamiltonian<TurningOnWire, 3> &&
+              ParametricHamiltonian<NetworkOnWire, 3> && ParametricHamiltonian<Polynomial, Eigen::Dynamic>);
+static_assert(!ParametricHamiltonian<Turning, 2> && !ParametricHamiltonian<OnWire, 3>);
+static_assert(!ParametricHamiltonian<NotConst, 3> && !ParametricHamiltonian<OfTheWrongSize, 3> &&
+              !ParametricHamiltonian<OfRunTimeSize, 3> && !ParametricHamiltonian<OfANumber, 3>);
+static_assert(!ParametricHamiltonian<WithTwoHamiltonians, 3>);
 
 std::string refused(const std::vector<Observation>& rows, const StateSpace& space) {
   try {
@@ -442,11 +468,22 @@ TEST(Data, OnAnySpaceIsRefusedWithTheRowNamed) {
   EXPECT_NE(refused(off, model.space()).find("row 2 (trajectory 1, t = 0.1): the state is off the constraints"),
             std::string::npos);
   EXPECT_EQ(refused(off, phase_space(3)), "taken");
+  // Momenta that are large make no room for q, and where G is zero there is no way back.
+  for (auto& row : off) row.z.tail(3) *= 1e6;
+  EXPECT_NE(refused(off, model.space()).find("row 2 (trajectory 1, t = 0.1): the state is off the constraints"),
+            std::string::npos);
+  off = rows;
+  off[1].z.tail(3) += 0.01 * off[1].z.head(3);
+  EXPECT_NE(refused(off, model.space()).find("row 2 (trajectory 1, t = 0.1): the momentum is off the tangent space"),
+            std::string::npos);
+  off[1].z.head(3).setZero();
+  EXPECT_NE(refused(off, model.space()).find("row 2 (trajectory 1, t = 0.1): the constraint has no full rank there"),
+            std::string::npos);
   off = rows;
   off[2].z(4) = std::nan("");
   EXPECT_NE(refused(off, model.space()).find("row 3 (trajectory 1, t = 0.2): p_2 is nan"), std::string::npos);
   // Of other data than its own a model learns nothing.
-  EXPECT_THROW(train(model, assemble(rows, phase_space(3)).part(0, 1), {.substeps = 0}), std::invalid_argument);
+  EXPECT_THROW(train(model, assemble(rows, phase_space(3)), {}), std::invalid_argument);
   EXPECT_THROW(train(*polynomial_hamiltonian(2, 2), assemble(rows, phase_space(3)), {}), std::invalid_argument);
   EXPECT_THROW((HamiltonianModel<Polynomial, 1>("of four numbers", {4, 2})), std::invalid_argument);
   EXPECT_THROW((HamiltonianModel<Polynomial, Eigen::Dynamic>("of no size", {4, 2})), std::invalid_argument);

@@ -202,13 +202,21 @@ TEST(Training, SaysWhatTheDataDoNotDetermine) {
   EXPECT_LT(measured.mse, 1e-15);
 }
 
-std::string refusal(const std::vector<Observation>& rows, double noise = 0) {
+/// What `put` says of these rows.
+std::string refusal_by(const std::function<void()>& put) {
   try {
-    assemble(rows, noise);
+    put();
   } catch (const DataRefused& refused) {
     return refused.what();
   }
   return "taken";
+}
+
+std::string refusal(const std::vector<Observation>& rows, double noise = 0) {
+  return refusal_by([&] { assemble(rows, noise); });
+}
+std::string refusal(const std::vector<Observation>& rows, const StateSpace& space) {
+  return refusal_by([&] { assemble(rows, space); });
 }
 
 TEST(Data, IsRefusedWithTheRowNamed) {
@@ -259,6 +267,33 @@ TEST(Data, WithNoiseIsTakenWhereItIsDeclared) {
     put_on_spheres(z);
     EXPECT_LT((z - data.starts.col(n)).norm(), 1e-15);
   }
+}
+
+TEST(Pieces, BeginWhereTheOneBeforeEnds) {
+  std::vector<Observation> rows;
+  for (int j = 0; j < 8; ++j) rows.push_back({j, 5, 0.1 * j, VectorXd{{double(j), 0}}});
+  const Trajectories data = assemble(pieces_of(rows, 3), phase_space(1));
+  ASSERT_EQ(data.count(), 3);
+  EXPECT_EQ(data.starts.row(0), Eigen::RowVector3d(0, 2, 4));
+  EXPECT_EQ(data.ends.row(2), Eigen::RowVector3d(2, 4, 6));
+  EXPECT_EQ(data.bodies, 0);
+  EXPECT_THROW(pieces_of(rows, 9), DataRefused);
+  EXPECT_THROW(pieces_of(rows, 1), DataRefused);
+}
+
+TEST(Pieces, DoNotBeginAtAPointOfWeightZero) {
+  std::vector<Observation> rows;
+  for (int j = 0; j < 7; ++j) rows.push_back({j + 1, 5, 0.1 * j, VectorXd{{double(j), 0}}});
+  rows[3].weight = 0;
+  EXPECT_EQ(assemble(pieces_of(rows, 3), phase_space(1)).weights.col(1)(0), 0);
+  EXPECT_THROW(assemble(pieces_of(rows, 4), phase_space(1)), DataRefused);
+  EXPECT_EQ(refusal(pieces_of(rows, 4), phase_space(1)).find("row 4 "), 0U);
+  EXPECT_EQ(refusal(rows, phase_space(1)), "taken");
+  rows[0].weight = 0;
+  EXPECT_NE(refusal(rows, phase_space(1))
+                .find("row 1 (trajectory 5, t = 0): a trajectory, or a piece of one, begins at "
+                      "a point of weight zero"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// `lagroid learn` and `lagroid trajectories`: data, models, endings, files.
-#include "command_line.hpp"
+// `lagroid learn` and `lagroid trajectories` on spheres: data, models, endings, files, and what is refused.
+#include "learn.hpp"
 
 #include <H5Cpp.h>
 #include <nlohmann/json.hpp>
@@ -7,50 +7,25 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace {
 
-class Learn : public CommandLine {
- protected:
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string file(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return path(name);
-  }
-  std::string drawn(const std::string& name, const std::string& options = "") const {
-    const Outcome r =
-        run("trajectories " + (options.find("--count") == std::string::npos ? std::string("--count 60 ") : "") +
-            options + " --out " + path(name));
-    EXPECT_EQ(r.code, 0) << r.err;
-    return path(name);
-  }
-  nlohmann::json summary(const std::string& arguments) const {
-    const Outcome r = run(arguments + " --json");
-    EXPECT_EQ(r.code, 0) << arguments << r.err << r.out;
-    return nlohmann::json::parse(r.out);
-  }
-  /// A trajectory of two points, with so many columns of times, and q_1x of the last one.
-  std::string hdf5(const std::string& name, hsize_t columns, double last) const {
-    const H5::H5File out(path(name), H5F_ACC_TRUNC);
-    const auto add = [&](const char* set, hsize_t width, std::vector<double> numbers) {
-      const hsize_t size[2] = {2, width};
-      out.createDataSet(set, H5::PredType::NATIVE_DOUBLE, H5::DataSpace(2, size))
-          .write(numbers.data(), H5::PredType::NATIVE_DOUBLE);
-    };
-    add("trajectory", 1, {1, 1});
-    add("t", columns, columns == 1 ? std::vector<double>{0, 0.1} : std::vector<double>(2 * columns));
-    add("z", 6, {0, 0, 1, 1, 0, 0, last, 0, 1, 1, 0, 0});
-    return path(name);
-  }
-  static std::string read(const std::string& name) {
-    std::ifstream in(name);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-};
+/// A trajectory of two points, with so many columns of times, and q_1x of the last one.
+std::string hdf5(const std::string& file, hsize_t columns, double last) {
+  const H5::H5File out(file, H5F_ACC_TRUNC);
+  const auto add = [&](const char* set, hsize_t width, std::vector<double> numbers) {
+    const hsize_t size[2] = {2, width};
+    out.createDataSet(set, H5::PredType::NATIVE_DOUBLE, H5::DataSpace(2, size))
+        .write(numbers.data(), H5::PredType::NATIVE_DOUBLE);
+  };
+  add("trajectory", 1, {1, 1});
+  add("t", columns, columns == 1 ? std::vector<double>{0, 0.1} : std::vector<double>(2 * columns));
+  add("z", 6, {0, 0, 1, 1, 0, 0, last, 0, 1, 1, 0, 0});
+  return file;
+}
 
 TEST_F(Learn, RecoversWhatWasDrawn) {
   const std::string data = drawn("data.csv", "--chain 2 --masses 1,0.5 --lengths 1,0.7 --gravity 3");
@@ -141,78 +116,6 @@ TEST_F(Learn, AModelRunsAsAScene) {
                                           start + time));
   EXPECT_EQ(r.code, 2);
   EXPECT_NE(r.err.find("none.json: there is no such file"), std::string::npos) << r.err;
-}
-
-/// Motions of q' = p, p' = -q - 2 c p, in closed form.
-std::string oscillations(double c) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  const double w = std::sqrt(1 - c * c);
-  std::ostringstream rows;
-  rows.precision(17);
-  rows << "trajectory,t,q1,p1\n";
-  for (int n = 0; n < 30; ++n) {
-    const double q = uniform(random);
-    const double p = uniform(random);
-    for (int j = 0; j < 9; ++j) {
-      const double t = 0.1 * j;
-      rows << n << ',' << t << ',' << std::exp(-c * t) * (q * std::cos(w * t) + (p + c * q) / w * std::sin(w * t))
-           << ',' << std::exp(-c * t) * (p * std::cos(w * t) - (q + c * p) / w * std::sin(w * t)) << '\n';
-    }
-  }
-  return rows.str();
-}
-
-TEST_F(Learn, FindsAFrictionInThePlane) {
-  const std::string data = file("damped.csv", oscillations(0.1));
-  const std::string out = path("out");
-  const std::string command = "learn " + data + " --points 5 --substeps 8 --model polynomial:2 --starts 1 ";
-  const auto found = summary(command + "--dissipation --test " + data + " --out " + out);
-  EXPECT_EQ(found.at("status"), "converged");
-  EXPECT_EQ(found.at("coordinates"), 1);
-  EXPECT_EQ(found.at("integrator"), "runge-kutta-4");
-  EXPECT_EQ(found.at("data").at("trajectories"), 60);
-  EXPECT_NEAR(found.at("dissipation")[0][0].get<double>(), 0.2, 1e-7);
-  EXPECT_LT(found.at("held_out").at("mse").get<double>(), 1e-14);
-  EXPECT_FALSE(found.contains("mass_matrix") || found.contains("bodies"));
-  EXPECT_FALSE(found.at("held_out").contains("momentum_change_data"));
-  const std::string text = read(out + "/summary.txt");
-  EXPECT_NE(text.find("polynomial:2 on R^2, with dissipation, through runge-kutta-4"), std::string::npos) << text;
-  EXPECT_NE(text.find("  R              0.2000000"), std::string::npos) << text;
-  EXPECT_FALSE(fs::exists(out + "/learned.toml"));
-  // Read again it is the same, damped; and without dissipation nothing moves like that.
-  const auto same = summary("learn " + data + " --points 5 --substeps 8 --iterations 0 --model " + out + "/model.json");
-  EXPECT_EQ(same.at("dissipation"), found.at("dissipation"));
-  EXPECT_GT(summary(command).at("training_mse").get<double>(), 1e-6);
-  expect_refused("learn " + drawn("spheres.csv") + " --model " + out + "/model.json", "give data of its system");
-}
-
-TEST_F(Learn, AModelInThePlaneRunsAsAFormula) {
-  const std::string out = path("out");
-  for (const char* model : {"polynomial:2", "network:6"}) {
-    const std::string data = file("free.csv", oscillations(0));
-    const auto found = summary("learn " + data + " --substeps 8 --model " + model + " --out " + out);
-    const auto ran = summary("run " + out + "/learned.toml --set time.steps=80");
-    const double q = found.at("training_mse").get<double>();
-    EXPECT_LT(q, 1e-7);
-    // A period is 2 pi: the radius stays, up to the error of the step and of the model.
-    const auto norm = [&](const char* when) {
-      return std::hypot(ran.at(when).at("position")[0].get<double>(), ran.at(when).at("momentum")[0].get<double>());
-    };
-    EXPECT_NEAR(norm("final"), norm("initial"), 2e-3) << model;
-    fs::remove_all(out);
-  }
-  // And the run is data again.
-  const std::string data = file("free.csv", oscillations(0));
-  summary("learn " + data + " --substeps 8 --model polynomial:2 --out " + out);
-  summary("run " + out + "/learned.toml --set time.steps=100 --out " + path("run"));
-  const auto again = summary("learn " + path("run/trajectory.h5") + " --points 5 --model polynomial:2");
-  EXPECT_EQ(again.at("data").at("trajectories"), 25);
-  EXPECT_LT(again.at("training_mse").get<double>(), 1e-9);
-  expect_refused("run " + file("learned.toml", "system = \"learned_hamiltonian\"\n[parameters]\nmodel = \"" + out +
-                                                   "/model.json\"\n[initial]\ntheta = [1.0]\nphi = [0.0]\n"
-                                                   "[time]\nstep = 0.01\nsteps = 2\n"),
-                 "run the learned.toml");
 }
 
 TEST_F(Learn, FindsAFrictionOnSpheres) {
@@ -311,8 +214,8 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
   file("held/trajectory.csv", "");
   std::string network = "network:10000";
   for (int layer = 0; layer < 22; ++layer) network += ",10000";
-  const std::string wide = hdf5("wide.h5", 2, 0);
-  const std::string unknown = hdf5("unknown.h5", 1, std::nan(""));
+  const std::string wide = hdf5(path("wide.h5"), 2, 0);
+  const std::string unknown = hdf5(path("unknown.h5"), 1, std::nan(""));
   const std::vector<std::pair<std::string, std::string>> cases{
       {"learn", "data is required"},
       {"learn nowhere.csv", "nowhere.csv: there is no such file"},
@@ -322,6 +225,7 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
       {"learn " + file("columns.csv", "trajectory,t,q1x,q1y,q1z,p1x,p1y\n"), "no column p1z"},
       {"learn " + file("more.csv", "trajectory,t,q1x,q1y,q1z,p1x,p1y,p1z,mass\n"), "nobody knows the column mass"},
       {"learn " + file("uneven.csv", "trajectory,t,q1,q2,p1\n"), "no column p2"},
+      {"learn " + file("gap.csv", "trajectory,t,q1,q3,p1,p3\n"), "no column q2"},
       {"learn " + file("mixed.csv", "trajectory,t,q1,p1,q1x\n"), "nobody knows the column q1x"},
       {"learn " + data + " --points 9", "fewer than a piece of 9"},
       {"learn " + file("twice.csv", "trajectory,t,t,q1x,q1y,q1z,p1x,p1y,p1z\n"), "two columns t"},
@@ -355,6 +259,8 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
        "i.json: the mass matrix of its parameters is not finite and positive"},
       {model("j.json", kind + ", \"coordinates\": 0}"), "coordinates is no number of coordinates"},
       {model("k.json", kind + ", \"coordinates\": 1, \"dissipation\": 1}"), "dissipation is neither true nor false"},
+      {model("n.json", kind + ", \"bodies\": 1, \"coordinates\": 1}"), "both bodies and coordinates"},
+      {model("o.json", kind + ", \"coordinates\": 1, \"friction\": 1}"), "nobody knows its key friction"},
       {model("l.json", kind + ", \"coordinates\": 1, \"model\": \"polynomial:1\", \"parameters\": [1, 2]}"),
        "give data of its system"},
       {model("m.json", kind + ", \"bodies\": 1, \"model\": \"polynomial:1\", \"parameters\": [0, 0, 0, 1]}") +
