@@ -87,8 +87,7 @@ void HyperbolicSpace::differential(const Point& x, Vector& gradient) const {
   space(gradient) += outwards / (1 + square) * at;
 }
 
-bool HyperbolicSpace::retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const {
-  if (retraction != ManifoldRetraction::exponential) refuse(retraction);
+bool HyperbolicSpace::exponential(const Point& x, const Vector& v, Point& to) const {
   const auto at = space(x);
   const double r = at.norm();
   const double time = std::hypot(1.0, r);

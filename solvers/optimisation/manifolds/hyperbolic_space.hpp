@@ -11,7 +11,7 @@
 ///
 /// n < 1 throws std::invalid_argument. (J. Ratcliffe, Foundations of Hyperbolic Manifolds, 2006, chapter 3.)
 
-#include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
+#include <lagroid/solvers/optimisation/manifolds/hadamard.hpp>
 
 namespace lagroid::optimisation {
 
@@ -27,7 +27,7 @@ namespace lagroid::optimisation {
 /// and <u, v> and differentials are taken by their radial part, which is smaller by 1 / x_0^2 than that of the space
 /// parts, and the rest. Where a point has the radius R rounding leaves about e^R times 1e-16 of a direction, as the
 /// numbers of the point do.
-class HyperbolicSpace final : public Manifold {
+class HyperbolicSpace final : public HadamardManifold {
  public:
   /// Throws std::invalid_argument for n < 1.
   explicit HyperbolicSpace(Eigen::Index n);
@@ -42,16 +42,10 @@ class HyperbolicSpace final : public Manifold {
   bool nearest(Point& x) const override;
   void project(const Point& x, Vector& v) const override;
 
-  bool has_own_metric() const override { return true; }
   double inner(const Point& x, const Vector& u, const Vector& v) const override;
   void gradient(const Point& x, Vector& differential) const override;
   void differential(const Point& x, Vector& gradient) const override;
-  /// The parallel one.
-  void transport(const Point& from, const Point& to, Vector& v) const override { parallel_transport(from, to, v); }
 
-  /// exponential, at every point and of every vector.
-  bool offers(ManifoldRetraction retraction) const override { return retraction == ManifoldRetraction::exponential; }
-  bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const override;
   /// False where numbers overflow: where distances exceed 700 or so.
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   /// v + (x + y) <log_x y, v> tanh(d / 2) / d.
@@ -59,10 +53,10 @@ class HyperbolicSpace final : public Manifold {
   /// P_x J h + (x^T G) v, J = diag(-1, 1, ..., 1).
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 1 ? -1 : 0; }
-  double diameter() const override { return std::numeric_limits<double>::infinity(); }
-  bool is_hadamard() const override { return true; }
 
  private:
+  bool exponential(const Point& x, const Vector& v, Point& to) const override;
+
   Eigen::Index n_;
   mutable Vector log_;
 };

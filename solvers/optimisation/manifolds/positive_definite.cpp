@@ -94,8 +94,7 @@ void PositiveDefinite::differential(const Point& x, Vector& gradient) const {
   project(x, gradient);
 }
 
-bool PositiveDefinite::retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const {
-  if (retraction != ManifoldRetraction::exponential) refuse(retraction);
+bool PositiveDefinite::exponential(const Point& x, const Vector& v, Point& to) const {
   if (!factorise(x)) return false;
   reduce(v, one_);
   if (!one_.allFinite()) return false;

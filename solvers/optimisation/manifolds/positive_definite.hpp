@@ -13,7 +13,7 @@
 ///
 /// n < 1 throws std::invalid_argument. (R. Bhatia, Positive Definite Matrices, 2007, chapter 6.)
 
-#include <lagroid/solvers/optimisation/manifolds/manifold.hpp>
+#include <lagroid/solvers/optimisation/manifolds/hadamard.hpp>
 
 #include <Eigen/Cholesky>
 
@@ -24,7 +24,7 @@ namespace lagroid::optimisation {
 /// d(X, Y)^2 = sum log^2 lambda_i; of nearby matrices those of X^-1 (Y - X), which do not cancel.
 ///
 /// The factor L of the last X is kept: what is asked at one point, one after another, factorises once.
-class PositiveDefinite final : public Manifold {
+class PositiveDefinite final : public HadamardManifold {
  public:
   /// Throws std::invalid_argument for n < 1.
   explicit PositiveDefinite(Eigen::Index n);
@@ -41,27 +41,21 @@ class PositiveDefinite final : public Manifold {
   bool nearest(Point& x) const override;
   void project(const Point& x, Vector& v) const override;
 
-  bool has_own_metric() const override { return true; }
   double inner(const Point& x, const Vector& u, const Vector& v) const override;
   /// X sym(G) X.
   void gradient(const Point& x, Vector& differential) const override;
   void differential(const Point& x, Vector& gradient) const override;
-  /// The parallel one.
-  void transport(const Point& from, const Point& to, Vector& v) const override { parallel_transport(from, to, v); }
 
-  /// exponential, at every point and of every vector.
-  bool offers(ManifoldRetraction retraction) const override { return retraction == ManifoldRetraction::exponential; }
-  bool retract(ManifoldRetraction retraction, const Point& x, const Vector& v, Point& to) const override;
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   /// E V E^T, E = (Y X^-1)^(1/2) = L (L^-1 Y L^-T)^(1/2) L^-1.
   bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
   /// X sym(h) X + sym(V sym(G) X).
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 1 ? -0.5 : 0; }
-  double diameter() const override { return std::numeric_limits<double>::infinity(); }
-  bool is_hadamard() const override { return true; }
 
  private:
+  bool exponential(const Point& x, const Vector& v, Point& to) const override;
+
   using Matrix = Eigen::MatrixXd;
 
   bool factorise(const Point& x) const;
