@@ -1,3 +1,4 @@
+#include <lagroid/solvers/learning/functions/compiled_sizes.hpp>
 #include <lagroid/solvers/learning/functions/network.hpp>
 #include <lagroid/solvers/learning/hamiltonians/hamiltonian_model.hpp>
 
@@ -12,12 +13,9 @@ extern template class FieldModel<HamiltonianFields<Network, Eigen::Dynamic>>;
 std::unique_ptr<Model> network_hamiltonian(int coordinates, std::vector<int> hidden, Dissipation dissipation) {
   const std::string name = hidden.empty() ? "network" : fmt::format("network:{}", fmt::join(hidden, ","));
   Network h(2 * coordinates, std::move(hidden));
-  const auto made = [&]<int N>() -> std::unique_ptr<Model> {
+  return of_compiled_size(coordinates, [&]<int N>() -> std::unique_ptr<Model> {
     return std::make_unique<HamiltonianModel<Network, N>>(name, std::move(h), coordinates, dissipation);
-  };
-  if (coordinates == 1) return made.operator()<1>();
-  if (coordinates == 2) return made.operator()<2>();
-  return made.operator()<Eigen::Dynamic>();
+  });
 }
 
 }  // namespace lagroid::learning

@@ -1,3 +1,4 @@
+#include <lagroid/solvers/learning/functions/compiled_sizes.hpp>
 #include <lagroid/solvers/learning/parametric_model.hpp>
 #include <lagroid/solvers/learning/potentials/network_potential.hpp>
 
@@ -17,12 +18,9 @@ extern template class ParametricModel<NetworkPotential, Eigen::Dynamic>;
 std::unique_ptr<Model> network_model(int bodies, std::vector<int> hidden, Dissipation dissipation) {
   const std::string name = hidden.empty() ? "network" : fmt::format("network:{}", fmt::join(hidden, ","));
   NetworkPotential potential(bodies, std::move(hidden));
-  const auto made = [&]<int K>() -> std::unique_ptr<Model> {
+  return of_compiled_size(bodies, [&]<int K>() -> std::unique_ptr<Model> {
     return std::make_unique<ParametricModel<NetworkPotential, K>>(name, std::move(potential), bodies, dissipation);
-  };
-  if (bodies == 1) return made.operator()<1>();
-  if (bodies == 2) return made.operator()<2>();
-  return made.operator()<Eigen::Dynamic>();
+  });
 }
 
 }  // namespace lagroid::learning

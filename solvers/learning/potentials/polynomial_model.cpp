@@ -1,3 +1,4 @@
+#include <lagroid/solvers/learning/functions/compiled_sizes.hpp>
 #include <lagroid/solvers/learning/parametric_model.hpp>
 #include <lagroid/solvers/learning/potentials/polynomial_potential.hpp>
 
@@ -15,12 +16,9 @@ extern template class ParametricModel<PolynomialPotential, Eigen::Dynamic>;
 std::unique_ptr<Model> polynomial_model(int bodies, int degree, Dissipation dissipation) {
   const std::string name = fmt::format("polynomial:{}", degree);
   PolynomialPotential potential(bodies, degree);
-  const auto made = [&]<int K>() -> std::unique_ptr<Model> {
+  return of_compiled_size(bodies, [&]<int K>() -> std::unique_ptr<Model> {
     return std::make_unique<ParametricModel<PolynomialPotential, K>>(name, std::move(potential), bodies, dissipation);
-  };
-  if (bodies == 1) return made.operator()<1>();
-  if (bodies == 2) return made.operator()<2>();
-  return made.operator()<Eigen::Dynamic>();
+  });
 }
 
 }  // namespace lagroid::learning
