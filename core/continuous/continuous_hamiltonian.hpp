@@ -28,27 +28,21 @@ namespace lagroid {
 
 namespace detail {
 
-/// The x in R^N where f is stationary, from zero. f is a function over SecondJet<double, N>, and terms(i) the size of
-/// what cancels in its slope i beside second derivatives times x.
-template <int N, class F, class Terms> Root<N> stationary_point(const F& f, const Terms& terms) {
-  using J = SecondJet<double, N>;
-  const auto at = [&](const Vector<double, N>& x) {
-    Vector<J, N> seeded;
-    for (int i = 0; i < N; ++i) seeded(i) = J::variable(x(i), i);
-    const J value = f(seeded);
-    EquationsAt<N> out;
-    for (int i = 0; i < N; ++i) {
-      double size = std::abs(terms(i));
-      for (int j = 0; j < N; ++j) {
-        out.jacobian(i, j) = value.hessian(i, j);
-        size += std::abs(value.hessian(i, j) * x(j));
-      }
-      out.value(i) = value.gradient(i);
-      out.measure(i, size);
+/// That a function is stationary in its variables `First`, ..., First + N - 1, of the numbers x; terms(i) is the size
+/// of what cancels in slope i beside second derivatives times x.
+template <int First, int N, class J>
+EquationsAt<N> stationary_in(const J& value, const Vector<double, N>& x, const Vector<double, N>& terms) {
+  EquationsAt<N> out;
+  for (int i = 0; i < N; ++i) {
+    double size = std::abs(terms(i));
+    for (int j = 0; j < N; ++j) {
+      out.jacobian(i, j) = value.hessian(First + i, First + j);
+      size += std::abs(out.jacobian(i, j) * x(j));
     }
-    return out;
-  };
-  return newton_iteration<N>(at, Vector<double, N>(Vector<double, N>::Zero()));
+    out.value(i) = value.gradient(First + i);
+    out.measure(i, size);
+  }
+  return out;
 }
 
 /// The plain numbers of a vector.
@@ -71,8 +65,12 @@ S fibre_transform(const G& groupoid, const F& f, const Q& q, const Vector<S, N>&
   const auto place = groupoid.template object_at<double>(numbers_of(groupoid.coordinates_of_object(q)));
   const auto fixed = groupoid.template cast_object<J>(place);
   const Vector<double, N> numbers = numbers_of(y);
-  const Root<N> root = stationary_point<N>([&](const Vector<J, N>& x) { return paired(fixed, x, numbers); },
-                                           [&](int i) { return numbers(i); });
+  const auto equations = [&](const Vector<double, N>& x) {
+    Vector<J, N> seeded;
+    for (int i = 0; i < N; ++i) seeded(i) = J::variable(x(i), i);
+    return stationary_in<0, N>(paired(fixed, seeded, numbers), x, numbers);
+  };
+  const Root<N> root = newton_iteration<N>(equations, Vector<double, N>(Vector<double, N>::Zero()));
   const auto from = groupoid.template cast_object<D>(q);
   const auto with = constants<D>(y);
   // An error e of x is one of e^2 in the value.

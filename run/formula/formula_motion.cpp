@@ -61,7 +61,7 @@ void FormulaNode::read(std::size_t field, double* row) const {
     copy(tangent_.velocity);
   } else if (field == 2) {
     copy(tangent_.momentum);
-  } else if (fields_[field].columns.name == "constraint_residual") {
+  } else if (system_.constraint_count() > 0 && field + 1 == fields_.size()) {
     *row = residual_;
   } else {
     measure(field - 3, row);
@@ -199,11 +199,13 @@ Changeable FormulaMotion::changeable() const {
   return out;
 }
 
-std::vector<std::pair<std::string, double>> FormulaMotion::set(const std::vector<ParameterValue>& parameters) {
-  const std::vector<std::pair<std::string, double>> before = system_->parameters();
-  for (const ParameterValue& each : parameters) system_->set_parameter(each.name, each.value);
-  return before;
+namespace {
+
+void set(FormulaSystem& system, const std::vector<ParameterValue>& parameters) {
+  for (const ParameterValue& each : parameters) system.set_parameter(each.name, each.value);
 }
+
+}  // namespace
 
 SizedState FormulaMotion::kicked(const MotionChange& change) const {
   SizedState out = inside_;
@@ -240,7 +242,7 @@ std::string FormulaMotion::refused(double share, const MotionChange& change) {
     if (!std::isfinite(each.value)) return fmt::format("{} becomes {:g}, and is to be finite", each.name, each.value);
   if (change.parameters.empty()) return "";
   const std::unique_ptr<FormulaSystem> after = system_->clone();
-  for (const ParameterValue& each : change.parameters) after->set_parameter(each.name, each.value);
+  set(*after, change.parameters);
   return refused_by(*after, kept_time_ + share * rest_ * size_);
 }
 
@@ -249,7 +251,8 @@ StepReport FormulaMotion::change_within(double share, const MotionChange& change
   kept_ = kicked(change);
   kept_time_ += share * rest_ * size_;
   rest_ *= 1 - share;
-  const auto before = set(change.parameters);
+  const std::vector<std::pair<std::string, double>> before = system_->parameters();
+  set(*system_, change.parameters);
   const StepReport report = go_within(1);
   if (report.converged()) {
     state_ = inside_;

@@ -13,7 +13,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -90,8 +89,6 @@ class FormulaMotion final : public Motion {
   /// Why a motion that is inside of its step cannot go on as that of another system; empty where it can.
   std::string refused_by(const FormulaSystem& after, double t) const;
   SizedState kicked(const MotionChange& change) const;
-  /// Sets parameters; returns what they were.
-  std::vector<std::pair<std::string, double>> set(const std::vector<ParameterValue>& parameters);
 
   std::string name_;
   std::unique_ptr<FormulaSystem> system_;

@@ -36,7 +36,6 @@
 #include <lagroid/solvers/methods/method.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 
 namespace lagroid {
@@ -240,17 +239,7 @@ struct HamiltonianTaylor : DiscretisedLagrangian<HamiltonianTaylor<H, R, Kind, R
       arrival = taylor.template arrival<J>(q, time, p);
       value = arrival.action;
       for (int i = 0; i < n; ++i) value += arrival.momentum(i) * (x(i) - arrival.place(i));
-      detail::EquationsAt<n> out;
-      for (int i = 0; i < n; ++i) {
-        double terms = std::abs(x(i));
-        for (int j = 0; j < n; ++j) {
-          out.jacobian(i, j) = value.hessian(Given + i, Given + j);
-          terms += std::abs(out.jacobian(i, j) * momentum(j));
-        }
-        out.value(i) = value.gradient(Given + i);
-        out.measure(i, terms);
-      }
-      return out;
+      return detail::stationary_in<Given, n>(value, momentum, x);
     };
     const auto root = detail::newton_iteration<n>(evaluate, Vector<double, n>(Vector<double, n>::Zero()));
     evaluate(root.x);
