@@ -24,6 +24,7 @@
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/run/events/function_watch.hpp>
+#include <lagroid/solvers/sensitivity/growth/growth.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 
 #include <algorithm>
@@ -335,7 +336,9 @@ template <DiscreteSystem Sys> class EventPropagation {
 
   void move_base(const Linearised& step, const Point& to, const Eigen::RowVectorXd& time_by) {
     directions_ = step.end;
-    out_.growth = std::max(out_.growth, directions_.topLeftCorner(2 * n, 2 * n).colwise().norm().maxCoeff());
+    const Eigen::MatrixXd by_start = directions_.topLeftCorner(2 * n, 2 * n);
+    growth_.after_a_step(by_start);
+    if (growth_.wants_matrix()) growth_.see(by_start);
     base_ = to;
     time_by_ = time_by;
   }
@@ -355,6 +358,7 @@ template <DiscreteSystem Sys> class EventPropagation {
   }
 
   void finish() {
+    out_.growth = growth_.largest();
     if (is_kicked_at_node_ && !out_.is_stopped)
       return fail(SolveStatus::singular, "the end is the time of a kick, where it has no derivative");
     if (observed_node_ < 0) observe_end();
@@ -375,8 +379,9 @@ template <DiscreteSystem Sys> class EventPropagation {
   std::vector<const double*> members_;  ///< and the step's size, and its start
   int count_;                           ///< directions: (v, mu, theta)
   Eigen::MatrixXd directions_;          ///< at the base
-  Eigen::RowVectorXd time_by_;          ///< of the base's time
-  Point base_;                          ///< from which the rest of the step is made
+  Growth growth_{Eigen::MatrixXd::Identity(2 * n, 2 * n)};
+  Eigen::RowVectorXd time_by_;  ///< of the base's time
+  Point base_;                  ///< from which the rest of the step is made
   std::vector<FunctionWatch> watches_;
   std::vector<long> happened_;
   EventSensitivities out_;

@@ -1,3 +1,4 @@
+#include <lagroid/solvers/sensitivity/growth/growth.hpp>
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 
 #include <fmt/format.h>
@@ -79,29 +80,12 @@ double duration_of(LinearisedMotion& motion, long steps, const Observed& observe
   return double(steps) * step;
 }
 
-/// By which factor directions have grown: those of the start from their size there; those of parameters, which are zero
-/// there, beyond what each step adds as the first one did.
-class Growth {
- public:
-  explicit Growth(const Eigen::MatrixXd& states) : first_(states.colwise().norm()), steps_(0) {
-    added_ = first_.array() == 0;
-  }
-  double after_a_step(const Eigen::MatrixXd& states) {
-    ++steps_;
-    double largest = 0;
-    for (Eigen::Index j = 0; j < states.cols(); ++j) {
-      const double size = states.col(j).norm();
-      if (first_(j) == 0) first_(j) = size / double(steps_);
-      if (first_(j) > 0) largest = std::max(largest, size / (added_(j) ? double(steps_) * first_(j) : first_(j)));
-    }
-    return largest;
-  }
-
- private:
-  Eigen::RowVectorXd first_;
-  Eigen::Array<bool, 1, Eigen::Dynamic> added_;
-  long steps_;
-};
+/// Of the states alone: what a small change of them becomes in the last step.
+Eigen::MatrixXd matrix_of_the_step(const LinearisedMotion& motion) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Identity(motion.states() + motion.parameters(), motion.states());
+  for (int stage = 0; stage < motion.stages(); ++stage) out = motion.stage(stage).forward(out);
+  return out.topRows(motion.states());
+}
 
 /// The motion in reverse, from states kept on the way.
 class Reversal {
@@ -143,9 +127,21 @@ class Reversal {
     }
     out_.values += weight * here.values;
     gradients_ += weight * here.derivatives.transpose();
-    first_ = std::max(first_, gradients_.topRows(motion_.states()).norm());
+    const Eigen::MatrixXd states = gradients_.topRows(motion_.states()).cwiseAbs();
+    first_ = first_.size() == 0 ? states : first_.cwiseMax(states).eval();
+    if (peak_.size() == 0) peak_ = first_;
   }
   const Eigen::MatrixXd& gradients() const { return gradients_; }
+  /// By which factor, in units of the motion's own: gradients are measured in their inverses.
+  double growth() const {
+    const Eigen::VectorXd units = units_.of(first_.rows());
+    double largest = 1;
+    for (Eigen::Index j = 0; j < first_.cols(); ++j) {
+      const double before = first_.col(j).cwiseProduct(units).norm();
+      if (before > 0) largest = std::max(largest, peak_.col(j).cwiseProduct(units).norm() / before);
+    }
+    return largest;
+  }
 
  private:
   bool step(long from) {
@@ -153,7 +149,8 @@ class Reversal {
     observe(from + 1);
     if (gradients_.size() == 0) return true;
     for (int k = motion_.stages(); k-- > 0;) gradients_ = motion_.stage(k).backward(gradients_);
-    if (first_ > 0) out_.growth = std::max(out_.growth, gradients_.topRows(motion_.states()).norm() / first_);
+    peak_ = peak_.cwiseMax(gradients_.topRows(motion_.states()).cwiseAbs());
+    if (units_.wants_matrix()) units_.see(matrix_of_the_step(motion_));
     return true;
   }
 
@@ -163,8 +160,10 @@ class Reversal {
   double duration_;
   Propagated& out_;
   long kept_ = 1;
-  double first_ = 0;
   Eigen::MatrixXd gradients_;
+  Eigen::MatrixXd first_;  ///< the largest that they were where something was observed, entry by entry
+  Eigen::MatrixXd peak_;   ///< and anywhere
+  OwnUnits units_;
 };
 
 }  // namespace
@@ -199,12 +198,13 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   };
   if (!out.converged()) return out;
   observe(0);
-  for (long k = 0; k < steps; ++k) {
-    if (!advance_linearised(motion, out)) return out;
+  for (long k = 0; k < steps && advance_linearised(motion, out); ++k) {
     for (int stage = 0; stage < motion.stages(); ++stage) out.end = motion.stage(stage).forward(out.end);
-    out.growth = std::max(out.growth, growth.after_a_step(out.end.topRows(states)));
+    growth.after_a_step(out.end.topRows(states));
+    if (growth.wants_matrix()) growth.see(matrix_of_the_step(motion));
     observe(k + 1);
   }
+  out.growth = growth.largest();
   return out;
 }
 
@@ -220,6 +220,7 @@ Propagated propagate_backward(LinearisedMotion& motion, long steps, const Observ
   if (steps > 0 && !reversal.reverse(0, steps, start, std::max(0L, budget.states - 1))) return out;
   motion.restore(start);
   reversal.observe(0);
+  out.growth = reversal.growth();
   out.derivatives = reversal.gradients().transpose();
   return out;
 }

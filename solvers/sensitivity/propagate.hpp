@@ -47,8 +47,7 @@ struct Propagated {
   /// each function.
   Eigen::MatrixXd derivatives;
   Eigen::MatrixXd end;    ///< forward: the directions at the end, states and below them parameters
-  double growth = 1;      ///< the largest factor, on the way, by which derivatives grew; those by parameters beyond
-                          ///< what each step adds
+  double growth = 1;      ///< the largest factor, on the way, by which derivatives grew (growth/growth.hpp)
   long steps_solved = 0;  ///< in all, those computed again too
   long states_kept = 0;   ///< at most, at a time
 

@@ -1,37 +1,11 @@
 #include <lagroid/core/matrices/decompositions.hpp>
-#include <lagroid/systems/optimisation/operators.hpp>
-
-#include <Spectra/SymEigsSolver.h>
+#include <lagroid/systems/optimisation/extreme_eigenvalues.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
 
 namespace lagroid::optimisation {
 
 namespace {
-
-/// (A - shift) / scale as Spectra wants it.
-class Scaled {
- public:
-  using Scalar = double;
-  Scaled(const SymmetricOperator& a, double shift, double scale) : a_(a), shift_(shift), scale_(scale) {}
-
-  Eigen::Index rows() const { return a_.size; }
-  Eigen::Index cols() const { return a_.size; }
-  void perform_op(const double* in, double* out) const {
-    const Eigen::Map<const Eigen::MatrixXd> x(in, a_.size, 1);
-    Eigen::Map<Eigen::MatrixXd> y(out, a_.size, 1);
-    a_.apply(x, y);
-    y = (y - shift_ * x) / scale_;
-  }
-
- private:
-  const SymmetricOperator& a_;
-  double shift_;
-  double scale_;
-};
 
 /// The size of Lanczos' basis, below which there is nothing to iterate.
 constexpr Eigen::Index small = 24;
@@ -42,33 +16,6 @@ Eigen::VectorXd dense_eigenvalues(const SymmetricOperator& a) {
   return symmetric_eigenvalues(matrix);
 }
 
-/// A Rayleigh quotient and the residual that goes with it, of a vector that is orthogonal to nothing in particular.
-std::pair<double, double> shift_and_scale(const SymmetricOperator& a) {
-  Eigen::MatrixXd v(a.size, 1);
-  for (Eigen::Index i = 0; i < a.size; ++i)
-    v(i) = std::sin(1.3 * double(i + 1)) + 0.5 * std::cos(0.37 * double(i) * double(i));
-  v.normalize();
-  Eigen::MatrixXd w(a.size, 1);
-  a.apply(v, w);
-  const double shift = v.col(0).dot(w.col(0));
-  return {shift, (w - shift * v).stableNorm()};
-}
-
-/// The `count` eigenvalues that `rule` names, of A shifted and scaled back, decreasing.
-Eigen::VectorXd extreme(const SymmetricOperator& a, Spectra::SortRule rule, Eigen::Index count, Eigen::Index basis,
-                        double tolerance) {
-  constexpr Eigen::Index restarts = 3000;
-  const auto [shift, scale] = shift_and_scale(a);
-  if (!std::isfinite(scale)) return Eigen::VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
-  if (scale <= 1e-14 * std::abs(shift)) return Eigen::VectorXd::Constant(count, shift);
-  Scaled op(a, shift, scale);
-  Spectra::SymEigsSolver<Scaled> solver(op, count, std::min(a.size, basis));
-  solver.init();
-  if (solver.compute(rule, restarts, tolerance, Spectra::SortRule::LargestAlge) < count)
-    throw std::runtime_error("the ends of the spectrum were not found; is the matrix symmetric?");
-  return (scale * solver.eigenvalues()).array() + shift;
-}
-
 }  // namespace
 
 std::pair<double, double> spectrum(const SymmetricOperator& a) {
@@ -77,7 +24,7 @@ std::pair<double, double> spectrum(const SymmetricOperator& a) {
     return {all(0), all(a.size - 1)};
   }
   constexpr double tolerance = 1e-4;
-  const Eigen::VectorXd ends = extreme(a, Spectra::SortRule::BothEnds, 2, small, tolerance);
+  const Eigen::VectorXd ends = extreme_eigenvalues(a, SpectrumEnd::both, 2, small, tolerance);
   const double margin = tolerance * (ends(0) - ends(1));
   return {ends(1) - margin, ends(0) + margin};
 }
@@ -86,7 +33,7 @@ Eigen::VectorXd smallest_eigenvalues(const SymmetricOperator& a, Eigen::Index co
   constexpr Eigen::Index cheap = 500;  // a second, and two digits more than Lanczos' iteration gives
   if (a.size <= std::max(cheap, 2 * count)) return dense_eigenvalues(a).head(count);
   constexpr double tolerance = 1e-14;
-  return extreme(a, Spectra::SortRule::SmallestAlge, count, std::max(small, 4 * count), tolerance).reverse();
+  return extreme_eigenvalues(a, SpectrumEnd::smallest, count, std::max(small, 4 * count), tolerance).reverse();
 }
 
 }  // namespace lagroid::optimisation

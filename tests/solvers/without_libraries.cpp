@@ -1,11 +1,13 @@
-// What a build without Ceres and TBB says where they are asked for, and that the rest is there: made of the files that
-// stand in their place (CMakeLists.txt), and linked to neither.
+// What a build without Ceres, TBB, Boost and Spectra says where they are asked for, and that the rest is there: made of
+// the files that stand in their place (CMakeLists.txt), and linked to none.
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/train.hpp>
 #include <lagroid/solvers/missing_library.hpp>
 #include <lagroid/solvers/newton/ceres_lie.hpp>
 #include <lagroid/solvers/step/step_methods.hpp>
+#include <lagroid/systems/optimisation/extreme_eigenvalues.hpp>
+#include <lagroid/systems/reference.hpp>
 
 #include <gtest/gtest.h>
 
@@ -39,6 +41,11 @@ TEST(WithoutLibraries, NameThemAndTheRemedy) {
       "build it again");
   EXPECT_NE(told([] { detail::minimise_by_ceres({}, {}, 1); }).find("install libceres-dev"), std::string::npos);
   EXPECT_NE(told([] { for_each_task(3, 2, [](long) {}); }).find("install libtbb-dev"), std::string::npos);
+  EXPECT_NE(told([] { integrate_reference({}, {}, 1.0); }).find("install libboost-dev"), std::string::npos);
+  EXPECT_NE(told([] {
+              optimisation::extreme_eigenvalues({}, optimisation::SpectrumEnd::both, 2, 24, 1e-4);
+            }).find("install libspectra-dev"),
+            std::string::npos);
 }
 
 TEST(WithoutLibraries, StepsAndTasksAreThere) {

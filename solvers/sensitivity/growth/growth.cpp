@@ -1,0 +1,63 @@
+#include <lagroid/solvers/sensitivity/growth/growth.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lagroid {
+
+void OwnUnits::see(const Eigen::MatrixXd& matrix) {
+  if (!matrix.allFinite()) return;
+  if (seen_++ == 0) sum_ = Eigen::MatrixXd::Zero(matrix.rows(), matrix.cols());
+  sum_ += (matrix - Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols())).cwiseAbs();
+}
+
+Eigen::VectorXd OwnUnits::of(Eigen::Index components) const {
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(components);
+  if (seen_ == 0) return units;
+  // What acts one way alone acts back by so little that all steps together count once.
+  Eigen::MatrixXd coupling = sum_ / double(seen_);
+  const double back = 1 / (double(asked_) * double(asked_));
+  for (Eigen::Index i = 0; i < components; ++i)
+    for (Eigen::Index j = 0; j < components; ++j)
+      if (sum_(j, i) > 0) coupling(i, j) += back * double(seen_) / sum_(j, i);
+  coupling.diagonal().setZero();
+  constexpr int most_sweeps = 200;
+  constexpr double settled = 1e-3;
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    double change = 0;
+    for (Eigen::Index i = 0; i < components; ++i) {
+      const double row = coupling.row(i).dot(units) / units(i);
+      const double column = coupling.col(i).dot(units.cwiseInverse()) * units(i);
+      const double factor = std::sqrt(row / column);
+      if (!(factor > 0 && std::isfinite(factor))) continue;
+      units(i) *= factor;
+      change = std::max(change, std::abs(std::log(factor)));
+    }
+    if (change < settled) break;
+  }
+  return units;
+}
+
+Growth::Growth(const Eigen::MatrixXd& directions)
+    : first_(directions.cwiseAbs()), peak_(first_), added_(first_.colwise().maxCoeff().array() == 0) {}
+
+void Growth::after_a_step(const Eigen::MatrixXd& directions) {
+  ++steps_;
+  for (Eigen::Index j = 0; j < directions.cols(); ++j) {
+    const double steps = added_(j) ? double(steps_) : 1;
+    if (first_.col(j).maxCoeff() == 0) first_.col(j) = directions.col(j).cwiseAbs() / steps;
+    peak_.col(j) = peak_.col(j).cwiseMax(directions.col(j).cwiseAbs() / steps);
+  }
+}
+
+double Growth::largest() const {
+  const Eigen::VectorXd scale = units_.of(first_.rows()).cwiseInverse();
+  double largest = 1;
+  for (Eigen::Index j = 0; j < first_.cols(); ++j) {
+    const double before = first_.col(j).cwiseProduct(scale).norm();
+    if (before > 0) largest = std::max(largest, peak_.col(j).cwiseProduct(scale).norm() / before);
+  }
+  return largest;
+}
+
+}  // namespace lagroid
