@@ -129,6 +129,14 @@ struct ConstantStep {
   template <class Base, class A> double operator()(const Base&, const A&) const { return h; }
 };
 
+/// h(g) = epsilon sigma(g), of a system with a `time_scale` of its arrows (HasTimeScaleOfArrows).
+struct TimeScaleStep {
+  double epsilon = 0;
+  template <class Base, class A> auto operator()(const Base& base, const A& g) const {
+    return base.time_scale(g) * epsilon;
+  }
+};
+
 /// Fixed step ([G] Example 6.2). Its constraint does not depend on g, so the equations on G decouple and are those of
 /// `base` at the times t_k = t_0 + k h: nothing but the multiplier, the change of p_t in a step, is gained by solving
 /// the extended system. The integrator solves the other.

@@ -33,15 +33,16 @@ template <DiscreteSystem Sys> struct FoundPaths : MultistartEffort {
 };
 
 /// [time] mode of a boundary value: equal steps; adaptive ones, which are part of the path, where the system is known
-/// for every step; controlled ones, in proportion to a time scale of its arrows, where it has one.
+/// for every step; prescribed ones, in proportion to a time scale of its arrows, where it has one.
 template <DiscreteSystem Sys> TimeMode read_boundary_mode(const Section& scene) {
   static_assert(time_scale_of_arrows_fits<Sys>,
                 "time_scale(g) is there but does not fit: a const template of an arrow's scalar, which returns it, of "
                 "a system that takes the step as an argument (see HasTimeScaleOfArrows)");
   const auto word = [](TimeMode mode) { return std::string(integration_method({.mode = mode}).name); };
   const std::string chosen = read_key(scene.section_or_empty("time"), time_keys::boundary_mode(boundary_modes<Sys>()));
-  for (const TimeMode mode : {TimeMode::adaptive, TimeMode::controlled})
+  for (const TimeMode mode : {TimeMode::adaptive, TimeMode::prescribed})
     if (chosen == word(mode)) return mode;
+  if (chosen == word(TimeMode::controlled)) return TimeMode::prescribed;  // the word for it until 0.4
   return TimeMode::fixed;
 }
 

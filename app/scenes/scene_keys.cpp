@@ -21,17 +21,20 @@ KeyOf<OneOf> composition(std::span<const Composition> offered, std::string_view 
 
 KeyOf<OneOf> mode(std::vector<std::string> words) {
   std::string first = words.front();
-  return {"mode",
-          {std::move(words)},
-          "",
-          "equal steps; steps that keep the discrete energy; steps in proportion to the system's time scale; explicit "
-          "ones of a time that follows the attraction",
-          std::move(first)};
+  return {
+      "mode",
+      {std::move(words)},
+      "",
+      "equal steps; steps that keep the discrete energy; steps in proportion to the system's time scale; steps that "
+      "are a function of the arrow; explicit ones of a time that follows the attraction",
+      std::move(first)};
 }
 
 KeyOf<OneOf> boundary_mode(std::vector<std::string> words) {
   KeyOf<OneOf> key = mode(std::move(words));
-  key.meaning = "equal steps; steps that are part of the path, the end time given; steps by a time scale of the arrows";
+  key.meaning =
+      "equal steps; steps that are part of the path, the end time given; steps by a time scale of the "
+      "arrows, which until 0.4 are \"controlled\" as well";
   return key;
 }
 

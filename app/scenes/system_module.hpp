@@ -57,7 +57,10 @@ template <DiscreteSystem Sys> std::vector<std::string> boundary_modes() {
   std::vector<std::string> modes{std::string(mode_of_equal_steps)};
   const auto add = [&](TimeMode mode) { modes.emplace_back(integration_method({.mode = mode}).name); };
   if (Timed<Sys>) add(TimeMode::adaptive);
-  if (HasTimeScaleOfArrows<Sys>) add(TimeMode::controlled);
+  if (HasTimeScaleOfArrows<Sys>) {
+    add(TimeMode::prescribed);
+    add(TimeMode::controlled);  // the word for it until 0.4
+  }
   return modes;
 }
 /// With what the system's type says of time and of its reductions.

@@ -42,6 +42,8 @@ template <DiscreteSystem Sys> std::vector<Quantity<Sys>> watched(const Sys& syst
     if (options.mode == TimeMode::adaptive) {
       const bool kept = options.without_root == WithoutRoot::stop;
       all.push_back(discrete_energy_quantity(system, kept ? Promise::conserved : Promise::bounded));
+    } else if (options.mode == TimeMode::prescribed) {
+      all.push_back(discrete_energy_quantity(system, Promise::bounded));  // its drift is the steps' multiplier
     } else if (equal && std::none_of(all.begin(), all.end(), energy)) {
       all.push_back(discrete_energy_quantity(system, Promise::bounded));
     }
@@ -55,7 +57,7 @@ template <DiscreteSystem Sys> Presentation<Sys> with_step_sizes(Presentation<Sys
   p.extras.push_back({{"step_size", {"h"}, "s", "step size of the arrow", true, {}},
                       [](const TrajectoryPoint<Sys>& point, double* out) { *out = point.step_size; }});
   p.panels.push_back({"step size", "t", "h", "t", {"h"}});
-  if (options.mode == TimeMode::adaptive && !TimeDependent<Sys>)
+  if ((options.mode == TimeMode::adaptive || options.mode == TimeMode::prescribed) && !TimeDependent<Sys>)
     p.panels.push_back({"discrete energy error", "t", "|E_d - first|", "t", {"drift discrete energy E_d"}});
   return p;
 }

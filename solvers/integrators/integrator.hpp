@@ -28,6 +28,7 @@ enum class TimeMode {
   fixed,        ///< by equal steps, each perhaps composed of several (CompositionIntegrator)
   adaptive,     ///< by steps that keep the discrete energy (AdaptiveIntegrator)
   controlled,   ///< by steps in proportion to the system's time scale, reversibly (ControlledIntegrator)
+  prescribed,   ///< by steps that are a function of the arrow, h(g) (PrescribedIntegrator)
   transformed,  ///< by explicit steps that are equal in another time, composed (TransformedIntegrator)
 };
 
@@ -102,10 +103,10 @@ template <DiscreteSystem Sys> struct Integrators;
 }  // namespace detail
 
 /// An integrator from a state; `system.h` is the step, or the first. Requires a Timed system for any mode but fixed,
-/// and one with a time scale for controlled steps, a SplitSystem for splitting and extrapolation, an AttractiveSystem
-/// for a transformed time, one that HasRates for Runge-Kutta steps and a variational one with a step `h` for orders
-/// above two (throws std::invalid_argument). Include `integrator_methods.hpp` for a system of your own; those of
-/// `systems/` are compiled.
+/// one with a time scale for controlled steps and with one of its arrows for prescribed steps, a SplitSystem for
+/// splitting and extrapolation, an AttractiveSystem for a transformed time, one that HasRates for Runge-Kutta steps and
+/// a variational one with a step `h` for orders above two (throws std::invalid_argument). Include
+/// `integrator_methods.hpp` for a system of your own; those of `systems/` are compiled.
 template <DiscreteSystem Sys>
 std::unique_ptr<Integrator<Sys>> make_integrator(const Sys& system, const State<typename Sys::GroupoidType>& initial,
                                                  const ArrowOf<typename Sys::GroupoidType>& configuration,

@@ -10,6 +10,7 @@
 #include <lagroid/solvers/integrators/runge_kutta.hpp>
 #include <lagroid/solvers/integrators/splitting.hpp>
 #include <lagroid/solvers/integrators/step_control.hpp>
+#include <lagroid/solvers/integrators/times/prescribed.hpp>
 #include <lagroid/solvers/integrators/transformed.hpp>
 #include <lagroid/solvers/methods/methods.hpp>
 #include <lagroid/solvers/step/step_methods.hpp>
@@ -40,6 +41,11 @@ template <DiscreteSystem Sys> struct detail::Integrators {
         if (options.mode == TimeMode::controlled)
           return std::make_unique<IntegratorOf<Sys, ControlledIntegrator<Sys>>>(system, initial, configuration,
                                                                                 solver());
+      if constexpr (HasTimeScaleOfArrows<Sys>)
+        if (options.mode == TimeMode::prescribed)
+          return std::make_unique<IntegratorOf<Sys, PrescribedIntegrator<Sys>>>(
+              system, initial, configuration, solver(),
+              make_step_solver(PrescribedStep<Sys, TimeScaleStep>(system, {}), options.method, options.step));
     }
     if constexpr (AttractiveSystem<Sys>)
       if (options.mode == TimeMode::transformed)

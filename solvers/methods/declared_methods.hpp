@@ -28,6 +28,7 @@ struct Capabilities {
   bool has_step = false;  ///< h, which can be changed
   bool timed = false;     ///< a variational system that is known for every step size
   bool time_scale = false;
+  bool time_scale_of_arrows = false;
   bool rates = false;
   bool attractive = false;
   std::vector<Composition> splittings = {};  ///< of its flows; empty where it has none
@@ -48,6 +49,8 @@ inline constexpr Requirement every_step{"Lagrangian for every step size", "lagra
                                         [](const Capabilities& a) { return a.timed; }};
 inline constexpr Requirement time_scale{"time scale to control steps by", "time_scale_rate(z)",
                                         [](const Capabilities& a) { return a.time_scale; }};
+inline constexpr Requirement time_scale_of_arrows{"time scale of its arrows to prescribe steps by", "time_scale(g)",
+                                                  [](const Capabilities& a) { return a.time_scale_of_arrows; }};
 inline constexpr Requirement attraction{"attraction whose energy is negative everywhere", "attractive",
                                         [](const Capabilities& a) { return a.attractive; }};
 inline constexpr Requirement flows{"explicit splitting", "flow<I>(t, q, mu)",
@@ -57,6 +60,7 @@ inline constexpr Requirement rates{"vector field written for it", "rates(z)",
 
 inline constexpr std::array of_adaptive{action, every_step};
 inline constexpr std::array of_controlled{action, every_step, time_scale};
+inline constexpr std::array of_prescribed{action, every_step, time_scale_of_arrows};
 inline constexpr std::array of_transformed{attraction};
 inline constexpr std::array of_splitting{flows};
 inline constexpr std::array of_runge_kutta{rates};
@@ -113,7 +117,7 @@ inline constexpr DeclaredMethod extrapolation_method{.name = "extrapolation",
                                                      .source = {"deuflhard1983", "orders and steps of extrapolation"}};
 
 /// In the order in which studies list them. The first is what there is by default.
-inline constexpr std::array<IntegrationMethod, 7> declared_methods{{
+inline constexpr std::array<IntegrationMethod, 8> declared_methods{{
     {{.name = "variational", .other_orders = OtherOrders::composed_steps, .implicit = true}},
     {{.name = "splitting", .other_orders = OtherOrders::composed_flows},
      TimeMode::fixed,
@@ -132,6 +136,10 @@ inline constexpr std::array<IntegrationMethod, 7> declared_methods{{
      TimeMode::controlled,
      StepKind::variational,
      requirements::of_controlled},
+    {{.name = "prescribed", .implicit = true},
+     TimeMode::prescribed,
+     StepKind::variational,
+     requirements::of_prescribed},
     {{.name = "transformed",
       .other_orders = OtherOrders::composed_steps,
       .source = {"mikkola1999", "explicit steps of a transformed time"}},

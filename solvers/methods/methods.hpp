@@ -8,6 +8,7 @@
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/capabilities/split_system.hpp>
 #include <lagroid/core/capabilities/stepped.hpp>
+#include <lagroid/core/capabilities/time_scale_of_arrows.hpp>
 #include <lagroid/solvers/integrators/splitting.hpp>
 #include <lagroid/solvers/integrators/step_control.hpp>
 #include <lagroid/solvers/integrators/transformed.hpp>
@@ -21,6 +22,7 @@ template <class Sys> Capabilities capabilities_of(const Sys& system) {
                     .has_step = HasTimeStep<Sys>,
                     .timed = Timed<Sys>,
                     .time_scale = Timed<Sys> && HasTimeScale<Sys>,
+                    .time_scale_of_arrows = HasTimeScaleOfArrows<Sys>,
                     .rates = HasRates<Sys>,
                     .attractive = AttractiveSystem<Sys>};
   if constexpr (SplitSystem<Sys>) {

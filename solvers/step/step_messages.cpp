@@ -23,6 +23,8 @@ std::string step_failure(const StepReport& report, long step, double time, TimeM
           "which masses, lengths and times are nearer one",
           where);
     case SolveStatus::no_step:
+      if (mode == TimeMode::prescribed)
+        return fmt::format("{}: the time scale of the arrow is not a positive number; use mode = \"fixed\"", where);
       return mode == TimeMode::controlled
                  ? fmt::format("{}: the motion changes too fast for steps of this size; use a smaller time.step", where)
                  : fmt::format(

@@ -101,7 +101,7 @@ TEST(BoundarySteps, ThatDoNotExistAreAnOutcome) {
 }
 
 TEST(BoundarySteps, ArePrescribedByATimeScale) {
-  const RunResult run = run_example("kepler_boundary", {"time.mode=controlled"});
+  const RunResult run = run_example("kepler_boundary", {"time.mode=prescribed"});
   ASSERT_TRUE(run.converged()) << run.message;
   EXPECT_NEAR(run.final.time, 2, 1e-13);
   const Columns* multipliers = series_of(run, "step_multiplier");

@@ -13,14 +13,6 @@
 
 namespace lagroid {
 
-/// h(g) = epsilon sigma(g).
-struct TimeScaleStep {
-  double epsilon = 0;
-  template <class Base, class A> auto operator()(const Base& base, const A& g) const {
-    return base.time_scale(g) * epsilon;
-  }
-};
-
 namespace detail {
 
 /// Newton's method on all equations of a path whose steps are prescribed.

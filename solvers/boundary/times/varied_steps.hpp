@@ -4,7 +4,7 @@
 ///     const TimedSolution<Kepler> path = solve_varied_steps(TimeMode::adaptive, kepler, boundary, equal);
 ///
 /// `equal` is a solution with equal steps (with_times of timed_path.hpp). Requires TimeMode::adaptive, or
-/// TimeMode::controlled of a system with a time scale of its arrows. Returns what solve_free_steps and
+/// TimeMode::prescribed of a system with a time scale of its arrows. Returns what solve_free_steps and
 /// solve_prescribed_steps do. Nothing throws.
 
 #include <lagroid/solvers/boundary/times/free_steps.hpp>
@@ -24,7 +24,7 @@ TimedSolution<Sys> solve_varied_steps(TimeMode mode, const Sys& system,
                                       const ArrowOf<typename Sys::GroupoidType>& boundary,
                                       const TimedSolution<Sys>& equal) {
   if constexpr (HasTimeScaleOfArrows<Sys>)
-    if (mode == TimeMode::controlled) return solve_prescribed_steps(system, boundary, equal);
+    if (mode == TimeMode::prescribed) return solve_prescribed_steps(system, boundary, equal);
   return solve_free_steps(system, boundary, equal);
 }
 

@@ -5,13 +5,13 @@
 #include <lagroid/systems/control/group_control.hpp>
 
 #include "paths.hpp"
+#include "root.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -41,27 +41,6 @@ SpinningControl control(std::size_t steps, double duration, Retraction map) {
 TimedSolution<SpinningControl> free_control(std::size_t steps, Retraction map = Retraction::exponential,
                                             double duration = 1) {
   return free_steps(control(steps, duration, map), SO3::retract(Retraction::exponential, turn), steps);
-}
-
-/// Newton's method for F(x) = 0 with a Jacobian by differences.
-template <int N>
-Vector<double, N> root(const std::function<Vector<double, N>(const Vector<double, N>&)>& f, Vector<double, N> x) {
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    const Vector<double, N> at = f(x);
-    Matrix<double, N, N> jacobian;
-    for (int i = 0; i < N; ++i) {
-      constexpr double by = 1e-6;
-      Vector<double, N> up = x;
-      Vector<double, N> down = x;
-      up(i) += by;
-      down(i) -= by;
-      jacobian.col(i) = (f(up) - f(down)) / (2 * by);
-    }
-    const Vector<double, N> change = jacobian.fullPivLu().solve(at);
-    x -= change;
-    if (change.norm() < 1e-13 * (1 + x.norm())) break;
-  }
-  return x;
 }
 
 /// Transcription of the same problem that shares nothing with the library: unit quaternions by the implicit midpoint
@@ -116,19 +95,23 @@ struct Transcription {
 
 // Against forty times as many nodes and more, extrapolated.
 TEST(FreeSteps, CostAndEnergyAreThoseOfAnIndependentTranscriptionToOrderTwo) {
-  const Vector<double, 2> coarse = Transcription::solve(400);
-  const Vector<double, 2> fine = Transcription::solve(1600);
-  const Vector<double, 2> exact = fine + (fine - coarse) / 15;
-  ASSERT_LT((fine - coarse).norm(), 1e-4);
+  std::vector<Vector<double, 2>> transcribed;
+  for (const int count : {400, 800, 1600}) transcribed.push_back(Transcription::solve(count));
+  const Vector<double, 2> exact = extrapolated(transcribed);
+  ASSERT_LT((transcribed[2] - transcribed[0]).norm(), 1e-4);
   for (const auto map : {Retraction::exponential, Retraction::cayley}) {
+    std::vector<Vector<double, 2>> found;
     std::vector<Vector<double, 2>> errors;
-    for (const std::size_t steps : {10, 20, 40}) {
+    for (const std::size_t steps : {10, 20, 40, 80, 160}) {
       const auto path = free_control(steps, map);
       ASSERT_TRUE(path.converged()) << path.message;
-      errors.push_back((Vector<double, 2>(path.cost, path.energy) - exact).cwiseAbs());
+      found.emplace_back(path.cost, path.energy);
+      errors.push_back((found.back() - exact).cwiseAbs());
     }
+    const Vector<double, 2> limit = extrapolated(found);
     for (int i = 0; i < 2; ++i) {
       EXPECT_LT(errors[2](i), 3e-3);
+      EXPECT_NEAR(limit(i), exact(i), 1e-10);
       EXPECT_NEAR(std::log2(errors[0](i) / errors[1](i)), 2, 0.1);
       EXPECT_NEAR(std::log2(errors[1](i) / errors[2](i)), 2, 0.05);
     }
