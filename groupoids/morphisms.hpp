@@ -18,9 +18,9 @@ namespace lagroid {
 /// ours over a single object: a group, a product of groups, a user's own. The arrow (e, g) stands for g.
 template <class Group> struct LeftQuotient : Morphism<LeftQuotient<Group>, PairOf<Group>, Group> {
   static constexpr bool keeps_basis = true;
-  template <class E> ElementStep<E> representative(const E& g) const {
+  template <class E> StepFromUnit<E> representative(const E& g) const {
     using S = typename decltype(this->to.coordinates_of_arrow(g))::Scalar;
-    return {{this->to.unit(ObjectOf<Group, S>()), g}, g};
+    return {{this->to.unit(ObjectOf<Group, S>()), g}};
   }
   template <class E> E operator()(const ElementPair<E>& g) const { return this->from.quotient(g); }
   template <class E> ElementPair<E> lift(const E& a, const E& g) const { return {a, this->to.multiply(a, g)}; }

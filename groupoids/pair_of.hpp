@@ -16,9 +16,11 @@ template <class Element> struct ElementPair {
   Element target;
 };
 
-/// Such an arrow that knows a^{-1} b: what stands for an element of the group where a system on pairs is reduced
-/// (LeftQuotient). Lagrangians that ask the groupoid for `quotient` then cost no product of elements.
+/// Such an arrow that knows a^{-1} b, for systems on pairs that are reduced: Lagrangians that ask the groupoid for
+/// `quotient` then cost no product of elements.
 template <class Element> struct ElementStep : ElementPair<Element> { Element quotient; };
+/// One from the unit, whose target that is: what stands for an element of the group (LeftQuotient).
+template <class Element> struct StepFromUnit : ElementPair<Element> {};
 
 /// Arrows: pairs (a, b) of elements of `Group`; (a, b)(b, c) = (a, c). Algebroid: TG, left-trivialised, so that
 /// constant sections are the group's left-invariant fields; anchor x -> a hat(x). Retraction tau_a(v) = (a, a tau(v)).
@@ -80,7 +82,8 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
   template <class E> E quotient(const ElementPair<E>& g) const {
     return group.multiply(group.inverse(g.source), g.target);
   }
-  template <class E> static E quotient(const ElementStep<E>& g) { return g.quotient; }
+  template <class E> static const E& quotient(const ElementStep<E>& g) { return g.quotient; }
+  template <class E> static const E& quotient(const StepFromUnit<E>& g) { return g.target; }
   template <class E, class V> ElementPair<E> arrow_in_chart(const E& a, const V& v) const {
     return {a, group.multiply(a, group.arrow_in_chart(Point<typename V::Scalar>(), v))};
   }

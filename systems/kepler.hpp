@@ -70,10 +70,24 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   std::vector<Symmetry<Kepler>> symmetries() const {
     return {{"angular momentum", [](const Vector<double, 2>& q) { return Vector<double, 2>(-q(1), q(0)); }}};
   }
+  using ByTheAngle = FactorConnection<Factors<1>, Pair<1>, SO2>;
   static auto reductions() {
     return std::tuple(reduction("rotations", PolarQuotient{}, "rotations about the centre"),
-                      fixed_momentum("angular-momentum", PolarQuotient{}, FactorConnection<Factors<1>, Pair<1>, SO2>{},
-                                     "the radius alone moves"));
+                      fixed_momentum("angular-momentum", PolarQuotient{}, ByTheAngle{}, "the radius alone moves"));
+  }
+  /// At the angle with r0 r1 sin(theta) = h mu. A potential in the middle depends on that angle too.
+  bool has_routhian() const { return quadrature == Quadrature::trapezoid; }
+  template <class S, class T>
+  S routhian(const ByTheAngle&, const PairArrow<S, 1>& b, const Vector<T, 1>& momentum) const {
+    using std::atan2, std::sqrt;
+    const S r0 = b.source(0);
+    const S r1 = b.target(0);
+    const T sine = momentum(0) * h;  // times r0 r1, as the cosine
+    const S square = r0 * r1 * (r0 * r1);
+    const S cosine = sqrt(square - sine * sine);
+    const S radial = (r1 - r0) * (r1 - r0) * 0.5 + S(sine * sine) / (r0 * r1 + cosine);
+    return radial * (1 / h) + (1.0 / r0 + 1.0 / r1) * (constant<S>(varied<S>(strength)) * (0.5 * h)) -
+           atan2(S(sine), cosine) * momentum(0);
   }
   std::vector<Quantity<Kepler>> quantities() const { return {energy_quantity(), symmetries()[0].quantity()}; }
 };

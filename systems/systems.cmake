@@ -58,7 +58,7 @@ function(lagroid_system name class)
   endif()
   set(certificates_of_${name} ${certificates} PARENT_SCOPE)
 endfunction()
-lagroid_system(plate_ball PlateBall IN control SIZES 5_3_0 REDUCED 8
+lagroid_system(plate_ball PlateBall IN control SIZES 5_3_0 REDUCED 8 8
                SOURCES systems/control/plate_ball.cpp systems/control/plate_ball_boundary.cpp)
 lagroid_system(unicycle Unicycle IN control SIZES 3_2_0)
 lagroid_system(attitude_control AttitudeControl IN control SIZES 3_1_0 SOURCES systems/control/attitude_control.cpp)
@@ -71,7 +71,7 @@ lagroid_system(pendulum Pendulum IN pendulums SIZES 1_0_0)
 lagroid_system(kepler Kepler SIZES 2_0_0 REDUCED 2 1)
 lagroid_system(spherical_pendulum SphericalPendulum IN pendulums SIZES 3_0_1 SOURCES systems/pendulums/spherical_pendulum.cpp)
 lagroid_system(gyrostat Gyrostat IN rotations SIZES 6_0_0_32 REDUCED 3)
-lagroid_system(rolling_ball RollingBall IN rolling INITIAL_VALUES REDUCED 7
+lagroid_system(rolling_ball RollingBall IN rolling INITIAL_VALUES REDUCED 7 7
                SOURCES systems/rolling/rolling_ball.cpp)
 lagroid_system(rolling_disk RollingDisk IN rolling INITIAL_VALUES SOURCES systems/rolling/rolling_disk.cpp)
 lagroid_system(chaplygin_sleigh ChaplyginSleigh IN rolling INITIAL_VALUES SOURCES systems/rolling/chaplygin_sleigh.cpp)

@@ -14,8 +14,12 @@ int main(int argc, char** argv) {
       {"satellite: reduced", reduction::satellite_reduced},
       {"body of a satellite, its wheels at fixed momenta: by hand", reduction::satellite_level_by_hand},
       {"body of a satellite, its wheels at fixed momenta: reduced", reduction::satellite_level},
+      {"body of a satellite, its Routhian given: by hand", reduction::satellite_level_by_hand},
+      {"body of a satellite, its Routhian given: reduced", reduction::solved_satellite_level},
       {"distance of a planet, at fixed angular momentum: by hand", reduction::planet_level_by_hand},
       {"distance of a planet, at fixed angular momentum: reduced", reduction::planet_level},
+      {"distance of a planet, its Routhian given: by hand", reduction::planet_level_by_hand},
+      {"distance of a planet, its Routhian given: reduced", reduction::solved_planet_level},
   };
   for (const auto& [name, integrate] : subjects) {
     if (argc == 2 && std::string_view(argv[1]) == "list") std::printf("%s\n", name);

@@ -25,26 +25,41 @@ struct Planet : System<Planet, Pair<2>> {
 };
 
 /// Its Routhian, where r s sin(theta) = h times the momentum.
+template <class S, class T> S routhian_of_distance(const PairArrow<S, 1>& b, const T& momentum) {
+  using std::atan2;
+  using std::sqrt;
+  const T sine = momentum * h;  // times r s, as the cosine
+  const S r = b.source(0);
+  const S s = b.target(0);
+  const S cosine = sqrt(r * r * (s * s) - sine * sine);
+  return (r * r + s * s - cosine * 2.0) * (0.5 / h) + (1.0 / r + 1.0 / s) * (0.5 * h) -
+         atan2(S(sine), cosine) * momentum;
+}
 struct Distance : System<Distance, Pair<1>> {
-  template <class S> S lagrangian(const PairArrow<S, 1>& b) const {
-    using std::atan2;
-    using std::sqrt;
-    constexpr double sine = h * angular_momentum;  // times r s, as the cosine
-    const S r = b.source(0);
-    const S s = b.target(0);
-    const S cosine = sqrt(r * r * (s * s) - sine * sine);
-    return (r * r + s * s - cosine * 2.0) * (0.5 / h) + (1.0 / r + 1.0 / s) * (0.5 * h) -
-           atan2(S(sine), cosine) * angular_momentum;
+  template <class S> S lagrangian(const PairArrow<S, 1>& b) const { return routhian_of_distance(b, angular_momentum); }
+};
+
+using ByTheAngle = FactorConnection<Factors<1>, Pair<1>, SO2>;
+
+/// The planet, whose user has the paper at hand.
+struct SolvedPlanet : System<SolvedPlanet, Pair<2>> {
+  Planet planet;
+  template <class S> S lagrangian(const PairArrow<S, 2>& g) const { return planet.lagrangian(g); }
+  template <class S, class T>
+  S routhian(const ByTheAngle&, const PairArrow<S, 1>& b, const Vector<T, 1>& momentum) const {
+    return routhian_of_distance(b, momentum(0));
   }
 };
+
+template <class Full> int integrate_level(long steps) {
+  const MomentumLevel level(ByTheAngle{}, ReducedSystem<PolarQuotient, Full>{}, Vector<double, 1>(angular_momentum));
+  return integrate(level, start, steps);
+}
 
 }  // namespace
 
 int planet_level_by_hand(long steps) { return integrate(Distance{}, start, steps); }
-int planet_level(long steps) {
-  const FactorConnection<Factors<1>, Pair<1>, SO2> by_angle;
-  const MomentumLevel level(by_angle, ReducedSystem<PolarQuotient, Planet>{}, Vector<double, 1>(angular_momentum));
-  return integrate(level, start, steps);
-}
+int planet_level(long steps) { return integrate_level<Planet>(steps); }
+int solved_planet_level(long steps) { return integrate_level<SolvedPlanet>(steps); }
 
 }  // namespace reduction

@@ -28,7 +28,9 @@ int satellite_by_hand(long steps);
 int satellite_reduced(long steps);
 int satellite_level_by_hand(long steps);
 int satellite_level(long steps);
+int solved_satellite_level(long steps);
 int planet_level_by_hand(long steps);
 int planet_level(long steps);
+int solved_planet_level(long steps);
 
 }  // namespace reduction

@@ -11,7 +11,7 @@ namespace {
 struct SatelliteOnPairs : System<SatelliteOnPairs, PairOf<Placement>> {
   Satellite below;
   template <class A> auto lagrangian(const A& g) const {
-    const auto step = groupoid.quotient(g);
+    const auto& step = groupoid.quotient(g);
     using S = typename std::remove_cvref_t<decltype(std::get<0>(step))>::Scalar;
     return below.lagrangian<S>(step);
   }

@@ -27,6 +27,8 @@ Words words_of(Ingredient ingredient) {
       return {"the forces", true};
     case Ingredient::distribution:
       return {"the distribution"};
+    case Ingredient::routhian:
+      return {"the Routhian"};
     case Ingredient::morphism:
       break;
   }
@@ -70,14 +72,17 @@ std::string DescentReport::sentence() const {
   out.precision(6);
   const auto [subject, plural] = words_of(finding->ingredient);
   out << subject
-      << (finding->ingredient == Ingredient::morphism ? " is none"
-          : plural                                    ? " do not descend"
-                                                      : " does not descend")
+      << (finding->ingredient == Ingredient::morphism   ? " is none"
+          : finding->ingredient == Ingredient::routhian ? " is not that of the Lagrangian"
+          : plural                                      ? " do not descend"
+                                                        : " does not descend")
       << ": at the arrow (";
   for (std::size_t i = 0; i < finding->sample.size(); ++i) out << (i > 0 ? " " : "") << finding->sample[i];
   out << ") ";
   if (finding->ingredient == Ingredient::morphism)
     out << "a product, a lift or what stands for its image is off by " << finding->defect << " of its size";
+  else if (finding->ingredient == Ingredient::routhian)
+    out << "of the base its closed form, or the angle by it, is off by " << finding->defect << " of its size";
   else
     out << (plural ? "they differ, by " : "it differs, by ") << finding->defect << " of " << (plural ? "their" : "its")
         << " size, from what " << (plural ? "they are" : "it is") << " at the arrow that stands for the same image";

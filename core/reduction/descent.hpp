@@ -29,8 +29,8 @@
 
 namespace lagroid {
 
-/// What a reduction rests on.
-enum class Ingredient { morphism, lagrangian, constraint, object_constraint, forces, distribution };
+/// What a reduction rests on; a Routhian in closed form is compared with the solved one (examine_routhian.hpp).
+enum class Ingredient { morphism, lagrangian, constraint, object_constraint, forces, distribution, routhian };
 
 /// One ingredient: the largest difference between an arrow and the one that stands for its image, relative
 /// to the ingredient's largest value at the samples; and the sample where it was met, in coordinates.
@@ -42,7 +42,7 @@ struct DescentFinding {
 
 struct DescentReport {
   std::vector<DescentFinding> findings;
-  double tolerance = 0;
+  double tolerance = 1e-10;
 
   bool descends() const { return worst() == nullptr; }
   /// The ingredient that misses invariance by most, or null. The morphism before all others, which rest on it.

@@ -14,8 +14,10 @@
 ///     const auto start = level.state_below(z);                  // of the radius alone: where a run begins
 ///     const auto g = level.full_arrow(run.point().step.arrow);  // angle included
 ///
-/// Derivatives are those of the full system in bases adapted to the connection, at the theta that Newton's method
-/// finds.
+/// theta(b) is what Newton's method finds, or that of the closed form which the system has for R
+/// (core/capabilities/routhian.hpp). R is stationary in theta, so that its gradients are those of L at a theta that
+/// stands still; second derivatives, and all where there is a magnetic term, are those of the full system in bases
+/// adapted to the connection.
 ///
 /// Object constraints C(q) = 0 are constraints of the base as they are, since objects of a gauge groupoid are its
 /// points, and their multipliers are the same. Constraints on arrows are refused by the compiler: phi(b, theta(b)) = 0
@@ -25,6 +27,7 @@
 /// one, whose L(b, .) has one critical point with momentum `level` near theta = 0. Errors: where there is none R is not
 /// a number, and the step's status tells it. NotFree where the symmetry leaves a point of the base where it is.
 
+#include <lagroid/core/capabilities/routhian.hpp>
 #include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/derivatives/two_sided.hpp>
 #include <lagroid/core/matrices/scaling.hpp>
@@ -53,6 +56,9 @@ struct MomentumLevel
   static constexpr int angles = Connection::angles;
   static constexpr int n = B::dimension;
   static_assert(G::dimension == n + angles, "a connection splits arrows in those of the base and angles");
+  /// Whether the system has R in closed form, and for all of its parameters.
+  static constexpr bool closed = HasRouthian<Sys, Connection>;
+  static constexpr bool always_closed = closed && !HasRouthianInPart<Sys>;
   template <class A>
   using ScalarOf = typename decltype(std::declval<B>().coordinates_of_arrow(std::declval<A>()))::Scalar;
 
@@ -66,11 +72,13 @@ struct MomentumLevel
   }
 
   template <class A> auto lagrangian(const A& b) const {
-    using S = ScalarOf<A>;
-    const Vector<S, angles> theta = angle_of(b, level);
-    S routhian = this->full.lagrangian(connection.attach(b, theta));
-    for (int i = 0; i < angles; ++i) routhian -= theta(i) * level(i);
-    return routhian;
+    if constexpr (always_closed) {
+      return ScalarOf<A>(this->full.routhian(connection, b, level));
+    } else if constexpr (closed) {
+      return has_closed_form() ? ScalarOf<A>(this->full.routhian(connection, b, level)) : routhian_by_solving(b);
+    } else {
+      return routhian_by_solving(b);
+    }
   }
   template <class Q> auto object_constraint(const Q& m) const requires(Sys::object_constraints > 0) {
     return this->full.object_constraint(full_groupoid().source(horizontal(this->groupoid.unit(m))));
@@ -101,14 +109,16 @@ struct MomentumLevel
   // momentum: in adapted bases the full gradients' first part, magnetic term included, and the Schur complement of the
   // mixed derivative's last block.
   // (Compiled once, not into each place of a step that asks for it: there is little to win and much to compile.)
-  [[gnu::noinline]] GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b, const Multipliers& lambda) const {
-    const Vector<double, angles> theta = root_of(b, level).x;
+  [[gnu::noinline]] GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b, const Multipliers& lambda) const
+      requires(!Connection::flat) {
+    const Vector<double, angles> theta = angle_of(b, level);
     const auto d = lagroid::gradients(this->full, ArrowOf<G>(connection.attach(b, theta)), lambda);
     return {d.value - work_of(theta), along<0, n>(adapted_basis(this->groupoid.source(b)), d.source_gradient),
             along<0, n>(adapted_basis(this->groupoid.target(b)), d.target_gradient), d.constraint};
   }
-  [[gnu::noinline]] TwoSidedOf<MomentumLevel> two_sided(const ArrowOf<B>& b, const Multipliers& lambda) const {
-    const Vector<double, angles> theta = root_of(b, level).x;
+  [[gnu::noinline]] TwoSidedOf<MomentumLevel> two_sided(const ArrowOf<B>& b, const Multipliers& lambda) const
+      requires(!Connection::flat || !always_closed) {
+    const Vector<double, angles> theta = angle_of(b, level);
     const auto d = lagroid::two_sided(this->full, ArrowOf<G>(connection.attach(b, theta)), lambda);
     const Basis source = adapted_basis(this->groupoid.source(b));
     const Basis target = adapted_basis(this->groupoid.target(b));
@@ -147,11 +157,22 @@ struct MomentumLevel
       }
     return out;
   }
+  // Those of R, as the library takes them.
+  [[gnu::noinline]] LAGROID_FLATTEN GradientsOf<MomentumLevel> gradients(const ArrowOf<B>& b,
+                                                                         const Multipliers& lambda) const
+      requires(Connection::flat && !always_closed) {
+    return automatic_gradients(*this, b, lambda);
+  }
   bool admissible(const ArrowOf<B>& b) const requires(HasBranch<Sys> || FreeInPart<Connection>) {
     if constexpr (FreeInPart<Connection>)
       if (!connection.free_at(this->groupoid.target(b))) return false;
-    if constexpr (HasBranch<Sys>) return this->full.admissible(full_arrow(b));
-    return true;
+    if constexpr (requires { this->full.free_at(full_groupoid().target(horizontal(b))); }) {
+      return this->full.free_at(full_groupoid().target(horizontal(b)));
+    } else if constexpr (HasBranch<Sys>) {
+      return this->full.admissible(full_arrow(b));
+    } else {
+      return true;
+    }
   }
   Step<MomentumLevel> first_guess(const State<B>& s) const requires HasFirstGuess<Sys> {
     return {connection(this->full.first_guess(state_over(s)).arrow), {}};
@@ -161,9 +182,23 @@ struct MomentumLevel
 
   /// theta(b): by how much the fibres move over b where the momentum is `momentum`. Over any scalar.
   template <class A> auto angle_of(const A& b, const Vector<double, angles>& momentum) const {
+    constexpr int order = nilpotency<ScalarOf<A>>;
+    if constexpr (always_closed) {
+      return angle_in_closed_form(b, momentum);
+    } else if constexpr (closed) {
+      return has_closed_form() ? angle_in_closed_form(b, momentum) : angle_by_solving<order>(b, momentum);
+    } else {
+      return angle_by_solving<order>(b, momentum);
+    }
+  }
+  /// The same by Newton's method, whatever else the system knows, with its infinitesimals to that order.
+  template <int Order, class A> auto angle_by_solving(const A& b, const Vector<double, angles>& momentum) const {
     using S = ScalarOf<A>;
-    if constexpr (std::is_same_v<S, double>) {
-      return root_of(b, momentum).x;
+    const detail::Root<angles> root = root_of(value_of_arrow(b), momentum);
+    if constexpr (Order == 0) {
+      Vector<S, angles> theta;
+      for (int i = 0; i < angles; ++i) theta(i) = S(root.x(i));
+      return theta;
     } else {
       using D = Dual<S>;
       const ArrowOf<B, D> bd = this->groupoid.template cast<D>(b);
@@ -176,8 +211,21 @@ struct MomentumLevel
         }
         return defect;
       };
-      return detail::with_infinitesimals<S, angles>(root_of(value_of_arrow(b), momentum), momentum_defect);
+      return detail::with_infinitesimals<S, angles>(root, momentum_defect, Order);
     }
+  }
+  /// R by Newton's method: it is stationary in theta, whose infinitesimals count to half of its order.
+  template <class A> auto routhian_by_solving(const A& b) const {
+    using S = ScalarOf<A>;
+    const Vector<S, angles> theta = angle_by_solving<nilpotency<S> / 2>(b, level);
+    S routhian = this->full.lagrangian(connection.attach(b, theta));
+    for (int i = 0; i < angles; ++i) routhian -= theta(i) * level(i);
+    return routhian;
+  }
+  /// Whether R, with the system's parameters, is one that was solved for on paper.
+  bool has_closed_form() const {
+    if constexpr (closed && HasRouthianInPart<Sys>) return this->full.has_routhian();
+    return closed;
   }
   /// The full arrow over b, with the momentum of the level; and the one that the connection calls horizontal.
   ArrowOf<G> full_arrow(const ArrowOf<B>& b) const { return connection.attach(b, angle_of(b, level)); }
@@ -233,14 +281,27 @@ struct MomentumLevel
     e(i).derivative = 1.0;
     return e;
   }
+  template <class A> auto angle_in_closed_form(const A& b, const Vector<double, angles>& momentum) const {
+    using S = ScalarOf<A>;
+    using D = Dual<S>;
+    const ArrowOf<B, D> still = this->groupoid.template cast<D>(b);
+    Vector<S, angles> theta;
+    for (int i = 0; i < angles; ++i) {
+      Vector<D, angles> varied;
+      for (int j = 0; j < angles; ++j) varied(j) = D(S(momentum(j)), S(i == j ? 1.0 : 0.0));
+      theta(i) = -D(this->full.routhian(connection, still, varied)).derivative;
+    }
+    return theta;
+  }
   template <class A> ArrowOf<B> value_of_arrow(const A& b) const {
+    if constexpr (std::is_same_v<ScalarOf<A>, double>) return b;
     const auto x = this->groupoid.coordinates_of_arrow(b);
     Vector<double, B::arrow_coordinate_count()> values;
     for (int i = 0; i < values.size(); ++i) values(i) = value_of(x(i));
     return this->groupoid.template arrow_at<double>(values);
   }
   /// theta with dL/dtheta = momentum over b, from theta = 0.
-  detail::Root<angles> root_of(const ArrowOf<B>& b, const Vector<double, angles>& momentum) const {
+  [[gnu::noinline]] detail::Root<angles> root_of(const ArrowOf<B>& b, const Vector<double, angles>& momentum) const {
     using M = HyperDual<double, angles, angles>;
     const ArrowOf<B, M> over = this->groupoid.template cast<M>(b);
     const auto equations = [&](const Vector<double, angles>& theta) {

@@ -18,6 +18,7 @@
 
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/reduction/descent.hpp>
+#include <lagroid/core/reduction/examine_routhian.hpp>
 #include <lagroid/core/reduction/phase.hpp>
 #include <lagroid/core/reduction/reconstruct.hpp>
 
@@ -48,6 +49,7 @@ template <DiscreteSystem Sys> class Reconstruction<Sys, Unreduced> {
   const State<G>& initial() const { return initial_; }
   const ArrowOf<G>& configuration() const { return configuration_; }
   const State<G>& state_below(const State<G>& z) const { return z; }
+  ArrowOf<G> arrow_below(const ArrowOf<G>& g) const { return g; }
   DescentReport examine(std::span<const ArrowOf<G>>) const { return {}; }
   TrajectoryPoint<Sys> full(const TrajectoryPoint<Below>& point) const { return point; }
   Step<Sys> full_step(const Step<Below>& step, double) const { return step; }
@@ -112,6 +114,7 @@ template <DiscreteSystem Sys, class Phi> class Reconstruction<Sys, Reduction<Phi
   const ArrowOf<H>& configuration() const { return configuration_; }
   /// Throws NotFree.
   State<H> state_below(const State<G>& z) const { return system_.state_below(z); }
+  ArrowOf<H> arrow_below(const ArrowOf<G>& g) const { return system_.morphism(g); }
   /// Whether the system descends, at these arrows.
   DescentReport examine(std::span<const ArrowOf<G>> arrows) const { return examine_descent(system_, arrows); }
   /// What the reduced run keeps, beside what the full one does.
@@ -162,7 +165,16 @@ class Reconstruction<Sys, FixedMomentum<Connection, First>> {
   const Below& system() const { return system_; }
   const State<H>& initial() const { return initial_; }
   const ArrowOf<H>& configuration() const { return configuration_; }
-  DescentReport examine(std::span<const ArrowOf<G>> arrows) const { return upper_.examine(arrows); }
+  DescentReport examine(std::span<const ArrowOf<G>> arrows) const {
+    DescentReport report = upper_.examine(arrows);
+    if constexpr (Below::closed) {
+      std::vector<ArrowOf<H>> below;
+      for (const auto& g : arrows) below.push_back(system_.connection(upper_.arrow_below(g)));
+      for (auto& finding : examine_routhian(system_, std::span<const ArrowOf<H>>(below)))
+        report.findings.push_back(std::move(finding));
+    }
+    return report;
+  }
   /// The momentum of the full arrows, which is solved for anew at each.
   std::vector<Quantity<Below>> quantities(std::span<const ArrowOf<G>>) const {
     using Point = TrajectoryPoint<Below>;

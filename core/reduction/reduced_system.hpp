@@ -14,6 +14,7 @@
 /// constraints, forces and distributions descend; `examine_descent` (descent.hpp) samples whether they do.
 
 #include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/routhian.hpp>
 #include <lagroid/core/morphism.hpp>
 #include <lagroid/core/reduction/full_system.hpp>
 #include <lagroid/core/reduction/not_free.hpp>
@@ -64,7 +65,7 @@ struct ReducedSystem
   // A representative may know more than an arrow (its image, say); functions that name the type of their arrow get the
   // arrow.
   template <class A, class... Times>
-  LAGROID_INLINE auto lagrangian(const A& image, const Times&... times) const requires(takes_times<sizeof...(Times)>) {
+  auto lagrangian(const A& image, const Times&... times) const requires(takes_times<sizeof...(Times)>) {
     const auto g = representative_of(morphism, image);
     if constexpr (requires { this->full.lagrangian(g, times...); }) {
       return this->full.lagrangian(g, times...);
@@ -73,7 +74,7 @@ struct ReducedSystem
     }
   }
   template <class A, class... Times>
-  LAGROID_INLINE auto constraint(const A& image, const Times&... times) const
+  auto constraint(const A& image, const Times&... times) const
       requires(Sys::arrow_constraints > 0 && takes_times<sizeof...(Times)>) {
     const auto g = representative_of(morphism, image);
     if constexpr (requires { this->full.constraint(g, times...); }) {
@@ -128,6 +129,16 @@ struct ReducedSystem
   { return this->full.time_scale_rate(state_over(s)); }
   double energy(const State<H>& s) const requires requires(const Sys& f, const State<G>& z) { f.energy(z); }
   { return this->full.energy(state_over(s)); }
+  /// That of the full system (core/capabilities/routhian.hpp).
+  template <class Connection, class B, class Momentum>
+  auto routhian(const Connection& connection, const B& b, const Momentum& momentum) const requires
+      requires(const Sys& f) {
+    f.routhian(connection, b, momentum);
+  }
+  { return this->full.routhian(connection, b, momentum); }
+  bool has_routhian() const requires HasRouthianInPart<Sys> { return this->full.has_routhian(); }
+  /// All that `admissible` asks of an arrow's target.
+  bool free_at(const ObjectOf<H>& m) const requires(FreeInPart<Phi> && !HasBranch<Sys>) { return morphism.free_at(m); }
 
   /// A state of the full system that is related to s: over the object that stands for s.object.
   State<G> state_over(const State<H>& s) const { return morphism.related(object_over(morphism, s.object), s.momentum); }

@@ -39,7 +39,7 @@ from .optimisation import (
     optimize,
 )
 from .prototype import PrototypeIntegrator, PrototypeTrajectory, System
-from .scenes import require, resume, run, scene_text, systems
+from .scenes import reductions, require, resume, run, scene_text, systems
 from .studies import GradientTable, Method, Uncertainty, check, fit, gradient, methods, study, uncertainty
 from .sweeps import Sweep, sweep
 
@@ -96,6 +96,7 @@ __all__ = [
     "minimise",
     "optimize",
     "plot",
+    "reductions",
     "require",
     "resume",
     "run",

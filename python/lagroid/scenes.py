@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 _Result = TypeVar("_Result", bound=Union[RunResult, Trajectory, "PrototypeTrajectory"])
 
-__all__ = ["SceneLike", "require", "resume", "run", "scene_text", "systems"]
+__all__ = ["SceneLike", "reductions", "require", "resume", "run", "scene_text", "systems"]
 
 
 def _toml(value: Any, key: str) -> str:
@@ -87,8 +87,8 @@ def run(
     """Runs a scene (docs/scenes.md): a file, a TOML text (a str with more than one line) or a dict.
 
     `set` holds other values by dotted keys, as in {"time.steps": 100}. `reduce` names one of the system's reductions
-    (`systems()` has them): its steps are then those of the reduced system, its motion the full one. `events` are the
-    tables [[event]] of the scene (docs/events.md), as in [{"name": "bottom", "when": "q"}]; `when` may be a function of
+    (`reductions(name)` has them): its steps are then those of the reduced system, its motion the full one.
+    `events` are the tables [[event]] of the scene (docs/events.md), as in [{"name": "bottom", "when": "q"}]; `when` may be a function of
     the node, as in `lambda node: node["q"] - 0.5`, and `call` one that is called where it has happened and ends the run
     by returning False. RunResult.events has what happened. Without `record` only the ledger and the end points are kept. `out` is a folder for checkpoints and the
     files of `lagroid run --out`.
@@ -125,3 +125,12 @@ def systems() -> dict[str, dict[str, Any]]:
     """The systems that a scene can name: summary, groupoid, parameters, symmetries, conserved quantities,
     reductions."""
     return {entry["name"]: entry for entry in json.loads(_lagroid.listing())}
+
+
+def reductions(system: str) -> dict[str, dict[str, str]]:
+    """What run(..., reduce=...) takes for a system of scenes: of each name its meaning and the groupoid that is reduced
+    to. Empty for a system that declares none. Raises ValueError for a system that scenes do not know."""
+    known = systems()
+    if system not in known:
+        raise ValueError(f"reductions: no system {system!r}; those of scenes are {', '.join(known)}")
+    return {each.pop("name"): each for each in known[system]["reductions"]}

@@ -60,6 +60,21 @@ class Scenes(unittest.TestCase):
         with self.assertRaisesRegex(lagroid.SceneError, "none of rotations, angular-momentum"):
             lagroid.run(scene, reduce="translations")
 
+    def test_reductions_are_named_and_phases_are_columns(self) -> None:
+        by = lagroid.reductions("gyrostat")
+        self.assertEqual(by["rotor-momenta"]["groupoid"], "SO(3)")
+        self.assertEqual(lagroid.reductions("pendulum"), {})
+        with self.assertRaisesRegex(ValueError, "no system 'gyrostats'; those of scenes are .*gyrostat"):
+            lagroid.reductions("gyrostats")
+        run = lagroid.run(EXAMPLES / "gyrostat.toml", set={"time.steps": 50}, reduce=next(iter(by)))
+        self.assertEqual(run["reduced_momentum"].shape, (51, 3))
+        dynamic, geometric = run["phases"][:, :3], run["phases"][:, 3:]
+        np.testing.assert_array_equal(dynamic[0], 0)
+        # Rotors turn by h J^{-1} j - w: the first is what their momenta alone do, the second minus the body's own turns.
+        steady = np.diff(dynamic, axis=0)
+        np.testing.assert_allclose(steady, np.broadcast_to(steady[0], steady.shape), rtol=0, atol=1e-12)
+        self.assertGreater(np.abs(geometric[-1]).max(), 0.1)
+
     def test_events_are_found_inside_of_steps(self) -> None:
         events = [
             {"name": "bottom", "when": "q"},

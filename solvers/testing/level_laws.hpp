@@ -2,6 +2,7 @@
 /// What a momentum level is, as laws: the base of a full system at a fixed momentum of its symmetry.
 ///
 ///     mu = -dR/dv - f-,  mu' = dR/dw + f+                   of the Routhian R and the magnetic term f-, f+
+///     R and -dR/dlevel in closed form, where there is one, those that Newton's method finds
 ///     b = connection(g),  J(F-(g)) = J(F+(g)) = level       of the full step g over the step b
 ///     DF Pi DF^T = Pi o F,  Pi = D pi Pi_G D pi^T           of the step F, with pi the full states' way down
 ///
@@ -76,7 +77,8 @@ template <class Level> Eigen::MatrixXd poisson_of_level(const Level& level, cons
   return down * lagroid::detail::poisson_in_chart(level.full.groupoid, z) * down.transpose();
 }
 
-/// The momenta -dR/dv - f- and dR/dw + f+ of a step, with what its multipliers add, over dual numbers.
+/// The momenta -dR/dv - f- and dR/dw + f+ of a step, with what its multipliers add, over dual numbers that its angle
+/// has as well.
 template <class Level>
 std::pair<AlgebroidVector<typename Level::B>, AlgebroidVector<typename Level::B>> routhian_momenta(
     const Level& level, const Step<Level>& step) {
@@ -88,8 +90,15 @@ std::pair<AlgebroidVector<typename Level::B>, AlgebroidVector<typename Level::B>
   for (int i = 0; i < Level::n; ++i) {
     const Vector<D, Level::n> moved = infinitesimal(V(V::Unit(i)));
     const auto along = [&](const Vector<D, Level::n>& v, const Vector<D, Level::n>& w) {
-      return lagroid::detail::augmented_lagrangian<D>(level, level.groupoid.translate(v, b, w), step.multipliers)
-          .derivative;
+      const ArrowOf<typename Level::B, D> there = level.groupoid.translate(v, b, w);
+      const Vector<D, Level::angles> theta = level.angle_of(there, level.level);
+      D f = level.full.lagrangian(level.connection.attach(there, theta));
+      for (int a = 0; a < Level::angles; ++a) f -= theta(a) * level.level(a);
+      if constexpr (Level::object_constraints > 0) {
+        const auto at_source = level.object_constraint(level.groupoid.source(there));
+        for (int a = 0; a < Level::object_constraints; ++a) f += at_source(a) * step.multipliers(a);
+      }
+      return f.derivative;
     };
     out.first(i) = -along(moved, still);
     out.second(i) = along(still, moved);
@@ -128,6 +137,15 @@ LawReport level_laws(const Level& level, const Draw& draw, double tolerance = 1e
         return worst({momentum_defect(at, step, legendre_minus(at, step).momentum, minus),
                       momentum_defect(at, step, legendre_plus(at, step).momentum, plus)});
       });
+  if constexpr (Level::closed) {
+    law("the Routhian in closed form, and the angle by it, are those of Newton's method", tolerance,
+        [](const Level& at, const auto&, const State<B>& s) {
+          const ArrowOf<B> b = step_from(at, s).arrow;
+          return worst(
+              {relative_defect(Vector<double, 1>(at.lagrangian(b)), Vector<double, 1>(at.routhian_by_solving(b))),
+               relative_defect(at.angle_of(b, at.level), at.template angle_by_solving<0>(b, at.level))});
+        });
+  }
   law("second derivatives are those of the gradients", by_differences,
       [](const Level& at, const auto&, const State<B>& s) {
         const Step<Level> step = step_from(at, s);

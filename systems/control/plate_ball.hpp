@@ -19,6 +19,7 @@
 #include <lagroid/groupoids/morphisms.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
+#include <lagroid/groupoids/rotated_plane.hpp>
 #include <lagroid/systems/instances.hpp>
 
 #include <optional>
@@ -124,7 +125,8 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   std::vector<Quantity<PlateBall>> quantities() const;
   static auto reductions() {
     return std::tuple(reduction("translations", ProductMorphism<Difference<2>, IdentityMorphism<SO3>>{},
-                                "translations, where the plate is at rest"));
+                                "translations, where the plate is at rest"),
+                      reduction("rotations", RotatedPlaneQuotient{}, "rotations of plate and ball about its centre"));
   }
 
  private:

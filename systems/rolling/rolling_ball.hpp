@@ -18,6 +18,7 @@
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
+#include <lagroid/groupoids/morphisms.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/groupoids/rotated_plane.hpp>
@@ -117,7 +118,9 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
   std::vector<Symmetry<RollingBall>> symmetries() const;
   std::vector<Quantity<RollingBall>> quantities() const;
   static auto reductions() {
-    return std::tuple(reduction("rotations", RotatedPlaneQuotient{}, "rotations of plate and ball about its centre"));
+    return std::tuple(reduction("rotations", RotatedPlaneQuotient{}, "rotations of plate and ball about its centre"),
+                      reduction("translations", ProductMorphism<Difference<2>, IdentityMorphism<SO3>>{},
+                                "translations, where the plate is at rest"));
   }
 };
 

@@ -11,6 +11,7 @@
 
 #include <lagroid/core/capabilities/rates.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
+#include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/groupoids/connections.hpp>
 #include <lagroid/groupoids/groups/so2.hpp>
@@ -19,6 +20,8 @@
 #include <lagroid/systems/instances.hpp>
 #include <lagroid/systems/reference.hpp>
 
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace lagroid {
@@ -120,9 +123,26 @@ struct Gyrostat : System<Gyrostat, Product<SO3, SO2, SO2, SO2>> {
     for (const auto& symmetry : symmetries()) all.push_back(symmetry.quantity());
     return all;
   }
+  using ByTheRotors = FactorConnection<Factors<1, 2, 3>, SO3, SO2, SO2, SO2>;
   static auto reductions() {
-    return std::tuple(fixed_momentum("rotor-momenta", FactorConnection<Factors<1, 2, 3>, SO3, SO2, SO2, SO2>{},
-                                     "the body alone turns"));
+    return std::tuple(fixed_momentum("rotor-momenta", ByTheRotors{}, "the body alone turns"));
+  }
+  /// w.I w / (2 h) + j.w - h j.J^{-1} j / 2, where the rotors turn by t = h J^{-1} j - w. Not a number where one turns
+  /// half round in a step, for no arrow has that momentum then.
+  template <class S, class T>
+  S routhian(const ByTheRotors&, const Matrix<S, 3, 3>& turn, const Vector<T, 3>& momenta) const {
+    const Vector<S, 3> w = SO3::retract_inverse(rotation, turn);
+    const auto& body = varied<S>(inertia);
+    const auto& turning = varied<S>(rotors);
+    S twice = w(0) * w(0) * body(0);
+    for (int i = 1; i < 3; ++i) twice += w(i) * w(i) * body(i);
+    S out = twice * (0.5 / h);
+    for (int i = 0; i < 3; ++i) {
+      const auto steady = momenta(i) * (h / turning(i));
+      const bool has_arrow = std::abs(number_of(steady) - number_of(w(i))) < std::numbers::pi;
+      out += (w(i) - steady * 0.5) * (has_arrow ? momenta(i) : T(NAN));
+    }
+    return out;
   }
 };
 

@@ -63,6 +63,9 @@ TEST_F(CommandLine, ReductionsAreExaminedAndTheOneOfTheSceneHasItsLaws) {
   EXPECT_EQ(full.at("reductions").at(0).at("descends"), true);
   EXPECT_EQ(reduced_suites(full), 0);
   EXPECT_GT(reduced_suites(of(example("kepler") + " --set reduce=rotations")), 0);
+  for (const auto& [scene, by] : {std::pair("kepler", "angular-momentum"), std::pair("gyrostat", "rotor-momenta"),
+                                  std::pair("heavy_top", "vertical-momentum")})
+    EXPECT_GT(reduced_suites(of(example(scene) + " --set reduce=" + by)), 0) << scene;
   // A plate that turns is not invariant under translations: said, but no law of the scene.
   const auto turning = of(example("plate_ball_initial_value")).at("reductions").at(0);
   EXPECT_EQ(turning.at("descends"), false);

@@ -87,6 +87,10 @@ TEST_F(ReducedScenes, HaveTheFullMotion) {
       {example("gyrostat") + " --set time.steps=1000", "rotor-momenta",
        "initial.momentum=[0.3,1.50000015,0.4,0.2,-0.1,0.3]"},
       {example("rolling_ball") + " --set time.steps=1000", "rotations", "initial.velocity=[0,0.30000003]"},
+      {example("rolling_ball") + " --set parameters.plate_rate=0 --set time.steps=1000", "translations",
+       "initial.velocity=[0,0.30000003]"},
+      {example("plate_ball_initial_value") + " --set time.steps=1000", "rotations",
+       "initial.momentum=[0.90000009,0.2,0.6,-0.4,0.8]"},
       {example("plate_ball_initial_value") + " --set parameters.plate_rate=0 --set time.steps=1000", "translations",
        "initial.momentum=[0.90000009,0.2,0.6,-0.4,0.8]"}};
   for (const Reduced& each : scenes) {
@@ -153,10 +157,22 @@ TEST_F(ReducedScenes, RefuseWhatTheyCannotDo) {
   expect_refused(kepler + "angular-momentum --set time.mode=adaptive", "reduced by \"angular-momentum\" has no");
   expect_refused("run " + example("plate_ball_initial_value") + " --set reduce=translations",
                  "\"translations\" is no symmetry of this system: the constraint does not descend: at the arrow");
+  expect_refused("run " + example("rolling_ball") + " --set reduce=translations",
+                 "\"translations\" is no symmetry of this system: the constraint does not descend: at the arrow");
+  expect_refused("run " + example("plate_ball_initial_value") + " --set initial.position=[0,0] --set reduce=rotations",
+                 "does not act freely at the object");
   expect_refused("run " + example("rolling_ball") + " --set initial.position=[0,0] --set reduce=rotations",
                  "does not act freely at the object");
   expect_refused("run " + example("kepler_boundary") + " --set reduce=rotations", "reduce: goes with [initial]");
   expect_refused("run " + example("pendulum") + " --set reduce=rotations", "declares nothing by which it is reduced");
+}
+
+TEST_F(ReducedScenes, RunWithoutTranslationsOrRotations) {
+  for (const char* scene : {"rolling_ball_reduced", "plate_ball_reduced"}) {
+    const auto run = summary(example(scene));
+    EXPECT_NE(run.at("notes").dump().find("reduced by"), std::string::npos) << scene;
+    for (const auto& each : run.at("ledger").at("entries")) EXPECT_NE(each.at("verdict"), "BROKEN") << each;
+  }
 }
 
 TEST_F(ReducedScenes, AreListed) {

@@ -33,16 +33,16 @@ TEST(LevelLaws, OfABeadOnATurningRod) {
   EXPECT_TRUE(report.holds()) << report;
 }
 
-/// The bases are twice the horizontal lifts, and twice the direction of the angle.
+/// The bases are twice the horizontal lifts, and twice the direction of the angle: of second derivatives and of what is
+/// above, for first derivatives are those of the Routhian.
 struct Doubled : FactorConnection<Factors<1>, Pair<1>, SO2> {
   static Matrix<double, 2, 2> adapted_basis(const Vector<double, 1>&) { return 2 * Matrix<double, 2, 2>::Identity(); }
 };
 
 TEST(BrokenLevel, InAnotherBasisIsFoundOut) {
-  EXPECT_EQ(
-      broken_laws(laws::level_laws(level_of_the_bead<Doubled>(), draw_bead)),
-      (Names{"the Routhian and its magnetic term give the momenta", "second derivatives are those of the gradients",
-             "steps are those of the full system", "full arrows have the momentum of the level at both ends"}));
+  EXPECT_EQ(broken_laws(laws::level_laws(level_of_the_bead<Doubled>(), draw_bead)),
+            (Names{"second derivatives are those of the gradients", "steps are those of the full system",
+                   "full arrows have the momentum of the level at both ends"}));
 }
 
 }  // namespace
