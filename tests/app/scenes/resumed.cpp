@@ -39,9 +39,10 @@ TEST_F(Scenes, BodiesThatTurnGoOnWithTheSameBits) {
 /// Of systems, by every kind of steps; a ledger with a balance, first steps by accuracy, every n-th row.
 TEST_F(Scenes, SystemsGoOnWithTheSameBits) {
   for (const std::string name :
-       {"kepler_adaptive", "kepler_controlled", "kepler_order_8", "plate_ball_initial_value", "plate_ball_adaptive",
-        "rigid_body_moser_veselov", "spherical_pendulum", "damped_pendulum", "driven_pendulum", "pythagorean",
-        "kepler --set solver.method=ceres", "heavy_top --set time.method=splitting --set output.every=7"}) {
+       {"kepler_adaptive", "kepler_controlled", "kepler_prescribed", "kepler_order_8", "plate_ball_initial_value",
+        "plate_ball_adaptive", "rigid_body_moser_veselov", "spherical_pendulum", "damped_pendulum", "driven_pendulum",
+        "pythagorean", "kepler --set solver.method=ceres",
+        "heavy_top --set time.method=splitting --set output.every=7"}) {
     const fs::path whole = folder_ / ("whole" + std::to_string(entries()));
     const fs::path parts = folder_ / ("parts" + std::to_string(entries()));
     const std::string rest = name.find(' ') == std::string::npos ? "" : name.substr(name.find(' '));
