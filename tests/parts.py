@@ -95,6 +95,22 @@ class Parts(unittest.TestCase):
                  for n in (40, 80)]
         self.assertLess(error[1], error[0] / 12)  # 16, of order four
 
+    def test_gradients_of_bodies_and_spheres_are_refused_by_name(self):
+        for scene, said in (("spring_pendulum", "runs of bodies have no derivatives"),
+                            ("pendulum_chain", 'runs of "pendulum_chain" have no derivatives')):
+            told = run(bin_folder / "parts" / "pendulum" / "lagroid-gradient", examples / f"{scene}.toml")
+            self.assertEqual(told.returncode, 2, told.stderr)
+            self.assertIn(said, told.stderr)
+
+    @unittest.skipUnless((bin_folder / "lagroid-gradient").exists(), "of the whole program, built for the nightly tests")
+    def test_gradients_say_what_starts_by_a_velocity_hold(self):
+        said = "hold the momentum"
+        for by, is_said in (("parameters.mass", True), ("initial", False)):
+            for words in (("--wrt", by), ("--deviations", f"{by}=0.01" if is_said else "initial.momentum=0.01")):
+                told = run(bin_folder / "lagroid-gradient", examples / "chaplygin_sleigh.toml", "--of", "final.momentum", *words)
+                self.assertEqual(told.returncode, 0, told.stderr)
+                self.assertEqual(said in told.stdout, is_said, told.stdout)
+
     def test_gradients_of_poisson_systems(self):
         for scene, of, columns in (("lotka_volterra", "final", 6), ("kirchhoff", "final.state,final.Casimirs,node.20.energy", 16),
                                    ("stochastic_top", "final.state,integral.energy", 6)):

@@ -6,6 +6,7 @@
 #include "../command/command.hpp"
 #include "../families/family.hpp"
 #include "../reading/data_set.hpp"
+#include "../reading/kinds.hpp"
 
 #include <lagroid/run/files/output_folder.hpp>
 
@@ -40,15 +41,40 @@ template <class Found> int report(const SceneOptions& options, const Found& foun
   return failure.empty() ? 0 : exit_failed;
 }
 
-/// Finds the scene's subject and calls use(subject); what cannot be done is said in one line.
+/// What starts are given by, where the momentum that comes of it is another for other parameters.
+std::vector<std::string> notes_on_start(const Section& scene, const GradientTable& table) {
+  const bool by_parameters = std::any_of(table.columns.begin(), table.columns.end(),
+                                         [](const std::string& column) { return column.rfind("parameters.", 0) == 0; });
+  const Section initial = scene.section_or_empty("initial");
+  for (const char* key : {"velocity", "rates", "spin"})
+    if (by_parameters && initial.has(key))
+      return {
+          fmt::format("the start is given by initial.{}: derivatives by parameters hold the momentum that it comes "
+                      "to, not the {} itself",
+                      key, key)};
+  return {};
+}
+
+/// Refuses scenes whose runs have no derivatives, of which this program knows no family.
+void require_derivatives(const Section& scene) {
+  if (scene.has(keys::bodies))
+    scene.fail(keys::bodies, "runs of bodies have no derivatives; gradient and fit take scenes of one system");
+  if (!scene.has(keys::system)) return;
+  const std::string system = scene.text(keys::system, "the name of a system");
+  if (std::find(keys::on_spheres.begin(), keys::on_spheres.end(), system) != keys::on_spheres.end())
+    scene.fail(keys::system, fmt::format("runs of \"{}\" have no derivatives", system));
+}
+
+/// Finds the scene's subject and calls use(subject, scene); what cannot be done is said in one line.
 template <class Use>
 int with_subject(const SceneOptions& options, const std::vector<AskGradient>& subjects, const Use& use) {
   const Section scene = read_scene(options.scene, options.overrides);
+  require_derivatives(scene);
   for (const AskGradient ask : subjects) {
     try {
       const auto subject = ask(scene);
       if (!subject) continue;
-      return use(*subject);
+      return use(*subject, scene);
     } catch (const GradientRefused& refusal) {
       return refuse(options.json, exit_bad_input, "invalid_command_line", refusal.what());
     } catch (const DataError& refusal) {
@@ -63,14 +89,19 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
 }
 
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
-  return with_subject(options, subjects, [&](const GradientSubject& subject) {
+  return with_subject(options, subjects, [&](const GradientSubject& subject, const Section& scene) {
+    const auto with_notes = [&](GradientTable& table) {
+      for (std::string& note : notes_on_start(scene, table)) table.notes.push_back(std::move(note));
+    };
     if (!options.deviations.empty()) {
-      const Uncertainty found = uncertainty_of(subject, options.of, deviations_of(options.deviations), options.draws);
+      Uncertainty found = uncertainty_of(subject, options.of, deviations_of(options.deviations), options.draws);
+      with_notes(found.table);
       return report(options, found, found.table.failure);
     }
     std::vector<std::string> by = options.by;
     if (by == GradientOptions{}.by && subject.parameters.empty()) by = {"initial"};
-    const GradientTable table = differentiate(subject, options.of, by, options.check);
+    GradientTable table = differentiate(subject, options.of, by, options.check);
+    with_notes(table);
     return report(options, table, table.failure);
   });
 }
@@ -111,7 +142,7 @@ FitOptions fit_options(const FitCommandOptions& options) {
 }
 
 int fit_of_scene(const FitCommandOptions& options, const std::vector<AskGradient>& subjects) {
-  return with_subject(options, subjects, [&](const GradientSubject& subject) {
+  return with_subject(options, subjects, [&](const GradientSubject& subject, const Section&) {
     const Fit fit = fit_scene(subject, options.data, fit_options(options));
     if (fit.failure.empty() && !options.residuals.empty()) write_text(csv_of(fit), options.residuals);
     const int code = report(options, fit, fit.failure);
