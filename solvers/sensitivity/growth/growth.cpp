@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lagroid {
 
@@ -17,9 +18,13 @@ Eigen::VectorXd OwnUnits::of(Eigen::Index components) const {
   // What acts one way alone acts back by so little that all steps together count once.
   Eigen::MatrixXd coupling = sum_ / double(seen_);
   const double back = 1 / (double(asked_) * double(asked_));
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> reaches = sum_.array() > 0;
+  for (Eigen::Index k = 0; k < components; ++k)
+    for (Eigen::Index i = 0; i < components; ++i)
+      for (Eigen::Index j = 0; j < components; ++j) reaches(i, j) = reaches(i, j) || (reaches(i, k) && reaches(k, j));
   for (Eigen::Index i = 0; i < components; ++i)
     for (Eigen::Index j = 0; j < components; ++j)
-      if (sum_(j, i) > 0) coupling(i, j) += back * double(seen_) / sum_(j, i);
+      if (sum_(j, i) > 0 && !reaches(i, j)) coupling(i, j) += back * double(seen_) / sum_(j, i);
   coupling.diagonal().setZero();
   constexpr int most_sweeps = 200;
   constexpr double settled = 1e-3;
@@ -44,6 +49,10 @@ Growth::Growth(const Eigen::MatrixXd& directions)
 void Growth::after_a_step(const Eigen::MatrixXd& directions) {
   ++steps_;
   for (Eigen::Index j = 0; j < directions.cols(); ++j) {
+    if (!directions.col(j).allFinite()) {
+      peak_.col(j).setConstant(std::numeric_limits<double>::infinity());
+      continue;
+    }
     const double steps = added_(j) ? double(steps_) : 1;
     if (first_.col(j).maxCoeff() == 0) first_.col(j) = directions.col(j).cwiseAbs() / steps;
     peak_.col(j) = peak_.col(j).cwiseMax(directions.col(j).cwiseAbs() / steps);

@@ -63,6 +63,32 @@ TEST(Growth, IsTheRateOfAnUnstableRest) {
   EXPECT_NEAR(std::log(growth.largest()), rate * 100, std::log(2));
 }
 
+/// Two oscillators that act upon each other, by symplectic Euler; one entry that was zero is round-off.
+double of_oscillators(double roundoff) {
+  Eigen::Matrix4d step = Eigen::Matrix4d::Identity();
+  constexpr double h = 0.05;
+  const Eigen::Matrix2d force{{-1.0, 0.3}, {0.3, -2.0}};
+  step.topRightCorner<2, 2>() = h * Eigen::Matrix2d::Identity();
+  step.bottomLeftCorner<2, 2>() = h * force;
+  step.bottomRightCorner<2, 2>() += h * h * force;
+  step(0, 3) += roundoff;
+  Growth growth(Eigen::Matrix4d::Identity());
+  Eigen::MatrixXd directions = Eigen::Matrix4d::Identity();
+  for (int k = 0; k < 1000; ++k) {
+    directions = step * directions;
+    growth.after_a_step(directions);
+    if (growth.wants_matrix()) growth.see(step);
+  }
+  return growth.largest();
+}
+TEST(Growth, DoesNotSeeRoundOff) { EXPECT_NEAR(of_oscillators(1e-18) / of_oscillators(0), 1, 0.01); }
+
+TEST(Growth, OfWhatIsNoNumberIsInfinite) {
+  Growth growth(Eigen::Matrix2d::Identity());
+  growth.after_a_step(Eigen::Matrix2d::Constant(std::nan("")));
+  EXPECT_TRUE(std::isinf(growth.largest()));
+}
+
 TEST(Growth, OfAFreeParticleIsNone) {
   Growth growth(Eigen::Matrix2d::Identity());
   const Eigen::Matrix2d step{{1, 1e9}, {0, 1}};
