@@ -10,6 +10,10 @@ std::string step_failure(const StepReport& report, long step, double time, TimeM
     case SolveStatus::left_domain:
       if (mode == TimeMode::transformed)
         return fmt::format("{}: the energy of the attraction is not negative here; use mode = \"fixed\"", where);
+      if (mode == TimeMode::prescribed)
+        return fmt::format(
+            "{}: the step is too long: its size would change by more than a factor of two; use a smaller time.step",
+            where);
       return fmt::format(
           "{}: the only solution found is on another branch of the discretisation; use a smaller step or "
           "another form of the rotation",

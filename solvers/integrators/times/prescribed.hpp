@@ -18,7 +18,9 @@
 ///
 /// Requires a Timed system with a `time_scale` of its arrows; `h` is the first step, which determines epsilon. The
 /// configuration must end at the initial object (std::invalid_argument). Status, beside those of the solver: `no_step`
-/// where sigma of the first arrow is not a positive number. A step that is not solved leaves everything as it was.
+/// where sigma of the first arrow is not a positive number, `left_domain` where the size of a step would change by more
+/// than a factor of two, which a step that resolves the motion does not do. A step that is not solved leaves everything
+/// as it was.
 /// [G], after Example 6.2
 
 #include <lagroid/core/capabilities/time_scale_of_arrows.hpp>
@@ -29,6 +31,7 @@
 #include <lagroid/solvers/step/extrapolation.hpp>
 #include <lagroid/solvers/step/step_predictor.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -72,6 +75,7 @@ template <HasTimeScaleOfArrows Sys> class PrescribedIntegrator {
 
  private:
   static constexpr int phis = Sys::arrow_constraints;
+  static constexpr double largest_change = 2;  ///< of the step size, from one step to the next, as of adaptive steps
   using ExtendedMultipliers = typename Extended::Multipliers;
   using Unknowns = Vector<double, 1 + Sys::dimension + Extended::constraints>;
 
@@ -89,6 +93,7 @@ template <HasTimeScaleOfArrows Sys> class PrescribedIntegrator {
     const auto& [arrow, of_base] = solution.step;
     const double scale = system.time_scale(arrow);
     if (!(scale > 0 && std::isfinite(scale))) {
+      first_.forget();
       report.status = SolveStatus::no_step;
       return report;
     }
@@ -112,16 +117,20 @@ template <HasTimeScaleOfArrows Sys> class PrescribedIntegrator {
     const AlgebroidVector<G> v = predicted.template segment<Sys::dimension>(1);
     solution.step = extended_step(predicted(0), groupoid.arrow_in_chart(point().state.object, v),
                                   predicted.template tail<Extended::constraints>());
-    const StepReport report = prescribed_->solve(extended_, state, solution);
+    StepReport report = prescribed_->solve(extended_, state, solution);
     if (!report.converged()) return report;
     const auto& [time, arrow] = solution.step.arrow;
+    const double change = time.target(0) / point().step_size;
+    if (std::max(change, 1 / change) > largest_change) {
+      report.status = SolveStatus::left_domain;
+      return report;
+    }
+    // Without the remainder: most of it lies along the motion, where the size of the step follows it.
     StepSolution<Sys> of_base;
     of_base.step.arrow = arrow;
     of_base.step.multipliers << solution.step.multipliers.template head<phis>(),
         solution.step.multipliers.template tail<Sys::object_constraints>();
     of_base.momentum_change = solution.momentum_change.template tail<Sys::dimension>();
-    // Of the next correction most lies along the motion, where the size of the step follows it.
-    of_base.remainder.setZero();
     accept(time.target(0), of_base, solution.step.multipliers, solution.momentum_change(0));
     return report;
   }

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -120,7 +121,9 @@ TEST(Prescribed, KeepTheMomentumOfTimeOnAConstraint) {
 double error_of(Integrator<Kepler>& run, long& steps) {
   steps = 0;
   while (run.point().time < 2 * std::numbers::pi) {
-    EXPECT_TRUE(run.advance().converged());
+    const bool is_solved = run.advance().converged();
+    EXPECT_TRUE(is_solved);
+    if (!is_solved) return std::numeric_limits<double>::infinity();
     ++steps;
   }
   const double time = run.point().time;
@@ -150,6 +153,23 @@ TEST(Prescribed, BeatEqualStepsOnAnEccentricOrbit) {
   const double equal = error_by(TimeMode::fixed, 2 * std::numbers::pi / double(steps), equal_steps);
   EXPECT_NEAR(double(equal_steps), double(steps), 1.5);
   EXPECT_LT(5 * error, equal);
+}
+
+// Steps so long that none of the solutions of their equations is of the motion: one led out to |q| = 1000.
+TEST(Prescribed, EndWhereTheSizeOfAStepJumps) {
+  const State<Pair<2>> start{{0.1, 0}, {0, std::sqrt(19.0)}};
+  auto run = prescribed(orbit(0.02), start);
+  StepReport report = run.advance();
+  double last = run.point().step_size;
+  while (report.converged() && run.point().index < 10) {
+    report = run.advance();
+    EXPECT_LE(run.point().step_size, 2 * last);
+    last = run.point().step_size;
+  }
+  EXPECT_EQ(report.status, SolveStatus::left_domain);
+  const State<Pair<2>> before = run.point().state;
+  EXPECT_EQ(run.advance().status, SolveStatus::left_domain);
+  EXPECT_EQ(run.point().state.object, before.object);
 }
 
 TEST(Prescribed, SaySoWithoutATimeScale) {
