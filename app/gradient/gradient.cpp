@@ -41,18 +41,20 @@ template <class Found> int report(const SceneOptions& options, const Found& foun
   return failure.empty() ? 0 : exit_failed;
 }
 
-/// What starts are given by, where the momentum that comes of it is another for other parameters.
-std::vector<std::string> notes_on_start(const Section& scene, const GradientTable& table) {
+/// Adds a note where the start is given by what is another momentum for other parameters.
+void note_start(const Section& scene, GradientTable& table) {
   const bool by_parameters = std::any_of(table.columns.begin(), table.columns.end(),
                                          [](const std::string& column) { return column.rfind("parameters.", 0) == 0; });
+  if (!by_parameters) return;
   const Section initial = scene.section_or_empty("initial");
-  for (const char* key : {"velocity", "rates", "spin"})
-    if (by_parameters && initial.has(key))
-      return {
-          fmt::format("the start is given by initial.{}: derivatives by parameters hold the momentum that it comes "
-                      "to, not the {} itself",
-                      key, key)};
-  return {};
+  for (const char* key : {"velocity", "rates", "spin"}) {
+    if (!initial.has(key)) continue;
+    table.notes.push_back(fmt::format(
+        "the start is given by initial.{}: derivatives by parameters hold the momentum that it comes to, not the {} "
+        "itself",
+        key, key));
+    return;
+  }
 }
 
 /// Refuses scenes whose runs have no derivatives, of which this program knows no family.
@@ -90,18 +92,15 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
 
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
   return with_subject(options, subjects, [&](const GradientSubject& subject, const Section& scene) {
-    const auto with_notes = [&](GradientTable& table) {
-      for (std::string& note : notes_on_start(scene, table)) table.notes.push_back(std::move(note));
-    };
     if (!options.deviations.empty()) {
       Uncertainty found = uncertainty_of(subject, options.of, deviations_of(options.deviations), options.draws);
-      with_notes(found.table);
+      note_start(scene, found.table);
       return report(options, found, found.table.failure);
     }
     std::vector<std::string> by = options.by;
     if (by == GradientOptions{}.by && subject.parameters.empty()) by = {"initial"};
     GradientTable table = differentiate(subject, options.of, by, options.check);
-    with_notes(table);
+    note_start(scene, table);
     return report(options, table, table.failure);
   });
 }

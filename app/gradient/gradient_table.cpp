@@ -308,6 +308,13 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
   return out;
 }
 
+std::string words_of_growth(const GradientTable& table) {
+  std::string out = fmt::format("\n  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n",
+                                table.growth, table.digits_left);
+  for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
+  return out;
+}
+
 std::string text_of(const GradientTable& table) {
   std::string out = fmt::format("{}: exact derivatives of a run of {} steps\n\n", table.system, table.steps);
   std::size_t first = 0;
@@ -326,9 +333,7 @@ std::string text_of(const GradientTable& table) {
       out += fmt::format("  {:{}.10g}", table.derivatives(row, Eigen::Index(j)), widths[j]);
     out += "\n";
   }
-  out += fmt::format("\n  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
-                     table.digits_left);
-  for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
+  out += words_of_growth(table);
   if (table.checked)
     out += fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
   return out;

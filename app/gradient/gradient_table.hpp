@@ -76,6 +76,8 @@ std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const G
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
                             const std::vector<std::string>& by, bool check);
 
+/// By how much derivatives grew, and the notes: the end of what is printed of them.
+std::string words_of_growth(const GradientTable& table);
 std::string text_of(const GradientTable& table);
 std::string json_of(const GradientTable& table);
 

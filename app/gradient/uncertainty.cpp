@@ -142,9 +142,7 @@ std::string text_of(const Uncertainty& u) {
       out += "\n";
     }
   }
-  out += fmt::format("\n  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
-                     table.digits_left);
-  for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
+  out += words_of_growth(table);
   if (u.sample) {
     const double counted = double(u.sample->runs - u.sample->failed);
     out += fmt::format("  {} runs were drawn{}; their deviations are known to {:.2g} %\n", u.sample->runs,

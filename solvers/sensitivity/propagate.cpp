@@ -133,15 +133,7 @@ class Reversal {
   }
   const Eigen::MatrixXd& gradients() const { return gradients_; }
   /// By which factor, in units of the motion's own: gradients are measured in their inverses.
-  double growth() const {
-    const Eigen::VectorXd units = units_.of(first_.rows());
-    double largest = 1;
-    for (Eigen::Index j = 0; j < first_.cols(); ++j) {
-      const double before = first_.col(j).cwiseProduct(units).norm();
-      if (before > 0) largest = std::max(largest, peak_.col(j).cwiseProduct(units).norm() / before);
-    }
-    return largest;
-  }
+  double growth() const { return largest_ratio(first_, peak_, units_.of(first_.rows())); }
 
  private:
   bool step(long from) {

@@ -43,6 +43,15 @@ Eigen::VectorXd OwnUnits::of(Eigen::Index components) const {
   return units;
 }
 
+double largest_ratio(const Eigen::MatrixXd& first, const Eigen::MatrixXd& peak, const Eigen::VectorXd& scale) {
+  double largest = 1;
+  for (Eigen::Index j = 0; j < first.cols(); ++j) {
+    const double before = first.col(j).cwiseProduct(scale).norm();
+    if (before > 0) largest = std::max(largest, peak.col(j).cwiseProduct(scale).norm() / before);
+  }
+  return largest;
+}
+
 Growth::Growth(const Eigen::MatrixXd& directions)
     : first_(directions.cwiseAbs()), peak_(first_), added_(first_.colwise().maxCoeff().array() == 0) {}
 
@@ -59,14 +68,6 @@ void Growth::after_a_step(const Eigen::MatrixXd& directions) {
   }
 }
 
-double Growth::largest() const {
-  const Eigen::VectorXd scale = units_.of(first_.rows()).cwiseInverse();
-  double largest = 1;
-  for (Eigen::Index j = 0; j < first_.cols(); ++j) {
-    const double before = first_.col(j).cwiseProduct(scale).norm();
-    if (before > 0) largest = std::max(largest, peak_.col(j).cwiseProduct(scale).norm() / before);
-  }
-  return largest;
-}
+double Growth::largest() const { return largest_ratio(first_, peak_, units_.of(first_.rows()).cwiseInverse()); }
 
 }  // namespace lagroid

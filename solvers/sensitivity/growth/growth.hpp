@@ -37,6 +37,9 @@ class OwnUnits {
   Eigen::MatrixXd sum_;  ///< of |A - 1|
 };
 
+/// max over columns j of |scale peak_j| / |scale first_j|, from one up; columns that were zero do not count.
+double largest_ratio(const Eigen::MatrixXd& first, const Eigen::MatrixXd& peak, const Eigen::VectorXd& scale);
+
 class Growth {
  public:
   explicit Growth(const Eigen::MatrixXd& directions);
