@@ -49,24 +49,50 @@ template <HasTimeScaleOfArrows Sys> class PrescribedIntegrator {
       : first_(system, std::move(first)),
         extended_(system, TimeScaleStep{}),
         prescribed_(std::move(prescribed)),
-        trajectory_(system.groupoid, initial, configuration, start_time(system)) {}
+        trajectory_(system.groupoid, initial, configuration, start_time(system)),
+        symmetric_(scale_is_symmetric(system, initial.object)) {}
 
   const TrajectoryPoint<Sys>& point() const { return trajectory_.point(); }
-  /// Symplectic on the extended phase space; symmetric where sigma(g^{-1}) = sigma(g).
-  static MethodTraits traits() { return {"prescribed steps", 2, true, false, false}; }
+  /// Symplectic on the extended phase space; symmetric where sigma(g^{-1}) = sigma(g), of an arrow from the start.
+  MethodTraits traits() const { return {"prescribed steps", 2, symmetric_, false, false}; }
   /// p_t, which is kept where the system does not depend on time.
   double momentum_of_time() const { return time_momentum_; }
   /// nu of the last arrow.
-  double step_multiplier() const { return step_multiplier_; }
+  double step_multiplier() const { return multipliers_(phis); }
 
   StepReport advance() {
     extended_.origin = point().time;
     return extended_.step_size.epsilon > 0 ? next_step() : first_step();
   }
 
+  /// A share of the last step from the point before it: the prescribed step of that share of epsilon. Nothing changes.
+  [[gnu::cold]] StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
+    NumberArchive kept;
+    prescribed_->serialize(kept);
+    const double epsilon = extended_.step_size.epsilon;
+    const double expected = share * point().step_size;
+    extended_.step_size.epsilon = share * epsilon;
+    extended_.origin = from.time;
+    const auto& groupoid = first_.system().groupoid;
+    const AlgebroidVector<G> v = share * groupoid.chart(point().step.arrow);
+    Found found;
+    StepReport report = solve(from.state, time_momentum_before_, expected, v, multipliers_, found);
+    extended_.step_size.epsilon = epsilon;
+    NumberArchive restored(kept.numbers());
+    prescribed_->serialize(restored);
+    if (report.converged() && !is_near(found.h, expected)) report.status = SolveStatus::left_domain;
+    if (!report.converged()) return report;
+    CompensatedTrajectory<Sys> trajectory(groupoid, from.state, from.configuration, from.time);
+    trajectory.join(groupoid, found.solution);
+    trajectory.arrive_at(from.time + found.h, found.h);
+    const long index = from.index + 1;
+    to = trajectory.point();
+    to.index = index;
+    return report;
+  }
   /// Visits all that the next step goes on from.
   void serialize(NumberArchive& archive) {
-    archive(extended_.step_size.epsilon, time_momentum_, compensation_.lost, step_multiplier_);
+    archive(extended_.step_size.epsilon, time_momentum_, compensation_.lost, time_momentum_before_, multipliers_);
     first_.serialize(archive);
     prescribed_->serialize(archive);
     trajectory_.serialize(first_.system().groupoid, archive);
@@ -83,14 +109,22 @@ template <HasTimeScaleOfArrows Sys> class PrescribedIntegrator {
     return {{PairArrow<double, 1>{Vector<double, 1>(0.0), Vector<double, 1>(h)}, arrow}, multipliers};
   }
 
+  static bool scale_is_symmetric(const Sys& system, const ObjectOf<G>& q) {
+    AlgebroidVector<G> v;
+    for (int i = 0; i < Sys::dimension; ++i) v(i) = 0.01 * (i + 1);
+    const ArrowOf<G> g = system.groupoid.arrow_in_chart(q, v);
+    const double scale = system.time_scale(g);
+    return std::abs(system.time_scale(system.groupoid.inverse(g)) - scale) <= 1e-12 * std::abs(scale);
+  }
+
   /// Of the given size, with nu = 0: it says what epsilon is, and p_t.
   StepReport first_step() {
     Sys& system = first_.system();
     set_time(system, point().time);
-    StepSolution<Sys> solution;
-    StepReport report = first_.solve(point().state, solution);
+    Found found{.h = system.h, .solution = {}, .multipliers = {}};
+    StepReport report = first_.solve(point().state, found.solution);
     if (!report.converged()) return report;
-    const auto& [arrow, of_base] = solution.step;
+    const auto& [arrow, of_base] = found.solution.step;
     const double scale = system.time_scale(arrow);
     if (!(scale > 0 && std::isfinite(scale))) {
       first_.forget();
@@ -98,51 +132,66 @@ template <HasTimeScaleOfArrows Sys> class PrescribedIntegrator {
       return report;
     }
     extended_.step_size.epsilon = system.h / scale;
-    ExtendedMultipliers multipliers;
-    multipliers << of_base.template head<phis>(), 0.0, of_base.template tail<Sys::object_constraints>();
-    const Step<Extended> step = extended_step(system.h, arrow, multipliers);
+    found.multipliers << of_base.template head<phis>(), 0.0, of_base.template tail<Sys::object_constraints>();
+    const Step<Extended> step = extended_step(system.h, arrow, found.multipliers);
     const auto d = gradients(extended_, step.arrow, step.multipliers);
     time_momentum_ = -d.source_gradient(0);
-    accept(system.h, solution, multipliers, d.source_gradient(0) + d.target_gradient(0));
+    found.time_momentum_change = d.source_gradient(0) + d.target_gradient(0);
+    accept(found);
     return report;
   }
 
   StepReport next_step() {
-    const auto& groupoid = first_.system().groupoid;
     const Unknowns predicted = past_.next();
-    State<typename Extended::GroupoidType> state;
-    state.object = {Vector<double, 1>(0.0), point().state.object};
-    state.momentum << time_momentum_, point().state.momentum;
-    StepSolution<Extended> solution;
     const AlgebroidVector<G> v = predicted.template segment<Sys::dimension>(1);
-    solution.step = extended_step(predicted(0), groupoid.arrow_in_chart(point().state.object, v),
-                                  predicted.template tail<Extended::constraints>());
-    StepReport report = prescribed_->solve(extended_, state, solution);
-    if (!report.converged()) return report;
-    const auto& [time, arrow] = solution.step.arrow;
-    const double change = time.target(0) / point().step_size;
-    if (std::max(change, 1 / change) > largest_change) {
-      report.status = SolveStatus::left_domain;
-      return report;
-    }
-    // Without the remainder: most of it lies along the motion, where the size of the step follows it.
-    StepSolution<Sys> of_base;
-    of_base.step.arrow = arrow;
-    of_base.step.multipliers << solution.step.multipliers.template head<phis>(),
-        solution.step.multipliers.template tail<Sys::object_constraints>();
-    of_base.momentum_change = solution.momentum_change.template tail<Sys::dimension>();
-    accept(time.target(0), of_base, solution.step.multipliers, solution.momentum_change(0));
+    Found found;
+    StepReport report =
+        solve(point().state, time_momentum_, predicted(0), v, predicted.template tail<Extended::constraints>(), found);
+    if (report.converged() && !is_near(found.h, point().step_size)) report.status = SolveStatus::left_domain;
+    if (report.converged()) accept(found);
     return report;
   }
 
-  void accept(double h, const StepSolution<Sys>& found, const ExtendedMultipliers& multipliers, double change) {
+  struct Found {
+    double h = 0;
+    StepSolution<Sys> solution;
+    ExtendedMultipliers multipliers;
+    double time_momentum_change = 0;
+  };
+  /// The step from a state and p_t, from a guess of its size, its arrow in the groupoid's chart and its multipliers.
+  StepReport solve(const State<G>& from, double time_momentum, double h, const AlgebroidVector<G>& v,
+                   const ExtendedMultipliers& multipliers, Found& found) {
+    State<typename Extended::GroupoidType> state;
+    state.object = {Vector<double, 1>(0.0), from.object};
+    state.momentum << time_momentum, from.momentum;
+    StepSolution<Extended> solution;
+    solution.step = extended_step(h, first_.system().groupoid.arrow_in_chart(from.object, v), multipliers);
+    const StepReport report = prescribed_->solve(extended_, state, solution);
+    if (!report.converged()) return report;
+    found.h = std::get<0>(solution.step.arrow).target(0);
+    found.multipliers = solution.step.multipliers;
+    found.time_momentum_change = solution.momentum_change(0);
+    // Without the remainder: most of it lies along the motion, where the size of the step follows it.
+    found.solution.step.arrow = std::get<1>(solution.step.arrow);
+    found.solution.step.multipliers << found.multipliers.template head<phis>(),
+        found.multipliers.template tail<Sys::object_constraints>();
+    found.solution.momentum_change = solution.momentum_change.template tail<Sys::dimension>();
+    return report;
+  }
+  static bool is_near(double h, double expected) {
+    const double change = h / expected;
+    return change <= largest_change && 1 <= largest_change * change;
+  }
+
+  void accept(const Found& found) {
     const auto& groupoid = first_.system().groupoid;
-    trajectory_.join(groupoid, found);
-    trajectory_.arrive(h);
-    compensation_.add(time_momentum_, change);
-    step_multiplier_ = multipliers(phis);
+    trajectory_.join(groupoid, found.solution);
+    trajectory_.arrive(found.h);
+    time_momentum_before_ = time_momentum_;
+    compensation_.add(time_momentum_, found.time_momentum_change);
+    multipliers_ = found.multipliers;
     Unknowns unknowns;
-    unknowns << h, groupoid.chart(found.step.arrow), multipliers;
+    unknowns << found.h, groupoid.chart(found.solution.step.arrow), found.multipliers;
     past_.push(unknowns);
   }
 
@@ -150,10 +199,12 @@ template <HasTimeScaleOfArrows Sys> class PrescribedIntegrator {
   Extended extended_;
   std::unique_ptr<StepSolver<Extended>> prescribed_;
   CompensatedTrajectory<Sys> trajectory_;
+  bool symmetric_;
   Extrapolation<1 + Sys::dimension + Extended::constraints, 4> past_;
   double time_momentum_ = 0;
   Compensation<double> compensation_{};
-  double step_multiplier_ = 0;
+  double time_momentum_before_ = 0;  ///< of the last step
+  ExtendedMultipliers multipliers_ = ExtendedMultipliers::Zero();
 };
 
 }  // namespace lagroid

@@ -59,9 +59,10 @@ TEST_F(Events, AreInEveryFileOfARun) {
 TEST_F(Events, RunsWithThemHaveTheRowsOfThoseWithout) {
   for (const auto& [name, when] :
        {std::pair("kepler", "x"), std::pair("kepler_adaptive", "x"), std::pair("kepler_controlled", "x"),
-        std::pair("figure_eight", "a.x - b.x"), std::pair("six_bar", "energy*t - 1"), std::pair("tops", "t - 0.3"),
-        std::pair("rolling_balls", "t - 0.2"), std::pair("pendulum_chain", "z1 + 0.5"),
-        std::pair("pendulum_chain_adaptive", "t - 0.3"), std::pair("rolling_disk", "x")}) {
+        std::pair("kepler_prescribed", "x"), std::pair("figure_eight", "a.x - b.x"),
+        std::pair("six_bar", "energy*t - 1"), std::pair("tops", "t - 0.3"), std::pair("rolling_balls", "t - 0.2"),
+        std::pair("pendulum_chain", "z1 + 0.5"), std::pair("pendulum_chain_adaptive", "t - 0.3"),
+        std::pair("rolling_disk", "x")}) {
     SCOPED_TRACE(name);
     const fs::path with_events = folder_ / (std::string("with ") + name),
                    without = folder_ / (std::string("no ") + name);
