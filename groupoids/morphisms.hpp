@@ -20,7 +20,7 @@ template <class Group> struct LeftQuotient : Morphism<LeftQuotient<Group>, PairO
   static constexpr bool keeps_basis = true;
   template <class E> StepFromUnit<E> representative(const E& g) const {
     using S = typename decltype(this->to.coordinates_of_arrow(g))::Scalar;
-    return {{this->to.unit(ObjectOf<Group, S>()), g}};
+    return {this->to.unit(ObjectOf<Group, S>()), g};
   }
   template <class E> E operator()(const ElementPair<E>& g) const { return this->from.quotient(g); }
   template <class E> ElementPair<E> lift(const E& a, const E& g) const { return {a, this->to.multiply(a, g)}; }

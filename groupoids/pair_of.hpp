@@ -19,8 +19,13 @@ template <class Element> struct ElementPair {
 /// Such an arrow that knows a^{-1} b, for systems on pairs that are reduced: Lagrangians that ask the groupoid for
 /// `quotient` then cost no product of elements.
 template <class Element> struct ElementStep : ElementPair<Element> { Element quotient; };
-/// One from the unit, whose target that is: what stands for an element of the group (LeftQuotient).
-template <class Element> struct StepFromUnit : ElementPair<Element> {};
+/// One from the unit, whose target that is: what stands for an element of the group (LeftQuotient). It looks at the
+/// element, which must outlive it: g++ makes the copy of a target that nobody reads, a tenth of a free body's step.
+template <class Element> struct StepFromUnit {
+  Element source;
+  const Element& target;
+  operator ElementPair<Element>() const { return {source, target}; }
+};
 
 /// Arrows: pairs (a, b) of elements of `Group`; (a, b)(b, c) = (a, c). Algebroid: TG, left-trivialised, so that
 /// constant sections are the group's left-invariant fields; anchor x -> a hat(x). Retraction tau_a(v) = (a, a tau(v)).
@@ -83,7 +88,15 @@ template <class Group> struct PairOf : LieGroupoid<PairOf<Group>, Group::dimensi
     return group.multiply(group.inverse(g.source), g.target);
   }
   template <class E> static const E& quotient(const ElementStep<E>& g) { return g.quotient; }
+
+  // What a Lagrangian may ask of the step that stands for its own quotient.
   template <class E> static const E& quotient(const StepFromUnit<E>& g) { return g.target; }
+  template <class E> static E source(const StepFromUnit<E>& g) { return g.source; }
+  template <class E> static E target(const StepFromUnit<E>& g) { return g.target; }
+  template <class E> auto tau_inverse(const StepFromUnit<E>& g) const { return group.tau_inverse(g.target); }
+  template <class E> auto chart(const StepFromUnit<E>& g) const { return group.chart(g.target); }
+  template <class E> ElementPair<E> inverse(const StepFromUnit<E>& g) const { return {g.target, g.source}; }
+
   template <class E, class V> ElementPair<E> arrow_in_chart(const E& a, const V& v) const {
     return {a, group.multiply(a, group.arrow_in_chart(Point<typename V::Scalar>(), v))};
   }

@@ -36,6 +36,14 @@ template <DiscreteSystem Sys, class Declared> class ReducedMotion final : public
       : ReducedMotion(declared, system, presentation, down.quantities(arrows), std::make_unique<Reduced>(down, options),
                       options, std::move(observer)) {}
 
+  std::string failure(const StepReport& report, long step) const override {
+    if (has_phases && report.status == SolveStatus::not_finite)
+      return fmt::format(
+          "step {} (from t = {:.6g}): no arrow near has the fixed momentum, or a number overflowed; use a smaller step",
+          step, this->time());
+    return SystemMotion<Sys>::failure(report, step);
+  }
+
   void describe(RunResult& result) const override {
     SystemMotion<Sys>::describe(result);
     result.notes.push_back(fmt::format("reduced by \"{}\" ({}) to {}; recorded is the full motion over it",

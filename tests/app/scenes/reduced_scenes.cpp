@@ -165,6 +165,9 @@ TEST_F(ReducedScenes, RefuseWhatTheyCannotDo) {
                  "does not act freely at the object");
   expect_refused("run " + example("kepler_boundary") + " --set reduce=rotations", "reduce: goes with [initial]");
   expect_refused("run " + example("pendulum") + " --set reduce=rotations", "declares nothing by which it is reduced");
+  const Outcome too_long = run(kepler + "angular-momentum --set time.step=2.5");
+  EXPECT_EQ(too_long.code, 3);
+  EXPECT_NE(too_long.err.find("no arrow near has the fixed momentum"), std::string::npos) << too_long.err;
 }
 
 TEST_F(ReducedScenes, RunWithoutTranslationsOrRotations) {
