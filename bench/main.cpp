@@ -43,6 +43,7 @@ int main(int argc, char** argv) try {
       {"@PENDULUM_CHAINS@", bench::pendulum_chain_subjects(), bench::pendulum_chain_goals(), 21},
       {"@ENSEMBLES@", bench::ensemble_subjects(), bench::ensemble_goals(), 11},
       {"@BOUNDARY@", bench::boundary_subjects(), bench::boundary_goals(), 7},
+      {"@CONTROL@", bench::control_subjects(), bench::control_goals(), 5},
       {"@LIE_NEWTON@", bench::lie_newton_subjects(), bench::lie_newton_goals(), 21},
   };
   bool any = part == "effects" || part == "accuracy" || part == "reduction";
@@ -63,6 +64,8 @@ int main(int argc, char** argv) try {
     chapter.tables = bench::table(chapter.subjects, results);
     tables += chapter.tables;
   }
+  results.merge(bench::control_counts(results));
+  const std::string iterations = bench::control_table(results);
   std::string reductions;
   if (part.empty() || part == "reduction") {
     const auto groups = bench::reduction_groups();
@@ -73,12 +76,13 @@ int main(int argc, char** argv) try {
   const std::string goals_reached = bench::goals_table(goals, results, /*every=*/part.empty());
   const std::string accuracy = part.empty() || part == "accuracy" ? bench::chain_accuracy_table() : std::string();
   const std::string effects = part.empty() || part == "effects" ? bench::effects_table() : std::string();
-  fmt::print("{}\n{}\n{}\n{}\n{}", tables, accuracy, effects, reductions, goals_reached);
+  fmt::print("{}\n{}\n{}\n{}\n{}\n{}", tables, iterations, accuracy, effects, reductions, goals_reached);
   if (write_page) {
     std::string page = bench::file_contents(LAGROID_SOURCE "/bench/performance.md.in");
     bench::put(page, "@MACHINE@", bench::machine());
     bench::put(page, "@GOALS@", goals_reached);
     for (const auto& chapter : chapters) bench::put(page, chapter.mark, chapter.tables);
+    bench::put(page, "@CONTROL_ITERATIONS@", iterations);
     bench::put(page, "@EFFECTS@", effects);
     bench::put(page, "@REDUCTIONS@", reductions);
     bench::put(page, "@CHAIN@", accuracy);

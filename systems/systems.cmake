@@ -80,14 +80,16 @@ lagroid_system(driven_pendulum DrivenPendulum IN pendulums INITIAL_VALUES SOURCE
 lagroid_system(driven_body DrivenBody IN rotations INITIAL_VALUES SOURCES systems/rotations/driven_body.cpp)
 
 # lagroid_algebra_of(variable name): the parts of linear algebra that its steps link. They have as many equations as the
-# sum of its sizes, and one more where they adapt; those of systems that say no sizes may have any number.
+# sum of its sizes, one more where they adapt and two where they are prescribed; those of systems that say no sizes may
+# have any number.
 function(lagroid_algebra_of variable name)
   set(algebra ${small_sizes})
   if(sizes_of_${name})
     string(REGEX REPLACE "^([0-9]+)_([0-9]+)_([0-9]+).*" "\\1+\\2+\\3" sum ${sizes_of_${name}})
     math(EXPR equations "${sum}")
     math(EXPR with_time "${sum}+1")
-    set(numbers ${equations} ${with_time})
+    math(EXPR with_size "${sum}+2")
+    set(numbers ${equations} ${with_time} ${with_size})
     foreach(variables ${reduced_of_${name}})
       math(EXPR with_time "${variables}+1")
       list(APPEND numbers ${variables} ${with_time})

@@ -445,9 +445,11 @@ class Parts(unittest.TestCase):
             ("--of", "energy"): "ask for final.NAME",
             ("--wrt", "parameters.quadrature"): "nothing of that name is differentiable",
             ("--wrt", "mass"): "initial.NAME or parameters.NAME",
-            ("--set", "time.mode=adaptive"): "gradient takes equal steps",
+            ("--set", "time.mode=controlled"): "gradient takes equal steps",
+            ("--set", "time.mode=adaptive", "--set", "parameters.quadrature=midpoint", "--of", "integral.q"):
+                "integrals over steps whose sizes vary have no derivative here",
             ("--set", "time.method=runge-kutta"): "gradient takes equal steps",
-            ("--set", "time.order=4", "--set", 'event=[{name = "x", when = "q"}]'): "by steps of order two",
+            ("--set", "time.order=4", "--set", 'event=[{name = "x", when = "q"}]'): "by equal steps of order two",
             ("--set", 'event=[{name = "x", when = "q", at = "maximum"}]'): "not of minima and maxima",
             ("--set", 'event=[{name = "x", when = "q", set = ["gravity = 2"]}]'): "whose system changes on the way",
             ("--set", 'event=[{name = "x", when = "energy"}]'): "derivatives are of t, q, p",

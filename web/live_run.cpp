@@ -3,6 +3,7 @@
 #include <lagroid/run/reports/report.hpp>
 
 #include <families/family.hpp>
+#include <reading/kinds.hpp>
 #include <study/scene_experiment.hpp>
 
 #include <algorithm>
@@ -28,11 +29,14 @@ const Table* table_of(const Table& keys, std::string_view name) {
   return nullptr;
 }
 
-/// The numbers and words of a table, with what the scene has there or what holds without.
-void list(const Section& scene, const std::string& name, const Table& table, Json& out) {
-  const Section here = scene.section_or_empty(name);
+/// The numbers and words of a table, and of those in it, with what the scene has there or what holds without.
+void list(const Section& scene, const Section& here, const std::string& name, const Table& table, Json& out) {
   for (const Key& key : table.keys) {
     const std::string path = name + "." + key.name;
+    if (const auto* inner = std::get_if<Table>(&key.value.is)) {
+      list(scene, here.section_or_empty(key.name), path, *inner, out);
+      continue;
+    }
     // Four numbers of a rotation cannot be turned one by one.
     if (std::holds_alternative<app::AnyAttitude>(key.value.is)) continue;
     const bool is_one = std::holds_alternative<app::Number>(key.value.is);
@@ -57,14 +61,47 @@ void list(const Section& scene, const std::string& name, const Table& table, Jso
   }
 }
 
+/// The numbers of a table whose names are the scene's own, but for those of rotations.
+void list_own(const Section& scene, const Section& here, const std::string& name, const std::string& meaning,
+              Json& out) {
+  for (const std::string& override : here.as_overrides()) {
+    const std::string path = name + "." + override.substr(0, override.find('='));
+    const auto given = scene.numbers_at(path);
+    if (given.empty() || path.ends_with("attitude")) continue;
+    out.push_back(
+        {{"path", path}, {"unit", ""}, {"meaning", meaning}, {"is_list", given.size() > 1}, {"value", given}});
+  }
+}
+
+/// Of a scene of bodies: what it says of them, of what joins them and of what acts on them.
+void list_bodies(const Section& scene, Json& out) {
+  for (const char* kind : {"body", "joint", "effect"}) {
+    const auto tables = scene.tables(kind);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      const std::string name = tables[i].has("name") ? tables[i].text("name", "its name") : "";
+      list_own(scene, tables[i], std::string(kind) + "." + std::to_string(i), name, out);
+    }
+  }
+}
+
 Json turned_by(const Section& scene) {
   Json out = Json::array();
   const app::SceneFamily& family = app::family_of(scene);
+  if (family.key() != app::keys::system) {
+    list_bodies(scene, out);
+    return out;
+  }
   const std::string name = scene.text(family.key(), "the name of a system");
   for (const app::SceneKeys& keys : family.keys_of_scenes())
     if (keys.name == name)
-      for (const char* table : {"parameters", "initial"})
-        if (const Table* found = table_of(keys.table, table)) list(scene, table, *found, out);
+      for (const char* table : {"parameters", "initial", "boundary"}) {
+        if (!scene.has(table) && table != std::string_view("parameters")) continue;
+        const Section here = scene.section_or_empty(table);
+        if (const Table* found = table_of(keys.table, table))
+          list(scene, here, table, *found, out);
+        else
+          list_own(scene, here, table, "", out);
+      }
   return out;
 }
 
@@ -82,7 +119,7 @@ LiveRun::LiveRun(const std::string& text, const std::vector<std::string>& overri
   Section scene = app::parse_scene(text, "scene", overrides, "");
   if (!method.empty()) scene = by_method(scene, method);
   const app::SceneFamily& family = app::motions_of(scene);
-  if (!scene.has("initial") || scene.section_or_empty("time").has("accuracy")) {
+  if (scene.has("boundary") || scene.section_or_empty("time").has("accuracy")) {
     result_ = family.run(scene, {.record = true});
   } else {
     scene_ = family.read(scene, {});
@@ -90,6 +127,7 @@ LiveRun::LiveRun(const std::string& text, const std::vector<std::string>& overri
     followed_->begin();
   }
   turned_ = turned_by(scene);
+  whole_ = scene.whole();
 }
 
 void LiveRun::advance(long steps) {
@@ -111,7 +149,9 @@ Json LiveRun::description() {
   Json methods = Json::array();
   for (const Method& method : scene_.methods)
     methods.push_back({{"name", method.name}, {"order", method.order}, {"to_compare", method.to_compare}});
-  return {{"columns", columns}, {"methods", methods}, {"turned", turned_}};
+  Json out{{"columns", columns}, {"methods", methods}, {"turned", turned_}, {"whole", whole_}};
+  if (scene_.motion) out.update(Json{{"step", scene_.motion->step_size()}, {"steps", scene_.extent.steps}});
+  return out;
 }
 
 std::string LiveRun::summary() const {

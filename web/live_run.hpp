@@ -30,7 +30,7 @@ class LiveRun {
   void advance(long steps);
   bool goes_on() const { return followed_ && followed_->goes_on(); }
 
-  /// What does not change: columns, methods, and the numbers that a reader may turn.
+  /// What does not change: columns, methods, the numbers that a reader may turn, and the scene with all changes.
   nlohmann::ordered_json description();
   /// What `lagroid run` writes as summary.json, of the run up to now.
   std::string summary() const;
@@ -44,6 +44,7 @@ class LiveRun {
   RunResult result_;
   std::optional<FollowedRun> followed_;  ///< until it has ended
   nlohmann::ordered_json turned_;
+  std::string whole_;
 };
 
 }  // namespace lagroid::web

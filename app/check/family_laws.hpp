@@ -4,7 +4,7 @@
 ///
 ///     const Certificate found = laws_of(scene).certify(scene, options);
 ///
-/// Errors: SceneError for a scene that is no motion and no path.
+/// Errors: SceneError for a scene of which there are no laws.
 
 #include "../families/family.hpp"
 #include "check_options.hpp"
@@ -43,7 +43,7 @@ class LawsOfSystems final : public FamilyLaws {
 
 /// Sets which laws this program has, at its start.
 void use_laws(std::vector<const FamilyLaws*> laws);
-/// Those of the family that the scene is of. Throws SceneError for what is no motion and no path.
+/// Those of the family that the scene is of. Throws SceneError where there are none.
 const FamilyLaws& laws_of(const Section& scene);
 
 /// Of the systems of the library.
@@ -56,5 +56,7 @@ const FamilyLaws& poisson_laws();
 const FamilyLaws& formula_laws();
 /// Of the step of a scene of bodies, where it starts.
 const FamilyLaws& bodies_laws();
+/// Of an optimal control problem and of its solution.
+const FamilyLaws& control_laws();
 
 }  // namespace lagroid::app

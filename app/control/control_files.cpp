@@ -111,17 +111,46 @@ nlohmann::ordered_json loop_json(const LoopSummary& loop) {
   return out;
 }
 
+nlohmann::ordered_json crossover_json(const CrossoverReport& r) {
+  nlohmann::ordered_json out;
+  out["status"] = to_string(r.status);
+  if (!r.crossed()) return out;
+  out["active"] = r.active;
+  out["iterations"] = r.iterations;
+  out["stationarity_before"] = r.before.stationarity;
+  out["complementarity_before"] = r.before.complementarity;
+  return out;
+}
+
+/// How many inequalities are active, or why that is not known.
+std::string crossover_text(const CrossoverReport& r) {
+  switch (r.status) {
+    case CrossoverStatus::not_tried:
+      return "";
+    case CrossoverStatus::crossed:
+      return fmt::format(
+          "  active sets      {} inequalities; at the interior point {:.1e} stationarity, {:.1e} complementarity\n",
+          r.active, r.before.stationarity, r.before.complementarity);
+    case CrossoverStatus::degenerate:
+      return "  active sets      not to be told, for a multiplier vanishes with its inequality: an interior point\n";
+    case CrossoverStatus::not_improved:
+      return "  active sets      no smaller residual: an interior point\n";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string control_text(const ControlResult& found) {
   if (found.loop) return loop_text(found);
   const ControlReport& r = found.report;
-  std::string out = fmt::format("{} on {}, {} stages: {}\n", found.problem, found.groupoid, found.control_rows.size(),
-                                to_string(r.status));
+  std::string out = fmt::format("{} on {}, {} stages: {}{}\n", found.problem, found.groupoid, found.control_rows.size(),
+                                to_string(r.status), found.by_ipopt ? ", by IPOPT" : "");
   out += fmt::format("  cost             {:.12g}{}\n", r.cost, r.is_strict_minimum ? ", a strict local minimum" : "");
   out += fmt::format("  duration         {:.12g}\n", found.times.back());
   out += fmt::format("  KKT residual     {:.1e} stationarity, {:.1e} constraints, {:.1e} complementarity\n",
                      r.stationarity, r.violation, r.complementarity);
+  out += crossover_text(found.crossover);
   if (found.costs.size() > 1) {
     std::vector<std::string> others;
     for (std::size_t i = 1; i < std::min<std::size_t>(found.costs.size(), 6); ++i)
@@ -140,6 +169,7 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   const ControlReport& r = found.report;
   nlohmann::ordered_json out;
   out["status"] = to_string(r.status);
+  out["method"] = found.by_ipopt ? "ipopt" : "interior_point";
   if (!r.message.empty()) out["message"] = r.message;
   out["problem"] = found.problem;
   out["groupoid"] = found.groupoid;
@@ -152,6 +182,7 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
     out["violation"] = r.violation;
     out["complementarity"] = r.complementarity;
     out["iterations"] = r.iterations;
+    out["crossover"] = crossover_json(found.crossover);
     out["costs"] = found.costs;
   }
   out["starts"] = nlohmann::ordered_json::object();

@@ -10,10 +10,10 @@
 namespace lagroid::app {
 
 std::span<const ControlProblem* const> control_problems() {
-  static const std::array all{&double_integrator_problem(), &swing_up_problem(),    &planar_mass_problem(),
-                              &low_thrust_problem(),        &dubins_car_problem(),  &hovercraft_problem(),
-                              &steered_sleigh_problem(),    &steered_car_problem(), &satellite_turn_problem(),
-                              &pendulum_problem(),          &rigid_body_problem()};
+  static const std::array all{&double_integrator_problem(), &swing_up_problem(),       &planar_mass_problem(),
+                              &low_thrust_problem(),        &dubins_car_problem(),     &reeds_shepp_car_problem(),
+                              &hovercraft_problem(),        &steered_sleigh_problem(), &steered_car_problem(),
+                              &satellite_turn_problem(),    &pendulum_problem(),       &rigid_body_problem()};
   return all;
 }
 

@@ -7,6 +7,7 @@
 
 #include "../keys/key.hpp"
 
+#include <lagroid/run/ledger/certificate.hpp>
 #include <lagroid/solvers/control/control_search.hpp>
 #include <lagroid/solvers/control/latency.hpp>
 
@@ -48,10 +49,12 @@ struct ControlResult {
   std::vector<double> lower;                         ///< bounds of the controls, infinite where there are none
   std::vector<double> upper;
   ControlReport report;
+  CrossoverReport crossover;
   std::vector<double> costs;              ///< of all distinct solutions, cheapest first
   std::map<ControlStatus, int> outcomes;  ///< of the starts
   int iterations = 0;                     ///< of all starts
   double seconds = 0;                     ///< of processor time
+  bool by_ipopt = false;                  ///< not by the interior point method
   std::optional<LoopSummary> loop = {};   ///< of a scene with [loop]: rows are those of the closed loop
 };
 
@@ -67,6 +70,8 @@ class ControlProblem {
   virtual std::vector<Key> parameters() const = 0;
   /// Reads the scene and solves it. `keep_going` is called before each start. Throws SceneError.
   virtual ControlResult solve(const Section& scene, const std::function<bool(int start)>& keep_going) const = 0;
+  /// Reads the scene, solves it, and tests the laws of the problem and of its solution. Throws SceneError.
+  virtual Certificate certify(const Section& scene, int samples, std::uint64_t seed) const = 0;
   /// A control loop that begins with the solution. Throws SceneError.
   virtual std::unique_ptr<SceneLoop> loop(const Section& scene,
                                           const std::function<bool(int start)>& keep_going) const = 0;

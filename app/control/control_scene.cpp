@@ -1,13 +1,22 @@
 #include "control_scene.hpp"
 
+#include <lagroid/solvers/control/ipopt/has_ipopt.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
+#include <lagroid/solvers/missing_library.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <limits>
 
 namespace lagroid::app {
 
 namespace {
+
+/// [solver] method of an optimal control problem; the first is the default.
+constexpr std::array<Word<ControlMethod>, 2> control_words{
+    {{"interior_point", ControlMethod::interior_point}, {"ipopt", ControlMethod::ipopt}}};
 
 const NumberRule a_tolerance{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }};
 const KeyOf<Number> duration_key{"duration", {positive}, "s", "T; where it is free, the first guess of it"};
@@ -20,6 +29,12 @@ const KeyOf<Number> tolerance_key{
     "tolerance", {a_tolerance}, "", "on every part of the KKT residual", ControlOptions().tolerance};
 const KeyOf<Whole> iterations_key{
     "iterations", {1, 1'000'000}, "", "of each start, at most", long(ControlOptions().max_iterations)};
+
+KeyOf<OneOf> method_key() {
+  const auto words = words_of(control_words);
+  return {
+      "method", {words}, "", "on the manifold of trajectories; by IPOPT in a chart of it, as a check", words.front()};
+}
 
 const KeyOf<Number> patience_key{"patience",
                                  {nonnegative},
@@ -80,6 +95,9 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
     out.bounds.emplace_back(range[0], range[1]);
   }
   const Section solver = scene.section_or_empty("solver");
+  out.method = choice_of(control_words, read_key(solver, method_key()));
+  if (out.method == ControlMethod::ipopt && !has_ipopt())
+    solver.fail("method", MissingLibrary("\"ipopt\"", "IPOPT", "coinor-libipopt-dev").what());
   out.search.starts = int(read_key(solver, starts_key));
   out.search.seed = std::uint64_t(read_key(solver, seed_key));
   out.search.solver.tolerance = read_key(solver, tolerance_key);
@@ -87,6 +105,8 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   out.search.solver.max_iterations = int(read_key(solver, iterations_key));
   if (scene.has("loop")) {
     if (out.duration_is_free) scene.fail("loop", "looks ahead for a time that is given; leave out horizon.free");
+    if (out.method != ControlMethod::interior_point)
+      scene.fail("loop", "is solved by the interior point method from sample to sample; leave out solver.method");
     const Section loop = scene.section("loop", "samples");
     out.loop = LoopScene{.samples = read_key(loop, samples_key),
                          .disturbance = read_key(loop, disturbance_key),
@@ -102,13 +122,13 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
   const std::vector<std::string> states = problem.states();
   std::vector<Key> bounds;
   for (const std::string& control : problem.controls()) bounds.push_back(bound_key(control));
-  return {
-      KeyOf<Table>{"boundary", {{end_key("start", states), end_key("end", states)}}, "", "both ends"},
-      KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key}}, "", "how long, in how many arrows"},
-      optional_table("bounds", {bounds}, "of the controls"),
-      optional_table("solver", {{starts_key, seed_key, tolerance_key, iterations_key, patience_key}}, "of the search"),
-      optional_table("loop", {{samples_key, disturbance_key, loop_iterations_key, loop_tolerance_key, usable_key}},
-                     "the problem solved anew at every sample, of the length of a stage")};
+  return {KeyOf<Table>{"boundary", {{end_key("start", states), end_key("end", states)}}, "", "both ends"},
+          KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key}}, "", "how long, in how many arrows"},
+          optional_table("bounds", {bounds}, "of the controls"),
+          optional_table("solver", {{method_key(), starts_key, seed_key, tolerance_key, iterations_key, patience_key}},
+                         "of the search"),
+          optional_table("loop", {{samples_key, disturbance_key, loop_iterations_key, loop_tolerance_key, usable_key}},
+                         "the problem solved anew at every sample, of the length of a stage")};
 }
 
 }  // namespace lagroid::app

@@ -12,6 +12,8 @@
 
 namespace lagroid::app {
 
+enum class ControlMethod { interior_point, ipopt };
+
 struct ControlScene {
   std::vector<double> start;
   std::vector<double> end;
@@ -19,6 +21,7 @@ struct ControlScene {
   bool duration_is_free = false;
   long stages = 100;
   std::vector<std::pair<double, double>> bounds;  ///< of each control
+  ControlMethod method = ControlMethod::interior_point;
   ControlSearchOptions search;
   std::optional<LoopScene> loop;
 };

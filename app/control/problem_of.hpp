@@ -8,6 +8,8 @@
 #include "scene_loop.hpp"
 
 #include <lagroid/solvers/control/control_loop.hpp>
+#include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
+#include <lagroid/solvers/control/testing/control_solution_laws.hpp>
 #include <lagroid/solvers/processor_time.hpp>
 #include <lagroid/systems/control/flows/flow_states.hpp>
 
@@ -63,10 +65,32 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.upper.assign(posed.task.upper.begin(), posed.task.upper.end());
     return out;
   }
+  Certificate certify(const Section& scene, int samples, std::uint64_t seed) const override {
+    const Posed posed = read(scene);
+    const ControlSearch<Sys> found = search(posed, [](int) { return true; });
+    Certificate out;
+    out.system = name_;
+    out.groupoid = G::name();
+    out.samples = samples;
+    out.seed = long(seed);
+    TranscriptionOf<Sys> bent(posed.task, control_guess(posed.task, 10, 3, posed.scene.search));
+    out.suites.push_back(laws::transcription_laws(bent, std::min(samples, 20), seed));
+    const ControlSolution<Sys>& best = best_of(found);
+    out.states = best.trajectory.arrows.size() + 1;
+    if (best.report.converged()) {
+      out.suites.push_back(laws::control_solution_laws(posed.task, best, posed.scene.search.solver, samples, seed));
+    } else {
+      out.failure = best.report.message;
+      out.failure_status = to_string(best.report.status);
+    }
+    return out;
+  }
   std::unique_ptr<SceneLoop> loop(const Section& scene, const std::function<bool(int)>& keep_going) const override {
     const Posed posed = read(scene);
     if (posed.scene.duration_is_free)
       scene.fail("horizon", "a loop looks ahead for a time that is given; leave out free");
+    if (posed.scene.method != ControlMethod::interior_point)
+      scene.fail("solver", "a loop is solved by the interior point method from sample to sample; leave out method");
     return std::make_unique<Loop>(posed, search(posed, keep_going));
   }
 
@@ -98,7 +122,11 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   }
   static State end_of(const ControlScene& scene) { return Eigen::Map<const State>(scene.end.data()); }
   static ControlSearch<Sys> search(const Posed& posed, const std::function<bool(int)>& keep_going) {
-    return search_control(posed.task, posed.scene.stages, posed.scene.search, keep_going);
+    const ControlScene& scene = posed.scene;
+    if (scene.method == ControlMethod::interior_point)
+      return search_control(posed.task, scene.stages, scene.search, keep_going);
+    return search_control(posed.task, scene.stages, scene.search, keep_going,
+                          [](const auto&... with) { return solve_control_by_ipopt(with...); });
   }
   static const ControlSolution<Sys>& best_of(const ControlSearch<Sys>& found) {
     return found.minima.empty() ? found.best_failure : found.minima.front();
@@ -165,7 +193,9 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.groupoid = G::name();
     out.states = states();
     out.controls = controls();
+    out.by_ipopt = posed.scene.method == ControlMethod::ipopt;
     out.report = best.report;
+    out.crossover = best.crossover;
     out.outcomes = found.outcomes;
     out.iterations = found.iterations;
     for (const auto& each : found.minima) out.costs.push_back(each.report.cost);

@@ -40,7 +40,12 @@ struct Nodes {
 };
 Nodes nodes_of(const GradientSubject& subject) {
   if (subject.through_events) throw GradientRefused("a fit takes runs without events; leave out [[event]]");
+  if (subject.cost) throw GradientRefused("a fit takes initial values; a path between two ends has no column t to fit");
   const auto motion = subject.begin({}, {});
+  if (!motion->has_equal_steps())
+    throw GradientRefused(
+        "a fit takes equal steps: where their sizes vary, nodes are at other times for other parameters; leave out "
+        "time.mode");
   const double start = motion->time();
   if (!motion->advance().converged()) throw GradientRefused("the first step of the scene's own run does not converge");
   return {start, motion->time() - start};

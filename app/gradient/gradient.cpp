@@ -41,8 +41,9 @@ template <class Found> int report(const SceneOptions& options, const Found& foun
   return failure.empty() ? 0 : exit_failed;
 }
 
-/// Adds a note where the start is given by what is another momentum for other parameters.
-void note_start(const Section& scene, GradientTable& table) {
+/// Adds notes of the subject, and one where the start is given by what is another momentum for other parameters.
+void note_start(const Section& scene, const GradientSubject& subject, GradientTable& table) {
+  table.notes.insert(table.notes.end(), subject.notes.begin(), subject.notes.end());
   const bool by_parameters = std::any_of(table.columns.begin(), table.columns.end(),
                                          [](const std::string& column) { return column.rfind("parameters.", 0) == 0; });
   if (!by_parameters) return;
@@ -93,14 +94,20 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
   return with_subject(options, subjects, [&](const GradientSubject& subject, const Section& scene) {
     if (!options.deviations.empty()) {
+      if (subject.cost) throw GradientRefused("--deviations are of runs; a boundary value has a gradient alone");
       Uncertainty found = uncertainty_of(subject, options.of, deviations_of(options.deviations), options.draws);
-      note_start(scene, found.table);
+      note_start(scene, subject, found.table);
       return report(options, found, found.table.failure);
     }
     std::vector<std::string> by = options.by;
-    if (by == GradientOptions{}.by && subject.parameters.empty()) by = {"initial"};
-    GradientTable table = differentiate(subject, options.of, by, options.check);
-    note_start(scene, table);
+    std::vector<std::string> of = options.of;
+    if (subject.cost && of == GradientOptions{}.of) of = {"cost"};
+    if (by == GradientOptions{}.by) {
+      if (subject.cost) by.front() = "boundary";
+      if (subject.parameters.empty()) by.pop_back();
+    }
+    GradientTable table = differentiate(subject, of, by, options.check);
+    note_start(scene, subject, table);
     return report(options, table, table.failure);
   });
 }
@@ -197,11 +204,14 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
          "--of", options.of,
          "final.NAME, node.K.NAME, integral.NAME or, of events, event.NAME.K.COLUMN, separated by commas: "
          "position, momentum, configuration, of Poisson systems state, energy, Casimirs, a column of them, the time t "
-         "of an event; events: the times of all "
-         "(default: all at the end)")
+         "of an event or of steps that vary; events: the times of all; of a boundary value cost "
+         "(default: all at the end, cost)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--wrt", options.by, "initial.NAME or parameters.NAME, separated by commas (default: all)")
+  app.add_option(
+         "--wrt", options.by,
+         "initial.NAME, of a boundary value boundary.start or boundary.end, or parameters.NAME, separated by commas "
+         "(default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
   auto* deviations =

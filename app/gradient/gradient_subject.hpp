@@ -9,9 +9,11 @@
 
 #include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
+#include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,17 @@ struct Nudge {
   double by = 0;
 };
 
+/// Of a boundary value: the cost of the path that was found, and how it depends on the ends and on parameters.
+struct BoundaryCost {
+  std::string failure = {};  ///< where none was found
+  long steps = 0;
+  double value = 0;
+  Eigen::RowVectorXd by_ends = {};  ///< in the order of GradientSubject::start
+  Eigen::RowVectorXd by_parameters = {};
+  /// The cost of the path that this one becomes where ends and parameters differ; none where it is not found.
+  std::function<std::optional<double>(const std::vector<Nudge>&)> again = nullptr;
+};
+
 struct GradientSubject {
   std::string system;
   long steps = 0;
@@ -41,10 +54,27 @@ struct GradientSubject {
   std::function<std::unique_ptr<LinearisedMotion>(const std::vector<std::string>& parameters,
                                                   const std::vector<Nudge>&)>
       begin;
+  std::vector<std::string> notes = {};   ///< on what derivatives hold
   std::vector<std::string> events = {};  ///< of the scene, by their names
   /// The run through them, observed where they happen and at a node, or at the end for -1; null in a scene without.
   std::function<EventSensitivities(const std::vector<std::string>& parameters, const std::vector<Nudge>&, long node)>
       through_events = nullptr;
+  /// Of a boundary value, by these parameters; `start` is then both ends. Null for a run.
+  std::function<BoundaryCost(const std::vector<std::string>& parameters)> cost = nullptr;
 };
+
+/// Adds the parameters of a system, and their sizes after those of the start.
+template <class Sys> void name_parameters(const Sys& system, GradientSubject& subject) {
+  const ParameterPlaces all = all_parameters(system);
+  for (const std::string& name : all.names) subject.parameters.push_back({"parameters", name});
+  for (const double* member : all.members) subject.sizes.push_back(*member);
+}
+template <class Sys> void nudge_parameters(Sys& system, const std::vector<Nudge>& nudges) {
+  for (const Nudge& nudge : nudges) {
+    if (nudge.parameter.empty()) continue;
+    const ParameterPlaces of = places_of_parameters(system, {nudge.parameter});
+    const_cast<double&>(*of.members.front()) += nudge.by;  // of `system`, which is no constant
+  }
+}
 
 }  // namespace lagroid::app

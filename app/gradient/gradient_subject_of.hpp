@@ -3,11 +3,12 @@
 ///
 ///     const GradientSubject subject = gradient_subject_of(module.prepare(scene, context), scene);
 ///
-/// Errors: SceneError for a scene that is no initial value by equal steps, or of composed ones with events;
-/// std::invalid_argument for an event without derivatives.
+/// Errors: SceneError for an initial value that is not by equal, adaptive or prescribed steps, or has events but no
+/// equal steps of order two; std::invalid_argument for an event without derivatives.
 
 #include "../scenes/simulation.hpp"
 #include "../scenes/system_module.hpp"
+#include "boundary/boundary_cost_of.hpp"
 #include "event_gradient.hpp"
 #include "gradient_subject.hpp"
 
@@ -15,7 +16,9 @@
 #include <lagroid/run/events/event_sensitivities.hpp>
 #include <lagroid/run/expressions/varied_expression.hpp>
 #include <lagroid/solvers/integrators/composition.hpp>
+#include <lagroid/solvers/sensitivity/explicit/linearised_splitting.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
+#include <lagroid/solvers/sensitivity/times/linearised_timed_motion.hpp>
 
 #include <fmt/format.h>
 
@@ -47,14 +50,10 @@ template <DiscreteSystem Sys> struct Started {
 template <DiscreteSystem Sys> Started<Sys> nudged(Started<Sys> from, const std::vector<Nudge>& nudges) {
   using G = typename Sys::GroupoidType;
   AlgebroidVector<G> v = AlgebroidVector<G>::Zero();
-  for (const Nudge& nudge : nudges) {
-    if (!nudge.parameter.empty()) {
-      const ParameterPlaces of = places_of_parameters(from.system, {nudge.parameter});
-      const_cast<double&>(*of.members.front()) += nudge.by;  // of `from`, which is no constant
-    } else {
+  nudge_parameters(from.system, nudges);
+  for (const Nudge& nudge : nudges)
+    if (nudge.parameter.empty())
       (nudge.index < G::dimension ? v(nudge.index) : from.start.momentum(nudge.index - G::dimension)) += nudge.by;
-    }
-  }
   if (nudges.empty()) return from;
   const G& groupoid = from.system.groupoid;
   const ArrowOf<G> displaced = groupoid.tau(from.start.object, v);
@@ -72,6 +71,37 @@ std::unique_ptr<Integrator<Sys>> integrator_of(const Started<Sys>& from, const C
   SensitivityOptions<Sys> options;
   options.configuration = from.configuration;
   return lagroid::detail::newton_integrator(from.system, from.start, options);
+}
+
+/// By compositions of the system's flows.
+template <DiscreteSystem Sys, class Observe>
+std::unique_ptr<LinearisedMotion> split_motion(const Started<Sys>& from, const Composition& composition,
+                                               const std::vector<std::string>& parameters, const Observe& observe) {
+  if constexpr (SplitSystem<Sys>) {
+    return std::make_unique<LinearisedSplitting<Sys>>(from.system, from.start, from.configuration, composition,
+                                                      parameters, observe);
+  } else {
+    return nullptr;  // no scene of this system has such steps
+  }
+}
+
+/// By steps that vary, observed with the time after object and momentum.
+template <TimeMode mode, DiscreteSystem Sys, class Observe>
+std::unique_ptr<LinearisedMotion> timed_motion(const Started<Sys>& from, const std::vector<std::string>& parameters,
+                                               const Observe& observe) {
+  if constexpr (VaryingSteps<Sys, mode>) {
+    const auto with_time = [observe](const ObservedTimedNode<Sys>& node) {
+      constexpr int first = Sys::GroupoidType::object_coordinate_count() + Sys::dimension;
+      const VariedVector seen = observe(node);
+      VariedVector all(seen.size() + 1);
+      all << seen.head(first), node.time, seen.tail(seen.size() - first);
+      return all;
+    };
+    return std::make_unique<LinearisedTimedMotion<Sys, mode>>(from.system, from.start, from.configuration, parameters,
+                                                              with_time);
+  } else {
+    return nullptr;  // no scene of this system has such steps
+  }
 }
 
 /// The events of a scene, of the time and of what is observed. Throws std::invalid_argument for one that has no
@@ -111,16 +141,23 @@ template <DiscreteSystem Sys>
 GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Section& scene) {
   using G = typename Sys::GroupoidType;
   using differentiating::name_all;
-  if (!prepared.begin)
-    scene.fail("boundary", "gradient takes initial values: how a stationary path depends on its ends is no run");
-  if (!prepared.by_newton)
+  if (!prepared.begin) return cost_subject_of(prepared, scene);
+  if (!prepared.stated)
     scene.fail("time",
-               "gradient takes equal steps, perhaps composed, solved by Newton to round-off; leave out mode, "
-               "method, [solver] and reduce");
-  const Sys system = prepared.system;
-  const NewtonInitialValue<Sys>& value = *prepared.by_newton;
+               "gradient takes equal steps, perhaps composed, adaptive or prescribed ones, solved by Newton to "
+               "round-off, and splittings; leave out other modes and methods, without_root, [solver] and reduce");
+  Sys system = prepared.system;
+  const StatedInitialValue<Sys>& value = *prepared.stated;
+  const TimeMode mode = value.choice.options.mode;
+  const Composition& composition = value.choice.options.composition;
+  const bool split = by_splitting(value.choice);
   constexpr int n = G::dimension;
   GradientSubject out;
+  if (value.choice.accuracy > 0) {
+    RunResult found;
+    if (!find_first_step(system, value.initial, value.choice, found)) scene.fail("time", found.message);
+    for (const std::string& note : found.notes) out.notes.push_back(note + ", which derivatives hold");
+  }
   out.system = value.presentation.name;
   out.steps = value.extent.steps;
   // Of pairs the displacement is that of the position itself.
@@ -128,20 +165,19 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   name_all(out.observed, on_pairs ? "position" : "object", G::object_coordinate_count(),
            on_pairs ? value.presentation.position : std::vector<std::string>());
   name_all(out.observed, "momentum", n, value.presentation.momentum);
+  if (mode != TimeMode::fixed) out.observed.push_back({"time", "t"});
   // On pairs it is where the motion began and the position.
   if (!on_pairs) name_all(out.observed, "configuration", G::arrow_coordinate_count(), {});
   name_all(out.start, on_pairs ? "position" : "displacement", n,
            on_pairs ? value.presentation.position : std::vector<std::string>());
   name_all(out.start, "momentum", n, value.presentation.momentum);
-  const ParameterPlaces all = all_parameters(system);
-  for (const std::string& name : all.names) out.parameters.push_back({"parameters", name});
   for (int i = 0; i < n; ++i) {
     double size = 1;
     if constexpr (on_pairs) size = value.initial.object(i);
     out.sizes.push_back(size);
   }
   for (int i = 0; i < n; ++i) out.sizes.push_back(value.initial.momentum(i));
-  for (const double* member : all.members) out.sizes.push_back(*member);
+  name_parameters(system, out);
   const auto started = [system, initial = value.initial,
                         configuration = value.configuration](const std::vector<Nudge>& nudges) {
     return differentiating::nudged(differentiating::Started<Sys>{system, initial, configuration}, nudges);
@@ -153,17 +189,23 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     all_of_it << object, node.momentum, arrow;
     return all_of_it;
   };
-  out.begin = [started, observe, composition = value.composition](
+  out.begin = [started, observe, mode, split, composition](
                   const std::vector<std::string>& parameters,
                   const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {
     const auto from = started(nudges);
+    if (split) return differentiating::split_motion(from, composition, parameters, observe);
+    if (mode == TimeMode::adaptive) return differentiating::timed_motion<TimeMode::adaptive>(from, parameters, observe);
+    if (mode == TimeMode::prescribed)
+      return differentiating::timed_motion<TimeMode::prescribed>(from, parameters, observe);
     return std::make_unique<LinearisedMotionOf<Sys>>(from.system, differentiating::integrator_of(from, composition),
                                                      parameters, observe);
   };
   if (!value.extent.events.empty()) {
-    if (value.composition.stages() > 1)
-      scene.fail("event",
-                 "gradient goes through events by steps of order two; leave out order and composition, or them");
+    if (mode != TimeMode::fixed || split || composition.stages() > 1)
+      scene.fail(
+          "event",
+          "gradient goes through events by equal steps of order two; leave out mode, method, order and composition, or "
+          "them");
     if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
       require_events(value.extent.events, *prepared.begin());
       const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);

@@ -1,5 +1,6 @@
 #include "gradient_table.hpp"
 
+#include "boundary/boundary_cost.hpp"
 #include "event_gradient.hpp"
 
 #include <lagroid/solvers/sensitivity/propagate.hpp>
@@ -116,13 +117,17 @@ std::vector<std::string> names_of(const GradientSubject& subject, const Gradient
   return out;
 }
 
+/// What a start is called, and both ends.
+static const char* word_of_start(const GradientSubject& subject) { return subject.cost ? "boundary" : "initial"; }
+
 GradientTable table_of(const GradientSubject& subject, const std::vector<std::string>& by, bool check) {
   GradientTable out;
   out.system = subject.system;
   out.steps = subject.steps;
   out.checked = check;
   const GradientColumns columns = columns_of(subject, by);
-  for (const int i : columns.start) out.columns.push_back("initial." + subject.start[std::size_t(i)].name);
+  for (const int i : columns.start)
+    out.columns.push_back(fmt::format("{}.{}", word_of_start(subject), subject.start[std::size_t(i)].name));
   for (const std::string& name : names_of(subject, columns)) out.columns.push_back("parameters." + name);
   return out;
 }
@@ -231,14 +236,15 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
   for (const std::string& word : words) {
     std::vector<int>* into = nullptr;
     std::vector<int> more;
-    if (const auto of_start = split_after(word, "initial")) {
+    if (const auto of_start = split_after(word, word_of_start(subject))) {
       into = &out.start;
       more = chosen_names(subject.start, word, of_start->name);
     } else if (const auto of_system = split_after(word, "parameters")) {
       into = &out.parameters;
       more = chosen_names(subject.parameters, word, of_system->name);
     } else {
-      throw GradientRefused(fmt::format("{}: derivatives are by initial.NAME or parameters.NAME", word));
+      throw GradientRefused(
+          fmt::format("{}: derivatives are by {}.NAME or parameters.NAME", word, word_of_start(subject)));
     }
     for (const int each : more)
       if (std::find(into->begin(), into->end(), each) == into->end()) into->push_back(each);
@@ -265,6 +271,7 @@ std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const G
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
                             const std::vector<std::string>& by, bool check) {
   if (subject.through_events) return differentiate_through_events(subject, of, by, check);
+  if (subject.cost) return differentiate_cost(subject, of, by, check);
   GradientTable out = table_of(subject, by, check);
   const GradientColumns columns = columns_of(subject, by);
   std::vector<std::pair<std::string, std::vector<int>>> places;
@@ -309,14 +316,17 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
 }
 
 std::string words_of_growth(const GradientTable& table) {
-  std::string out = fmt::format("\n  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n",
-                                table.growth, table.digits_left);
+  std::string out = "\n";
+  if (!table.of_boundary_value)
+    out += fmt::format("  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
+                       table.digits_left);
   for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
   return out;
 }
 
 std::string text_of(const GradientTable& table) {
-  std::string out = fmt::format("{}: exact derivatives of a run of {} steps\n\n", table.system, table.steps);
+  std::string out = fmt::format("{}: exact derivatives of {} {} steps\n\n", table.system,
+                                table.of_boundary_value ? "the cost of a path of" : "a run of", table.steps);
   std::size_t first = 0;
   for (const std::string& row : table.rows) first = std::max(first, row.size());
   out += fmt::format("  {:{}}  {:>18}", "", first, "value");

@@ -47,6 +47,7 @@ struct GradientTable {
   std::vector<EventRow> event_rows;   ///< through events: what the rows are
   std::vector<std::size_t> happened;  ///< through events: which, in their order
   std::vector<std::string> notes;     ///< on them
+  bool of_boundary_value = false;     ///< its row is the cost
 };
 
 /// The starts and the parameters that words initial.NAME and parameters.NAME choose, each once.

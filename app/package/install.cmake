@@ -34,7 +34,7 @@ target_compile_definitions(lagroid_core INTERFACE $<INSTALL_INTERFACE:LAGROID_RE
 # development
 foreach(folder core groupoids systems solvers run)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid COMPONENT development
-          FILES_MATCHING PATTERN "*.hpp" PATTERN "hdf5_file.hpp" EXCLUDE)  # it needs HDF5's headers: the library's own
+          FILES_MATCHING PATTERN "*.hpp" PATTERN "hdf5_file.hpp" EXCLUDE PATTERN "ipopt_program.hpp" EXCLUDE)  # they need others' headers
 endforeach()
 # Paths and names of the minor version before.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/compat/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid COMPONENT development)

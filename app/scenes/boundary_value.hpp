@@ -44,6 +44,7 @@ Table continuation_table();
 struct BoundaryChoice {
   BoundaryMethod method = BoundaryMethod::newton;
   std::optional<StationaryKind> stationary_kind;
+  std::size_t path = 0;  ///< among all that were found, from the cheapest, 1; 0: the cheapest of that kind
   BoundaryOptions options;
   MultistartOptions multistart;
   std::vector<std::string> notes;  ///< of keys that were given by their old names
@@ -219,8 +220,8 @@ double continue_solutions(const BoundarySolver<Sys>& solver, const Section& scen
 /// Chooses a path and records it, with a note on the choice; or writes why there is none.
 template <DiscreteSystem Sys>
 void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>& presentation, StationaryKind kind,
-                      const FoundPaths<Sys>& found, TimeMode mode, long every, const Observer<Sys>& observer,
-                      RunResult& result) {
+                      std::size_t asked, const FoundPaths<Sys>& found, TimeMode mode, long every,
+                      const Observer<Sys>& observer, RunResult& result) {
   const Sys& system = untimed<Sys>(problem.stage.problem.system);
   const auto record = [&](const TimedSolution<Sys>& path) {
     record_path(system, presentation, path, problem.start, mode, every, observer, result);
@@ -236,18 +237,21 @@ void report_solutions(const BoundaryScene<Sys>& problem, const Presentation<Sys>
                                        s.kind.normal,
                                        s.kind.negative_directions});
   }
-  const auto best = std::find_if(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
+  const auto cheapest = std::find_if(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
     return kind == StationaryKind::stationary || s.kind.is_minimum;
   });
+  const auto best = asked > 0 ? found.solutions.begin() + long(asked - 1) : cheapest;
   if (best != found.solutions.end()) {
     record(*best);
     result.cost = best->cost;
     result.steps = long(best->path.size());
-    result.notes.push_back(
-        fmt::format("the cheapest of those found: {} of {} starts led to it", best->starts, found.starts));
+    const std::string which =
+        asked > 0 ? fmt::format("path {} of {}, counted from the cheapest", asked, found.solutions.size())
+                  : "the cheapest of those found";
+    result.notes.push_back(fmt::format("{}: {} of {} starts led to it", which, best->starts, found.starts));
     if constexpr (Timed<Sys>)
       if (mode != TimeMode::fixed) result.notes.push_back(words_of_steps(*best));
-    if (best != found.solutions.begin())
+    if (asked == 0 && best != found.solutions.begin())
       result.notes.push_back(
           fmt::format("a cheaper stationary path (cost {:.6g}) is no minimum: paths cheaper still lie "
                       "beside it and were not reached; try more starts or another number of steps",
@@ -343,7 +347,11 @@ RunResult solve_boundary_scene(const BoundaryRun<Sys>& run, const RunContext& co
       vary_steps(mode, untimed<Sys>(solved.stage.problem.system), untimed_boundary<Sys>(solved.stage.problem),
                  solver->stationary_kind(), paths, result);
   result.iterations = paths.iterations;
-  report_solutions(solved, presentation, solver->stationary_kind(), paths, mode, every, observer, result);
+  if (choice.path > paths.solutions.size() && !paths.solutions.empty())
+    scene.section_or_empty("solver").fail("path",
+                                          fmt::format("{} stationary path(s) were found", paths.solutions.size()));
+  const std::size_t asked = paths.solutions.empty() ? 0 : choice.path;
+  report_solutions(solved, presentation, solver->stationary_kind(), asked, paths, mode, every, observer, result);
   result.ledger.mean_iterations = double(found.start_iterations) / double(found.starts);
   result.ledger.most_iterations = found.most_iterations;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

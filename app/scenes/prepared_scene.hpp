@@ -18,16 +18,16 @@
 
 namespace lagroid::app {
 
-/// An initial value of equal steps of order two by Newton, as ensembles integrate them (simulation.hpp).
-template <DiscreteSystem Sys> struct NewtonInitialValue;
+/// An initial value by steps whose derivatives are known, as gradients and ensembles take them (simulation.hpp).
+template <DiscreteSystem Sys> struct StatedInitialValue;
 
 template <DiscreteSystem Sys> struct PreparedScene {
   Sys system;
   std::function<RunResult(const Observer<Sys>&)> run;
-  std::function<std::unique_ptr<Motion>()> begin;                      ///< the motion alone; null for boundary values
-  std::vector<Method> methods = {};                                    ///< by which the scene could be integrated
-  std::shared_ptr<const NewtonInitialValue<Sys>> by_newton = nullptr;  ///< null where it is none
-  std::string reduced_by = {};                                         ///< the reduction that it names, or none
+  std::function<std::unique_ptr<Motion>()> begin;                   ///< the motion alone; null for boundary values
+  std::vector<Method> methods = {};                                 ///< by which the scene could be integrated
+  std::shared_ptr<const StatedInitialValue<Sys>> stated = nullptr;  ///< null where it is none
+  std::string reduced_by = {};                                      ///< the reduction that it names, or none
 };
 
 }  // namespace lagroid::app

@@ -83,23 +83,37 @@ std::vector<Event> read_events(const Section& scene);
 /// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint, [[event]].
 RunExtent read_extent(const Section& scene, const RunContext& context);
 
-/// An initial value by equal steps, each perhaps composed, that Newton's iteration solves to round-off.
-template <DiscreteSystem Sys> struct NewtonInitialValue {
+/// An initial value by steps whose derivatives are known: those that Newton's iteration solves to round-off, equal
+/// ones, each perhaps composed, or ones whose size is an unknown; and splittings.
+template <DiscreteSystem Sys> struct StatedInitialValue {
   State<typename Sys::GroupoidType> initial;
   ArrowOf<typename Sys::GroupoidType> configuration;
   Presentation<Sys> presentation;
-  Composition composition;
+  IntegratorChoice choice;
   RunExtent extent;
   /// Whether the scene sets nothing of its steps beyond their size and number, and watches for nothing.
-  bool is_plain() const { return composition.stages() == 1 && extent.events.empty(); }
+  bool is_plain() const {
+    const IntegratorOptions& o = choice.options;
+    return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.composition.stages() == 1 &&
+           choice.accuracy == 0 && extent.events.empty();
+  }
 };
 
-/// Whether the scene is one: it sets nothing of the solver.
-inline bool by_newton_steps(const IntegratorChoice& choice) {
+/// Whether the scene sets nothing of the solver, which solves each step.
+inline bool solved_by_newton(const IntegratorChoice& choice) {
   const IntegratorOptions& o = choice.options;
-  return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.method == StepMethod::newton &&
-         o.step.tolerance == 0 && o.step.max_iterations == IntegratorOptions().step.max_iterations &&
-         choice.accuracy == 0;
+  const bool of_unknown_size =
+      (o.mode == TimeMode::adaptive && o.without_root == WithoutRoot::stop) || o.mode == TimeMode::prescribed;
+  return (o.mode == TimeMode::fixed || of_unknown_size) && o.fixed == StepKind::variational &&
+         o.method == StepMethod::newton && o.step.tolerance == 0 &&
+         o.step.max_iterations == IntegratorOptions().step.max_iterations;
+}
+inline bool by_splitting(const IntegratorChoice& choice) {
+  return choice.options.mode == TimeMode::fixed && choice.options.fixed == StepKind::splitting;
+}
+/// Whether Newton's iteration solves equal steps of a given size.
+inline bool by_newton_steps(const IntegratorChoice& choice) {
+  return choice.options.mode == TimeMode::fixed && choice.accuracy == 0 && solved_by_newton(choice);
 }
 
 /// The system's motion as the scene specifies it.
@@ -163,16 +177,16 @@ PreparedScene<Sys> simulation(const Section& scene, const RunContext& context, c
   const IntegratorChoice choice = read_integrator(scene, able);
   const RunExtent extent = read_extent(scene, context);
   scene.finish();
-  std::shared_ptr<const NewtonInitialValue<Sys>> by_newton;
-  if (by_newton_steps(choice))
-    by_newton = std::make_shared<const NewtonInitialValue<Sys>>(
-        NewtonInitialValue<Sys>{initial, configuration, presentation, choice.options.composition, extent});
+  std::shared_ptr<const StatedInitialValue<Sys>> stated;
+  if (solved_by_newton(choice) || by_splitting(choice))
+    stated = std::make_shared<const StatedInitialValue<Sys>>(
+        StatedInitialValue<Sys>{initial, configuration, presentation, choice, extent});
   return {system,
           [=](const Observer<Sys>& observer) {
             return simulate(system, presentation, initial, configuration, choice, extent, context, observer);
           },
           [=] { return motion_of(system, presentation, initial, configuration, choice.options); },
-          integration_methods(able), by_newton};
+          integration_methods(able), stated};
 }
 
 }  // namespace lagroid::app

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -13,13 +13,21 @@ namespace lagroid::app {
 
 namespace {
 
+/// The same bits, by memory: the browser's library has no std::bit_cast.
+template <class To, class From> To of_bits(From from) {
+  static_assert(sizeof(To) == sizeof(From));
+  To to;
+  std::memcpy(&to, &from, sizeof(to));
+  return to;
+}
+
 /// The place of a number in the order of all finite ones.
 std::int64_t place_of(double x) {
-  const auto bits = std::bit_cast<std::int64_t>(x);
+  const auto bits = of_bits<std::int64_t>(x);
   return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
 }
 double number_at(std::int64_t place) {
-  return std::bit_cast<double>(place < 0 ? std::numeric_limits<std::int64_t>::min() - place : place);
+  return of_bits<double>(place < 0 ? std::numeric_limits<std::int64_t>::min() - place : place);
 }
 
 /// Where the rule changes its mind on the way from a number that it lets pass; nowhere where it lets `end` pass too.

@@ -51,10 +51,10 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     std::vector<State<G>> states;
     std::vector<ArrowOf<G>> configurations;
     for (const Member& member : members) {
-      states.push_back(member.prepared.by_newton->initial);
-      configurations.push_back(member.prepared.by_newton->configuration);
+      states.push_back(member.prepared.stated->initial);
+      configurations.push_back(member.prepared.stated->configuration);
     }
-    const RunExtent& extent = members.front().prepared.by_newton->extent;
+    const RunExtent& extent = members.front().prepared.stated->extent;
     Ensemble<Sys> ensemble(members.front().prepared.system, states, configurations);
     for (std::size_t i = 0; i < members.size(); ++i) members[i].see(ensemble.point(long(i)));
     EnsembleOptions<Sys> options;
@@ -73,7 +73,7 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     Member(long place, PreparedScene<Sys> its)
         : at(place),
           prepared(std::move(its)),
-          node(std::make_unique<SystemNode<Sys>>(prepared.system, prepared.by_newton->presentation,
+          node(std::make_unique<SystemNode<Sys>>(prepared.system, prepared.stated->presentation,
                                                  std::vector<Quantity<Sys>>())),
           recorder(*node) {}
 
@@ -83,11 +83,11 @@ template <class Sys> class LaneRunner final : public MemberRunner {
     }
 
     RunResult end(const TrajectoryPoint<Sys>& last, SolveStatus status) {
-      if (last.index % prepared.by_newton->extent.every != 0) see(last);
+      if (last.index % prepared.stated->extent.every != 0) see(last);
       RunResult out;
       out.trajectory = std::move(recorder.trajectory());
       out.steps = last.index;
-      out.steps_asked = prepared.by_newton->extent.steps;
+      out.steps_asked = prepared.stated->extent.steps;
       if (status != SolveStatus::converged) {
         out.status = std::string(to_string(status));
         out.message = fmt::format("step {} (from t = {:.6g}): {}; lagroid run of this member says what to do",
@@ -127,7 +127,7 @@ std::pair<std::unique_ptr<MemberRunner>, std::string> make_lanes(const Section& 
   if (found == system_modules().end()) return out;
   visit_ensemble(**found, [&]<class Sys>(const ModuleOf<Sys>& module) {
     try {
-      const auto value = module.prepare(scene, {}).by_newton;
+      const auto value = module.prepare(scene, {}).stated;
       if (value && value->is_plain())
         out = {std::make_unique<LaneRunner<Sys>>(module, scene, design, keep), ""};
       else

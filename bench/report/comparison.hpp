@@ -60,6 +60,11 @@ std::vector<Subject> lie_newton_subjects();
 std::vector<Goal> lie_newton_goals();
 std::vector<Subject> boundary_subjects();
 std::vector<Goal> boundary_goals();
+std::vector<Subject> control_subjects();
+std::vector<Goal> control_goals();
+/// Optimal control: the iterations of what was timed, and the time of one for each stage.
+Results control_counts(const Results& times);
+std::string control_table(const Results& results);
 std::vector<Subject> recorded_subjects();
 std::vector<Subject> scene_subjects();
 std::vector<Goal> scene_goals();

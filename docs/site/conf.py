@@ -12,7 +12,7 @@ release = re.search(r"^## ([\d.]+)", (root / "CHANGELOG.md").read_text(), re.M)[
 version = release
 language = "en"
 
-extensions = ["myst_parser", "api", "links", "mathml", "notebooks"]
+extensions = ["myst_parser", "api", "laboratory", "links", "mathml", "notebooks"]
 include_patterns = ["*.md", "docs/**.md", "python/notebooks/*.ipynb"]
 exclude_patterns = ["build", "out", ".git"]
 root_doc = "docs/index"
@@ -24,7 +24,7 @@ highlight_language = "text"
 html_theme = "sphinx_rtd_theme"
 html_title = f"Lagroid {release}"
 html_math_renderer = "mathml"
-html_static_path = ["site.css"]
+html_static_path = ["site.css", "laboratory.js"]
 # The switch of versions (templates/versions.html): which one this is, and where from its pages the newest one's lie.
 release_of_site = os.environ.get("LAGROID_SITE_VERSION")
 templates_path = ["templates"]

@@ -62,7 +62,8 @@ def page():
     """The text of docs/gallery.md."""
     lines = ["# Gallery", "",
              "Every picture is the `plot.svg` of a run: the command above it draws it again, `./lagroid view` of",
-             "the same folder moves it. `./lagroid pages gallery` writes this page."]
+             "the same folder moves it. `./lagroid pages gallery` writes this page. On the documentation site scenes have a link that runs",
+             "them [in the browser](web.md)."]
     for subject, scenes in gallery.items():
         lines += ["", f"## {subject}"]
         for name, settings in scenes.items():

@@ -7,7 +7,7 @@ def formula(inline):
     def visit(self, node):
         source = node.astext()
         try:
-            written = tex2mathml(source, inline=inline)
+            written = tex2mathml(source.replace(r"\dots", r"\ldots"), inline=inline)  # one name of two is known there
         except SyntaxError as error:
             raise ValueError(f"{self.builder.current_docname}: no formula: {source}: {error}") from error
         self.body.append(written if inline else f'<div class="math">{written}</div>')

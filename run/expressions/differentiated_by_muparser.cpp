@@ -2,10 +2,7 @@
 #include <lagroid/run/expressions/muparser_text.hpp>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <utility>
 
@@ -172,11 +169,10 @@ void define_functions(mu::Parser& parser) {
 
 /// A number of the text, which is kept.
 int read_constant(const char* text, int* position, double* handle) {
-  if (std::isdigit(static_cast<unsigned char>(*text)) == 0 && *text != '.') return 0;
   double value = 0;
-  const auto read = std::from_chars(text, text + std::strlen(text), value);
-  if (read.ec != std::errc()) return 0;
-  *position += int(read.ptr - text);
+  const int length = detail::read_number(text, value);
+  if (length == 0) return 0;
+  *position += length;
   *handle = constant(value);
   return 1;
 }

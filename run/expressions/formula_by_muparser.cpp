@@ -7,8 +7,6 @@
 #include <boost/algorithm/string/replace.hpp>
 
 #include <cctype>
-#include <charconv>
-#include <cstring>
 #include <numbers>
 #include <regex>
 #include <stdexcept>
@@ -27,12 +25,11 @@ template <FormulaOperation kind> double of_two(double a, double b) {
   return double(graph->apply(kind, std::size_t(a), std::size_t(b)));
 }
 
-int read_number(const char* text, int* position, double* node) {
-  if ((*text < '0' || *text > '9') && *text != '.') return 0;
+int read_constant(const char* text, int* position, double* node) {
   double value = 0;
-  const auto read = std::from_chars(text, text + std::strlen(text), value);
-  if (read.ec != std::errc()) return 0;
-  *position += int(read.ptr - text);
+  const int length = detail::read_number(text, value);
+  if (length == 0) return 0;
+  *position += length;
   *node = double(graph->constant(value));
   return 1;
 }
@@ -68,7 +65,7 @@ void define(mu::Parser& parser) {
   parser.DefineFun("sqrt", of_one<FormulaOperation::sqrt>);
   parser.DefineFun("abs", of_one<FormulaOperation::abs>);
   parser.DefineFun("atan2", of_two<FormulaOperation::atan2>);
-  parser.AddValIdent(read_number);
+  parser.AddValIdent(read_constant);
   parser.DefineConst("pi", double(graph->constant(std::numbers::pi)));
 }
 

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <numeric>
 
 namespace lagroid::detail {
@@ -38,6 +42,19 @@ std::string in_words(const std::string& text, const std::vector<std::string>& na
     }
   }
   return out;
+}
+
+int read_number(const char* text, double& value) {
+  if (std::isdigit(static_cast<unsigned char>(*text)) == 0 && *text != '.') return 0;
+#ifdef __cpp_lib_to_chars
+  const auto read = std::from_chars(text, text + std::strlen(text), value);
+  return read.ec == std::errc() ? int(read.ptr - text) : 0;
+#else
+  // A browser's library has no from_chars of numbers with a point, and one locale.
+  char* end = nullptr;
+  value = std::strtod(text, &end);
+  return std::isfinite(value) ? int(end - text) : 0;
+#endif
 }
 
 }  // namespace lagroid::detail

@@ -18,4 +18,7 @@ std::string word_of(std::size_t i);
 /// The text with words in place of the names, of which the longest that fits is meant.
 std::string in_words(const std::string& text, const std::vector<std::string>& names);
 
+/// Reads the number that the text begins with, whatever the locale. Returns its length; 0 where there is none.
+int read_number(const char* text, double& value);
+
 }  // namespace lagroid::detail

@@ -23,6 +23,7 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 namespace lagroid {
@@ -150,11 +151,18 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
   return path;
 }
 
+/// What solves from one start.
+template <class Sys>
+using ControlSolver =
+    std::function<ControlSolution<Sys>(const ControlTask<Sys>&, ControlTrajectory<Sys>, const ControlOptions&)>;
+
 /// Before each start `keep_going(start)` decides whether it is made.
 template <class Sys>
 ControlSearch<Sys> search_control(
     const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {},
-    const std::function<bool(int start)>& keep_going = [](int) { return true; }) {
+    const std::function<bool(int start)>& keep_going = [](int) { return true; },
+    const ControlSolver<std::type_identity_t<Sys>>& solve =
+        [](const auto&... with) { return solve_control(with...); }) {
   ControlSearch<Sys> found;
   constexpr int least = 100;
   int slowest = 0;
@@ -162,7 +170,7 @@ ControlSearch<Sys> search_control(
     ControlOptions solver = options.solver;
     if (slowest > 0 && options.patience > 0)
       solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
-    ControlSolution<Sys> solution = solve_control(task, control_guess(task, stages, i, options), solver);
+    ControlSolution<Sys> solution = solve(task, control_guess(task, stages, i, options), solver);
     ++found.outcomes[solution.report.status];
     found.iterations += solution.report.iterations;
     if (!solution.report.converged()) {

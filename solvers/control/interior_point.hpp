@@ -18,6 +18,7 @@
 /// Waechter and Biegler, Math. Program. 106 (2006): filter, inertia correction, second-order corrections; the
 /// restoration is a primal-dual iteration on the smoothed sum of violations.
 
+#include <lagroid/solvers/control/optimality/kkt_residual.hpp>
 #include <lagroid/solvers/control/stage_kkt.hpp>
 
 #include <string>
@@ -55,10 +56,11 @@ constexpr std::string_view to_string(ControlStatus status) {
 
 struct ControlOptions {
   int max_iterations = 500;
-  double tolerance = 1e-10;       ///< on every part of the KKT residual
+  double tolerance = 1e-10;       ///< on every part of the KKT residual, relative to the multipliers' mean size
   double first_barrier = 0.1;     ///< mu, at first
   double least_slack = 1e-2;      ///< of an inequality at the start
   double resumed_barrier = 1e-4;  ///< mu, at first, where `resume` goes on
+  bool crossover = true;          ///< whether `solve_control` goes on to the active inequalities (crossover.hpp)
 };
 
 /// A constraint that is violated: row `row` of phi (equality) or gamma at a stage.
@@ -75,9 +77,10 @@ struct ControlReport {
   int restorations = 0;  ///< how often it was called
   int factorisations = 0;
   double cost = 0;
-  double stationarity = 0;     ///< largest component of the Lagrangian's gradient, relative to the multipliers' size
-  double violation = 0;        ///< largest of |phi| and of gamma's positive part
-  double complementarity = 0;  ///< largest s_i z_i
+  // The KKT residual as it stands, not scaled (KktResidual).
+  double stationarity = 0;                 ///< largest component of the Lagrangian's gradient
+  double violation = 0;                    ///< largest of |phi| and of gamma's positive part
+  double complementarity = 0;              ///< largest |z_i gamma_i|
   bool is_strict_minimum = false;          ///< the matrix has the inertia of a strict local minimum, without a shift
   std::vector<ConstraintViolation> worst;  ///< of a trajectory that is infeasible, the largest five
   std::string message;                     ///< where it is not converged: what to do
@@ -112,12 +115,6 @@ class InteriorPoint {
     double barrier = 0;    // cost - mu sum log s
     bool finite() const;
   };
-  struct KktError {
-    double stationarity = 0;
-    double violation = 0;
-    double complementarity = 0;
-    double largest() const;
-  };
   enum class Outcome { advanced, stuck };
 
   void begin();
@@ -125,8 +122,7 @@ class InteriorPoint {
   void iterate(int most_iterations);
   void evaluate();
   Merit merit(const StageValues& values, const StageRows& slacks) const;
-  KktError error(double barrier);
-  void lagrangian_gradient(const StageRows& costates, const StageRows& weights, TrajectoryDisplacement& out) const;
+  double scaled_error(double barrier);
   double smoothed_violation(const StageValues& at, double nu) const;
   bool factor();
   bool direction();
@@ -136,6 +132,9 @@ class InteriorPoint {
   double fraction_to_boundary(const StageRows& at, const StageRows& along) const;
   double slope() const;
   Outcome line_search();
+  void add_to_filter(const Merit& now);
+  void take_trial(const Merit& now, const Merit& trial, double slope, double fraction);
+  bool take_corrected(const Merit& now, double slope, double fraction);
   Merit try_step(double fraction);
   bool accepted_by_filter(const Merit& trial) const;
   bool acceptable(const Merit& now, const Merit& trial, double slope, double fraction) const;
@@ -145,7 +144,6 @@ class InteriorPoint {
   void update_barrier();
   void describe();
   void explain();
-  double largest_violation() const;
 
   Transcription& transcription_;
   ControlOptions options_;

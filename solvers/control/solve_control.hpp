@@ -8,9 +8,11 @@
 ///
 /// Requires bounds with lower < upper, a positive duration and at least two stages (std::invalid_argument otherwise).
 /// Returns the trajectory, its costates and multipliers, and a report with a typed status; where it is not `converged`
-/// the trajectory is the last iterate.
+/// the trajectory is the last iterate. What converged is carried on to its active inequalities, where they can be told
+/// (`crossover`); else it is the interior point's.
 
 #include <lagroid/solvers/control/interior_point.hpp>
+#include <lagroid/solvers/control/optimality/crossover.hpp>
 #include <lagroid/solvers/control/transcription_of.hpp>
 
 #include <fmt/format.h>
@@ -28,6 +30,7 @@ template <class Sys> struct ControlSolution {
   /// z_k >= 0 of gamma, then of the finite bounds: of each control the upper, then the lower.
   std::vector<std::vector<double>> inequality_multipliers;
   ControlReport report;
+  CrossoverReport crossover;  ///< from the interior point's solution to what stands here
 };
 
 /// Throws std::invalid_argument for bounds, a duration or a trajectory that are none.
@@ -50,14 +53,26 @@ ControlSolution<Sys> solve_control(const ControlTask<Sys>& task, ControlTrajecto
   InteriorPoint solver(transcription, options);
   ControlSolution<Sys> out;
   out.report = solver.solve();
-  out.trajectory = transcription.trajectory();
-  const auto rows = [](const StageRows& of, long stages) {
-    std::vector<std::vector<double>> all;
-    for (long k = 0; k < stages; ++k) all.emplace_back(of[k], of[k] + of.length());
-    return all;
+  const auto keep = [&](const auto& solved) {
+    const auto rows = [](const StageRows& of, long stages) {
+      std::vector<std::vector<double>> all;
+      for (long k = 0; k < stages; ++k) all.emplace_back(of[k], of[k] + of.length());
+      return all;
+    };
+    out.trajectory = transcription.trajectory();
+    out.costates = rows(solved.costates(), transcription.sizes().stages);
+    out.inequality_multipliers = rows(solved.inequality_multipliers(), transcription.sizes().stages);
   };
-  out.costates = rows(solver.costates(), transcription.sizes().stages);
-  out.inequality_multipliers = rows(solver.inequality_multipliers(), transcription.sizes().stages);
+  keep(solver);
+  if (!options.crossover || !out.report.converged()) return out;
+  Crossover crossover(transcription);
+  out.crossover = crossover.cross(solver.costates(), solver.inequality_multipliers());
+  if (!out.crossover.crossed()) return out;
+  keep(crossover);
+  out.report.cost = out.crossover.cost;
+  out.report.stationarity = out.crossover.after.stationarity;
+  out.report.violation = out.crossover.after.violation;
+  out.report.complementarity = out.crossover.after.complementarity;
   return out;
 }
 

@@ -30,13 +30,15 @@ void add_transposed(double factor, const double* a, const double* b, int rows, i
 
 }  // namespace
 
-StageKkt::StageKkt(const Transcription& transcription)
-    : sizes_(transcription.sizes()),
-      free_end_(transcription.free_end()),
+StageKkt::StageKkt(const Transcription& transcription) : StageKkt(transcription, transcription.sizes()) {}
+
+StageKkt::StageKkt(const Transcription& ends, const TranscriptionSizes& sizes)
+    : sizes_(sizes),
+      free_end_(ends.free_end()),
       border_index_(std::size_t(sizes_.node), -1),
-      duration_is_free_(transcription.duration_is_free()) {
+      duration_is_free_(ends.duration_is_free()) {
   for (int i = 0; i < sizes_.node; ++i)
-    if (transcription.free_start()[std::size_t(i)]) border_index_[std::size_t(i)] = border_++;
+    if (ends.free_start()[std::size_t(i)]) border_index_[std::size_t(i)] = border_++;
   if (duration_is_free_) ++border_;
   block_ = sizes_.control + sizes_.equality + sizes_.node;
   const long stages = sizes_.stages;

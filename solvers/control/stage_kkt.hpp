@@ -31,6 +31,8 @@ struct KktVector {
 class StageKkt {
  public:
   explicit StageKkt(const Transcription& transcription);
+  /// Of other rows than the transcription has, between the same ends.
+  StageKkt(const Transcription& ends, const TranscriptionSizes& sizes);
 
   /// Which second derivatives of the stages' Lagrangians the matrix has.
   enum class HessianPart { exact, none };

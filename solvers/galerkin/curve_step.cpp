@@ -80,15 +80,17 @@ CurveStep::CurveStep(const SizedLagrangian& lagrangian, const CurveChoice& choic
   f_.resize(lagrangian.force_numbers());
 }
 
+int CurveStep::row_of_node(int j) const { return j + 1 == degree_ ? 0 : n_ * (j + 1); }
+
 void CurveStep::add_to_node(int j, int column, double scale, const Eigen::MatrixXd& block) {
   // The last node's is the momentum at the end, which the equation at the start has with the other sign.
   const bool last = j + 1 == degree_;
-  newton_.matrix.block(last ? 0 : n_ * (j + 1), column, n_, block.cols()) += (last ? -scale : scale) * block;
+  newton_.matrix.block(row_of_node(j), column, n_, block.cols()) += (last ? -scale : scale) * block;
 }
 
 void CurveStep::add_to_node(int j, double scale, const Eigen::VectorXd& part) {
   const bool last = j + 1 == degree_;
-  const int row = last ? 0 : n_ * (j + 1);
+  const int row = row_of_node(j);
   newton_.residual.segment(row, n_) += (last ? -scale : scale) * part;
   newton_.terms.segment(row, n_) += std::abs(scale) * part.cwiseAbs();
   if (last) end_momentum_ += scale * part;
@@ -138,7 +140,12 @@ void CurveStep::add_point(const Point& point, const Eigen::VectorXd& q, double t
   newton_.terms.head(n_) += std::abs(b) * place_slope_.cwiseAbs();
   for (int j = 0; j < degree_; ++j) {
     add_to_node(j, b * point.value[std::size_t(j)], place_slope_);
-    add_to_node(j, point.weight * point.rate[std::size_t(j)], velocity_slope_);
+    const double rate = point.weight * point.rate[std::size_t(j)];
+    add_to_node(j, rate, velocity_slope_);
+    // The parts of a momentum may cancel, all of them where it is zero: its rounding is theirs.
+    for (int i = 0; i < n_; ++i)
+      for (int m = 0; m < n_; ++m)
+        newton_.terms(row_of_node(j) + i) += std::abs(rate * velocity_slope_by(i, m, true) * v_(m));
   }
   for (int m = 0; m < degree_; ++m) {
     const double by_x = point.value[std::size_t(m)];

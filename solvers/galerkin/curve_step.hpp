@@ -62,6 +62,8 @@ class CurveStep final : public SizedStep {
   /// The entries of the derivatives of l_q + F + C'^T lambda, and of l_v, at the point where it is.
   double place_slope_by(const Point& point, int i, int j, bool velocity) const;
   double velocity_slope_by(int i, int j, bool velocity) const;
+  /// Of the equations of node j: for the last one, whose momentum is that at the end, those of the start.
+  int row_of_node(int j) const;
   /// Adds `scale` times `block` to the rows of the equations of node j, from `column` on.
   void add_to_node(int j, int column, double scale, const Eigen::MatrixXd& block);
   void add_to_node(int j, double scale, const Eigen::VectorXd& part);

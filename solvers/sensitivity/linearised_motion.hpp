@@ -4,8 +4,9 @@
 ///     if (motion.advance().converged() && motion.linearise())
 ///       for (int k = 0; k < motion.stages(); ++k) x = motion.stage(k).forward(x);
 ///
-/// States are 2 n numbers: a displacement v of the configuration, g tau(v), and the change of the momentum in the basis
-/// of the displaced object. `LinearisedMotionOf` makes one of a system and its integrator.
+/// States begin with 2 n numbers: a displacement v of the configuration, g tau(v), and the change of the momentum in
+/// the basis of the displaced object; those of steps that vary have more. `LinearisedMotionOf` makes one of a system
+/// and its integrator.
 
 #include <lagroid/solvers/sensitivity/linear_step.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
@@ -17,7 +18,7 @@
 
 namespace lagroid {
 
-/// Functions of a node, by their values and their derivatives: a row for each, columns (v, mu, theta).
+/// Functions of a node, by their values and their derivatives: a row for each, columns of the state and theta.
 struct NodeValues {
   Eigen::VectorXd values;
   Eigen::MatrixXd derivatives;
@@ -27,11 +28,13 @@ class LinearisedMotion {
  public:
   virtual ~LinearisedMotion() = default;
 
-  /// 2 n.
+  /// 2 n, or more; a start varies by the first 2 n alone.
   virtual int states() const = 0;
   /// The numbers with respect to which derivatives are taken, beside the start.
   virtual int parameters() const = 0;
   virtual double time() const = 0;
+  /// Whether the times of nodes depend on nothing.
+  virtual bool has_equal_steps() const { return true; }
 
   virtual StepReport advance() = 0;
   /// Linearises the last step, of as many stages as it was composed of; false where a derivative is not finite or the

@@ -36,14 +36,21 @@ double weight_of(const Observed& observed, long node, long steps, double duratio
   return node == (observed.node < 0 ? steps : observed.node) ? 1.0 : 0.0;
 }
 
-/// Throws std::invalid_argument for a node that the run does not have.
-void require_node(const Observed& observed, long steps) {
+/// Throws std::invalid_argument for a node that the run does not have, and for an integral whose weights vary.
+void require_observable(const Observed& observed, const LinearisedMotion& motion, long steps) {
   if (steps < 0) throw std::invalid_argument("a run has zero steps or more");
   if (observed.kind == Observed::Kind::at_node && observed.node > steps)
     throw std::invalid_argument(fmt::format("node {} of a run of {} steps", observed.node, steps));
+  if (observed.kind == Observed::Kind::integral && !motion.has_equal_steps())
+    throw std::invalid_argument("integrals over steps whose sizes vary have no derivative here: observe a node");
 }
 
 std::string failure(const StepReport& report, double time) {
+  if (report.status == SolveStatus::no_step)
+    return fmt::format(
+        "the step at t = {:.6g} has no root: no size near that of the last step solves its equations; take another "
+        "first step, or equal ones",
+        time);
   return fmt::format("the step at t = {:.6g} failed: {}", time, to_string(report.status));
 }
 
@@ -170,7 +177,7 @@ double Propagated::digits_left() const {
 
 Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::MatrixXd& directions,
                              const Observed& observed) {
-  require_node(observed, steps);
+  require_observable(observed, motion, steps);
   Propagated out;
   out.states_kept = 1;
   out.end = directions;
@@ -201,7 +208,7 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
 }
 
 Propagated propagate_backward(LinearisedMotion& motion, long steps, const Observed& observed, StateBudget budget) {
-  require_node(observed, steps);
+  require_observable(observed, motion, steps);
   Propagated out;
   out.states_kept = 1;
   if (budget.states == 0) budget.states = long(std::ceil(2 * std::sqrt(double(steps))));

@@ -27,6 +27,7 @@
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -87,8 +88,8 @@ std::unique_ptr<Integrator<Sys>> newton_integrator(const Sys& system, const Stat
 }
 
 /// f(node), a number or a vector of them, as a vector.
-template <DiscreteSystem Sys, class F> ObserveNode<Sys> observer_of(F f) {
-  return [f = std::move(f)](const ObservedNode<Sys>& node) {
+template <class Node, class F> std::function<VariedVector(const Node&)> observer_of(F f) {
+  return [f = std::move(f)](const Node& node) {
     const auto value = f(node);
     if constexpr (std::is_convertible_v<decltype(value), VariedNumber>) {
       return VariedVector(VariedVector::Constant(1, value));
@@ -126,7 +127,7 @@ template <DiscreteSystem Sys, class F>
 RunGradient gradient(const Sys& system, std::unique_ptr<Integrator<Sys>> integrator, F f,
                      const SensitivityOptions<Sys>& options) {
   LinearisedMotionOf<Sys> motion(system, std::move(integrator), options.parameters,
-                                 detail::observer_of<Sys>(std::move(f)));
+                                 detail::observer_of<ObservedNode<Sys>>(std::move(f)));
   const Propagated start = propagate_backward(motion, options.steps, options.observed, options.budget);
   return gradient_of_run(start, motion.states(), motion.parameter_names());
 }

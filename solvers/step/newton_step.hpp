@@ -55,6 +55,7 @@ template <DiscreteSystem Sys> class NewtonStep final : public StepSolver<Sys> {
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
   static constexpr double iteration_error = 0.1;  ///< of a round-off level: what the iteration may leave
   static constexpr int longest_chord = 12;
+  static constexpr int longest_idling = 3;  ///< full iterations near round-off that bring it no nearer
   static constexpr int renewal_price = E::size > 4 ? 2 : 1;
 
   /// What is known of the convergence of chord iterations.
@@ -245,6 +246,8 @@ template <DiscreteSystem Sys>
   };
   Residual none;
   for (double& x : none) x = 0;
+  double least = current.roundoff_ratio;
+  int idle = 0;
   for (const int before = report.iterations;; ++report.iterations) {
     if (!std::isfinite(current.norm)) return at(SolveStatus::not_finite, none);
     lu_.compute(scaling_.apply(current.jacobian));
@@ -280,6 +283,11 @@ template <DiscreteSystem Sys>
       }
     }
     if (!advanced) return at(SolveStatus::stagnated, none);
+    // At round-off the norm and the ratio may fall in turn for ever.
+    idle = current.roundoff_ratio < least ? 0 : idle + 1;
+    least = std::min(least, current.roundoff_ratio);
+    if (idle >= longest_idling && current.roundoff_ratio <= options_.accept_roundoff_ratio)
+      return at(SolveStatus::converged, corrected(current));
   }
 }
 

@@ -143,6 +143,19 @@ TEST(BoundarySteps, OfASystemThatDependsOnTime) {
   EXPECT_NE(varied.initial.momentum[0], path.initial.momentum[0]);
 }
 
+TEST(BoundaryPaths, OneOfThemIsTheResult) {
+  const RunResult usual = run_example("plate_ball", {});
+  ASSERT_GT(usual.stationary_paths.size(), 2U);
+  EXPECT_EQ(*usual.cost, usual.stationary_paths.front().cost);
+  const RunResult second = run_example("plate_ball", {"solver.path=2"});
+  ASSERT_TRUE(second.converged()) << second.message;
+  EXPECT_EQ(*second.cost, usual.stationary_paths[1].cost);
+  EXPECT_EQ(second.initial.momentum, usual.stationary_paths[1].momentum);
+  EXPECT_TRUE(says(second, "path 2 of ")) << "and not the cheapest";
+  EXPECT_NE(refusal("plate_ball", {"solver.path=1000"}).find("solver.path: "), std::string::npos);
+  EXPECT_NE(refusal("plate_ball", {"solver.path=1000"}).find(" stationary path(s) were found"), std::string::npos);
+}
+
 TEST(BoundarySteps, RefuseWhatTheyDoNotHave) {
   EXPECT_NE(refusal("unicycle", {"time.mode=controlled"}).find("time.mode"), std::string::npos);
   EXPECT_NE(refusal("kepler_boundary", {"time.mode=transformed"}).find("time.mode"), std::string::npos);

@@ -118,6 +118,26 @@ TEST_F(CommandLine, ASceneWithATargetErrorIsCertified) {
   EXPECT_EQ(r.code, 0) << r.out << r.err;
 }
 
+TEST_F(CommandLine, SolutionsOfOptimalControlAreCertified) {
+  for (const char* name : {"swing_up", "shortest_way", "reeds_shepp", "keep_out"}) {
+    const Outcome r = run("check " + example(std::string("control/") + name) + " --set horizon.stages=40 --json");
+    EXPECT_EQ(r.code, 0) << name << r.err << r.out;
+    const auto suites = nlohmann::json::parse(r.out).at("suites");
+    ASSERT_EQ(suites.size(), 2U) << name;
+    const auto& laws = suites.at(1).at("laws");
+    const auto has = [&](const std::string& law) {
+      return std::any_of(laws.begin(), laws.end(), [&](const auto& each) { return each.at("name") == law; });
+    };
+    EXPECT_TRUE(has("the KKT residual vanishes")) << name;
+    EXPECT_TRUE(has("complementarity")) << name;
+    EXPECT_TRUE(has("the cost is of order two in the step") || has("the cost is of order two in envelope")) << name;
+  }
+  const Outcome none = run("check " + example("control/fastest_stop") +
+                           " --set horizon.free=false --set horizon.duration=1 --set solver.starts=1");
+  EXPECT_EQ(none.code, 3);
+  EXPECT_NE(none.err.find("relax the constraints"), std::string::npos) << none.err;
+}
+
 TEST_F(CommandLine, CheckRefusesWhatRunRefuses) {
   const Outcome unknown = run("check " + example("pendulum") + " --set parameters.colour=1 --json");
   EXPECT_EQ(unknown.code, 2);

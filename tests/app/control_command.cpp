@@ -27,6 +27,8 @@ TEST_F(Control, EveryExampleFindsAMinimum) {
     if (found.contains("loop")) continue;
     EXPECT_TRUE(found.at("strict_minimum").get<bool>()) << name;
     EXPECT_LT(found.at("violation").get<double>(), 1e-9) << name;
+    EXPECT_LT(found.at("complementarity").get<double>(), 1e-9) << name;
+    EXPECT_NE(found.at("crossover").at("status"), "not_tried") << name;
     EXPECT_EQ(found.at("costs").at(0), found.at("cost")) << name;
   }
   EXPECT_GE(examples, 9);
@@ -104,6 +106,31 @@ TEST_F(Control, WhatCannotBeIsTypedAndNamed) {
   EXPECT_EQ(found.at("status"), "infeasible");
   EXPECT_FALSE(found.at("violated").empty());
   EXPECT_NE(r.err.find("relax the constraints"), std::string::npos) << r.err;
+}
+
+TEST_F(Control, IpoptFindsTheSameInTheSameFiles) {
+  const std::string set = " --json --set horizon.stages=40 --set solver.starts=2";
+  const std::string out = (folder_ / "by_ipopt").string();
+  const Outcome r = run(scene("swing_up") + set + " --set solver.method=ipopt --out " + out);
+  if (r.code == 2) {
+    EXPECT_NE(r.err.find("install coinor-libipopt-dev"), std::string::npos) << r.err;
+    GTEST_SKIP() << "a build without IPOPT";
+  }
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto by_ipopt = nlohmann::json::parse(r.out);
+  const auto ours = nlohmann::json::parse(run(scene("swing_up") + set).out);
+  EXPECT_NEAR(by_ipopt.at("cost").get<double>(), ours.at("cost").get<double>(), 1e-8);
+  EXPECT_EQ(by_ipopt.at("method"), "ipopt");
+  EXPECT_EQ(ours.at("method"), "interior_point");
+  EXPECT_TRUE(by_ipopt.at("strict_minimum").get<bool>());
+  for (const char* name : {"trajectory.csv", "summary.json", "summary.txt"})
+    EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
+  const Outcome failed = run(scene("swing_up") + set + " --set solver.method=ipopt --set solver.iterations=2");
+  EXPECT_EQ(failed.code, 3);
+  EXPECT_NE(failed.err.find("IPOPT: not converged"), std::string::npos) << failed.err;
+  const Outcome loop = run(scene("control_loop") + " --set solver.method=ipopt");
+  EXPECT_EQ(loop.code, 2);
+  EXPECT_NE(loop.err.find("leave out solver.method"), std::string::npos) << loop.err;
 }
 
 TEST_F(Control, MistakesAreOneLine) {

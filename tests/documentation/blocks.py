@@ -148,6 +148,8 @@ def misused(words):
     return f"no file {missing[0]}" if missing else ""
 
 
+# Networks of more than six units take their time.
+slow = re.compile(r"network:([7-9]|\d\d)")
 momentary = {"new", "run", "resume", "view", "plot", "list", "optimize", "trajectories", "learn", "cite"}
 
 
@@ -165,7 +167,7 @@ def command_failures(block, folder, printed):
             return
     if any(re.search(r"[$]|\.\.\.", word) or word.isupper() for words in given for word in words):
         return  # a form, not a command
-    calls = [[program, *words] for words in given if words[0] in momentary and "network" not in " ".join(words)]
+    calls = [[program, *words] for words in given if words[0] in momentary and not slow.search(" ".join(words))]
     for call in calls + [[example] for example in examples_named(block.text)]:
         # Systems of one's own are compiled into a cache that goes with the folder.
         done = subprocess.run(call, cwd=folder, capture_output=True, text=True, timeout=600,
@@ -236,7 +238,7 @@ def inline_failures(page):
 
 def furnish(folder):
     """Makes a folder in which commands find the scenes, and can leave their own beside them."""
-    for file in (root / "examples").rglob("*"):
+    for file in (*(root / "examples").rglob("*"), *(root / "docs/lessons/scenes").iterdir()):
         if file.is_file():
             place = folder / file.relative_to(root)
             place.parent.mkdir(parents=True, exist_ok=True)

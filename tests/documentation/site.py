@@ -48,6 +48,16 @@ class Site(unittest.TestCase):
     def test_versions_are_listed(self):
         self.assertRegex((site / "versions.js").read_text(), r'\Aconst siteVersions = \[\{name: "newest", folder: ""\}')
 
+    def test_lessons_have_their_scene_and_where_there_is_one_their_laboratory(self):
+        pages = sorted((site / "docs/lessons").glob("[0-9]*.html"))
+        self.assertEqual(len(pages), 12)
+        for page in pages:
+            text = page.read_text()
+            self.assertRegex(text, r'href="[^"]*source/docs/lessons/scenes/\w+\.toml\.html"')
+            frames = re.findall(r'data-page="([^"#]+)#', text)
+            self.assertEqual(len(frames), 1 if (site / "laboratory").exists() else 0, page.name)
+            self.assertTrue(all((page.parent / frame).exists() for frame in frames))
+
     def test_a_missing_file_is_found_out(self):
         with tempfile.TemporaryDirectory() as folder:
             page = pathlib.Path(folder) / "page.html"

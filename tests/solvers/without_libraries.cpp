@@ -1,6 +1,7 @@
-// What a build without Ceres, TBB, Boost and Spectra says where they are asked for, and that the rest is there: made of
-// the files that stand in their place (CMakeLists.txt), and linked to none.
+// What a build without Ceres, TBB, Boost, Spectra and IPOPT says where they are asked for, and that the rest is there:
+// made of the files that stand in their place (CMakeLists.txt), and linked to none.
 #include <lagroid/groupoids/pair.hpp>
+#include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
 #include <lagroid/solvers/ensemble/tasks.hpp>
 #include <lagroid/solvers/learning/train.hpp>
 #include <lagroid/solvers/missing_library.hpp>
@@ -11,11 +12,22 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <string>
 
 using namespace lagroid;
 
 namespace {
+
+/// What is asked of IPOPT, of a problem that is none.
+class NoTrajectories final : public TrajectoryChart {
+ public:
+  const Transcription& transcription() const override { throw std::logic_error("there is none"); }
+  void stand_at(const TrajectoryDisplacement&) override {}
+  void retraction(long, const double*, Retraction) const override {}
+  Range control_range(long, int) const override { return {0, 0}; }
+  int inequalities_before_bounds() const override { return 0; }
+};
 
 struct Particle : System<Particle, Pair<1>> {
   double h = 0.1;
@@ -46,6 +58,9 @@ TEST(WithoutLibraries, NameThemAndTheRemedy) {
               optimisation::extreme_eigenvalues({}, optimisation::SpectrumEnd::both, 2, 24, 1e-4);
             }).find("install libspectra-dev"),
             std::string::npos);
+  EXPECT_FALSE(has_ipopt());
+  NoTrajectories none;
+  EXPECT_NE(told([&] { solve_by_ipopt(none, {}); }).find("install coinor-libipopt-dev"), std::string::npos);
 }
 
 TEST(WithoutLibraries, StepsAndTasksAreThere) {

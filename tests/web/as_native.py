@@ -15,25 +15,29 @@ import unittest
 LAGROID, GLUE, EXAMPLES = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
 RUN = pathlib.Path(__file__).with_name("run_scene.mjs")
 
-SCENES = ["pendulum", "pendulum_adaptive", "kepler", "kepler_boundary", "kepler_order_8", "kepler_reduced", "rigid_body",
-          "heavy_top", "rolling_ball", "damped_pendulum", "driven_pendulum", "spherical_pendulum", "lotka_volterra",
-          "euler_top", "toda"]
+# A motion that a share of 1e-9 leads so far away grows roundings beyond what can be foretold.
+FORGOTTEN = 1e-4
+# All examples but those of systems that the page has not, those that read files, and one that takes its time.
+NOT_THERE = {"gyrostat", "driven_body", "learned_hamiltonian", "pythagorean"}
+SCENES = sorted(path.stem for path in EXAMPLES.glob("*.toml") if path.stem not in NOT_THERE)
 
 
 def changes(scene):
     """The start, or the end to be reached, with one number changed by a small share, and that share of the number; where
-    steps adapt, the first step too."""
+    steps adapt, or the start is no list of free numbers, the step too."""
     text = tomllib.loads((EXAMPLES / f"{scene}.toml").read_text())
     share = 1e-9
     table = "boundary.end" if "boundary" in text else "initial"
-    start = text["boundary"]["end"] if "boundary" in text else text["initial"]
+    start = text["boundary"]["end"] if "boundary" in text else text.get("initial", {})
     # A number that is not zero, and a key that takes any numbers.
-    key = next(key for key in ("state", "momentum", "position") if any(start.get(key, [])))
-    at = next(i for i, value in enumerate(start[key]) if value)
-    changed = [value * (1 + share) if i == at else value for i, value in enumerate(start[key])]
-    yield f"{table}.{key}={changed}", share * abs(start[key][at])
-    if text["time"].get("mode") == "adaptive":
-        yield f"time.step={text['time']['step'] * (1 + share)}", share
+    key = next((key for key in ("state", "momentum", "velocity", "position") if any(start.get(key, []))), None)
+    if key:
+        at = next(i for i, value in enumerate(start[key]) if value)
+        changed = [value * (1 + share) if i == at else value for i, value in enumerate(start[key])]
+        yield f"{table}.{key}={changed}", share * abs(start[key][at])
+    if not key or text["time"].get("mode") == "adaptive":
+        name = "step" if "step" in text["time"] else "duration"
+        yield f"time.{name}={text['time'][name] * (1 + share)}", share * text["time"][name]
 
 
 def native(scene, settings=()):
@@ -60,21 +64,34 @@ def apart(one, other):
     return max(abs(a - b) for a, b in zip(numbers(one), numbers(other), strict=True))
 
 
+def as_far_as_it_can_be_told(scene):
+    """The settings with which a small change of the start is still a small one at the end, and what it has grown by: of a
+    chaotic motion, fewer steps."""
+    steps = []
+    while True:
+        end = native(scene, steps)
+        changed = [(apart(end, native(scene, [*steps, change])), size) for change, size in changes(scene)]
+        if end["steps"] < 100 or max((off for off, _ in changed), default=0) < 1e-3 * max(map(abs, numbers(end))):
+            return steps, max([1.0, *(off / size for off, size in changed)])
+        steps = [f"time.steps={end['steps'] // 2}"]
+
+
 class AsNative(unittest.TestCase):
     def test_ends_and_verdicts(self):
         for scene in SCENES:
             with self.subTest(scene):
-                ours, theirs = compiled(scene), native(scene)
+                steps, growth = as_far_as_it_can_be_told(scene)
+                ours, theirs = compiled(scene, *steps), native(scene, steps)
                 self.assertEqual(ours["status"], theirs["status"])
                 self.assertEqual(ours["steps"], theirs["steps"])
                 verdicts = [{entry["name"]: entry["verdict"] for entry in run["ledger"]["entries"]}
                             for run in (ours, theirs)]
                 self.assertEqual(*verdicts)
                 largest = max(map(abs, numbers(theirs)))
-                growth = max([1.0, *(apart(theirs, native(scene, [change])) / size for change, size in changes(scene))])
                 # A random walk of roundings, each made larger by as much as the motion does with a difference at the start;
-                # steps that adapt are roots of an equation of small differences, in which a rounding weighs more.
-                weight = 200 if "adaptive" in scene else 20
+                # steps that adapt are roots of an equation of small differences, and paths between two ends of one of all
+                # steps at once: in both a rounding weighs more.
+                weight = 200 if "adaptive" in scene or "boundary" in scene else 20
                 bound = 2**-53 * largest * growth * weight * (10 + math.sqrt(theirs["steps"]))
                 off = apart(ours, theirs)
                 print(f"{scene}: off by {off:.2g}, allowed {bound:.2g}", file=sys.stderr)

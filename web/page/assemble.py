@@ -24,6 +24,7 @@ here = pathlib.Path(__file__).resolve().parent
 built, site, *scenes = map(pathlib.Path, sys.argv[1:])
 # The pendulum first: it is what a page begins with.
 gallery = {path.stem: path.read_text() for path in sorted(scenes, key=lambda path: (path.stem != "pendulum", path.stem))}
+gallery["your own Lagrangian"] = (here / "own_lagrangian.toml").read_text()
 style = (here / "page.css").read_text()
 program = (built / "page.js").read_text()
 worker = (built / "lagroid_web.js").read_text() + "\n" + (built / "worker.js").read_text()

@@ -19,6 +19,18 @@ export class Engine {
   advance(run, steps) {
     return this.ask("lagroid_advance", ["number", "number"], [run, steps]).goes_on;
   }
+  /** What scenes of a system may hold, as a JSON Schema; of bodies where none is named. */
+  schema(system) {
+    return this.ask("lagroid_schema", ["string"], [system]);
+  }
+  /** Begins to measure what accuracy costs, which takes some seconds. */
+  study({ scene, settings = [] }) {
+    return this.ask("lagroid_study", ["string"], [JSON.stringify({ scene, settings })]);
+  }
+  /** The study's next run, {method, step, error, seconds}; {done} where there is none. */
+  nextOfStudy() {
+    return this.ask("lagroid_study_next", [], []);
+  }
   /** What `lagroid run` would write as summary.json. A run that failed says so in it, and is no error here. */
   summary(run) {
     return JSON.parse(this.module.ccall("lagroid_summary", "string", ["number"], [run]));

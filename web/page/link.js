@@ -3,7 +3,7 @@
 const longest = 60000;
 const isText = (value) => typeof value === "string" && value.length <= longest;
 
-/** {scene, settings, first, second} as letters that an address may hold. */
+/** {scene, settings, first, second, fair} as letters that an address may hold. */
 export function written(state) {
   const bytes = new TextEncoder().encode(JSON.stringify(state));
   const text = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
@@ -20,7 +20,7 @@ export function read(fragment) {
     const fits = isText(scene) && isText(first) && (second === null || isText(second)) &&
       Array.isArray(settings) && settings.length <= 100 &&
       settings.every((pair) => Array.isArray(pair) && pair.length === 2 && pair.every(isText));
-    return fits ? { scene, settings, first, second } : null;
+    return fits ? { scene, settings, first, second, fair: state.fair === true } : null;
   } catch {
     return null;
   }

@@ -1,18 +1,26 @@
 // The laboratory: a scene, what can be turned in it, its run by one method or two, and their ledgers.
+import { Completion } from "./completion.js";
+import { csv, pasted, recorded, save } from "./files.js";
 import { read, written } from "./link.js";
+import { showPaths } from "./paths.js";
 import { Picture } from "./picture.js";
 import { Plot } from "./plot.js";
-import { controls } from "./turned.js";
+import { Study } from "./study.js";
+import { controls, literal } from "./turned.js";
 
 const element = (id) => document.getElementById(id);
 const gallery = JSON.parse(element("gallery").textContent);
 const own = ""; // the method that the scene itself names
+const toWrite = "your own Lagrangian"; // of the gallery, to be changed by the reader
 
-const state = { scene: "", settings: new Map(), first: own, second: null };
+const state = { scene: "", settings: new Map(), first: own, second: null, fair: false }; // fair: at the same cost
 const places = new Map(); // 0 and 1: {columns, summary, goes_on}
 let worker;
 let plots = [];
 let panelsShown = "";
+let turned = []; // what the scene has that can be turned
+let whole = ""; // the scene with all changes
+let isAwaited = false; // another change, until what was asked for is answered
 let isGoing = false;
 let rate = 0;
 let engine; // {source, wasm}
@@ -36,18 +44,50 @@ function refuse(message) {
 /** From the start, as the page says now. */
 function prepare() {
   refuse("");
+  study.forget();
   history.replaceState(null, "", written({
-    scene: state.scene, settings: [...state.settings], first: state.first, second: state.second }));
+    scene: state.scene, settings: [...state.settings], first: state.first, second: state.second, fair: state.fair }));
   if (unanswered > 0 && performance.now() - askedAt > patience) begin();
   go(false);
   places.clear();
   ask({ kind: "close", place: 1 });
   [state.first, state.second].forEach((method, place) => {
     if (method === null) return;
-    ask({ kind: "open", place, ...asked(method) });
+    ask({ kind: "open", place, ...asked(method), fair: place === 1 && state.fair });
     ++unanswered;
   });
   askedAt = performance.now();
+}
+
+/** The same while a hand moves something: never more at once than the worker answers. */
+function prepareSoon() {
+  if (unanswered === 0) return prepare();
+  isAwaited = true;
+}
+function answered() {
+  --unanswered;
+  if (unanswered > 0 || !isAwaited) return;
+  isAwaited = false;
+  prepare();
+}
+
+/** What can be moved by hand in a picture of the plane: where a path begins and ends. */
+function handlesOf({ x, curves }) {
+  if (x !== "x" || curves[0] !== "y") return [];
+  return turned.filter(({ path, value }) => path.endsWith(".position") && value.length >= 2).map(({ path, value }) => {
+    const now = state.settings.has(path) ? JSON.parse(state.settings.get(path)) : value;
+    return {
+      name: path, x: now[0], y: now[1],
+      moved(...to) {
+        state.settings.set(path, literal([...to.map((each) => Number(each.toPrecision(4))), ...now.slice(2)], true));
+        prepareSoon();
+      },
+      released() {
+        element("turned").replaceChildren(); // which then has the new numbers
+        prepareSoon();
+      },
+    };
+  });
 }
 
 function go(on) {
@@ -97,7 +137,13 @@ function showPlots() {
     panelsShown = asText;
   }
   const columns = [...places].sort(([a], [b]) => a - b).map(([, held]) => held.columns);
-  for (const plot of plots) plot.draw(columns);
+  for (const plot of plots) plot.draw(columns, handlesOf(plot.panel));
+}
+
+const frames = []; // ms that the page's own work took in the last ones
+function took(ms) {
+  frames.push(ms);
+  if (frames.length > 100) frames.shift();
 }
 
 let isDue = false;
@@ -108,6 +154,7 @@ function redraw() {
   requestAnimationFrame(() => {
     isDue = false;
     if (!places.has(0)) return;
+    const begun = performance.now();
     const { summary, columns, goes_on } = places.get(0);
     const ended = [...places.values()].every((held) => !held.goes_on);
     if (ended && isGoing) go(false);
@@ -123,9 +170,20 @@ function redraw() {
       rate > 0 ? `${Number(rate.toPrecision(2)).toLocaleString("en")} steps a second` : "",
     ].filter(Boolean).join("; ");
     if (failed.length) refuse(failed.join("; "));
+    showPaths(element("paths"), summary, Number(state.settings.get("solver.path") ?? 0), (which) => {
+      state.settings.set("solver.path", String(which));
+      prepare();
+    });
     for (const id of ["run", "step"]) element(id).disabled = ended;
     picture.offer(isGoing ? null : places.get(0));
+    took(performance.now() - begun);
   });
+}
+
+/** Whether a scene of the gallery is of a system that the engine has, or of bodies. */
+function canRun(about, scene) {
+  const system = /^system = "(\w+)"/m.exec(scene)?.[1];
+  return system ? about.systems.includes(system) : /^\[\[body\]\]/m.test(scene);
 }
 
 const hears = {
@@ -133,8 +191,9 @@ const hears = {
     if (element("version").textContent !== "") return;
     element("version").textContent = about.version;
     for (const [name, scene] of Object.entries(gallery))
-      if (about.systems.includes(/^system = "(\w+)"/m.exec(scene)?.[1])) element("scenes").add(new Option(name, name));
-    for (const id of ["run", "step", "again", "export", "link"]) element(id).disabled = false;
+      if (canRun(about, scene)) element("scenes").add(new Option(name, name));
+    for (const id of ["run", "step", "again", "measure", "link", "export", "png", "webm", "save"])
+      element(id).disabled = false;
     const linked = read(location.hash);
     if (!linked) return choose(gallery[element("scenes").value]);
     Object.assign(state, linked, { settings: new Map(linked.settings) });
@@ -142,9 +201,15 @@ const hears = {
     element("editor").value = state.scene;
     prepare();
   },
-  opened({ place, opened }) {
-    --unanswered;
+  opened({ place, opened, pace }) {
+    answered();
+    if (place === 1 && state.fair)
+      element("pace").textContent = `at the same cost: ${Number(pace.toPrecision(2))} steps for one`;
     if (place !== 0) return;
+    element("pace").textContent = "at the same cost";
+    element("fair").checked = state.fair;
+    ({ turned, whole } = opened);
+    element("measure").disabled = opened.methods.length === 0;
     offerMethods(opened.methods);
     if (element("turned").childElementCount === 0)
       controls(element("turned"), opened.turned, (path, text) => {
@@ -160,45 +225,62 @@ const hears = {
     redraw();
   },
   refused({ message, of }) {
-    if (of === "open") --unanswered;
+    if (of === "open") answered();
+    if (of === "study") study.end();
     go(false);
     refuse(message);
   },
   exported({ columns }) {
-    const labels = Object.keys(columns);
-    const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-    const lines = [labels.map(quoted).join(",")];
-    columns.t.forEach((_, row) => lines.push(labels.map((name) => {
-      const value = columns[name][row];
-      return Number.isNaN(value) ? "" : value;
-    }).join(",")));
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([`${lines.join("\n")}\n`], { type: "text/csv" }));
-    link.download = "trajectory.csv";
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    save("trajectory.csv", "text/csv", csv(columns));
   },
+  schema: (answer) => completion.hear(answer),
+  studied: ({ begun }) => study.begun(begun),
+  measured: ({ point }) => (point.done ? study.end() : study.hear(point)),
 };
 
-const picture = new Picture(element("stage"), element("animate"));
+const tell = (text) => (element("status").textContent = text);
+const completion = new Completion(element("editor"), element("offers"), (system) => ask({ kind: "schema", system }));
+const study = new Study(element("study"), element("measure"), ask, tell);
+const picture = new Picture(element("stage"), element("animate"), took);
 
 function listen() {
-  element("scenes").addEventListener("change", ({ target }) => choose(gallery[target.value]));
+  element("scenes").addEventListener("change", ({ target }) => {
+    if (target.value === toWrite) element("editor").closest("details").open = true;
+    choose(gallery[target.value]);
+  });
   element("first").addEventListener("change", ({ target }) => ((state.first = target.value), prepare()));
   element("second").addEventListener("change", ({ target }) => ((state.second = target.value || null), prepare()));
+  element("fair").addEventListener("change", ({ target }) => ((state.fair = target.checked), prepare()));
   element("run").addEventListener("click", () => go(!isGoing));
   element("step").addEventListener("click", () => {
     go(false);
     ask({ kind: "step", steps: 1 });
   });
   element("again").addEventListener("click", prepare);
+  element("measure").addEventListener("click", () => {
+    go(false);
+    study.begin(state.scene, asked(own).settings);
+  });
   element("export").addEventListener("click", () => ask({ kind: "export", place: 0 }));
+  element("save").addEventListener("click", () => save("scene.toml", "application/toml", state.settings.size ? whole : state.scene));
+  element("png").addEventListener("click", async () => {
+    const canvases = [...document.querySelectorAll("figure canvas, #stage canvas")];
+    if (canvases.length) save("lagroid.png", "image/png", await pasted(canvases));
+  });
+  element("webm").addEventListener("click", async () => {
+    try {
+      picture.begin();
+      save("lagroid.webm", "video/webm", await recorded(picture.canvas, 8));
+    } catch (error) {
+      refuse(String(error.message));
+    }
+  });
   element("link").addEventListener("click", async () => {
     try {
       await navigator.clipboard.writeText(location.href);
-      element("status").textContent = "The link is on the clipboard; it holds the scene and all that was changed.";
+      tell("The link is on the clipboard; it holds the scene and all that was changed.");
     } catch {
-      element("status").textContent = "The address of this page holds the scene and all that was changed.";
+      tell("The address of this page holds the scene and all that was changed.");
     }
   });
   element("editor").addEventListener("change", ({ target }) => {
@@ -235,7 +317,7 @@ async function start() {
   listen();
   engine = await findEngine();
   begin();
-  window.lagroid = { state, places };
+  window.lagroid = { state, places, study, frames, plots: () => plots };
 }
 
 start().catch((error) => refuse(String(error.message)));

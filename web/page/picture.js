@@ -3,9 +3,11 @@ import { Stage } from "../../app/viewer/bodies.js";
 import { rowAt } from "../../app/viewer/frames.js";
 
 export class Picture {
-  constructor(section, button) {
+  /** `took` hears how many ms each frame has cost. */
+  constructor(section, button, took) {
     this.section = section;
     this.button = button;
+    this.took = took;
     this.stage = null;
     this.run = null;
     button.addEventListener("click", () => (this.stage ? this.end() : this.begin()));
@@ -18,7 +20,10 @@ export class Picture {
     this.section.hidden = !this.run;
   }
 
+  /** Throws where there is nothing to be moved. */
   begin() {
+    if (this.stage) return;
+    if (!this.run) throw new Error("nothing moves here until a run with bodies rests");
     const { columns, summary } = this.run;
     const run = { shapes: summary.picture.shapes, columns: { ...columns }, time: Array.from(columns.t) };
     this.canvas = document.createElement("canvas");
@@ -37,7 +42,9 @@ export class Picture {
     const frame = (now) => {
       if (!this.stage) return;
       const share = ((now - begun) / 20000) % 1;
+      const from = performance.now();
       this.stage.draw(rowAt(run.time, first + share * (last - first)));
+      this.took(performance.now() - from);
       this.frame = requestAnimationFrame(frame);
     };
     this.frame = requestAnimationFrame(frame);

@@ -1,10 +1,11 @@
-// Curves on a canvas: one panel of a run, with those of a second run dashed over them.
+// Curves on a canvas: one panel of a run, with those of a second run dashed over them; in a panel with logarithms, points
+// that were measured. What can be moved by hand is drawn over them as handles.
 
 const palette = ["#2f6fde", "#e4572e", "#2a9d6f", "#8e5bd0", "#d9a514", "#3aa6b9"];
 
-/** Round numbers between two, about so many. */
-export function ticks(least, most, about) {
-  const raw = (most - least) / about;
+/** Round numbers between two, about so many, and not nearer to each other than that. */
+export function ticks(least, most, about, nearest = 0) {
+  const raw = Math.max((most - least) / about, nearest);
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((digit) => digit * power).find((size) => size >= raw);
   const all = [];
@@ -22,6 +23,8 @@ function range(lists) {
   return [least - margin, most + margin];
 }
 
+const reach = 14; // px, within which a handle is taken
+const power = (value) => `1e${Math.round(value)}`;
 const label = (value, step) => {
   const small = Math.abs(value) < step / 1e6 ? 0 : value;
   return String(Number(small.toPrecision(6)));
@@ -45,11 +48,36 @@ export class Plot {
     this.canvas.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${panel.curves.join(", ")}`);
     figure.append(caption, this.canvas);
     parent.append(figure);
+    this.handles = [];
+    this.held = null;
+    this.canvas.addEventListener("pointerdown", (event) => this.take(event));
+    this.canvas.addEventListener("pointermove", (event) => this.move(event));
+    for (const end of ["pointerup", "pointercancel"]) this.canvas.addEventListener(end, () => this.release());
   }
 
-  /** `runs`: columns by label, of one run or two. */
-  draw(runs) {
+  take(event) {
+    const near = ({ x, y }) => Math.hypot(...this.at(x, y).map((px, i) => px - [event.offsetX, event.offsetY][i]));
+    this.held = this.handles.find((handle) => near(handle) < reach) ?? null;
+    if (!this.held) return;
+    event.preventDefault();
+    this.canvas.setPointerCapture(event.pointerId);
+  }
+  /** What is moved answers with its next runs, in axes that stay as they are. */
+  move(event) {
+    if (this.held) this.held.moved(...this.back(event.offsetX, event.offsetY));
+  }
+  release() {
+    const { held } = this;
+    this.held = null;
+    held?.released();
+  }
+
+  /** `runs`: columns by label, of one run or two; `handles`: {x, y, moved(x, y), released()}. */
+  draw(runs, handles = []) {
     const { panel, canvas } = this;
+    // The one in hand stays the same object while others come.
+    this.handles = handles.map((handle) => (this.held?.name === handle.name ? Object.assign(this.held, handle) : handle));
+    canvas.classList.toggle("movable", handles.length > 0);
     const scale = window.devicePixelRatio || 1;
     const { clientWidth: width, clientHeight: height } = canvas;
     canvas.width = Math.round(width * scale);
@@ -57,16 +85,17 @@ export class Plot {
     const paint = canvas.getContext("2d");
     paint.setTransform(scale, 0, 0, scale, 0, 0);
     const [ink, faint] = ["--ink", "--line"].map((name) => getComputedStyle(canvas).getPropertyValue(name));
-    const less = (values, offset) => (values ? Array.from(values, (value) => value - (offset || 0)) : []);
+    const scaled = panel.log ? Math.log10 : (value) => value;
+    const less = (values, offset) => (values ? Array.from(values, (value) => scaled(value - (offset || 0))) : []);
     const curves = runs.flatMap((columns, which) =>
       panel.curves.map((name, i) => ({
         which,
         colour: palette[(i + which * panel.curves.length) % palette.length],
-        x: less(columns[panel.x], panel.x_offset),
+        x: less(columns[panel.x_of ? panel.x_of(name) : panel.x], panel.x_offset),
         y: less(columns[name], panel.y_offset),
       })));
-    let [left, right] = range(curves.map(({ x }) => x));
-    let [low, high] = range(curves.map(({ y }) => y));
+    let [left, right] = range([...curves.map(({ x }) => x), handles.map(({ x }) => x)]);
+    let [low, high] = range([...curves.map(({ y }) => y), handles.map(({ y }) => y)]);
     const box = { left: 62, top: 6, width: width - 72, height: height - 40 };
     if (panel.equal_axes) {
       const unit = Math.max((right - left) / box.width, (high - low) / box.height);
@@ -74,25 +103,33 @@ export class Plot {
       [left, right] = [middle[0] - (unit * box.width) / 2, middle[0] + (unit * box.width) / 2];
       [low, high] = [middle[1] - (unit * box.height) / 2, middle[1] + (unit * box.height) / 2];
     }
+    if (this.held) [left, right, low, high] = this.shown;
+    this.shown = [left, right, low, high];
     const at = (x, y) => [
       box.left + ((x - left) / (right - left)) * box.width,
       box.top + box.height - ((y - low) / (high - low)) * box.height,
     ];
+    this.at = at;
+    this.back = (px, py) => [
+      left + ((px - box.left) / box.width) * (right - left),
+      low + ((box.top + box.height - py) / box.height) * (high - low),
+    ];
+    const [nearest, words] = panel.log ? [1, power] : [0, label];
     paint.font = "11px system-ui, sans-serif";
     paint.fillStyle = ink;
     paint.strokeStyle = faint;
     paint.lineWidth = 1;
     paint.textAlign = "center";
-    for (const x of ticks(left, right, box.width / 80)) {
+    for (const x of ticks(left, right, box.width / 80, nearest)) {
       const [px] = at(x, low);
       paint.strokeRect(px, box.top, 0, box.height);
-      paint.fillText(label(x, right - left), px, box.top + box.height + 14);
+      paint.fillText(words(x, right - left), px, box.top + box.height + 14);
     }
     paint.textAlign = "right";
-    for (const y of ticks(low, high, box.height / 34)) {
+    for (const y of ticks(low, high, box.height / 34, nearest)) {
       const [, py] = at(left, y);
       paint.strokeRect(box.left, py, box.width, 0);
-      paint.fillText(label(y, high - low), box.left - 5, py + 4);
+      paint.fillText(words(y, high - low), box.left - 5, py + 4);
     }
     paint.textAlign = "center";
     paint.fillText(panel.x_label, box.left + box.width / 2, height - 6);
@@ -111,6 +148,20 @@ export class Plot {
         paint[drawn ? "lineTo" : "moveTo"](...at(value, y[row]));
         drawn = true;
       });
+      paint.stroke();
+      if (!panel.log) continue;
+      paint.fillStyle = colour;
+      x.forEach((value, row) => {
+        paint.beginPath();
+        paint.arc(...at(value, y[row]), 2.5, 0, 2 * Math.PI);
+        paint.fill();
+      });
+    }
+    paint.setLineDash([]);
+    paint.strokeStyle = paint.fillStyle = ink;
+    for (const { x, y } of handles) {
+      paint.beginPath();
+      paint.arc(...at(x, y), 6, 0, 2 * Math.PI);
       paint.stroke();
     }
     paint.restore();

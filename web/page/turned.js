@@ -1,6 +1,6 @@
 // Sliders for the numbers of a scene, and choices for its words.
 
-const literal = (values, isList) => (isList ? `[${values.map(exact).join(", ")}]` : exact(values[0]));
+export const literal = (values, isList) => (isList ? `[${values.map(exact).join(", ")}]` : exact(values[0]));
 /** As TOML reads it: with a point, so that it is no whole number. */
 const exact = (value) => (Number.isInteger(value) && Math.abs(value) < 1e15 ? `${value}.0` : String(value));
 

@@ -29,14 +29,40 @@ function advance(place, steps) {
   }
 }
 
-/** All runs go the same number of steps, so that they are compared at the same place. */
+/** ms that a step takes, told by a run of its own; none where that is over too soon. */
+function costOf(asked) {
+  const { run } = engine.open(asked);
+  engine.advance(run, 20); // the first steps take longer
+  const [begun, enough, some] = [performance.now(), 20, 50];
+  let steps = 0;
+  while (performance.now() - begun < enough && engine.advance(run, some)) steps += some;
+  const took = performance.now() - begun;
+  engine.close(run);
+  return steps > 0 ? took / steps : NaN;
+}
+
+/** {settings, pace}: what is added to a scene so that it takes as long as the first run, and its steps for one of that. */
+function atTheCostOf(first, asked) {
+  const dearer = costOf(asked) / costOf(first.asked);
+  if (!(dearer > 0)) return { settings: [], pace: 1 };
+  const time = first.opened.whole.split(/^\[/m).find((table) => table.startsWith("time]")) ?? "";
+  const has = (key) => new RegExp(`^\\s*${key}\\s*=`, "m").test(time);
+  const number = (value) => (Number.isInteger(value) ? `${value}.0` : String(value));
+  const steps = Math.max(1, Math.round(first.opened.steps / dearer));
+  const settings = [];
+  if (has("steps")) settings.push(`time.steps=${steps}`);
+  if (has("step")) settings.push(`time.step=${number((first.opened.step * first.opened.steps) / steps)}`);
+  return { settings, pace: steps / first.opened.steps };
+}
+
+/** All runs go as many steps of the first, so that they are compared at the same place. */
 function work() {
   if (!going) return;
   const begin = performance.now();
   for (const [place, held] of runs) {
     if (!held.goes_on) continue;
     const from = performance.now();
-    const chunk = Math.max(1, Math.floor(held.chunk));
+    const chunk = Math.max(1, Math.floor(held.chunk * held.pace));
     advance(place, chunk);
     const took = performance.now() - from;
     seconds += took / 1000;
@@ -53,14 +79,34 @@ function work() {
   if (going) setTimeout(work, 0);
 }
 
-function open({ place, scene, settings, method }) {
+/** `fair`: beside a run that is there, with as many steps as take the same time. */
+function open({ place, scene, settings, method, fair }) {
+  ++studied;
   if (runs.has(place)) engine.close(runs.get(place).run);
   runs.delete(place);
-  const opened = engine.open({ scene, settings, method });
-  runs.set(place, { run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10 });
+  const asked = { scene, settings, method };
+  const first = fair ? runs.get(0) : null;
+  const { settings: more, pace } = first ? atTheCostOf(first, asked) : { settings: [], pace: 1 };
+  const opened = engine.open({ ...asked, settings: [...settings, ...more] });
+  runs.set(place, {
+    run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10, pace, asked, opened });
   [seconds, made] = [0, 0];
-  postMessage({ kind: "opened", place, opened });
+  postMessage({ kind: "opened", place, opened, pace });
   show(place);
+}
+
+let studied = 0; // which study is under way
+
+/** Measures as long as nobody asks for something else. */
+function measure(number) {
+  if (number !== studied) return;
+  try {
+    const point = engine.nextOfStudy();
+    postMessage({ kind: "measured", point });
+    if (!point.done) setTimeout(() => measure(number), 0);
+  } catch (error) {
+    postMessage({ kind: "refused", of: "study", message: String(error.message) });
+  }
 }
 
 const actions = {
@@ -69,6 +115,13 @@ const actions = {
     postMessage({ kind: "ready", about: engine.about });
   },
   open,
+  schema: ({ system }) => postMessage({ kind: "schema", system, schema: engine.schema(system) }),
+  study({ scene, settings }) {
+    ++studied;
+    going = false;
+    postMessage({ kind: "studied", begun: engine.study({ scene, settings }) });
+    measure(studied);
+  },
   close({ place }) {
     if (!runs.has(place)) return;
     engine.close(runs.get(place).run);
@@ -82,7 +135,8 @@ const actions = {
   },
   step({ steps }) {
     for (const place of runs.keys()) {
-      if (runs.get(place).goes_on) advance(place, steps);
+      const { goes_on, pace } = runs.get(place);
+      if (goes_on) advance(place, Math.max(1, Math.round(steps * pace)));
       show(place);
     }
   },

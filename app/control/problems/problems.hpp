@@ -10,6 +10,7 @@ const ControlProblem& swing_up_problem();
 const ControlProblem& planar_mass_problem();
 const ControlProblem& low_thrust_problem();
 const ControlProblem& dubins_car_problem();
+const ControlProblem& reeds_shepp_car_problem();
 const ControlProblem& hovercraft_problem();
 const ControlProblem& steered_sleigh_problem();
 const ControlProblem& steered_car_problem();

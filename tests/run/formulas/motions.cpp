@@ -146,6 +146,17 @@ TEST(FormulaMotions, GoOnWithTheVelocityTheyBeganWith) {
   }
 }
 
+// The parts of a momentum that is zero cancel: the rounding of its equation is that of the parts.
+TEST(FormulaMotions, OfACartThatNothingPushes) {
+  const Written cart{{.coordinates = {"x", "theta"}},
+                     "(3*x'^2 + 2*0.8*x'*theta'*cos(theta) + 0.64*theta'^2)/2 + 9.81*0.8*cos(theta)"};
+  for (const CurveChoice& curve : {CurveChoice{}, CurveChoice{.degree = 2}, CurveChoice{.degree = 3}}) {
+    FormulaMotion motion = motion_of(cart, curve, Eigen::Vector2d(0, 2), Eigen::Vector2d::Zero(), 0.01);
+    const std::vector<double> end = ends(motion, 2000);
+    EXPECT_NEAR(end[2], 0, 1e-13);
+  }
+}
+
 // What is kept is all that the next step depends on; parts of steps are looked into without a trace.
 TEST(FormulaMotions, GoOnWithTheSameBits) {
   FormulaMotion one = motion_of(bead, {CurveQuadrature::lobatto_pair, 3}, bead_start.object, bead_start.momentum, 0.1);

@@ -3,6 +3,7 @@
 
 #include <lagroid/systems/control/flows/dubins_car.hpp>
 #include <lagroid/systems/control/flows/hovercraft.hpp>
+#include <lagroid/systems/control/flows/reeds_shepp_car.hpp>
 #include <lagroid/systems/control/flows/steered_car.hpp>
 #include <lagroid/systems/control/flows/steered_sleigh.hpp>
 
@@ -63,6 +64,83 @@ TEST(DubinsCars, CostatesConserveTheirMomentum) {
   StageRows wrong = solver.costates();
   wrong[25][1] += 1e-3;
   EXPECT_GT(spread(momenta(wrong)), 1e-4);
+}
+
+/// The pieces of a way, L, R or S, + forward and - backward; what is shorter than two stages is between two of them.
+std::string word_of(const ControlTrajectory<ReedsSheppCar>& way, double largest_turn) {
+  std::string word;
+  std::string piece;
+  long stages = 0;
+  const auto end = [&] {
+    if (stages > 1) word += piece;
+  };
+  for (const Vector<double, 2>& u : way.controls) {
+    const bool is_straight = std::abs(u(1)) < 0.5 * largest_turn;
+    std::string here = is_straight ? "S" : u(0) * u(1) > 0 ? "L" : "R";
+    here += u(0) > 0 ? "+" : "-";
+    if (here != piece) {
+      end();
+      piece = here;
+      stages = 0;
+    }
+    ++stages;
+  }
+  end();
+  return word;
+}
+
+struct ReedsSheppCase {
+  Vector<double, 3> from;
+  Vector<double, 3> to;
+  double largest_turn;
+  double length;
+  std::vector<std::string> words;  // of this length
+};
+
+// Length and word. In the third it turns at the full rate all the way, by pi: every such way that arrives is as long.
+TEST(ReedsSheppCars, FindTheShortestWaysAndTheirWords) {
+  constexpr double pi = std::numbers::pi;
+  const std::vector<ReedsSheppCase> cases{
+      {{0, 0, 0}, {4, 2, pi / 3}, 1, 4.521646683033829, {"L+S+L+"}},
+      {{0, 0, 0}, {2, 0, pi}, 1, pi, {"L+R-", "R+L-"}},
+      {{0, 0, pi / 2}, {0.5, 0.2, -pi / 2}, 1, pi, {}},
+      {{0, 0, 0}, {1, 1, -2.5}, 1, 2.5, {"R+L-R+", "L-R+L-", "R+L-"}},
+      {{1, -1, 2}, {-3, 2, 0.5}, 0.5, 7.035176444467417, {"L+S+R+L-"}},
+      {{0, 0, 0}, {0, 1.5, 0}, 1, 3.177308837657156, {"R+L-R-L+", "R-L+R+L-"}},
+      {{0, 0, 0.3}, {3, -3, 3}, 1, 5.239136587440841, {"L+R-S-R-"}},
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const ReedsSheppCase& each = cases[i];
+    ControlTask<ReedsSheppCar> task{{}, FlowStates<SE2>::arrow(each.from, each.to), 5, true};
+    task.lower << -1, -each.largest_turn;
+    task.upper << 1, each.largest_turn;
+    const auto found = search_control(task, 400);
+    ASSERT_FALSE(found.minima.empty()) << i;
+    const auto& way = found.minima.front().trajectory;
+    EXPECT_NEAR(way.duration(), each.length, 1e-4) << i;
+    const std::string word = word_of(way, each.largest_turn);
+    EXPECT_TRUE(each.words.empty() || std::count(each.words.begin(), each.words.end(), word) == 1) << i << word;
+    if (!each.words.empty()) continue;
+    for (const Vector<double, 2>& u : way.controls) EXPECT_NEAR(std::abs(u(1)), each.largest_turn, 1e-6);
+  }
+}
+
+// The next word of the seventh case that the records list.
+TEST(ReedsSheppCars, CompetingWordsAreListed) {
+  ControlTask<ReedsSheppCar> task{{}, FlowStates<SE2>::arrow({0, 0, 0.3}, {3, -3, 3}), 5, true};
+  task.lower << -1, -1;
+  task.upper << 1, 1;
+  const auto found = search_control(task, 200);
+  ASSERT_GE(found.minima.size(), 2U);
+  EXPECT_NEAR(found.minima[1].trajectory.duration(), 5.555583886437171, 4e-4);
+  EXPECT_EQ(word_of(found.minima[1].trajectory, 1), "R+S+R+L-");
+}
+
+TEST(ReedsSheppCars, DerivativesAndOptimality) {
+  ControlTask<ReedsSheppCar> task{{}, FlowStates<SE2>::arrow({0, 0, 0}, {4, 2, 1}), 5, true};
+  task.lower << -1, -1;
+  task.upper << 1, 1;
+  expect_laws(task, 20);
 }
 
 TEST(Hovercrafts, TurnAndMove) {

@@ -28,6 +28,10 @@ void expect_second_order(const std::string& name, const ControlTask<Sys>& task, 
     EXPECT_LE(report.stationarity, 1e-10) << name;
     EXPECT_LE(report.violation, 1e-10) << name;
     EXPECT_LE(report.complementarity, 1e-9) << name;
+    const CrossoverReport& crossover = found.minima.front().crossover;
+    EXPECT_TRUE(crossover.crossed()) << name << " N = " << stages << ": " << to_string(crossover.status);
+    EXPECT_LE(crossover.after.largest(), 1e-12) << name << " N = " << stages;
+    EXPECT_LE(crossover.before.largest(), 1e-9) << name << " N = " << stages;
     EXPECT_TRUE(report.is_strict_minimum) << name;
   }
   if (!smooth) return;

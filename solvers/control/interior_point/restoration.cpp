@@ -61,7 +61,7 @@ double InteriorPoint::smoothed_violation(const StageValues& at, double nu) const
 bool InteriorPoint::restore() {
   ++report_.restorations;
   const double start = merit(values_, slacks_).violation;
-  double smoothing = std::max(barrier_, largest_violation());
+  double smoothing = std::max(barrier_, largest_violation(sizes_, values_));
   set_all(costates_, 0);
   set_all(multipliers_, 0.5);
   last_shift_ = 0;
@@ -88,7 +88,7 @@ bool InteriorPoint::restore() {
     }
     kkt_.assemble(derivatives_, sigma_);
     set_all(derivatives_.gradient, 0);
-    lagrangian_gradient(equality_, weights_, gradient_);
+    lagrangian_gradient(transcription_, derivatives_, equality_, weights_, gradient_);
     const double steepest = largest_entry(gradient_);
     if (steepest <= std::clamp(smoothing, 1e-6, 1e-2)) {
       if (smoothing <= 1e-7) break;
@@ -96,7 +96,7 @@ bool InteriorPoint::restore() {
       continue;
     }
     if (!factor()) break;
-    lagrangian_gradient(costates_, weights_, right_.primal);
+    lagrangian_gradient(transcription_, derivatives_, costates_, weights_, right_.primal);
     negate(right_.primal);
     kkt_.solve(right_, step_);
 
@@ -144,7 +144,7 @@ bool InteriorPoint::restore() {
   for (std::size_t i = 0; i < multipliers_.numbers().size(); ++i)
     multipliers_.numbers()[i] = std::min(1e3, barrier_ / slacks_.numbers()[i]);
   least_squares_costates();
-  return found || largest_violation() <= options_.tolerance;
+  return found || largest_violation(sizes_, values_) <= options_.tolerance;
 }
 
 }  // namespace lagroid

@@ -9,10 +9,10 @@
 namespace lagroid {
 
 void InteriorPoint::describe() {
-  const KktError at = error(0);
+  const KktResidual at = kkt_residual(transcription_, values_, derivatives_, costates_, multipliers_, gradient_);
   report_.stationarity = at.stationarity;
+  report_.violation = at.violation;
   report_.complementarity = at.complementarity;
-  report_.violation = largest_violation();
   report_.cost = 0;
   for (long k = 0; k < sizes_.stages; ++k) report_.cost += values_.cost[k][0];
 }
