@@ -1,7 +1,7 @@
 #include "own_check.hpp"
 
 #include "../check/check.hpp"
-#include "../check/poisson_laws.hpp"
+#include "../check/laws/poisson_laws.hpp"
 
 #include <utility>
 

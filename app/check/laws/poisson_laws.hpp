@@ -5,8 +5,8 @@
 ///
 /// Requires a family that outlives it. Errors: as FamilyLaws.
 
-#include "../poisson/poisson_family.hpp"
-#include "family_laws.hpp"
+#include "../../poisson/poisson_family.hpp"
+#include "../family_laws.hpp"
 
 namespace lagroid::app {
 

@@ -1,7 +1,7 @@
-#include "family_laws.hpp"
+#include "../family_laws.hpp"
 
-#include "../spheres/sphere_run.hpp"
-#include "../spheres/sphere_time.hpp"
+#include "../../spheres/sphere_run.hpp"
+#include "../../spheres/sphere_time.hpp"
 
 #include <lagroid/systems/testing/sphere_laws.hpp>
 

@@ -1,5 +1,5 @@
-#include "certify_system.hpp"
-#include "family_laws.hpp"
+#include "../certify_system.hpp"
+#include "../family_laws.hpp"
 
 namespace lagroid::app {
 

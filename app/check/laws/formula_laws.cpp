@@ -1,6 +1,6 @@
-#include "family_laws.hpp"
+#include "../family_laws.hpp"
 
-#include "../formula/formula_scene.hpp"
+#include "../../formula/formula_scene.hpp"
 
 #include <lagroid/solvers/galerkin/testing/sized_step_laws.hpp>
 

@@ -1,6 +1,6 @@
-#include "family_laws.hpp"
+#include "../family_laws.hpp"
 
-#include "../control/control_problem.hpp"
+#include "../../control/control_problem.hpp"
 
 namespace lagroid::app {
 

@@ -6,7 +6,7 @@
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulums/pendulum.hpp>
 
-#include "../../support/allocation_counter.hpp"
+#include "../../../support/allocation_counter.hpp"
 
 #include <gtest/gtest.h>
 

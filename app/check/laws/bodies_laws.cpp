@@ -1,6 +1,6 @@
-#include "family_laws.hpp"
+#include "../family_laws.hpp"
 
-#include "../bodies/scene_run.hpp"
+#include "../../bodies/scene_run.hpp"
 
 #include <lagroid/systems/multibody/testing/scene_laws.hpp>
 

@@ -1,6 +1,6 @@
 #include "poisson_laws.hpp"
 
-#include "../poisson/poisson_run.hpp"
+#include "../../poisson/poisson_run.hpp"
 
 #include <lagroid/solvers/testing/poisson_step_laws.hpp>
 
