@@ -24,6 +24,7 @@ let isAwaited = false; // another change, until what was asked for is answered
 let isGoing = false;
 let rate = 0;
 let engine; // {source, wasm}
+let number = 0; // of what is asked for: answers to what was asked before are late
 let unanswered = 0; // of the scenes that the worker was asked to read
 let askedAt = 0;
 const patience = 3000; // ms; whatever is asked for after that begins with another worker
@@ -48,12 +49,13 @@ function prepare() {
   history.replaceState(null, "", written({
     scene: state.scene, settings: [...state.settings], first: state.first, second: state.second, fair: state.fair }));
   if (unanswered > 0 && performance.now() - askedAt > patience) begin();
+  ++number;
   go(false);
   places.clear();
   ask({ kind: "close", place: 1 });
   [state.first, state.second].forEach((method, place) => {
     if (method === null) return;
-    ask({ kind: "open", place, ...asked(method), fair: place === 1 && state.fair });
+    ask({ kind: "open", place, number, ...asked(method), fair: place === 1 && state.fair });
     ++unanswered;
   });
   askedAt = performance.now();
@@ -218,8 +220,8 @@ const hears = {
         go(true);
       });
   },
-  rows({ place, columns, summary, goes_on, rate: made }) {
-    if (place === 1 && state.second === null) return;
+  rows({ place, number: of, columns, summary, goes_on, rate: made }) {
+    if (of !== number || (place === 1 && state.second === null)) return;
     places.set(place, { columns, summary, goes_on });
     rate = made;
     redraw();

@@ -13,10 +13,10 @@ let seconds = 0;
 let made = 0;
 
 function show(place) {
-  const { run, series, goes_on } = runs.get(place);
+  const { run, series, goes_on, number } = runs.get(place);
   const columns = columnsOf(engine, run, series, mostRows);
   const rate = seconds > 0 ? made / seconds : 0;
-  postMessage({ kind: "rows", place, columns, summary: engine.summary(run), goes_on, rate });
+  postMessage({ kind: "rows", place, number, columns, summary: engine.summary(run), goes_on, rate });
 }
 
 function advance(place, steps) {
@@ -79,8 +79,11 @@ function work() {
   if (going) setTimeout(work, 0);
 }
 
-/** `fair`: beside a run that is there, with as many steps as take the same time. */
-function open({ place, scene, settings, method, fair }) {
+/**
+ * `fair`: beside a run that is there, with as many steps as take the same time. All that is told of the run has the
+ * `number` with which it was asked for.
+ */
+function open({ place, number, scene, settings, method, fair }) {
   ++studied;
   if (runs.has(place)) engine.close(runs.get(place).run);
   runs.delete(place);
@@ -89,7 +92,7 @@ function open({ place, scene, settings, method, fair }) {
   const { settings: more, pace } = first ? atTheCostOf(first, asked) : { settings: [], pace: 1 };
   const opened = engine.open({ ...asked, settings: [...settings, ...more] });
   runs.set(place, {
-    run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10, pace, asked, opened });
+    run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10, pace, asked, opened, number });
   [seconds, made] = [0, 0];
   postMessage({ kind: "opened", place, opened, pace });
   show(place);
