@@ -26,6 +26,7 @@
 #include <lagroid/run/events/function_watch.hpp>
 #include <lagroid/solvers/sensitivity/growth/growth.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
+#include <lagroid/solvers/sensitivity/times/timed_node.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,17 +43,9 @@
 namespace lagroid {
 
 /// What a function of an event sees: a node, or a point within a step, and the time there.
-template <class Sys> struct EventNode {
-  using G = typename Sys::GroupoidType;
-  const Sys& system;
-  VariedNumber time;
-  ObjectOf<G, VariedNumber> object;
-  AlgebroidVector<G, VariedNumber> momentum;  ///< the one that is reported
-  ArrowOf<G, VariedNumber> configuration;
-};
-
+template <class Sys> using EventNode = ObservedTimedNode<Sys>;
 /// What is observed of a node.
-template <class Sys> using ObserveEventNode = std::function<VariedVector(const EventNode<Sys>&)>;
+template <class Sys> using ObserveEventNode = ObserveTimedNode<Sys>;
 
 /// An event with derivatives: where its function passes zero.
 template <DiscreteSystem Sys> struct SmoothEvent {

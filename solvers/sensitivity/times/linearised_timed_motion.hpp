@@ -23,10 +23,10 @@
 #include <lagroid/solvers/integrators/times/prescribed.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 #include <lagroid/solvers/sensitivity/linearised_step.hpp>
+#include <lagroid/solvers/sensitivity/times/timed_node.hpp>
 #include <lagroid/solvers/sensitivity/varied_point.hpp>
 #include <lagroid/solvers/step/newton_step.hpp>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -39,17 +39,6 @@ namespace lagroid {
 template <class Sys, TimeMode mode>
 concept VaryingSteps = Timed<Sys> && !Nonholonomic<Sys> &&
                        (mode == TimeMode::adaptive || (mode == TimeMode::prescribed && HasTimeScaleOfArrows<Sys>));
-
-/// What can be observed of a node whose time depends on the start.
-template <class Sys> struct ObservedTimedNode {
-  using G = typename Sys::GroupoidType;
-  const Sys& system;
-  VariedNumber time;
-  ObjectOf<G, VariedNumber> object;
-  AlgebroidVector<G, VariedNumber> momentum;  ///< the one that is reported
-  ArrowOf<G, VariedNumber> configuration;
-};
-template <class Sys> using ObserveTimedNode = std::function<VariedVector(const ObservedTimedNode<Sys>&)>;
 
 namespace detail {
 
