@@ -51,8 +51,8 @@ template <class P, int K> class ParametricModel : public FieldModel<PotentialFie
   StateSpace space() const override { return cotangent_spheres(this->fields().bodies); }
 
   Eigen::VectorXd start(unsigned seed) const override {
-    const auto& [potential, bodies, dissipation] = this->fields();
-    const int masses = mass_size(bodies);
+    const P& potential = this->potential();
+    const int masses = mass_size(this->fields().bodies);
     Eigen::VectorXd theta = Eigen::VectorXd::Zero(this->size());
     if (seed != 0) {
       std::mt19937 generator(seed);
